@@ -1,5 +1,6 @@
-# Two Debian packages from the two components of MbkInstall: mbk, which a laboratory installs, and libmbk-dev, which
-# only those need who write programs: it brings compiler packages along. tools/package makes them.
+# Debian packages from the components of MbkInstall: mbk, which a laboratory installs, libmbk-dev, which only those need
+# who write programs: it brings compiler packages along, and python3-mbk, where the module of Python is built.
+# tools/package makes them.
 set(MBK_MAINTAINER "The mbk authors <maintainers@mbk.example>" CACHE STRING "Maintainer of the Debian packages")
 
 set(CPACK_GENERATOR DEB)
@@ -11,6 +12,9 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
     WORLD_READ WORLD_EXECUTE)
 set(CPACK_COMPONENTS_ALL program development)
+if(MBK_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -34,6 +38,17 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries for C++20 with hea
 reading of recordings, preparation of signals, identification of inertia,
 damping and stiffness with their covariance, ellipses, and a simulated robot
 and arm.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mbk)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_python}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-xarray, mbk")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Everything that the program mbk computes, for Python: recordings as NumPy arrays
+without a copy, each command as a function with the same options, results with
+units, tables for notebooks and pandas, and plots.")
 
 # The packages that hold what the libraries link, asked of dpkg.
 find_program(MBK_DPKG_QUERY dpkg-query)

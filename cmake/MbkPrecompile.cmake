@@ -1,5 +1,5 @@
 # The outside headers that most files include, read once for each way of compiling instead of once for each file:
-# cmake/precompiled/library.h, with GoogleTest tests.h, with CLI11 program.h. Every file still includes what it uses,
+# cmake/precompiled/library.h, with GoogleTest tests.h, with CLI11 commands.h. Every file still includes what it uses,
 # which clang-tidy, that compiles without them, confirms. docs/guide/build.md shows what it saves.
 option(MBK_PRECOMPILE "Precompile the outside headers that most files include" ON)
 
@@ -11,11 +11,11 @@ if(MBK_PRECOMPILE)
   add_library(mbk_precompiled_library STATIC ${MBK_PRECOMPILED_FOLDER}/library.cpp)
   target_precompile_headers(mbk_precompiled_library PRIVATE ${MBK_PRECOMPILED_FOLDER}/library.h)
 
-  add_executable(mbk_precompiled_program ${MBK_PRECOMPILED_FOLDER}/program.cpp)
-  target_compile_options(mbk_precompiled_program PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_link_libraries(mbk_precompiled_program PRIVATE CLI11::CLI11)
-  target_precompile_headers(mbk_precompiled_program PRIVATE ${MBK_PRECOMPILED_FOLDER}/program.h)
-  set(holders mbk_precompiled_library mbk_precompiled_program)
+  add_library(mbk_precompiled_commands STATIC ${MBK_PRECOMPILED_FOLDER}/library.cpp)
+  target_compile_options(mbk_precompiled_commands PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_link_libraries(mbk_precompiled_commands PRIVATE CLI11::CLI11)
+  target_precompile_headers(mbk_precompiled_commands PRIVATE ${MBK_PRECOMPILED_FOLDER}/commands.h)
+  set(holders mbk_precompiled_library mbk_precompiled_commands)
 
   if(MBK_BUILD_TESTS)
     add_executable(mbk_precompiled_tests ${MBK_PRECOMPILED_FOLDER}/program.cpp)
@@ -30,7 +30,7 @@ if(MBK_PRECOMPILE)
   endforeach()
 endif()
 
-# mbk_precompile(TARGET library|program|tests): TARGET is compiled with those headers. What they need it is given, for
+# mbk_precompile(TARGET library|commands|tests): TARGET is compiled with those headers. What they need it is given, for
 # a module need not link it by itself; nobody who links TARGET is.
 function(mbk_precompile target kind)
   if(MBK_PRECOMPILE)

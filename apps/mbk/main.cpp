@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/mbk/command_list.h"
 #include "apps/mbk/commands.h"
 #include "apps/mbk/last_words.h"
 #include "apps/mbk/memory.h"
@@ -25,22 +26,8 @@
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/core/words.h"
-#include "mbk/present/report/text.h"
 
 namespace {
-
-/// Descriptions of options, broken into lines that a terminal shows whole.
-class HelpFormatter : public CLI::Formatter {
- public:
-  HelpFormatter() { column_width(kNameColumns); }
-
-  std::string make_option_desc(const CLI::Option* option) const override {
-    return mbk::report::wrapped(CLI::Formatter::make_option_desc(option), mbk::report::kLineColumns - kNameColumns);
-  }
-
- private:
-  static constexpr std::size_t kNameColumns = 30;
-};
 
 /// "mbk: what is wrong; which help to read".
 std::string one_line(const CLI::App* app, const CLI::Error& error) {
@@ -93,50 +80,6 @@ constexpr std::string_view kNoMemory =
   std::set_terminate(end_without_memory);
 }
 
-using Commands = std::vector<std::pair<std::string_view, std::function<mbk::app::Action(CLI::App&)>>>;
-
-/// Every command, in the order in which --help lists them.
-Commands all_commands(const std::string& typed) {
-  using namespace mbk::app;
-  return {
-      {"measure", [typed](CLI::App& app) { return add_measure(app, typed); }},
-      {"identify", add_identify},
-      {"explore", [typed](CLI::App& app) { return add_explore(app, typed); }},
-      {"movement", add_movement},
-      {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
-      {"ellipse", add_ellipse},
-      {"passivity", add_passivity},
-      {"compare", add_compare},
-      {"info", add_info},
-      {"convert", add_convert},
-      {"simulate", add_simulate},
-      {"run", add_run},
-      {"recover", add_recover},
-      {"springs", add_springs},
-      {"teleop", add_teleop},
-      {"sensor", add_sensor},
-      {"robot", add_robot},
-      {"study", add_study},
-      {"validate", add_validate},
-      {"reproduce", add_reproduce},
-      {"completion", add_completion},
-      {"manual", add_manual},
-  };
-}
-
-/// The options of all commands are half of what it takes to start: where the first word on the command line names a
-/// command, only that one is made. `completion` and `manual` speak of all.
-mbk::app::Actions commands_for(std::string_view first, CLI::App& app, const std::string& typed) {
-  const Commands all = all_commands(typed);
-  const bool one = first != "completion" && first != "manual" &&
-                   std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
-  mbk::app::Actions made;
-  for (const auto& [name, add] : all) {
-    if (!one || name == first) made.emplace_back(name, add(app));
-  }
-  return made;
-}
-
 int run(int argc, char** argv) {
   mbk::app::prefer_large_pages();
   const char* const simd = std::getenv("MBK_SIMD");
@@ -156,11 +99,11 @@ int run(int argc, char** argv) {
   app.name("mbk");
   app.set_version_flag("--version", fmt::format("mbk {}", mbk::version()));
   app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpFormatter>());
+  mbk::app::wrap_help(app);
   app.failure_message(one_line);
 
   const std::string_view first = argc > 1 ? argv[1] : "";
-  const mbk::app::Actions commands = commands_for(first, app, mbk::app::command_line(argc, argv));
+  const mbk::app::Actions commands = mbk::app::add_commands(first, app, mbk::app::command_line(argc, argv));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/commands_json.h"
 #include "apps/mbk/manual_page.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
@@ -18,7 +19,7 @@ namespace {
 struct ManualArguments {
   std::vector<std::string> command;
   std::optional<std::filesystem::path> pages;
-  bool overwrite = false;
+  bool json = false, overwrite = false;
 };
 
 /// The command that the words lead to, from `root` down; nullptr where there is none.
@@ -50,6 +51,10 @@ int write_pages(const CommandText& root, const std::filesystem::path& folder, bo
 
 int run(const ManualArguments& arguments, CLI::App& app) {
   const CommandText root = describe(app);
+  if (arguments.json) {
+    if (auto ok = Output().write(commands_json(root, std::string(version()))); !ok) return report_error(ok.error());
+    return kFine;
+  }
   if (arguments.pages) {
     if (arguments.command.empty()) return write_pages(root, *arguments.pages, arguments.overwrite);
     return report_error({ErrorKind::usage, "--pages writes every page", "omit COMMAND or --pages", ""});
@@ -76,15 +81,21 @@ Action add_manual(CLI::App& app) {
       "  mbk manual measure | man -l -\n"
       "  mbk manual springs field | man -l -\n"
       "  mbk manual --pages ~/.local/share/man/man1\n"
-      "      all of them, where man finds them: man mbk-measure\n\n"
+      "      all of them, where man finds them: man mbk-measure\n"
+      "  mbk manual --json\n"
+      "      every command with its options, for programs that call mbk\n\n"
       "Where mbk came as a package, or by 'cmake --install', the pages are in place.");
-  command->add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
-      ->check(suggests(names_below(app)));
+  CLI::Option* const named =
+      command->add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
+          ->check(suggests(names_below(app)));
   CLI::Option* const pages =
       command->add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
           ->type_name("FOLDER")
           ->check(not_empty());
   command->add_flag("--overwrite", arguments->overwrite, "replace pages that are there")->needs(pages);
+  command->add_flag("--json", arguments->json, "every command with its options, for programs: schema mbk.commands/1")
+      ->excludes(named)
+      ->excludes(pages);
   return [arguments, &app] { return run(*arguments, app); };
 }
 

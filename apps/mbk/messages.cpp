@@ -11,6 +11,8 @@
 #include <system_error>
 #include <thread>
 
+#include "apps/mbk/caller.h"
+
 namespace mbk::app {
 namespace {
 
@@ -85,6 +87,10 @@ std::string reason(int error) {
 
 void say_text(std::string_view text) noexcept {
   try {
+    if (Caller* const caller = Caller::current(); caller != nullptr) {
+      caller->say(text);
+      return;
+    }
     Messages& all = messages();
     {
       const std::scoped_lock lock(all.mutex);

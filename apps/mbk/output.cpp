@@ -9,6 +9,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "apps/mbk/caller.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/files/recording/write_file.h"
@@ -16,8 +17,12 @@
 namespace mbk::app {
 
 int report_error(const Error& error) {
-  std::fflush(stdout);
-  say("mbk: {}\n", error.line());
+  if (Caller* const caller = Caller::current(); caller != nullptr) {
+    caller->fail(error);
+  } else {
+    std::fflush(stdout);
+    say("mbk: {}\n", error.line());
+  }
   switch (error.kind) {
     case ErrorKind::usage:
       return kWrongUsage;
@@ -55,6 +60,10 @@ Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) con
 }
 
 Result<void> Output::write(const std::string& text) const {
+  if (Caller* const caller = Caller::current(); caller != nullptr) {
+    caller->write(text);
+    if (!file) return {};
+  }
   if (file) return recording::write_file(*file, overwrite, text);
   flush_messages();  // at a terminal both stand below one another, in the order in which they came
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
@@ -68,6 +77,7 @@ Result<void> Output::write(const std::string& text) const {
 }
 
 Result<std::string> read_text(const std::filesystem::path& file) {
+  if (const std::string* const document = document_in_memory(file)) return *document;
   constexpr std::uintmax_t kLargest = 256u << 20u;
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "apps/mbk/caller.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 
@@ -103,6 +105,10 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
                      "leave one of them out");
   }
   for (const std::filesystem::path& file : arguments.files) {
+    if (arguments.parts && recording_in_memory(file)) {
+      return fail(ErrorKind::usage, "--parts joins files, and this is in memory", "join the arrays instead",
+                  file.string());
+    }
     auto records = arguments.parts ? Result<std::vector<Record>>({{file, ""}}) : records_of(file, arguments.trial);
     if (!records) return tl::unexpected(records.error());
     reader.records_.insert(reader.records_.end(), records->begin(), records->end());
@@ -115,6 +121,7 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
 
 Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
                                                                          const std::string& trial) {
+  if (auto given = recording_in_memory(file)) return std::vector<Record>{{file, trial, {}, std::move(given)}};
   const auto open = recording::open_trials(file);
   const auto trials = open && *open ? Result<std::vector<recording::TrialName>>(recording::trials_of(**open))
                                     : recording::list_trials(file);
@@ -149,12 +156,7 @@ std::vector<recording::TrialName> RecordingReader::trials() const {
 }
 
 Result<Recording> RecordingReader::read(int k) const {
-  if (!parts_ && journal::is_journal(file(k))) {
-    return bad_data("is the journal of a session that was cut off, or still runs",
-                    fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
-  }
-  const recording::ReadOptions options = options_of(k);
-  auto one = parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
+  auto one = read_stored(k);
   if (one && sensor_) {
     one = calibration::force_from_voltage(std::move(*one), *sensor_);
     if (!one) one = tl::unexpected(one.error().in(file(k).string()));
@@ -162,8 +164,23 @@ Result<Recording> RecordingReader::read(int k) const {
   return one;
 }
 
+Result<Recording> RecordingReader::read_stored(int k) const {
+  if (const auto& given = records_[static_cast<std::size_t>(k)].in_memory) {
+    auto recording = given->read(options_of(k));
+    if (!recording) return tl::unexpected(recording.error().in(file(k).string()));
+    return recording;
+  }
+  if (!parts_ && journal::is_journal(file(k))) {
+    return bad_data("is the journal of a session that was cut off, or still runs",
+                    fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
+  }
+  const recording::ReadOptions options = options_of(k);
+  return parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
+}
+
 Result<recording::Contents> RecordingReader::read_contents(int k) const {
-  return recording::read_contents(file(k), options_of(k));
+  const auto& given = records_[static_cast<std::size_t>(k)].in_memory;
+  return given ? given->contents() : recording::read_contents(file(k), options_of(k));
 }
 
 recording::ReadOptions RecordingReader::options_of(int k) const {

@@ -13,6 +13,10 @@
 #include "mbk/measure/calibration/sensor_force.h"
 #include "mbk/model/trial/recording.h"
 
+namespace mbk::recording {
+class InMemory;
+}
+
 namespace mbk::app {
 
 /// Which recordings, and where in them what stands.
@@ -57,8 +61,9 @@ class RecordingReader {
  private:
   struct Record {
     std::filesystem::path file;
-    std::string trial;                                       ///< "": the only one of the file
-    std::shared_ptr<const recording::OpenTrials> open = {};  ///< the file, where it holds several
+    std::string trial;                                          ///< "": the only one of the file
+    std::shared_ptr<const recording::OpenTrials> open = {};     ///< the file, where it holds several
+    std::shared_ptr<const recording::InMemory> in_memory = {};  ///< in place of a file
   };
   /// FILE as the records that it holds.
   [[nodiscard]] static Result<std::vector<Record>> records_of(const std::filesystem::path& file,
@@ -66,6 +71,7 @@ class RecordingReader {
 
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
   [[nodiscard]] recording::ReadOptions options_of(int k) const;
+  [[nodiscard]] Result<Recording> read_stored(int k) const;
 
   std::vector<Record> records_;
   bool parts_ = false;

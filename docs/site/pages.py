@@ -22,12 +22,13 @@ import formulas
 import pygments
 import pygments.formatters
 import pygments.lexers
+import python_pages
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIXED = {"README.md": "index", "CHANGELOG.md": "changelog", "CONTRIBUTING.md": "contributing",
          "THIRD_PARTY_NOTICES.md": "notices", "bench/README.md": "bench", "fuzz/README.md": "fuzz"}
 LANGUAGES = {".cpp": "cpp", ".h": "cpp", ".c": "c", ".py": "python", ".toml": "toml", ".urdf": "xml", ".sh": "bash",
-             ".json": "json", ".yml": "yaml", ".ts": "typescript", ".cmake": "cmake", ".txt": "cmake"}
+             ".json": "json", ".ipynb": "json", ".yml": "yaml", ".ts": "typescript", ".cmake": "cmake", ".txt": "cmake"}
 SUBSCRIPT = re.compile(r"(?<![\w./@])([A-Za-zΑ-ω][\u0300-\u036f]*|∂[a-z])_([A-Za-z]{1,4}|\d)(?![\w/])")
 LINK = re.compile(r"(?P<code>(?<!\[)`+[^`]+`+(?!\]))|(?P<image>!?)\[(?P<label>(?:[^\[\]`]|`[^`]*`)*)\]\((?P<target>[^)\s]+)\)")
 
@@ -458,6 +459,7 @@ def main():
         site.add_folder(folder)
     site.add_examples()
     site.add_commands(mbk)
+    site.pages.update(python_pages.pages(mbk))
     site.add_library()
     for name in ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md"):
         site.add(pathlib.Path(name))

@@ -14,6 +14,7 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 TOOLS = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "lintian", "file", "readelf")
 SKIPPED = 77
+PYTHON = pathlib.Path(os.environ["BUILD"], "python/mbk/__init__.py").exists()
 
 
 def ran(*command, **options):
@@ -44,9 +45,12 @@ class Packages(unittest.TestCase):
     def contents(self, package):
         return [line.split()[-1] for line in ran("dpkg-deb", "--contents", self.packages[package]).splitlines()]
 
-    def test_there_are_two(self):
-        self.assertEqual(sorted(self.packages), ["libmbk-dev", "mbk"])
-        for package, section in (("mbk", "science"), ("libmbk-dev", "libdevel")):
+    def test_there_are_three_or_two_without_python(self):
+        sections = {"mbk": "science", "libmbk-dev": "libdevel"}
+        if PYTHON:
+            sections["python3-mbk"] = "python"
+        self.assertEqual(sorted(self.packages), sorted(sections))
+        for package, section in sections.items():
             self.assertEqual(self.field(package, "Section"), section)
             self.assertRegex(self.field(package, "Version"), r"\A\d+\.\d+\.\d+-\d+\Z")
 
@@ -90,6 +94,26 @@ class Packages(unittest.TestCase):
         self.assertIn(", stripped", ran("file", self.mbk))
         self.assertNotIn("RUNPATH", ran("readelf", "--dynamic", self.mbk))
         self.assertNotIn(str(SOURCE).encode(), self.mbk.read_bytes())
+
+    @unittest.skipUnless(PYTHON, "this build has no module of Python")
+    def test_python_finds_the_package_and_what_it_links(self):
+        contents = self.contents("python3-mbk")
+        self.assertIn("./usr/lib/python3/dist-packages/mbk/__init__.py", contents)
+        self.assertIn("./usr/lib/python3/dist-packages/mbk/schemas/result.schema.json", contents)
+        self.assertFalse([path for path in contents if "__pycache__" in path or path.endswith(".pyc")])
+        module = next(path for path in contents if path.endswith(".so"))
+        depends = self.field("python3-mbk", "Depends")
+        self.assertIn("python3-numpy", depends)
+        self.assertRegex(depends, r"libc6 \(>= ")
+        needed = re.findall(r"\(NEEDED\).*\[(.*)\]", ran("readelf", "--dynamic", self.root / module))
+        for library in needed:
+            owners = {line.split(":")[0] for line in ran("dpkg-query", "--search", f"*/{library}").splitlines()}
+            with self.subTest(library):
+                self.assertTrue(any(re.search(rf"(^|, ){re.escape(one)}( |,|$)", depends) for one in owners), depends)
+        self.assertNotIn("RUNPATH", ran("readelf", "--dynamic", self.root / module))
+        environment = {**os.environ, "PYTHONPATH": str(self.root / "usr/lib/python3/dist-packages")}
+        shown = ran("/usr/bin/python3", "-B", "-c", "import mbk; print(mbk.__file__, mbk.__version__)", env=environment)
+        self.assertIn(str(self.root), shown)
 
     def test_a_page_prints(self):
         page = self.root / "usr/share/man/man1/mbk-measure.1.gz"

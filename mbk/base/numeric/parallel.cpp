@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "mbk/base/core/requester.h"
+
 namespace mbk::numeric {
 
 Result<void> parallel_for(int count, unsigned threads, const std::function<Result<void>(int)>& work,
@@ -19,6 +21,7 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
   std::exception_ptr thrown;
   const auto take_all_turns = [&] {
     for (int i = next++; i < count; i = next++) {
+      stop_where_unwanted();
       const Result<void> outcome = work(i);
       const std::lock_guard lock(mutex);
       if (!outcome) {
@@ -30,7 +33,9 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
     }
   };
   // An exception that left a thread would end the program.
+  Requester* const requester = Requester::current();
   const auto take_turns = [&]() noexcept {
+    const Requester::Scope same(requester);
     try {
       take_all_turns();
     } catch (...) {

@@ -1,0 +1,335 @@
+#include "apps/mbk/call.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <unordered_map>
+
+#include "apps/mbk/caller.h"
+#include "apps/mbk/command_list.h"
+#include "apps/mbk/command_tree.h"
+#include "apps/mbk/commands.h"
+#include "apps/mbk/output.h"
+#include "apps/mbk/reading_options.h"
+#include "mbk/base/core/edit_distance.h"
+#include "mbk/files/recording/in_memory.h"
+
+namespace mbk::app {
+namespace {
+
+/// They move a robot, speak to a shell or write pages of this project: nothing that a script calls.
+constexpr auto kNotCallable = std::to_array<std::string_view>({"run", "completion", "manual"});
+
+constexpr std::size_t kMaxPrepared = 64;
+
+std::vector<std::string> split(std::string_view text) {
+  std::vector<std::string> words;
+  std::istringstream stream{std::string(text)};
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// A command line that was parsed.
+struct Prepared {
+  CLI::App app;
+  Actions actions;
+  bool json = false;
+};
+
+/// The command below `app` that `path` names; nullptr where there is none, or where it has commands of its own.
+CLI::App* find_command(CLI::App& app, std::span<const std::string> path) {
+  CLI::App* at = &app;
+  for (const std::string& word : path) {
+    const auto named = at->get_subcommands([&](const CLI::App* below) { return below->check_name(word); });
+    if (named.empty()) return nullptr;
+    at = named.front();
+  }
+  return at->get_subcommands({}).empty() ? at : nullptr;
+}
+
+/// What was asked for, one thing a line: the same text, the same parsed command line.
+std::string key_of(const Call& call, std::span<const std::string> words) {
+  std::string key = call.command;
+  const auto add = [&](const std::string& text, char kind) {
+    key += '\n';
+    key += kind;
+    key += std::to_string(text.size());
+    key += ':';
+    key += text;
+  };
+  for (const CallOption& option : call.options) {
+    add(option.name, '-');
+    for (const std::string& value : option.values) add(value, '=');
+  }
+  for (const std::string& word : words) add(word, ' ');
+  return key;
+}
+
+/// With the name that was perhaps meant.
+tl::unexpected<Error> no_option(const CLI::App& command, const std::string& name) {
+  std::string nearest;
+  std::size_t least = 3;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& known : option->get_lnames()) {
+      const auto distance = static_cast<std::size_t>(edit_distance(known, name));
+      if (distance < least) {
+        least = distance;
+        nearest = known;
+      }
+    }
+  }
+  return bad_usage(fmt::format("'{}' is no option of {}", name, command.get_name()),
+                   nearest.empty() ? "" : fmt::format("'{}' is one", nearest));
+}
+
+/// As it would be typed, word by word.
+std::vector<std::string> typed_option(const CLI::App& command, const CallOption& given) {
+  const std::string name = "--" + given.name;
+  if (given.values.empty()) return {name};
+  const CLI::Option* const option = command.get_option_no_throw(name);
+  const bool flag = option != nullptr && option->get_items_expected_max() == 0;
+  if (flag && given.values.front() == "false") return {};
+  if (flag && given.values.front() == "true") return {name};
+  const bool in_one = option != nullptr && option->get_allow_extra_args() && option->get_items_expected_max() > 1;
+  std::vector<std::string> words;
+  for (std::size_t k = 0; k < given.values.size(); ++k) {
+    words.push_back(k > 0 && in_one ? given.values[k] : name + "=" + given.values[k]);
+  }
+  return words;
+}
+
+/// What would be typed behind the command.
+/// @fails  usage: no option of the command
+Result<std::vector<std::string>> typed_words(const CLI::App& command, const Call& call,
+                                             const std::vector<std::string>& words) {
+  std::vector<std::string> typed;
+  for (const CallOption& option : call.options) {
+    if (command.get_option_no_throw("--" + option.name) == nullptr) return no_option(command, option.name);
+    const std::vector<std::string> more = typed_option(command, option);
+    typed.insert(typed.end(), more.begin(), more.end());
+  }
+  if (!words.empty()) {
+    typed.emplace_back("--");
+    typed.insert(typed.end(), words.begin(), words.end());
+  }
+  return typed;
+}
+
+/// @fails  usage: what the parser says
+Result<void> parse(CLI::App& app, std::vector<std::string> typed, const std::string& help) {
+  std::ranges::reverse(typed);  // the parser takes them from the end
+  try {
+    app.parse(std::move(typed));
+  } catch (const CLI::Success&) {  // a page of help, or of ranges
+    return bad_usage("that option answers with a text for people", help);
+  } catch (const CLI::ParseError& error) {
+    return bad_usage(error.what(), help);
+  }
+  return {};
+}
+
+/// @fails  usage: no such command; what the parser says
+Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vector<std::string>& words) {
+  const std::vector<std::string> path = split(call.command);
+  const std::string first = path.empty() ? "" : path.front();
+  CLI::App probe;
+  const Actions unused = add_commands(first, probe, "");
+  const CLI::App* const command = path.empty() ? nullptr : find_command(probe, path);
+  if (command == nullptr || std::ranges::find(kNotCallable, first) != kNotCallable.end()) {
+    return bad_usage(fmt::format("'{}' is no command that can be called", call.command), "see 'mbk --help'");
+  }
+  auto behind = typed_words(*command, call, words);
+  if (!behind) return tl::unexpected(behind.error());
+  const bool said = std::ranges::any_of(call.options, [](const CallOption& o) { return o.name == "json"; });
+  const bool can = command->get_option_no_throw("--json") != nullptr;
+  std::vector<std::string> typed = path;
+  if (can && !said) typed.emplace_back("--json");
+  typed.insert(typed.end(), behind->begin(), behind->end());
+
+  auto prepared = std::make_shared<Prepared>();
+  prepared->json = can && std::ranges::find(typed, "--json") != typed.end();
+  std::vector<char*> argv;
+  std::string program = "mbk";
+  argv.push_back(program.data());
+  for (std::string& word : typed) argv.push_back(word.data());
+  prepared->actions = add_commands(first, prepared->app, command_line(static_cast<int>(argv.size()), argv.data()));
+  if (auto ok = parse(prepared->app, typed, fmt::format("see 'mbk {} --help'", call.command)); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  return std::shared_ptr<const Prepared>(std::move(prepared));
+}
+
+/// What `work` gives, or why it gives nothing.
+template <class Work>
+auto guarded(const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return bad_data("not enough memory", "of a recording choose a part with --from and --to");
+  } catch (const std::exception& error) {
+    return bad_data(error.what(), "nothing more was done");
+  }
+}
+
+/// Parsed command lines, for those who call the same again and again.
+class Prepareds {
+ public:
+  Result<std::shared_ptr<const Prepared>> get(const Call& call, const std::vector<std::string>& words) {
+    const std::string key = key_of(call, words);
+    {
+      const std::scoped_lock lock(mutex_);
+      const auto found = made_.find(key);
+      if (found != made_.end()) return found->second;
+    }
+    auto prepared = prepare(call, words);
+    if (!prepared) return prepared;
+    const std::scoped_lock lock(mutex_);
+    if (made_.size() >= kMaxPrepared) made_.clear();
+    made_.emplace(key, *prepared);
+    return prepared;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::string, std::shared_ptr<const Prepared>> made_;
+};
+
+/// Never destroyed: a thread of the host may still call while the process ends.
+Prepareds& prepareds() {
+  static Prepareds& all = *new Prepareds;
+  return all;
+}
+
+/// The words of the call, and before them what is in memory and that none of them names.
+std::vector<std::string> all_words(const Call& call) {
+  std::vector<std::string> words;
+  const auto add_unnamed = [&](std::size_t count, std::string (*word_of)(std::size_t)) {
+    for (std::size_t k = 0; k < count; ++k) {
+      std::string word = word_of(k);
+      const bool named = std::ranges::find(call.words, word) != call.words.end() ||
+                         std::ranges::any_of(call.options, [&](const CallOption& option) {
+                           return std::ranges::find(option.values, word) != option.values.end();
+                         });
+      if (!named) words.push_back(std::move(word));
+    }
+  };
+  add_unnamed(call.recordings.size(), recording_word);
+  add_unnamed(call.documents.size(), document_word);
+  words.insert(words.end(), call.words.begin(), call.words.end());
+  return words;
+}
+
+nlohmann::json option_json(const OptionText& option) {
+  return {{"names", option.names},       {"value", option.value},       {"description", option.description},
+          {"group", option.group},       {"required", option.required}, {"repeats", option.repeats},
+          {"needs", option.needs},       {"excludes", option.excludes}, {"words", option.values.words},
+          {"files", option.values.files}};
+}
+
+}  // namespace
+
+std::string recording_word(std::size_t k) {
+  return fmt::format("<recording {}>", k + 1);
+}
+
+std::string document_word(std::size_t k) {
+  return fmt::format("<result {}>.json", k + 1);
+}
+
+Result<Answer> call(const Call& call) {
+  return guarded([&]() -> Result<Answer> {
+    const auto prepared = prepareds().get(call, all_words(call));
+    if (!prepared) return tl::unexpected(prepared.error());
+    Caller caller(call);
+    const Requester::Scope scope(&caller);
+    const int code = run_chosen((*prepared)->app, (*prepared)->actions);
+    if (caller.stopped()) throw Stopped();
+    bool wrote = false;
+    Answer answer = caller.take(code, wrote);
+    if (!wrote && code != kFine) {
+      if (!answer.errors.empty()) return tl::unexpected(answer.errors.front());
+      return bad_data(fmt::format("'mbk {}' ended with exit code {}", call.command, code));
+    }
+    answer.json = (*prepared)->json;
+    return answer;
+  });
+}
+
+std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answer) {
+  std::vector<std::pair<std::string, std::string>> warnings;
+  if (!answer.json) return warnings;
+  const auto text_of = [](const nlohmann::json& warning, const char* key) {
+    const auto found = warning.find(key);
+    return found != warning.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const std::function<void(const nlohmann::json&)> visit = [&](const nlohmann::json& at) {
+    if (!at.is_structured()) return;
+    for (auto it = at.begin(); it != at.end(); ++it) {
+      if (at.is_object() && it.key() == "warnings" && it->is_array()) {
+        for (const nlohmann::json& one : *it) {
+          if (one.is_object()) warnings.emplace_back(text_of(one, "code"), text_of(one, "message"));
+        }
+      } else {
+        visit(*it);
+      }
+    }
+  };
+  visit(nlohmann::json::parse(answer.text, nullptr, false));
+  return warnings;
+}
+
+Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call& call) {
+  ReadingArguments reading;
+  SensorArguments sensor;
+  CLI::App command("", "read");
+  add_reading_options(command, reading);
+  add_sensor_options(command, sensor);
+  auto typed = typed_words(command, call, all_words(call));
+  if (!typed) return tl::unexpected(typed.error());
+  if (auto ok = parse(command, std::move(*typed), ""); !ok) return tl::unexpected(ok.error());
+  return guarded([&]() -> Result<std::vector<std::shared_ptr<const recording::InMemory>>> {
+    Caller caller(call);
+    const Requester::Scope scope(&caller);
+    const auto reader = RecordingReader::of(reading, sensor);
+    if (!reader) return tl::unexpected(reader.error());
+    std::vector<std::shared_ptr<const recording::InMemory>> recordings;
+    for (int k = 0; k < reader->count(); ++k) {
+      stop_where_unwanted();
+      auto one = reader->read(k);
+      if (!one) return tl::unexpected(one.error());
+      recordings.push_back(std::make_shared<const recording::InMemory>(recording::InMemory::of(std::move(*one))));
+    }
+    return recordings;
+  });
+}
+
+std::string describe_commands() {
+  CLI::App app;
+  app.name("mbk");
+  const Actions unused = add_commands("", app, "");
+  const CommandText root = describe(app);
+  nlohmann::json commands = nlohmann::json::array();
+  for_each_command(root, [&](const CommandText& command) {
+    if (!command.commands.empty() || command.path.size() < 2) return;
+    if (std::ranges::find(kNotCallable, command.path[1]) != kNotCallable.end()) return;
+    nlohmann::json one{{"command", command.joined(" ").substr(4)},
+                       {"description", command.description},
+                       {"footer", command.footer},
+                       {"options", nlohmann::json::array()},
+                       {"positionals", nlohmann::json::array()}};
+    for (const OptionText& option : command.options) one["options"].push_back(option_json(option));
+    for (const OptionText& option : command.positionals) one["positionals"].push_back(option_json(option));
+    commands.push_back(std::move(one));
+  });
+  return commands.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace mbk::app

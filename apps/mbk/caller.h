@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/mbk/call.h"
+#include "mbk/base/core/requester.h"
+
+namespace mbk::app {
+
+/// Who called a command from within the process: gets what it would print, and has what it reads from memory.
+class Caller : public Requester {
+ public:
+  /// @param call  outlives this
+  explicit Caller(const Call& call) : call_(call) {}
+
+  /// Of this thread; nullptr: the command was typed.
+  [[nodiscard]] static Caller* current() noexcept;
+
+  [[nodiscard]] bool stopped() override;
+
+  /// In place of standard error.
+  void say(std::string_view text);
+  /// In place of standard output.
+  void write(std::string_view text);
+  void fail(const Error& error);
+  /// @param fraction  of the work that is done; negative where that is not known
+  void reached(std::string_view what, double fraction);
+
+  /// What a word stands for; nullptr where it is the name of a file.
+  [[nodiscard]] std::shared_ptr<const recording::InMemory> recording(const std::filesystem::path& word) const;
+  [[nodiscard]] const std::string* document(const std::filesystem::path& word) const;
+
+  /// What came; nothing of it stays here.   @param wrote  whether there was any output
+  [[nodiscard]] Answer take(int exit_code, bool& wrote);
+
+ private:
+  const Call& call_;
+  std::mutex mutex_;
+  std::atomic<bool> stopped_ = false;
+  bool wrote_ = false;
+  std::string output_;
+  std::vector<Error> errors_;
+  std::vector<std::string> messages_;
+};
+
+/// What `word` stands for in the call that this thread works for; nullptr where it is the name of a file.
+[[nodiscard]] std::shared_ptr<const recording::InMemory> recording_in_memory(const std::filesystem::path& word);
+[[nodiscard]] const std::string* document_in_memory(const std::filesystem::path& word);
+
+}  // namespace mbk::app

@@ -1,0 +1,74 @@
+#include "apps/mbk/command_list.h"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "mbk/present/report/text.h"
+
+namespace mbk::app {
+namespace {
+
+/// Descriptions of options, broken into lines that a terminal shows whole.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kNameColumns); }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return mbk::report::wrapped(CLI::Formatter::make_option_desc(option), mbk::report::kLineColumns - kNameColumns);
+  }
+
+ private:
+  static constexpr std::size_t kNameColumns = 30;
+};
+
+using Commands = std::vector<std::pair<std::string_view, std::function<Action(CLI::App&)>>>;
+
+/// Every command, in the order in which --help lists them.
+Commands all_commands(const std::string& typed) {
+  return {
+      {"measure", [typed](CLI::App& app) { return add_measure(app, typed); }},
+      {"identify", add_identify},
+      {"explore", [typed](CLI::App& app) { return add_explore(app, typed); }},
+      {"movement", add_movement},
+      {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
+      {"ellipse", add_ellipse},
+      {"passivity", add_passivity},
+      {"compare", add_compare},
+      {"info", add_info},
+      {"convert", add_convert},
+      {"simulate", add_simulate},
+      {"run", add_run},
+      {"recover", add_recover},
+      {"springs", add_springs},
+      {"teleop", add_teleop},
+      {"sensor", add_sensor},
+      {"robot", add_robot},
+      {"study", add_study},
+      {"validate", add_validate},
+      {"reproduce", add_reproduce},
+      {"completion", add_completion},
+      {"manual", add_manual},
+  };
+}
+
+}  // namespace
+
+Actions add_commands(std::string_view first, CLI::App& app, const std::string& typed) {
+  const Commands all = all_commands(typed);
+  const bool one = first != "completion" && first != "manual" &&
+                   std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
+  Actions made;
+  for (const auto& [name, add] : all) {
+    if (!one || name == first) made.emplace_back(name, add(app));
+  }
+  return made;
+}
+
+void wrap_help(CLI::App& app) {
+  app.formatter(std::make_shared<HelpFormatter>());
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,52 @@
+#include "apps/mbk/commands_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace mbk::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json option_json(const OptionText& option) {
+  Json json;
+  if (!option.names.empty()) json["names"] = option.names;
+  json["value"] = option.value;
+  json["description"] = option.description;
+  if (!option.names.empty()) json["group"] = option.group;
+  json["required"] = option.required;
+  json["repeats"] = option.repeats;
+  json["needs"] = option.needs;
+  json["excludes"] = option.excludes;
+  json["words"] = option.values.words;
+  json["files"] = option.values.files;
+  json["folders"] = option.values.folders;
+  json["extensions"] = option.values.extensions;
+  return json;
+}
+
+Json command_json(const CommandText& command) {
+  Json json;
+  json["path"] = std::vector<std::string>(command.path.begin() + 1, command.path.end());  // without "mbk"
+  json["summary"] = command.description;
+  json["footer"] = command.footer;
+  json["arguments"] = Json::array();
+  for (const OptionText& positional : command.positionals) json["arguments"].push_back(option_json(positional));
+  json["options"] = Json::array();
+  for (const OptionText& option : command.options) json["options"].push_back(option_json(option));
+  return json;
+}
+
+}  // namespace
+
+std::string commands_json(const CommandText& root, const std::string& version) {
+  Json json;
+  json["schema"] = "mbk.commands/1";
+  json["software"] = "mbk " + version;
+  json["commands"] = Json::array();
+  for_each_command(root, [&](const CommandText& command) {
+    if (command.path.size() > 1) json["commands"].push_back(command_json(command));
+  });
+  return json.dump(2) + "\n";
+}
+
+}  // namespace mbk::app

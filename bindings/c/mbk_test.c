@@ -1,0 +1,217 @@
+/* The interface in C as a program in C sees it. */
+#include "mbk.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures = 0;
+
+#define EXPECT(condition)                                             \
+  do {                                                                \
+    if (!(condition)) {                                               \
+      fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+      ++failures;                                                     \
+    }                                                                 \
+  } while (0)
+
+enum { kCount = 20000 };
+
+static double numbers[3][kCount];
+static int released = 0;
+
+static void release(void* owner) {
+  released += *(const int*)owner;
+}
+
+static void make_trial(void) {
+  for (size_t k = 0; k < kCount; ++k) {
+    const double t = 1e-3 * (double)k;
+    double x = 0.0, v = 0.0, a = 0.0;
+    for (int line = 1; line <= 12; ++line) {
+      const double w = 2.0 * 3.14159265358979323846 * 0.25 * line, phase = 0.7 * line * line;
+      x += 0.01 * sin(w * t + phase);
+      v += 0.01 * w * cos(w * t + phase);
+      a -= 0.01 * w * w * sin(w * t + phase);
+    }
+    numbers[0][k] = t;
+    numbers[1][k] = x;
+    numbers[2][k] = -(0.3 * a + 1.0 * v + 40.0 * x);
+  }
+}
+
+static mbk_recording* trial(void (*let_go)(void*), void* owner) {
+  const mbk_signal signals[] = {{"time", "s", numbers[0], kCount, 0, 1},
+                                {"x", "rad", numbers[1], kCount, 0, 0},
+                                {"F", "N.m", numbers[2], kCount, 0, 1}};
+  mbk_recording* recording = NULL;
+  mbk_error* error = NULL;
+  const mbk_option metadata[] = {{"participant", "7"}, {"handle_mass_kg", "0"}};
+  const mbk_event events[] = {{0.5, "mark", 2.0}};
+  mbk_facts facts = {0};
+  facts.size = sizeof facts;
+  facts.metadata = metadata;
+  facts.metadata_count = 2;
+  facts.events = events;
+  facts.event_count = 1;
+  facts.release = let_go;
+  facts.owner = owner;
+  EXPECT(mbk_recording_new(signals, 3, &facts, &recording, &error) == MBK_FINE);
+  EXPECT(error == NULL);
+  return recording;
+}
+
+static int measure(const mbk_recording* recording, const mbk_option* options, size_t count, mbk_answer** answer,
+                   mbk_error** error) {
+  mbk_request request = {0};
+  request.size = sizeof request;
+  request.command = "measure";
+  request.options = options;
+  request.option_count = count;
+  request.recordings = &recording;
+  request.recording_count = 1;
+  return mbk_call(&request, answer, error);
+}
+
+/* The number behind "K": [[ of the model. */
+static double stiffness_in(const char* document) {
+  const char* const model = strstr(document, "\"model\":");
+  const char* const at = model == NULL ? NULL : strstr(model, "\"K\":");
+  return at == NULL ? NAN : strtod(at + strcspn(at, "-0123456789"), NULL);
+}
+
+static void test_measures_what_is_in_memory(void) {
+  int owner = 1;
+  released = 0;
+  mbk_recording* const recording = trial(release, &owner);
+  size_t count = 0;
+  EXPECT(mbk_recording_signal_count(recording) == 3);
+  EXPECT(strcmp(mbk_recording_signal_name(recording, 1), "x") == 0);
+  EXPECT(strcmp(mbk_recording_signal_unit(recording, 1), "rad") == 0);
+  EXPECT(mbk_recording_signal_values(recording, 1, &count) == numbers[1]); /* not copied */
+  EXPECT(count == kCount);
+  EXPECT(mbk_recording_metadata_count(recording) == 2);
+  EXPECT(strcmp(mbk_recording_metadata(recording, 1).name, "participant") == 0);
+  EXPECT(strcmp(mbk_recording_metadata(recording, 1).value, "7") == 0);
+  EXPECT(mbk_recording_event_count(recording) == 1);
+  EXPECT(mbk_recording_event(recording, 0).time == 0.5);
+
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  EXPECT(measure(recording, NULL, 0, &answer, &error) == MBK_FINE);
+  EXPECT(error == NULL);
+  if (answer != NULL) {
+    EXPECT(mbk_answer_is_json(answer));
+    EXPECT(strstr(mbk_answer_text(answer), "\"schema\": \"mbk.result/2\"") != NULL);
+    EXPECT(fabs(stiffness_in(mbk_answer_text(answer)) - 40.0) < 0.5);
+    for (size_t k = 0; k < mbk_answer_warning_count(answer); ++k) EXPECT(*mbk_answer_warning_code(answer, k) != '\0');
+  }
+  mbk_answer_free(answer);
+  EXPECT(released == 0);
+  mbk_recording_free(recording);
+  EXPECT(released == 1);
+}
+
+static void test_copies_what_stands_apart(void) {
+  static double interleaved[3 * kCount];
+  for (size_t k = 0; k < kCount; ++k) {
+    for (size_t s = 0; s < 3; ++s) interleaved[3 * k + s] = numbers[s][k];
+  }
+  const mbk_signal signals[] = {{"time", NULL, interleaved, kCount, 0, 3},
+                                {"x", NULL, interleaved + 1, kCount, 0, 3},
+                                {"F", NULL, interleaved + 2, kCount, 0, 3}};
+  mbk_recording* apart = NULL;
+  EXPECT(mbk_recording_new(signals, 3, NULL, &apart, NULL) == MBK_FINE);
+  size_t count = 0;
+  const double* const values = mbk_recording_signal_values(apart, 2, &count);
+  EXPECT(memcmp(values, numbers[2], sizeof numbers[2]) == 0);
+  mbk_recording_free(apart);
+}
+
+static void test_says_what_is_wrong(void) {
+  mbk_recording* const recording = trial(NULL, NULL);
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  const mbk_option unknown[] = {{"no-such-option", "1"}};
+  EXPECT(measure(recording, unknown, 1, &answer, &error) == MBK_WRONG_USAGE);
+  EXPECT(answer == NULL && error != NULL);
+  if (error != NULL) {
+    EXPECT(strstr(mbk_error_what(error), "no-such-option") != NULL);
+    EXPECT(mbk_error_exit_code(error) == MBK_WRONG_USAGE);
+    EXPECT(strstr(mbk_error_line(error), mbk_error_hint(error)) != NULL);
+  }
+  mbk_error_free(error);
+
+  mbk_recording* missing = NULL;
+  EXPECT(mbk_read("no such file.mat", NULL, 0, &missing, &error) == MBK_BAD_DATA);
+  EXPECT(missing == NULL && error != NULL);
+  if (error != NULL) EXPECT(strcmp(mbk_error_where(error), "no such file.mat") == 0);
+  mbk_error_free(error);
+
+  const mbk_signal unequal[] = {{"time", NULL, numbers[0], kCount, 0, 1}, {"x", NULL, numbers[1], 5, 0, 1}};
+  int owner = 1;
+  released = 0;
+  mbk_facts facts = {0};
+  facts.size = sizeof facts;
+  facts.release = release;
+  facts.owner = &owner;
+  EXPECT(mbk_recording_new(unequal, 2, &facts, &missing, &error) == MBK_BAD_DATA);
+  EXPECT(released == 1);
+  mbk_error_free(error);
+  EXPECT(mbk_recording_new(unequal, 0, NULL, &missing, NULL) == MBK_WRONG_USAGE);
+  facts.size = 1;
+  EXPECT(mbk_recording_new(unequal, 1, &facts, &missing, NULL) == MBK_WRONG_USAGE);
+
+  mbk_request request = {0};
+  request.command = "measure";
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_WRONG_USAGE); /* no size */
+  request.size = sizeof request;
+  request.command = "run"; /* it moves a robot */
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_WRONG_USAGE);
+  request.command = NULL;
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_WRONG_USAGE);
+  mbk_recording_free(recording);
+}
+
+static int at_once(void* context) {
+  ++*(int*)context;
+  return 1;
+}
+
+static void test_stops(void) {
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  int asked = 0;
+  const char* const words[] = {"coverage"};
+  mbk_request request = {0};
+  request.size = sizeof request;
+  request.command = "validate";
+  request.words = words;
+  request.word_count = 1;
+  request.stop = at_once;
+  request.context = &asked;
+  EXPECT(mbk_call(&request, &answer, &error) == MBK_STOPPED);
+  EXPECT(answer == NULL && error != NULL && asked > 0);
+  mbk_error_free(error);
+}
+
+static void test_frees_nothing(void) {
+  mbk_error_free(NULL);
+  mbk_answer_free(NULL);
+  mbk_recording_free(NULL);
+}
+
+int main(void) {
+  make_trial();
+  EXPECT(mbk_api_version() >= MBK_API_VERSION);
+  EXPECT(*mbk_version() != '\0');
+  EXPECT(strstr(mbk_commands(), "\"command\":\"measure\"") != NULL);
+  test_measures_what_is_in_memory();
+  test_copies_what_stands_apart();
+  test_says_what_is_wrong();
+  test_stops();
+  test_frees_nothing();
+  if (failures > 0) fprintf(stderr, "%d failures\n", failures);
+  return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,34 @@
+function texts = option_texts(given)
+% Names and values of options as texts: {'sg-window', '101', ...}.
+  if numel(given) == 1 && isstruct(given{1})
+    names = fieldnames(given{1});
+    given = [names'; struct2cell(given{1})'];
+    given = given(:)';
+  end
+  if mod(numel(given), 2) ~= 0
+    error('mbk:usage', 'options are names with a value each');
+  end
+  texts = {};
+  for k = 1:2:numel(given)
+    name = strrep(char(given{k}), '_', '-');
+    value = given{k + 1};
+    if isempty(value) && ~ischar(value)
+      continue  % as if it were not given
+    elseif islogical(value) && isscalar(value)
+      if value || strcmp(name, 'json')
+        words = {'true', 'false'};
+        texts(end + 1:end + 2) = {name, words{2 - value}};
+      end
+    elseif isnumeric(value)
+      for i = 1:numel(value)
+        texts(end + 1:end + 2) = {name, sprintf('%.17g', value(i))};
+      end
+    elseif iscell(value)
+      for i = 1:numel(value)
+        texts(end + 1:end + 2) = {name, char(value{i})};
+      end
+    else
+      texts(end + 1:end + 2) = {name, char(value)};
+    end
+  end
+end

@@ -1,0 +1,14 @@
+function [result, info] = run(command, inputs)
+% What a function of +mbk does: data first, then names of options, each with its value.
+  [data, words, documents, rest] = mbk.internal.take_data(inputs);
+  options = mbk.internal.option_texts(rest);
+  [result, text, warnings, exit_code, messages] = mbk_mex('call', command, options, words, documents, ...
+                                                               data.signals, data.metadata, data.events);
+  info = struct('text', text, 'exit_code', exit_code, 'warnings', warnings, 'messages', {messages});
+  for k = 1:numel(warnings)
+    warning(['mbk:' strrep(warnings(k).code, '-', '_')], '%s', warnings(k).message);
+  end
+  for k = 1:numel(messages)
+    warning('mbk:message', '%s', messages{k});
+  end
+end

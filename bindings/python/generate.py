@@ -1,0 +1,272 @@
+#!/usr/bin/env python3
+"""Writes the functions of the Python package from the table of options of the command line: `mbk manual --json`.
+
+usage: generate.py COMMANDS.json FOLDER
+
+FOLDER gets _functions.py (measure, identify, …) and a module for each command with commands below it: robot.py,
+springs.py, sensor.py, study.py. Nothing in them is typed by hand: names, words, help and what an option needs are those
+of --help. What only a command line needs (--json, --out for text, --quiet, --help) has another form in Python.
+"""
+
+import json
+import keyword
+import pathlib
+import re
+import sys
+import textwrap
+
+WIDTH = 100
+LEFT_OUT = {"run", "completion", "manual"}  # an experiment needs a process of its own; the others are of shells
+ONLY_COMMAND_LINE = {"--help", "--version", "--json", "--quiet"}
+NAMES = {"tf": "transfer_function", "import": "import_"}
+RESULTS = {  # the class of what a command gives; Document where it has no class of its own
+    ("measure",): "Results | Result", ("identify",): "Results | Result", ("passivity",): "Passivity",
+    ("explore",): "Exploration", ("tf",): "TransferFunction", ("teleop",): "Teleoperation", ("compare",): "Comparison",
+    ("ellipse",): "Ellipses", ("validate",): "Validation", ("info",): "Information", ("movement",): "Movement",
+    ("springs", "field"): "Springs", ("springs", "find"): "Springs", ("springs", "calibrate"): "Springs",
+    ("robot", "identify"): "RobotDynamics", ("robot", "force"): "VirtualForce",
+    ("study", "list"): "StudyList", ("study", "export"): "Document | str",
+    ("study", "summary"): "StudySummary",
+}
+NUMBERS = {"HZ": "float", "S": "float", "KG": "float", "MM": "float", "MS": "float", "DEG": "float", "V": "float",
+           "X": "float", "N": "int", "W": "int"}
+SPECIAL = {  # how it is called, and what comes back
+    ("convert",): ("convert", "Path", "The file that was written."),
+    ("simulate",): ("simulate", "Recording | list[Recording] | Path | str",
+                    "A recording, or a list of them for several trials or seeds; with `out` the path that was written; with "
+                    "`list`, `facts` or `show` what the command prints."),
+    ("read",): ("read", "Recording | list[Recording]", "A recording, or a list of them where the files hold several."),
+}
+
+
+def python_name(option):
+    name = option.removeprefix("--").replace("-", "_")
+    return name + "_" if keyword.iskeyword(name) else name
+
+
+def type_of(option):
+    """The type of one value, then of what may be given."""
+    if not option["value"]:
+        return "bool"
+    kinds = []
+    words = [word for word in option["words"] if word in option["value"].split("|")]
+    parts = [part for part in option["value"].split("|") if part not in words]
+    if words:
+        kinds.append("Literal[" + ", ".join(json.dumps(word) for word in words) + "]")
+    for part in parts:
+        if part == "MAP":
+            kinds.append("Mapping[str, object] | str")
+        elif part in NUMBERS:
+            kinds.append(NUMBERS[part])
+        elif option["files"] or option["folders"]:
+            kinds.append("str | PathLike[str]" + (" | Document | Recording" if is_read(option) else ""))
+        elif re.search(r"[,:\[]", part):
+            kinds.append("str | Sequence[float]")
+        else:
+            kinds.append("str")
+    kinds = list(dict.fromkeys(kind for one in kinds for kind in one.split(" | ")))
+    one = " | ".join(kinds)
+    return f"{one} | Sequence[{one}]" if option["repeats"] else one
+
+
+def is_read(option):
+    """Whether it names a file that is read, so that what is in memory may stand there."""
+    return option["value"] in ("FILE", "FILE.json", "RESULT.json") and option["names"][-1] not in ("--out", "--report")
+
+
+def is_for_text(option):
+    """Whether it says where the text goes that would stand on standard output."""
+    return option["names"][-1] == "--out" and "instead of standard output" in option["description"]
+
+
+def separator_of(option):
+    """What stands between several numbers of one value; empty where each is a value of its own."""
+    if option["repeats"]:
+        return ""
+    return ":" if ":" in option["value"] and "," not in option["value"] and option["value"] != "MAP" else ","
+
+
+def sentence(text):
+    text = re.sub(r"\s+", " ", text).strip()
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+
+
+def quoted(text):
+    return text.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+
+
+def paragraph(text, indent):
+    return textwrap.indent("\n".join(textwrap.wrap(text, WIDTH - indent, break_long_words=False,
+                                                   break_on_hyphens=False)), " " * indent)
+
+
+class Command:
+    """One function: its name, the module that it stands in, its parameters."""
+
+    def __init__(self, json_command):
+        self.path = json_command["path"]
+        self.module = self.path[0] if len(self.path) > 1 else "_functions"
+        self.name = NAMES.get(self.path[-1], self.path[-1].replace("-", "_"))
+        self.summary = json_command["summary"]
+        self.footer = json_command["footer"]
+        names = [option["names"][-1] for option in json_command["options"]]
+        self.json = "--json" in names
+        self.all_options = json_command["options"]
+        self.options = [option for option in self.all_options if self.is_kept(option)]
+        self.arguments = json_command["arguments"]
+
+    def is_kept(self, option):
+        name = option["names"][-1]
+        if name in ONLY_COMMAND_LINE:
+            return False
+        if not self.json:
+            return True
+        # A document is saved by its own method; --overwrite then speaks of what else is written.
+        if name == "--out":
+            return not is_for_text(option)
+        others = [one for one in self.all_options if one["names"][-1] in ("--report", "--charts", "--out")]
+        return name != "--overwrite" or not all(map(is_for_text, others))
+
+    @property
+    def result(self):
+        if tuple(self.path) in SPECIAL:
+            return SPECIAL[tuple(self.path)][1]
+        if tuple(self.path) in RESULTS:
+            return RESULTS[tuple(self.path)]
+        return "Document" if self.json else "str"
+
+    def positional(self):
+        """The arguments as Python has them: (parameter, type, description)."""
+        rows = []
+        for argument in self.arguments:
+            placeholder = re.split(r"[.( ]", argument["value"])[0]
+            if argument["repeats"] and placeholder == "FILE":
+                rows.append(("*sources", "Source", argument["description"]))
+            elif argument["repeats"]:
+                rows.append((f"*{placeholder.lower()}", "str", argument["description"]))
+            else:
+                kind = "Source" if placeholder == "FILE" else "int | str" if placeholder == "N" else \
+                    "str | PathLike[str]" if argument["files"] or argument["folders"] else "str"
+                default = "" if argument["required"] else " | None = None"
+                rows.append((placeholder.lower(), kind + default, argument["description"]))
+        return rows
+
+    def signature(self):
+        positional = [f"{name}: {kind}" for name, kind, _ in self.positional()]
+        if self.options and not any(one.startswith("*") for one in positional):
+            positional.append("*")
+        options = [f"{python_name(option['names'][-1])}: "
+                   + ("bool = False" if not option["value"] else f"{type_of(option)} | None = None")
+                   for option in self.options]
+        lines = "".join(f"    {one},\n" for one in positional + options)
+        return f"def {self.name}(\n{lines}) -> {self.result}:\n" if lines else f"def {self.name}() -> {self.result}:\n"
+
+    def docstring(self):
+        out = [f'    """{sentence(quoted(self.summary))}', ""]
+        if self.positional() or self.options:
+            out += ["    Parameters", "    ----------"]
+        for name, kind, description in self.positional():
+            out.append(f"    {quoted(name).replace('*', chr(92) * 2 + '*')} : {kind.replace(' = None', '').replace(' | None', ', optional')}")
+            out.append(paragraph(quoted(sentence(description)), 8))
+            if kind.startswith("Source"):
+                out.append(paragraph("Names of files, or recordings in memory: `Recording`, a mapping of arrays, a pandas "
+                                     "DataFrame, an xarray Dataset.", 8))
+        for option in self.options:
+            kind = type_of(option)
+            more = "default: False" if not option["value"] else "optional"
+            out.append(f"    {python_name(option['names'][-1])} : {kind}, {more}")
+            text = sentence(option["description"])
+            if option["needs"]:
+                text += " Needs " + ", ".join(f"`{self.parameter(one)}`" for one in option["needs"]) + "."
+            if option["excludes"]:
+                text += " Not with " + ", ".join(f"`{self.parameter(one)}`" for one in option["excludes"]) + "."
+            unit = {"HZ": "Hz", "S": "s", "KG": "kg", "MM": "mm", "MS": "ms", "DEG": "°"}.get(option["value"].split("|")[0])
+            if unit:
+                text += f" [{unit}]"
+            out.append(paragraph(quoted(text), 8))
+        out += ["", "    Returns", "    -------", f"    {self.result}"]
+        if tuple(self.path) in SPECIAL:
+            out.append(paragraph(SPECIAL[tuple(self.path)][2], 8))
+        elif self.json:
+            out.append(paragraph(f"`.to_dict()` is what `mbk {' '.join(self.path)} --json` prints.", 8))
+        else:
+            out.append(paragraph("What the command prints.", 8))
+        out += ["", "    Raises", "    ------", "    UsageError", "        An option or argument is wrong.",
+                "    DataError", "        A file or recording cannot be read or used."]
+        footer = self.footer.strip()
+        if footer:
+            out += ["", "    Notes", "    -----", "    On the command line::", ""]
+            out += [textwrap.indent(quoted(line.rstrip()), " " * 8) if line.strip() else "" for line in footer.splitlines()]
+        out.append('    """')
+        return "\n".join(line.rstrip() for line in out) + "\n"
+
+    def parameter(self, option):
+        """`option`, which is "--name" or the placeholder of an argument, as Python calls it."""
+        return python_name(option) if option.startswith("--") else re.split(r"[.( ]", option)[0].lower()
+
+    def body(self):
+        sources = "[" + ", ".join(name for name, _, _ in self.positional()) + "]"
+        options = "".join(f"            {json.dumps(option['names'][-1][2:])}: {python_name(option['names'][-1])},\n"
+                          for option in self.options)
+        options = f"{{\n{options}        }}" if options else "{}"
+        several = {option["names"][-1][2:]: separator_of(option) for option in self.options}
+        several = {name: separator for name, separator in several.items() if separator != ","}
+        call = SPECIAL.get(tuple(self.path), ("run",))[0]
+        return (f"    return _calling.{call}(  # type: ignore[no-any-return]\n        {json.dumps(' '.join(self.path))},\n"
+                f"        {sources},\n        {options},\n        {json.dumps(several)},\n    )\n")
+
+    def text(self):
+        return self.signature() + self.docstring() + self.body()
+
+
+HEADER = '''"""{title}
+
+Made of the command line's table of options when mbk is built; see `mbk {command} --help`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Literal
+
+from mbk import _calling
+from mbk._calling import Source
+from mbk._documents import {classes}
+from mbk._recording import Recording
+
+__all__ = {names}
+
+'''
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    table = json.loads(pathlib.Path(sys.argv[1]).read_text(encoding="utf-8"))
+    folder = pathlib.Path(sys.argv[2])
+    groups = {one["path"][0]: one["summary"] for one in table["commands"]}
+    parents = {tuple(one["path"][:-1]) for one in table["commands"] if len(one["path"]) > 1}
+    modules = {}
+    info = next(one for one in table["commands"] if one["path"] == ["info"])
+    reading = {**info, "path": ["read"], "summary": "a recording in memory", "footer": ""}
+    for one in [reading, *table["commands"]]:
+        if one["path"][0] in LEFT_OUT or tuple(one["path"]) in parents:
+            continue
+        command = Command(one)
+        modules.setdefault(command.module, []).append(command)
+    for module, commands in modules.items():
+        classes = sorted({part for command in commands for part in command.result.split(" | ")} - {"str", "Path", "Recording", "list[Recording]"})
+        text = HEADER.format(
+            title="The commands of mbk as functions." if module == "_functions" else sentence(groups[module]),
+            command="" if module == "_functions" else module, classes=", ".join(sorted({*classes, "Document"})),
+            names=[command.name for command in commands])
+        text = text.replace("mbk  --help", "mbk --help")
+        text += "\n\n".join(command.text() for command in commands)
+        target = folder / f"{module}.py"
+        target.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,378 @@
+"""Figures, in matplotlib. Axes are labelled with their units; colours tell series apart for everyone."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbk import _tables
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.figure
+
+BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#8E5A9B", "#666666"
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
+MATRIX_COLOURS = {"inertia": PURPLE, "damping": GREEN, "stiffness": BLUE}
+
+
+def figure(rows: int, columns: int = 1, *, width: float = 7.0, height: float = 2.4, **more: Any) -> Any:
+    import matplotlib.pyplot as plt
+
+    made, axes = plt.subplots(rows, columns, figsize=(width, height * rows), squeeze=False, layout="constrained", **more)
+    for one in axes.flat:
+        one.spines[["top", "right"]].set_visible(False)
+    return made, axes
+
+
+def shaded(axes: matplotlib.axes.Axes, x: Any, low: Any, high: Any, colour: str, label: str | None = None) -> None:
+    axes.fill_between(x, numbers(low), numbers(high), color=colour, alpha=0.2, linewidth=0, label=label)
+
+
+def numbers(values: Any) -> Any:
+    return np.array([math.nan if value is None else value for value in values], dtype=float)
+
+
+def logarithmic(axis: Any) -> None:
+    """A logarithmic axis with plain numbers, so that a range of less than a decade has some too."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    decades = math.log10(high / low) if low > 0 else 9.0
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if decades < 2.5 else (1.0,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def unit_text(unit: str) -> str:
+    return f" [{unit}]" if unit else ""
+
+
+# ---- recordings
+
+
+# Channels that share a panel: what they begin with, and what the panel is called. Motion has one for each axis, with its
+# reference, since its places are apart by more than it moves.
+KINDS = (("force_", "force of the hand"), ("reaction", "reaction"), ("acceleration", "acceleration"),
+         ("torque_", "torque"), ("voltage", "voltage"), ("velocity", "velocity"))
+
+
+def panel_of(name: str, unit: str, units: dict[str, str]) -> tuple[str, str]:
+    end = name.rsplit("_", 1)[-1]
+    if name.startswith("reference"):
+        motion = next((one for one in (f"hand_{end}", "position") if units.get(one) == unit), None)
+        return (motion.replace("_", " "), unit) if motion else ("reference", unit)
+    kind = next((title for start, title in KINDS if name.startswith(start)), name.replace("_", " "))
+    return kind, unit
+
+
+def recording(what: Any, channels: list[str]) -> matplotlib.figure.Figure:
+    units = what.units
+    groups: dict[tuple[str, str], list[str]] = {}
+    for name in sorted(channels, key=lambda one: one.startswith("reference")):  # behind what they are drawn upon
+        groups.setdefault(panel_of(name, units.get(name, ""), units), []).append(name)
+    made, axes = figure(len(groups), height=1.9, sharex=True)
+    time = what.time
+    for panel, ((kind, unit), names) in zip(axes[:, 0], sorted(groups.items())):
+        for name, colour in zip(names, COLOURS * 4):
+            dashed = name.startswith("reference") and len(names) > 1
+            panel.plot(time, what[name], color=colour, linewidth=0.8, linestyle="--" if dashed else "-", label=name)
+        panel.set_ylabel(f"{kind}{unit_text(unit)}")
+        if len(names) > 1:
+            panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), frameon=False, ncols=len(names), borderaxespad=0.0)
+    axes[-1, 0].set_xlabel("time [s]")
+    return made
+
+
+# ---- results
+
+
+def outline(ellipse: dict[str, Any]) -> tuple[Any, Any] | None:
+    small, large = (math.nan if value is None else value for value in ellipse["eigenvalues"])
+    if not (small > 0 and large > 0) or ellipse["orientation_deg"] is None:
+        return None
+    angle, turn = np.linspace(0.0, 2.0 * np.pi, 181), math.radians(ellipse["orientation_deg"])
+    along, across = large * np.cos(angle), small * np.sin(angle)
+    return along * math.cos(turn) - across * math.sin(turn), along * math.sin(turn) + across * math.cos(turn)
+
+
+def ellipses(document: Any) -> matplotlib.figure.Figure:
+    values = document._values
+    results = [one for one in values.get("results", [values]) if one.get("usable", True)]
+    with_ellipses = [one for one in results if "ellipses" in one]
+    if not with_ellipses:
+        return parameters(results or values.get("results", [values]))
+    units = with_ellipses[0].get("units", _tables.UNITS)
+    made, axes = figure(1, 3, width=9.0, height=3.4)
+    for panel, (symbol, name) in zip(axes[0], _tables.MATRICES):
+        colour = MATRIX_COLOURS[name]
+        largest = 0.0
+        for result in with_ellipses:
+            one = result["ellipses"][name]
+            points = outline(one)
+            if points is None:
+                continue
+            panel.plot(*points, color=colour, linewidth=1.8 if len(with_ellipses) == 1 else 1.0)
+            large = one["eigenvalues"][1]
+            largest = max(largest, large)
+            turn = math.radians(one["orientation_deg"])
+            panel.plot([-large * math.cos(turn), large * math.cos(turn)], [-large * math.sin(turn), large * math.sin(turn)],
+                       color=colour, linewidth=0.8, linestyle=(0, (4, 3)))
+            low, high = one["interval95"]["orientation_deg"]
+            if low is not None and high is not None and high - low < 180:  # where the major axis may point
+                for half in (0.0, math.pi):
+                    arc = np.radians(np.linspace(low, high, 31)) + half
+                    panel.fill(np.concatenate([[0.0], large * np.cos(arc)]), np.concatenate([[0.0], large * np.sin(arc)]),
+                               color=colour, alpha=0.18, linewidth=0)
+        if largest:
+            panel.set_xlim(-1.12 * largest, 1.12 * largest)
+            panel.set_ylim(-1.12 * largest, 1.12 * largest)
+        else:
+            panel.text(0.5, 0.5, "no ellipse:\nnot positive definite", ha="center", va="center", transform=panel.transAxes)
+        panel.set_aspect("equal")
+        panel.set_title(f"{name} {symbol}")
+        panel.set_xlabel(f"along x{unit_text(units[symbol])}")
+        panel.set_ylabel(f"along y{unit_text(units[symbol])}")
+        panel.axhline(0.0, color=GREY, linewidth=0.5)
+        panel.axvline(0.0, color=GREY, linewidth=0.5)
+    return made
+
+
+def parameters(results: list[dict[str, Any]]) -> matplotlib.figure.Figure:
+    """One axis: M, B and K of each recording with their 95 % intervals."""
+    units = results[0].get("units", _tables.UNITS)
+    made, axes = figure(1, 3, width=8.0, height=2.6)
+    for panel, (symbol, name) in zip(axes[0], _tables.MATRICES):
+        values = numbers([one["model"][symbol][0][0] for one in results])
+        halves = _tables.NORMAL95 * numbers([one["standard_error"][symbol][0][0] for one in results])
+        panel.errorbar(np.arange(1, len(results) + 1), values, yerr=halves, fmt="o", capsize=4,
+                       color=MATRIX_COLOURS[name])
+        panel.set_xticks(np.arange(1, len(results) + 1))
+        panel.set_xlim(0.3, len(results) + 0.7)
+        panel.set_xlabel("recording")
+        panel.set_ylabel(f"{name} {symbol}{unit_text(units[symbol])}")
+        panel.ticklabel_format(useOffset=False)
+    made.suptitle("95 % intervals", fontsize="medium")
+    return made
+
+
+def fit(report: dict[str, Any], unit: str) -> matplotlib.figure.Figure:
+    found = report["trials"][0]["diagnostics"]["prediction"]
+    count = len(found["measured"])
+    made, axes = figure(2 * count, height=1.7, sharex=True)
+    time = numbers(found["time_s"])
+    for k in range(count):
+        name = " xy"[k + 1] if count > 1 else ""
+        above, below = axes[2 * k, 0], axes[2 * k + 1, 0]
+        above.plot(time, numbers(found["measured"][k]), color=GREY, linewidth=1.6, label="measured")
+        above.plot(time, numbers(found["predicted"][k]), color=ORANGE, linewidth=0.9, label="predicted")
+        above.set_ylabel(f"force {name}{unit_text(unit)}".replace("  ", " "))
+        below.plot(time, numbers(found["residual"][k]), color=BLUE, linewidth=0.8)
+        below.axhline(0.0, color=GREY, linewidth=0.5)
+        below.set_ylabel(f"residual {name}{unit_text(unit)}".replace("  ", " "))
+        if k == 0:
+            above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), frameon=False, ncols=2, borderaxespad=0.0)
+            above.set_title("held-out data" if found["held_out"] else "the data to which the model was fitted",
+                            fontsize="medium", loc="left")
+    axes[-1, 0].set_xlabel("time [s]")
+    return made
+
+
+def passivity(document: Any) -> matplotlib.figure.Figure:
+    values = document._values
+    values = values.get("results", [values])[0]
+    found = values["passivity"]
+    recordings = values.get("recordings", [])
+    models = [one for one in found.get("models", []) if "index" in one]
+    units = values.get("units", {})
+    made, axes = figure(1 + (1 if recordings else 0), height=2.7)
+    panel = axes[-1, 0]
+    for one, colour in zip(models, COLOURS):
+        index = one["index"]
+        frequency = numbers(index["frequency_hz"])
+        shaded(panel, frequency, index["lower95"], index["upper95"], colour)
+        panel.plot(frequency, numbers(index["value"]), color=colour, label=_tables.METHODS.get(one["method"], one["method"]))
+    panel.axhline(0.0, color=GREY, linewidth=0.8)
+    panel.set_xscale("log")
+    logarithmic(panel.xaxis)
+    panel.set_xlabel("frequency [Hz]")
+    panel.set_ylabel(f"passivity index{unit_text(units.get('B', 'N·s/m'))}")
+    panel.set_title("below zero the model can generate energy; bands are 95 % intervals", fontsize="medium")
+    if models:
+        panel.legend(loc="best", frameon=False)
+    if recordings:
+        above = axes[0, 0]
+        for one, colour in zip(recordings, COLOURS * 10):
+            above.plot(numbers(one["time_s"]), numbers(one["absorbed_J"]), color=colour, linewidth=1.2)
+        above.axhline(0.0, color=GREY, linewidth=0.8)
+        above.set_xlabel("time [s]")
+        above.set_ylabel("absorbed energy [J]")
+    return made
+
+
+# ---- frequency responses
+
+
+def decibels(values: Any) -> Any:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return 20.0 * np.log10(numbers(values))
+
+
+def bode(pairs: list[tuple[str, str, dict[str, Any]]], frequency: Any, *, coherence: bool) -> matplotlib.figure.Figure:
+    """Magnitude, phase and, where it is known, coherence of each response: a column for each."""
+    made, axes = figure(3 if coherence else 2, len(pairs), width=max(6.0, 3.6 * len(pairs)), height=2.1, sharex=True)
+    for column, (title, unit, one) in enumerate(pairs):
+        magnitude, phase = axes[0, column], axes[1, column]
+        shaded(magnitude, frequency, one["magnitude_interval95"][0], one["magnitude_interval95"][1], BLUE, "95 %")
+        magnitude.plot(frequency, numbers(one["magnitude"]), color=BLUE)
+        magnitude.set_xscale("log")
+        positive = numbers(one["magnitude"])
+        if np.nanmin(positive) > 0:
+            magnitude.set_yscale("log")
+            lowest, highest = np.nanmin(positive), np.nanmax(positive)
+            magnitude.set_ylim(lowest / 3.0, highest * 3.0)
+        magnitude.set_title(title, fontsize="medium")
+        if "phase_interval95_deg" in one:
+            shaded(phase, frequency, one["phase_interval95_deg"][0], one["phase_interval95_deg"][1], BLUE)
+        phase.plot(frequency, numbers(one["phase_deg"]), color=BLUE)
+        magnitude.set_ylabel(f"magnitude{unit_text(unit)}")
+        phase.set_ylabel("phase [°]")
+        if coherence:
+            below = axes[2, column]
+            if "partial_coherence" in one:
+                below.plot(frequency, numbers(one["partial_coherence"]), color=ORANGE)
+            below.set_ylim(0.0, 1.05)
+            below.set_ylabel("partial coherence")
+        axes[-1, column].set_xlabel("frequency [Hz]")
+        logarithmic(axes[-1, column].xaxis)
+    return made
+
+
+def exploration(document: Any) -> matplotlib.figure.Figure:
+    values = document._values
+    response = values.get("frequency_response")
+    if not response:
+        raise NotImplementedError("this exploration holds no frequency response; plot its parts yourself")
+    units = {one["name"]: one["unit"] for one in [*response["inputs"], *response["outputs"]]}
+    pairs = [(f"{one['input']} → {one['output']}", f"{units[one['output']]}/{units[one['input']]}", one)
+             for one in response["responses"]]
+    return bode(pairs, numbers(response["frequency_hz"]), coherence=True)
+
+
+def transfer_function(document: Any) -> matplotlib.figure.Figure:
+    values = document._values
+    response = values["frequency_response"]
+    unit = f"{values['output']['unit']}/{values['input']['unit']}" if values["input"]["unit"] else ""
+    title = f"{values['input']['name']} → {values['output']['name']}"
+    made = bode([(title, unit, response)], numbers(response["frequency_hz"]), coherence=False)
+    low, high = values["excited_band_hz"]
+    if low is not None and high is not None:
+        for panel in made.axes:
+            panel.axvspan(low, high, color=GREY, alpha=0.12, linewidth=0)
+        made.axes[0].set_title(f"{title}; grey: excited band", fontsize="medium")
+    return made
+
+
+# ---- other documents
+
+
+CURVES = {"r11": "Re z₁₁ [N·s/m]", "r22": "Re z₂₂ [N·s/m]", "third": "third condition, normalised"}
+
+
+def teleoperation(document: Any) -> matplotlib.figure.Figure:
+    curves = document._values["curves"]
+    made, axes = figure(len(curves), height=2.0, sharex=True)
+    for panel, curve in zip(axes[:, 0], curves):
+        panel.plot(numbers(curve["frequency"]), numbers(curve["value"]), color=BLUE)
+        panel.axhline(0.0, color=ORANGE, linewidth=1.0, linestyle="--")
+        panel.set_xscale("log")
+        panel.set_ylabel(CURVES.get(curve["name"], curve["name"]))
+        low, high = panel.get_ylim()
+        panel.set_ylim(min(low, -0.05 * high), high)
+    axes[0, 0].set_title("none may be negative: Llewellyn's conditions", fontsize="medium")
+    axes[-1, 0].set_xlabel("frequency [rad/s]")
+    logarithmic(axes[-1, 0].xaxis)
+    return made
+
+
+def validation(document: Any) -> matplotlib.figure.Figure:
+    rows = [one for one in _tables.validation_rows(document._values) if not math.isnan(one["value"])]
+    made, axes = figure(1, width=8.0, height=max(2.0, 0.32 * len(rows) + 0.8))
+    panel = axes[0, 0]
+    for k, one in enumerate(rows):
+        for low, high, colour, width in ((one["expected_low"], one["expected_high"], "#CCCCCC", 8.0),):
+            if math.isfinite(low) and math.isfinite(high):
+                panel.plot([low, high], [k, k], color=colour, linewidth=width, solid_capstyle="butt", zorder=1)
+        colour = GREY if one["met"] is None else GREEN if one["met"] else ORANGE
+        panel.plot(one["value"], k, "o", color=colour, markersize=4, zorder=3)
+        if math.isfinite(one["low95"]) and math.isfinite(one["high95"]):
+            panel.plot([one["low95"], one["high95"]], [k, k], color=colour, linewidth=1.5, zorder=2)
+    panel.set_yticks(range(len(rows)), [one["what"] for one in rows], fontsize="small")
+    panel.invert_yaxis()
+    panel.set_xlabel(f"value{unit_text(document._values['unit'])}; bars: 95 % interval, grey: expected")
+    return made
+
+
+def springs(document: Any) -> matplotlib.figure.Figure:
+    values = document._values
+    if "K" not in values:
+        raise NotImplementedError("spring constants have no plot")
+    made, axes = figure(1, width=5.0, height=4.6)
+    panel = axes[0, 0]
+    centre = numbers(values["equilibrium"])
+    for one in values["springs"]:
+        hole = numbers(one["hole"]) if one.get("hole") else np.zeros(2)
+        ends = np.array([centre + hole, numbers(one["anchor"])]) * 1000.0
+        panel.plot(ends[:, 0], ends[:, 1], color=GREY, linewidth=1.2)
+        panel.plot(*ends[1], "s", color=GREY, markersize=5)
+    stiffness = np.array([numbers(row) for row in values["K"]])
+    symmetric = 0.5 * (stiffness + stiffness.T)
+    eigenvalues, vectors = np.linalg.eigh(symmetric)
+    if eigenvalues[0] > 0:
+        size = 0.3 * max(np.ptp(panel.get_xlim()), np.ptp(panel.get_ylim())) / eigenvalues[1]
+        angle = np.linspace(0, 2 * np.pi, 181)
+        points = vectors @ (eigenvalues[:, None] * np.array([np.cos(angle), np.sin(angle)])) * size
+        panel.plot(centre[0] * 1000.0 + points[0], centre[1] * 1000.0 + points[1], color=BLUE,
+                   label=f"stiffness: {_tables.significant(eigenvalues[1])} and "
+                         f"{_tables.significant(eigenvalues[0])} N/m")
+        panel.legend(loc="best", frameon=False)
+    panel.plot(*(centre * 1000.0), "+", color=ORANGE, markersize=10)
+    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_xlabel("x [mm]")
+    panel.set_ylabel("y [mm]")
+    return made
+
+
+def live(samples: dict[str, Any], reference_unit: str) -> matplotlib.figure.Figure:
+    made, axes = figure(2, height=2.2, sharex=True)
+    position, force = axes[0, 0], axes[1, 0]
+    references = position if reference_unit == "m" else force
+    for axis, colour in zip("xy", COLOURS):
+        position.plot(samples["time"], samples[f"hand_{axis}"], color=colour, linewidth=1.0, label=axis)
+        force.plot(samples["time"], samples[f"force_{axis}"], color=colour, linewidth=1.0, label=axis)
+        references.plot(samples["time"], samples[f"reference_{axis}"], color=colour, linewidth=0.8, linestyle="--")
+    position.set_ylabel("hand position [m]")
+    force.set_ylabel("force of the hand [N]")
+    force.set_xlabel("time [s]")
+    position.legend(loc="upper right", frameon=False, ncols=2, title=None)
+    return made
+
+
+def reliability(document: Any) -> matplotlib.figure.Figure:
+    rows = [one for one in _tables.reliability_rows(document._values) if math.isfinite(one["ICC"])]
+    if not rows:
+        raise NotImplementedError("no outcome of this study was repeated often enough to have an ICC")
+    made, axes = figure(1, width=6.5, height=max(2.0, 0.3 * len(rows) + 0.9))
+    panel = axes[0, 0]
+    several = len({one["condition"] for one in rows}) > 1
+    for k, one in enumerate(rows):
+        panel.plot([one["ICC_low95"], one["ICC_high95"]], [k, k], color=BLUE, linewidth=1.5)
+        panel.plot(one["ICC"], k, "o", color=BLUE, markersize=5)
+    panel.set_yticks(range(len(rows)), [f"{one['condition']}: {one['outcome']}" if several else one["outcome"]
+                                        for one in rows], fontsize="small")
+    panel.invert_yaxis()
+    panel.set_xlim(min(0.0, min(one["ICC_low95"] for one in rows)) - 0.02, 1.02)
+    panel.set_xlabel("ICC(A,1) between sessions; bars: 95 % interval")
+    return made

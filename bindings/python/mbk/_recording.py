@@ -1,0 +1,339 @@
+"""Recordings in memory."""
+
+from __future__ import annotations
+
+import html
+import re
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from mbk import _errors, _mbk
+
+if TYPE_CHECKING:
+    import matplotlib.figure
+    import pandas
+    import xarray
+
+    from mbk._documents import Information
+
+Array = npt.NDArray[np.float64]
+_ALIAS = re.compile(r"t|x|y|a|F|xr|yr|Fx|Fy|ax|ay|Vx|Vy|(?:q|tau|qr)[1-8]")  # names that carry no unit
+
+
+class Recording:
+    """Signals of one trial in memory. It never changes, and threads may share it.
+
+    Parameters
+    ----------
+    channels : mapping of str to array_like, pandas.DataFrame or xarray.Dataset, optional
+        One-dimensional arrays of one length, by their names; what a name means is what it means in a file: ``time``,
+        ``x``, ``y``, ``Fx``, ``Fy``, ``xr``, ``yr``, ``ax``, …, also ``hand_x_mm``. Arrays of float64 in one piece are
+        taken without a copy: do not change them while the recording lives. Others are converted.
+    time : array_like, optional
+        Time of each sample [s], where it is not among the channels.
+    rate_hz : float, optional
+        Sample rate [Hz], where there is no time.
+    units : mapping of str to str, optional
+        Units of channels that are not SI: ``{"x": "mm"}``.
+    metadata : mapping of str to str, optional
+        What else is known of the recording, such as ``{"handle_mass_kg": "0.194"}``.
+    events : iterable of (float, str) or (float, str, float), optional
+        Time [s], name and value of what happened.
+    **named : array_like
+        Further channels.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> t = np.arange(5000) / 1000
+    >>> recording = mbk.Recording(time=t, x=0.01 * np.sin(6 * t), F=-np.cos(6 * t))
+    >>> recording.rate_hz
+    1000.0
+    >>> recording["x"].shape
+    (5000,)
+    >>> mbk.Recording({"t": t, "x": 5 * np.sin(t), "F": t}, units={"x": "mm"}).units["position"]
+    'm'
+    """
+
+    def __init__(
+        self,
+        channels: Mapping[str, npt.ArrayLike] | pandas.DataFrame | xarray.Dataset | None = None,
+        *,
+        time: npt.ArrayLike | None = None,
+        rate_hz: float | None = None,
+        units: Mapping[str, str] | None = None,
+        metadata: Mapping[str, object] | None = None,
+        events: Iterable[tuple[Any, ...]] = (),
+        **named: npt.ArrayLike,
+    ) -> None:
+        signals, known_units, known_metadata = _signals_of(channels)
+        if time is not None:
+            signals = {"time": time, **signals}
+        signals.update(named)
+        known_units.update(units or {})
+        known_metadata.update({name: str(value) for name, value in (metadata or {}).items()})
+        happened = [(float(one[0]), str(one[1]), float(one[2]) if len(one) > 2 else float("nan")) for one in events]
+        with _errors.translated():
+            self._core: _mbk.Recording = _mbk.Recording(signals, rate_hz or 0.0, known_units, known_metadata, happened)
+        self._rate_hz = float(rate_hz or 0.0)
+
+    @classmethod
+    def _of(cls, core: _mbk.Recording) -> Recording:
+        made = cls.__new__(cls)
+        made._core, made._rate_hz = core, 0.0
+        return made
+
+    # What is in it
+
+    def _given(self) -> dict[str, str]:
+        """Names and units as they were given; read once, since nothing of it changes."""
+        found: dict[str, str] | None = self.__dict__.get("_signals")
+        if found is None:
+            found = self.__dict__["_signals"] = dict(self._core.signals)
+        return found
+
+    def _meaning(self) -> list[tuple[str, str, str]]:
+        """Names, SI units and frames of what was recognised; read once."""
+        found: list[tuple[str, str, str]] | None = self.__dict__.get("_recognised")
+        if found is None:
+            with _errors.translated():
+                found = self.__dict__["_recognised"] = list(self._core.channels)
+        return found
+
+    def _si(self) -> _mbk.Recording:
+        """The same with every channel in SI units: itself, where it was given so."""
+        found: _mbk.Recording | None = self.__dict__.get("_converted")
+        if found is None:
+            found = self.__dict__["_converted"] = self._core if self._is_si() else self._by_way_of_a_file()
+        return found
+
+    def _is_si(self) -> bool:
+        given = self._given()
+        places = {self._core.channel(name).__array_interface__["data"][0]: name for name in given}
+        for name, unit, _ in self._meaning():
+            signal = places.get(self._core.channel(name).__array_interface__["data"][0])
+            if signal is None or given[signal] not in ("", unit) or not (signal == name or _ALIAS.fullmatch(signal)):
+                return False
+        return given.get("time", "s") in ("", "s")
+
+    def _by_way_of_a_file(self) -> _mbk.Recording:
+        with tempfile.TemporaryDirectory(prefix="mbk-") as folder, _errors.translated():
+            file = f"{folder}/recording.h5"
+            _mbk.call("convert", {"quiet": True}, [self._core], [_mbk.recording_word(0), file])
+            return _mbk.read_all([file], {})[0]
+
+    def __getitem__(self, name: str) -> Array:
+        """A channel, or a signal as it was given.
+
+        Parameters
+        ----------
+        name : str
+            ``hand_x``, a channel: in SI units. Another name that was given: those numbers as they stand.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (samples,), float64, to be read only. It is the memory of the recording, without a copy, but for channels
+            that were given in another unit than SI.
+        """
+        given = self._given()
+        if given.get(name) == "":
+            return self._core.channel(name)
+        try:
+            channels = [one for one, _, _ in self._meaning()]
+        except _errors.Error:
+            channels = []
+        if name in given and name not in channels:
+            return self._core.channel(name)
+        return self._si().channel(name) if channels else self._core.channel(name)
+
+    def __contains__(self, name: object) -> bool:
+        try:
+            self._core.channel(str(name))
+        except KeyError:
+            return False
+        return True
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.channels)
+
+    def __len__(self) -> int:
+        """Number of samples."""
+        return int(self._core.channel(next(iter(self._given()))).size)
+
+    @property
+    def signals(self) -> dict[str, str]:
+        """Names and units of what was given, as they were given."""
+        return dict(self._given())
+
+    @property
+    def channels(self) -> list[str]:
+        """Names of what was recognised, without the time."""
+        return [name for name, _, _ in self._meaning()]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI units of the channels."""
+        return {name: unit for name, unit, _ in self._meaning()}
+
+    @property
+    def frames(self) -> dict[str, str]:
+        """Coordinate frames of the channels."""
+        return {name: frame for name, _, frame in self._meaning()}
+
+    @property
+    def time(self) -> Array:
+        """Time of each sample [s]; shape (samples,)."""
+        try:
+            return self._si().channel("time")
+        except KeyError:  # there is only a rate
+            return np.arange(len(self)) / self._rate_hz
+
+    @property
+    def rate_hz(self) -> float:
+        """Sample rate [Hz]: one over the median interval."""
+        if self._rate_hz:
+            return self._rate_hz
+        time = self.time
+        return round(1.0 / float(np.median(np.diff(time))), 6) if time.size > 1 else float("nan")
+
+    @property
+    def duration_s(self) -> float:
+        """From the first sample to the last [s]."""
+        time = self.time
+        return float(time[-1] - time[0])
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """What else is known of it."""
+        with _errors.translated():
+            return dict(self._core.metadata)
+
+    @property
+    def events(self) -> list[tuple[float, str, float]]:
+        """Time [s], name and value of what happened."""
+        with _errors.translated():
+            return list(self._core.events)
+
+    @property
+    def notes(self) -> list[str]:
+        """What was said when it was read."""
+        with _errors.translated():
+            return list(self._core.notes)
+
+    @property
+    def sources(self) -> list[dict[str, str]]:
+        """Files that it was read from: path, format, sha256, trial."""
+        with _errors.translated():
+            return [dict(one) for one in self._core.sources]
+
+    # Other forms
+
+    def to_dict(self) -> dict[str, Array]:
+        """The time and every channel by name, without a copy."""
+        return {"time": self.time, **{name: self[name] for name in self.channels}}
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A table with the time [s] as its index and a column for each channel; units are in ``.attrs["units"]``."""
+        import pandas
+
+        table = pandas.DataFrame({name: self[name] for name in self.channels},
+                                 index=pandas.Index(self.time, name="time"))
+        table.attrs["units"] = self.units
+        return table
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A data set over the coordinate ``time`` [s]; each variable has its unit and frame as attributes."""
+        import xarray
+
+        units, frames = self.units, self.frames
+        variables = {name: ("time", self[name], {"units": units[name], "frame": frames[name]}) for name in self.channels}
+        return xarray.Dataset(variables, coords={"time": ("time", self.time, {"units": "s"})}, attrs=self.metadata)
+
+    def save(self, file: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Writes it to a file; the end of its name says the format: .h5, .mat, .csv or .mcap."""
+        import mbk
+
+        mbk.convert(self, file, overwrite=overwrite)
+
+    def info(self) -> Information:
+        """What is in it, and what is wrong with it."""
+        import mbk
+
+        found: Information = mbk.info(self)
+        return found
+
+    def plot(self, channels: Iterable[str] | None = None) -> matplotlib.figure.Figure:
+        """Each kind of channel over time, with its unit.
+
+        Parameters
+        ----------
+        channels : iterable of str, optional
+            Which; otherwise all.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from mbk import _plots
+
+        return _plots.recording(self, list(channels) if channels is not None else self.channels)
+
+    def __repr__(self) -> str:
+        try:
+            names = ", ".join(self.channels)
+            return f"<mbk.Recording {self.duration_s:.6g} s at {self.rate_hz:.6g} Hz: {names}>"
+        except (_errors.Error, KeyError):
+            return f"<mbk.Recording with the signals {', '.join(self.signals)}>"
+
+    def _repr_html_(self) -> str:
+        try:
+            rows = [(name, unit, self[name]) for name, unit in self.units.items()]
+            head = f"{self.duration_s:.6g} s at {self.rate_hz:.6g} Hz"
+        except (_errors.Error, KeyError):
+            rows = [(name, unit, self[name]) for name, unit in self.signals.items()]
+            head = "Signals whose meaning takes channels=…"
+        body = "".join(
+            f"<tr><th>{html.escape(name)}</th><td>{values.min():.6g}</td><td>{values.max():.6g}</td>"
+            f"<td>{html.escape(unit)}</td></tr>" for name, unit, values in rows)
+        return (f"<p><strong>Recording</strong>: {html.escape(head)}</p><table><thead><tr><th>channel</th><th>lowest</th>"
+                f"<th>highest</th><th>unit</th></tr></thead><tbody>{body}</tbody></table>")
+
+
+
+def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """Signals, units and metadata of what holds named arrays."""
+    if given is None:
+        return {}, {}, {}
+    if isinstance(given, Recording):
+        return dict(given.to_dict()), dict(given.units), given.metadata
+    if hasattr(given, "data_vars"):  # an xarray Dataset
+        signals = {str(name): variable.values for name, variable in given.data_vars.items()}
+        units = {str(name): str(variable.attrs["units"]) for name, variable in given.data_vars.items()
+                 if "units" in variable.attrs}
+        if "time" not in signals and "time" in given.coords:
+            signals = {"time": _seconds(given.coords["time"].values), **signals}
+        return signals, units, {str(name): str(value) for name, value in given.attrs.items()}
+    if hasattr(given, "columns") and hasattr(given, "index"):  # a pandas DataFrame
+        signals = {str(name): given[name].to_numpy() for name in given.columns}
+        units = {str(name): str(unit) for name, unit in dict(given.attrs.get("units", {})).items() if name in signals}
+        if "time" not in signals and (given.index.name in ("time", "t") or given.index.dtype.kind in "mM"):
+            signals = {"time": _seconds(given.index.to_numpy()), **signals}
+        return signals, units, {}
+    if isinstance(given, Mapping):
+        return {str(name): value for name, value in given.items()}, {}, {}
+    raise _errors.UsageError(f"a recording cannot be made of {type(given).__name__}; give a mapping of names to arrays",
+                             what=f"a recording cannot be made of {type(given).__name__}",
+                             hint="give a mapping of names to arrays")
+
+
+def _seconds(times: Any) -> Any:
+    """Dates and differences of NumPy, in seconds from the first; numbers as they are."""
+    if times.dtype.kind not in "mM":
+        return times
+    return (times - times[0]).astype("timedelta64[ns]").astype(np.float64) * 1e-9

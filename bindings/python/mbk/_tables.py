@@ -1,0 +1,409 @@
+"""Documents as tables: for notebooks (HTML, as the report has them) and for pandas (rows)."""
+
+from __future__ import annotations
+
+import html
+import math
+from typing import Any
+
+NORMAL95 = 1.959963984540054
+MATRICES = (("M", "inertia"), ("B", "damping"), ("K", "stiffness"))
+UNITS = {"M": "kg or kg·m²", "B": "N·s/m or N·m·s/rad", "K": "N/m or N·m/rad", "x0": "m or rad", "force": "N or N·m"}
+METHODS = {"ls": "least squares", "iv": "instrumental variables"}
+
+# ---- numbers as they are read
+
+
+def minus(text: str) -> str:
+    return text.replace("-", "−")
+
+
+def fixed(value: float | None, decimals: int) -> str:
+    if value is None or math.isnan(value):
+        return "undefined"
+    return minus(f"{value + 0.0:.{min(max(decimals, 0), 12)}f}")
+
+
+def significant(value: float | None, digits: int = 3) -> str:
+    if value is None or math.isnan(value):
+        return "undefined"
+    if value == 0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if magnitude < -4 or magnitude > 6:
+        return minus(f"{value:.{digits - 1}e}")
+    return fixed(value, digits - 1 - magnitude)
+
+
+def with_half_width(value: float | None, error: float | None, scale: float = 1.0) -> str:
+    """34 ± 15, where ± is the 95 % interval."""
+    if value is None or error is None:
+        return significant(None if value is None else scale * value, 4)
+    half = scale * NORMAL95 * error
+    decimals = min(max(1 - math.floor(math.log10(half)), 0), 9) if half > 0 else 3
+    return f"{fixed(scale * value, decimals)} ± {fixed(half, decimals)}"
+
+
+def with_interval(value: float | None, interval: list[float | None], decimals: int) -> str:
+    low, high = interval
+    if low is None or high is None:
+        return fixed(value, decimals)
+    return f"{fixed(value, decimals)} [{fixed(low, decimals)}, {fixed(high, decimals)}]"
+
+
+# ---- rows for pandas
+
+
+def axis_names(axes: int) -> list[str]:
+    return [""] if axes == 1 else ["x", "y"]
+
+
+def named(symbol: str, *axes: str) -> str:
+    return symbol + ("_" + "".join(axes) if any(axes) else "")
+
+
+def number(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def parameters(result: dict[str, Any]) -> list[dict[str, Any]]:
+    """A row for each parameter of a result."""
+    rows = []
+    names = axis_names(result["axes"])
+    units = result.get("units", UNITS)
+
+    def row(name: str, value: float | None, error: float | None, unit: str) -> None:
+        value, error = number(value), number(error)
+        rows.append({"parameter": name, "value": value, "standard_error": error, "low95": value - NORMAL95 * error,
+                     "high95": value + NORMAL95 * error, "unit": unit})
+
+    for symbol, _ in MATRICES:
+        for i, first in enumerate(names):
+            for j, second in enumerate(names):
+                row(named(symbol, first, second), result["model"][symbol][i][j], result["standard_error"][symbol][i][j],
+                    units[symbol])
+    for i, first in enumerate(names):
+        row(named("x0", first), result["model"]["x0"][i], result["standard_error"]["x0"][i], units["x0"])
+    return rows
+
+
+def one_row(result: dict[str, Any]) -> dict[str, Any]:
+    """A result as one row of many."""
+    row: dict[str, Any] = {
+        "file": ", ".join(one["file"] for one in result["inputs"]),
+        "trial": ", ".join(one["trial"] for one in result["inputs"] if "trial" in one),
+        "usable": result["usable"], "method": result["method"], "protocol": result.get("protocol"),
+        "warnings": ", ".join(one["code"] for one in result["warnings"])}
+    for one in parameters(result):
+        row[one["parameter"]] = one["value"]
+        row[one["parameter"] + "_se"] = one["standard_error"]
+    for name, value in zip(axis_names(result["axes"]), result["fit"]["VAF"]):
+        row[named("VAF", name)] = number(value)
+    for matrix, ellipse in result.get("ellipses", {}).items():
+        for field in ("area", "shape", "orientation_deg"):
+            row[f"{matrix}_{field}"] = number(ellipse[field])
+    return row
+
+
+def ellipse_rows(document: dict[str, Any]) -> list[dict[str, Any]]:
+    documents = document.get("results", [document])
+    rows = []
+    for one in documents:
+        for matrix, ellipse in one["ellipses"].items():
+            row: dict[str, Any] = {"matrix": matrix}
+            if len(documents) > 1:
+                row["file"] = ", ".join(source["file"] for source in one["inputs"])
+            for field in ("area", "shape", "orientation_deg"):
+                row[field] = number(ellipse[field])
+                row[f"{field}_low95"], row[f"{field}_high95"] = map(number, ellipse["interval95"][field])
+            rows.append(row)
+    return rows
+
+
+def widths(comparison: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = []
+    for _, name in MATRICES:
+        width = comparison["width"].get(name)
+        row: dict[str, Any] = {"matrix": name, "distance": math.nan, "low95": math.nan, "high95": math.nan,
+                               "distinguishable": None, "why_not": comparison["refused"].get(name, "")}
+        if width:
+            row["distance"], row["distinguishable"] = number(width["distance"]), width["distinguishable"]
+            row["low95"], row["high95"] = map(number, width["interval95"])
+        rows.append(row)
+    return rows
+
+
+def coefficients(found: dict[str, Any]) -> list[dict[str, Any]]:
+    return [{"parameter": one["name"], "value": number(one["value"]), "standard_error": number(one["standard_error"]),
+             "low95": number(one["value"]) - NORMAL95 * number(one["standard_error"]),
+             "high95": number(one["value"]) + NORMAL95 * number(one["standard_error"])} for one in found["parameters"]]
+
+
+def frequency_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = []
+    response = found.get("frequency_response")
+    if response is None:
+        return rows
+    for one in response["responses"]:
+        for k, frequency in enumerate(response["frequency_hz"]):
+            rows.append({
+                "input": one["input"], "output": one["output"], "frequency_hz": frequency,
+                "magnitude": number(one["magnitude"][k]), "phase_deg": number(one["phase_deg"][k]),
+                "magnitude_low95": number(one["magnitude_interval95"][0][k]),
+                "magnitude_high95": number(one["magnitude_interval95"][1][k]),
+                "partial_coherence": number(one["partial_coherence"][k]) if "partial_coherence" in one else math.nan})
+    return rows
+
+
+def validation_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = []
+    for one in found["rows"]:
+        row = {**one, "unit": one.get("unit", found["unit"]), "value": number(one["value"])}
+        for key, low, high in (("interval95", "low95", "high95"), ("expected", "expected_low", "expected_high")):
+            ends = row.pop(key, None) or (None, None)
+            row[low], row[high] = map(number, ends)
+        rows.append(row)
+    return rows
+
+
+def study_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """Numbers and words of each recording; what holds more than one is left out."""
+    return [{name: value for name, value in one.items() if not isinstance(value, (dict, list))}
+            for one in found["recordings"]]
+
+
+def reliability_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """What repeated sessions say of each outcome."""
+    rows = []
+    for one in found.get("reliability", []):
+        between = one.get("between_sessions", {})
+        icc: dict[str, Any] = next((one for one in between.get("icc", [])
+                                    if one["form"] == "agreement" and one["averaged"] == 1), {})
+        error: dict[str, Any] = next((one for one in between.get("error", []) if one["form"] == "agreement"), {})
+        low, high = icc.get("interval95", (None, None))
+        rows.append({
+            "condition": one["condition"], "outcome": one["outcome"], "unit": one["unit"],
+            "participants": between.get("participants", one["participants"]),
+            "sessions": len(between.get("sessions", [])), "support": between.get("support"),
+            "ICC": number(icc.get("value")), "ICC_low95": number(low), "ICC_high95": number(high),
+            "SEM": number(error.get("sem")), "MDC95": number(error.get("mdc95"))})
+    return rows
+
+
+def flat(values: dict[str, Any]) -> list[dict[str, Any]]:
+    """The first list of objects of a document, else its numbers and words."""
+    for value in values.values():
+        if isinstance(value, list) and value and isinstance(value[0], dict) and value is not values.get("inputs"):
+            return value
+    return [{name: value for name, value in values.items() if not isinstance(value, (dict, list))}]
+
+
+# ---- HTML
+
+
+def escaped(text: object) -> str:
+    return html.escape(str(text))
+
+
+def table(caption: str, head: list[str], rows: list[list[str]]) -> str:
+    """A table whose first column names its rows."""
+    body = "".join(
+        "<tr>" + "".join(f"<th style='text-align:left'>{escaped(cell)}</th>" if k == 0 else f"<td>{escaped(cell)}</td>"
+                         for k, cell in enumerate(row)) + "</tr>" for row in rows)
+    heads = f"<thead><tr>{''.join(f'<th>{escaped(one)}</th>' for one in head)}</tr></thead>" if head else ""
+    return (f"<table><caption style='text-align:left;white-space:nowrap'>{escaped(caption)}</caption>"
+            f"{heads}<tbody>{body}</tbody></table>")
+
+
+def warning_list(warnings: list[dict[str, Any]]) -> str:
+    if not warnings:
+        return ""
+    items = "".join(f"<li><code>{escaped(one['code'])}</code>: {escaped(one['message'])}. <strong>Try:</strong> "
+                    f"{escaped(one['try'])}.</li>" for one in warnings)
+    return f"<p><strong>Warnings</strong></p><ul>{items}</ul>"
+
+
+def verdict(document: dict[str, Any]) -> str:
+    warnings = document.get("warnings", [])
+    codes = ", ".join(one["code"] for one in warnings)
+    if not document["usable"]:
+        return f"<p><strong>✕ Not usable.</strong> Do not report these numbers: {escaped(codes or 'see the warnings')}.</p>"
+    if warnings:
+        return f"<p><strong>! Usable with care.</strong> There is something to know first: {escaped(codes)}.</p>"
+    return "<p><strong>✓ Usable.</strong></p>"
+
+
+def per_axis(values: list[float | None], decimals: int, unit: str) -> str:
+    names = axis_names(len(values)) if len(values) < 3 else [str(k) for k in range(len(values))]
+    return ", ".join(f"{name} {fixed(value, decimals)} {unit}".strip() for name, value in zip(names, values))
+
+
+def result_html(result: dict[str, Any], heading: bool = True) -> str:
+    """The tables of the report."""
+    axes, model, error, fit = result["axes"], result["model"], result["standard_error"], result["fit"]
+    units = result.get("units", UNITS)
+    names = axis_names(axes)
+    files = ", ".join(f"{one['file'] or 'arrays'} ({one['duration_s']:.4g} s at {one['rate_hz']:.5g} Hz)"
+                      for one in result["inputs"] if one["duration_s"] and one["rate_hz"])
+    out = [f"<p><strong>Impedance</strong>: {escaped(files)}; {escaped(METHODS[result['method']])}, "
+           f"{escaped(result.get('protocol', 'unknown'))} protocol</p>"] if heading else []
+    out.append(verdict(result))
+    if result["usable"]:
+        pairs = [(i, j, first + second) for i, first in enumerate(names) for j, second in enumerate(names)]
+        rows = [[f"{name} {symbol}", *(with_half_width(model[symbol][i][j], error[symbol][i][j]) for i, j, _ in pairs),
+                 units[symbol]] for symbol, name in MATRICES]
+        scale = 1000.0 if units["x0"] == "m" else 1.0
+        rows.append(["equilibrium x₀",
+                     *(f"{name} {with_half_width(model['x0'][k], error['x0'][k], scale)}".strip()
+                       for k, name in enumerate(names)),
+                     *([""] * (len(pairs) - len(names))), "mm" if scale == 1000.0 else units["x0"]])
+        out.append(table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval",
+                         ["", *(pair for _, _, pair in pairs)] + ["unit"] if axes == 2 else ["", "value ± 95 %", "unit"],
+                         rows))
+    where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
+    out.append(table("How well the model explains the force", ["", "value"], [
+        [f"VAF on {where}", per_axis(fit["VAF"], 2, "%")],
+        ["VAF in sample", per_axis(fit["VAF_in_sample"], 2, "%")],
+        [f"RMSE on {where}", per_axis(fit["RMSE"], 3, units["force"])]]))
+    if "ellipses" in result and result["usable"]:
+        out.append(ellipses_html(result, units))
+    if "passivity" in result:
+        out.append(passivity_html(result["passivity"]))
+    out.append(warning_list(result["warnings"]))
+    return "".join(out)
+
+
+def ellipses_html(result: dict[str, Any], units: dict[str, str]) -> str:
+    rows = []
+    for symbol, name in MATRICES:
+        one = result["ellipses"][name]
+        anti = result.get("antisymmetry", {}).get(name)
+        area = one["area"]
+        rows.append([
+            f"{name} {symbol}",
+            "none" if area is None else f"{with_interval(area, one['interval95']['area'], 2 if area < 100 else 0)} "
+                                        f"({units[symbol]})²",
+            "none" if one["shape"] is None else with_interval(one["shape"], one["interval95"]["shape"], 2),
+            "undefined" if one["orientation_deg"] is None else
+            with_interval(one["orientation_deg"], one["interval95"]["orientation_deg"], 1) + "°",
+            f"{significant(one['eigenvalues'][1])} and {significant(one['eigenvalues'][0])} {units[symbol]}",
+            "" if not anti else "undefined" if anti["zmean_percent"] is None else
+            with_interval(anti["zmean_percent"], anti["interval95"], 1) + " %"])
+    return table("Ellipses in numbers; brackets are 95 % intervals",
+                 ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows)
+
+
+def passivity_html(passivity: dict[str, Any]) -> str:
+    rows = []
+    for key, title in (("trial", "what happened"), ("prediction", "what the model predicts")):
+        one = passivity.get(key)
+        if one:
+            rows.append([title, one["verdict"], one.get("statement", "")])
+    return table("Is the limb passive?", ["", "verdict", "in words"], rows)
+
+
+def results_html(found: dict[str, Any]) -> str:
+    units = found["results"][0].get("units", UNITS) if found["results"] else UNITS
+    rows, head = [], ["recording", "usable"]
+    for result in found["results"]:
+        names = axis_names(result["axes"])
+        diagonal = [(symbol, k, named(symbol, name, name)) for symbol, _ in MATRICES for k, name in enumerate(names)]
+        head = ["recording", "usable", *(f"{name} [{units[symbol]}]" for symbol, _, name in diagonal)]
+        rows.append([", ".join(one["file"] or "arrays" for one in result["inputs"]), "yes" if result["usable"] else "no",
+                     *(with_half_width(result["model"][symbol][k][k], result["standard_error"][symbol][k][k])
+                       if result["usable"] else "" for symbol, k, _ in diagonal)])
+    out = [f"<p><strong>Impedance of {len(found['results'])} recordings</strong></p>",
+           table("Main diagonals; ± is the 95 % interval", head, rows)]
+    for one in found.get("failed", []):
+        out.append(f"<p>{escaped(one['file'])}: {escaped(one['message'])}; {escaped(one['try'])}</p>")
+    if "no_summary" in found:
+        out.append(f"<p>No mean: {escaped(found['no_summary'])}.</p>")
+    return "".join(out)
+
+
+def transfer_function_html(found: dict[str, Any]) -> str:
+    rows = [[one["name"], with_half_width(one["value"], one["standard_error"])] for one in found["parameters"]]
+    poles = [[f"pole {k + 1}", f"{significant(one['frequency_hz'])} Hz", f"damping {significant(one['damping'])}"]
+             for k, one in enumerate(found["poles"]) if one.get("frequency_hz") is not None]
+    return "".join([
+        f"<p><strong>Transfer function</strong> from {escaped(found['input']['name'])} to "
+        f"{escaped(found['output']['name'])}, {escaped(found['method'])}, delay {found['delay_s']:.4g} s</p>",
+        verdict(found), table("Coefficients; ± is the 95 % interval", ["", "value"], rows),
+        table("Poles", [], poles) if poles else "", warning_list(found["warnings"])])
+
+
+def teleoperation_html(found: dict[str, Any]) -> str:
+    rows = [["every passive hand and environment", found["llewellyn"]["verdict"]]]
+    if "modified_llewellyn" in found:
+        rows.append([f"this operator (excess {significant(-found['operator']['a'])} N·s/m)",
+                     found["modified_llewellyn"]["verdict"]])
+    limits = [[f"port {one['port']}", significant(one["a"])] for one in found["largest_a"]]
+    return (f"<p><strong>{escaped(found['name'])}</strong>: {escaped(found['kind'])}, decided {escaped(found['decided'])}</p>"
+            + table("Absolutely stable with", ["", "verdict"], rows)
+            + table("How much a termination may lack in passivity [N·s/m]", ["", "a ≤"], limits))
+
+
+def validation_html(found: dict[str, Any]) -> str:
+    rows = []
+    for one in validation_rows(found):
+        expected = "" if math.isnan(one["expected_low"]) and math.isnan(one["expected_high"]) else \
+            f"{significant(one['expected_low'])} to {significant(one['expected_high'])}"
+        rows.append([one["what"], significant(one["value"]), f"{significant(one['low95'])} to {significant(one['high95'])}",
+                     expected, one["unit"], str(one["verdict"] or "")])
+    return (f"<p><strong>{escaped(found['study'])}</strong>: {escaped(found['question'])} ({found['runs']} runs, seed "
+            f"{found['seed']}): {escaped(found['verdict'])}</p>"
+            + table("", ["", "value", "95 %", "expected", "unit", "verdict"], rows))
+
+
+def generic(rows: list[dict[str, Any]], title: str) -> str:
+    """Rows of numbers and words."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    names = [name for name in names if all(not isinstance(row.get(name), (dict, list)) for row in rows)]
+
+    def shown(value: Any) -> str:
+        if isinstance(value, bool) or value is None:
+            return "" if value is None else "yes" if value else "no"
+        return significant(value, 4) if isinstance(value, float) else str(value)
+
+    return f"<p><strong>{escaped(title)}</strong></p>" + table("", names, [[shown(row.get(name)) for name in names]
+                                                                           for row in rows])
+
+
+def fields(part: Any) -> str:
+    """Every field of a part that is no further part."""
+    rows = [[name, ", ".join(map(str, value)) if isinstance(value, list) else str(value)]
+            for name, value in part._values.items()
+            if not isinstance(value, dict) and not (isinstance(value, list) and len(str(value)) > 200)]
+    return table("", [], rows)
+
+
+def of(document: Any) -> str:
+    """A document for a notebook."""
+    values: dict[str, Any] = document._values
+    schema = values.get("schema", "").split("/")[0]
+    if schema == "mbk.result":
+        return result_html(values)
+    if schema == "mbk.results":
+        return results_html(values)
+    if schema == "mbk.passivity":
+        return passivity_html(values["passivity"])
+    if schema == "mbk.tf":
+        return transfer_function_html(values)
+    if schema == "mbk.teleop":
+        return teleoperation_html(values)
+    if schema == "mbk.validation":
+        return validation_html(values)
+    if schema == "mbk.compare":
+        return generic(widths(values), "How far the two are apart")
+    if schema == "mbk.ellipse":
+        return generic(ellipse_rows(values), "Ellipses")
+    if schema == "mbk.explore":
+        names = [name for name, value in values.items() if isinstance(value, dict) and name != "units"]
+        rows = [[name.replace("_", " "), str(values[name].get("method", values[name].get("verdict", "")))] for name in names]
+        return "<p><strong>Exploration</strong></p>" + verdict(values) + table("", ["part", "how"], rows) + warning_list(
+            values["warnings"])
+    if schema == "mbk.study_list":
+        return generic(study_rows(values), values["title"] or "Study")
+    if schema == "mbk.study_summary":
+        return generic(values["outcomes"], values["title"] or "Study")
+    return generic(flat(values), schema or "mbk")

@@ -1,0 +1,364 @@
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <chrono>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "apps/mbk/call.h"
+#include "mbk/base/core/requester.h"
+#include "mbk/base/core/version.h"
+#include "mbk/files/recording/in_memory.h"
+
+namespace py = pybind11;
+
+namespace {
+
+using mbk::Error;
+using mbk::Index;
+using mbk::Samples;
+
+using mbk::recording::InMemory;
+using Recording = std::shared_ptr<const InMemory>;
+
+constexpr int kUsage = 2, kBadData = 3, kNotUsable = 4;
+
+/// The class _mbk.Error; the module keeps it.
+PyObject* error_class = nullptr;
+
+int exit_code_of(mbk::ErrorKind kind) {
+  if (kind == mbk::ErrorKind::usage) return kUsage;
+  return kind == mbk::ErrorKind::data ? kBadData : kNotUsable;
+}
+
+/// An instance of _mbk.Error, whose text is the one line that the program prints.
+py::object to_python(const Error& error) {
+  py::object made = py::reinterpret_borrow<py::object>(error_class)(error.line());
+  made.attr("file") = error.where;
+  made.attr("what") = error.message;
+  made.attr("hint") = error.remedy;
+  made.attr("exit_code") = exit_code_of(error.kind);
+  return made;
+}
+
+[[noreturn]] void raise(const Error& error) {
+  PyErr_SetObject(error_class, to_python(error).ptr());
+  throw py::error_already_set();
+}
+
+[[noreturn]] void raise_usage(std::string what, std::string hint) {
+  raise({mbk::ErrorKind::usage, std::move(what), std::move(hint), ""});
+}
+
+template <class Value>
+Value value_or_raise(mbk::Result<Value> result) {
+  if (!result) raise(result.error());
+  return std::move(*result);
+}
+
+/// A reference that may be dropped on any thread.
+std::shared_ptr<const void> keep(py::object object) {
+  return {object.release().ptr(), [](const void* kept) {
+            if (Py_IsInitialized() == 0) return;
+            const py::gil_scoped_acquire gil;
+            Py_DECREF(static_cast<PyObject*>(const_cast<void*>(kept)));
+          }};
+}
+
+// ---- arrays ----
+
+/// Numbers as NumPy has them: float64 in native order without a copy, other real numbers converted.
+/// @fails  no array of real numbers
+py::array real_array(const std::string& name, const py::object& given) {
+  py::array array;
+  try {
+    py::object source = given;
+    if (py::hasattr(given, "mask") && py::hasattr(given, "filled")) {  // what a masked array hides is not there
+      source = given.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
+    }
+    array = py::array::ensure(source);
+    if (!array) {
+      PyErr_Clear();
+      throw py::type_error();
+    }
+  } catch (const py::builtin_exception&) {
+    raise_usage("'" + name + "' is no array", "give a one-dimensional array of numbers");
+  }
+  const char kind = array.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b') {
+    raise_usage("'" + name + "' is an array of " + py::str(array.dtype()).cast<std::string>(),
+                "give real numbers, such as float64");
+  }
+  if (array.ndim() != 1 && array.ndim() != 2) {
+    raise_usage("'" + name + "' has " + std::to_string(array.ndim()) + " dimensions",
+                "give one dimension, or two for a matrix of signals");
+  }
+  return array;
+}
+
+InMemory::Signal signal_of(const std::string& name, const std::string& unit, const py::object& given) {
+  const py::array array = real_array(name, given);
+  InMemory::Signal signal{name, unit, {}, 0};
+  if (array.ndim() == 1) {
+    // NumPy makes a copy where the numbers stand apart, turned around or as another type.
+    auto plain = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
+    if (!plain) throw py::error_already_set();
+    const double* const data = plain.data();
+    const Index size = plain.size();
+    signal.values = Samples(data, size, keep(std::move(plain)));
+    return signal;
+  }
+  auto plain = py::array_t<double, py::array::f_style | py::array::forcecast>::ensure(array);
+  if (!plain) throw py::error_already_set();
+  signal.rows = plain.shape(0);
+  const double* const data = plain.data();
+  const Index size = plain.size();
+  signal.values = Samples(data, size, keep(std::move(plain)));
+  return signal;
+}
+
+/// The same numbers for NumPy, to be read only.   @param keeper  owns them
+py::array to_numpy(const Samples& values, const Recording& keeper) {
+  const py::capsule owner(new Recording(keeper), [](void* kept) { delete static_cast<Recording*>(kept); });
+  py::array array(py::dtype::of<double>(), {values.size()}, {static_cast<py::ssize_t>(sizeof(double))}, values.data(),
+                  owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+Recording make_recording(const py::dict& channels, double rate_hz, const std::map<std::string, std::string>& units,
+                         const std::map<std::string, std::string>& metadata,
+                         const std::vector<std::tuple<double, std::string, double>>& events) {
+  std::vector<InMemory::Signal> signals;
+  for (const auto& [key, value] : channels) {
+    const auto name = py::str(key).cast<std::string>();
+    const auto unit = units.find(name);
+    signals.push_back(
+        signal_of(name, unit == units.end() ? "" : unit->second, py::reinterpret_borrow<py::object>(value)));
+  }
+  for (const auto& [name, unit] : units) {
+    if (!channels.contains(name)) raise_usage("a unit is said of '" + name + "', which is not there", "check its name");
+  }
+  std::vector<mbk::Event> happened;
+  happened.reserve(events.size());
+  for (const auto& [time, name, value] : events) happened.push_back({time, name, value});
+  return std::make_shared<const InMemory>(
+      value_or_raise(InMemory::of(std::move(signals), rate_hz, metadata, std::move(happened))));
+}
+
+/// What it is without any options.
+mbk::Recording meaning_of(const InMemory& recording) {
+  return value_or_raise(recording.read({}));
+}
+
+py::array channel_of(const Recording& recording, const std::string& name) {
+  const InMemory::Signal* const signal = recording->find(name);
+  if (signal == nullptr) throw py::key_error(name);
+  return to_numpy(signal->values, recording);
+}
+
+// ---- commands ----
+
+std::string text_of(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")().cast<std::string>();
+  if (py::hasattr(value, "item") && !py::hasattr(value, "__len__")) return text_of(value.attr("item")());  // of NumPy
+  return py::str(value).cast<std::string>();
+}
+
+/// A value, or several; None and False: it was not given.
+std::optional<mbk::app::CallOption> option_of(std::string name, const py::handle& value) {
+  for (char& letter : name) letter = letter == '_' ? '-' : letter;
+  if (value.is_none()) return std::nullopt;
+  if (py::isinstance<py::bool_>(value)) {
+    if (value.cast<bool>()) return mbk::app::CallOption{name, {"true"}};
+    if (name != "json") return std::nullopt;
+    return mbk::app::CallOption{name, {"false"}};
+  }
+  mbk::app::CallOption option{name, {}};
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    for (const py::handle one : value) option.values.push_back(text_of(one));
+    if (option.values.empty()) return std::nullopt;
+  } else {
+    option.values.push_back(text_of(value));
+  }
+  return option;
+}
+
+/// Asks Python, on the thread that called and not too often, whether Ctrl-C was pressed.
+class Interruption {
+ public:
+  bool operator()() {
+    if (wanted_) return true;
+    if (std::this_thread::get_id() != caller_ || Clock::now() - last_ < kPause) return false;
+    last_ = Clock::now();
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) keep();
+    return wanted_;
+  }
+  /// The exception that Python has now ends the call.   Holds the GIL.
+  void keep() {
+    const std::scoped_lock lock(mutex_);
+    if (!error_) error_.emplace();
+    wanted_ = true;
+  }
+  void rethrow() {
+    if (error_) throw std::move(*error_);
+    raise({mbk::ErrorKind::data, "stopped", "", ""});
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kPause{50};
+  const std::thread::id caller_ = std::this_thread::get_id();
+  Clock::time_point last_ = Clock::now();
+  std::mutex mutex_;
+  std::atomic<bool> wanted_ = false;
+  std::optional<py::error_already_set> error_;
+};
+
+mbk::app::Call call_of(const std::string& command, const py::dict& options, const std::vector<Recording>& recordings,
+                       const py::list& files, const std::vector<std::string>& documents) {
+  mbk::app::Call call{command, {}, {}, recordings, documents};
+  for (const auto& [name, value] : options) {
+    if (auto option = option_of(py::str(name).cast<std::string>(), value)) call.options.push_back(std::move(*option));
+  }
+  for (const py::handle file : files) call.words.push_back(text_of(file));
+  return call;
+}
+
+/// What `use` gives for the call, without the GIL; Ctrl-C and an exception out of `progress` end it.
+template <class Use>
+auto run(mbk::app::Call& call, const py::object& progress, const Use& use) {
+  Interruption interruption;
+  call.stop = [&] { return interruption(); };
+  if (!progress.is_none()) {
+    call.progress = [&](std::string_view what, double fraction) {
+      const py::gil_scoped_acquire gil;
+      try {
+        progress(py::str(what.data(), what.size()), fraction);
+      } catch (py::error_already_set& error) {
+        error.restore();
+        interruption.keep();
+      }
+    };
+  }
+  try {
+    const py::gil_scoped_release released;
+    return use(call);
+  } catch (const mbk::Stopped&) {
+  }
+  interruption.rethrow();
+  return use(call);  // never reached
+}
+
+mbk::app::Answer call_command(const std::string& command, const py::dict& options,
+                              const std::vector<Recording>& recordings, const py::list& files,
+                              const std::vector<std::string>& documents, const py::object& progress) {
+  mbk::app::Call call = call_of(command, options, recordings, files, documents);
+  return value_or_raise(run(call, progress, [](const mbk::app::Call& c) { return mbk::app::call(c); }));
+}
+
+std::vector<Recording> read_files(const py::list& files, const py::dict& options) {
+  mbk::app::Call call = call_of("read", options, {}, files, {});
+  return value_or_raise(run(call, py::none(), [](const mbk::app::Call& c) { return mbk::app::read(c); }));
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_mbk, m) {
+  m.doc() = "Recordings and commands of mbk; 'import mbk' gives what people use.";
+  m.attr("__version__") = std::string(mbk::version());
+
+  error_class = PyErr_NewExceptionWithDoc(
+      "_mbk.Error", "What is wrong (what), where (file) and what to do about it (hint).", PyExc_ValueError, nullptr);
+  m.add_object("Error", py::reinterpret_borrow<py::object>(error_class));
+
+  py::class_<InMemory, std::shared_ptr<InMemory>>(m, "Recording", "Signals in memory.")
+      .def(py::init([](const py::dict& channels, double rate_hz, const std::map<std::string, std::string>& units,
+                       const std::map<std::string, std::string>& metadata,
+                       const std::vector<std::tuple<double, std::string, double>>& events) {
+             return std::const_pointer_cast<InMemory>(make_recording(channels, rate_hz, units, metadata, events));
+           }),
+           py::arg("channels"), py::arg("rate_hz") = 0.0, py::arg("units") = std::map<std::string, std::string>{},
+           py::arg("metadata") = std::map<std::string, std::string>{},
+           py::arg("events") = std::vector<std::tuple<double, std::string, double>>{})
+      .def("channel",
+           [](const std::shared_ptr<InMemory>& self, const std::string& name) { return channel_of(self, name); })
+      .def_property_readonly(
+          "signals",
+          [](const InMemory& self) {
+            std::vector<std::pair<std::string, std::string>> signals;
+            for (const InMemory::Signal& one : self.signals()) signals.emplace_back(one.name, one.unit);
+            return signals;
+          },
+          "Names and units as they were given.")
+      .def_property_readonly(
+          "channels",
+          [](const InMemory& self) {
+            std::vector<std::tuple<std::string, std::string, std::string>> channels;
+            const mbk::Recording meaning = meaning_of(self);
+            for (const mbk::Channel& c : meaning.channels) channels.emplace_back(c.name, c.unit, c.frame);
+            return channels;
+          },
+          "Names, SI units and frames of what was recognised.")
+      .def_property_readonly("samples", [](const InMemory& self) { return meaning_of(self).samples(); })
+      .def_property_readonly("metadata", [](const InMemory& self) { return meaning_of(self).metadata; })
+      .def_property_readonly("notes", [](const InMemory& self) { return meaning_of(self).notes; })
+      .def_property_readonly("events",
+                             [](const InMemory& self) {
+                               std::vector<std::tuple<double, std::string, double>> events;
+                               const mbk::Recording meaning = meaning_of(self);
+                               for (const mbk::Event& e : meaning.events) events.emplace_back(e.time, e.name, e.value);
+                               return events;
+                             })
+      .def_property_readonly(
+          "sources",
+          [](const InMemory& self) {
+            std::vector<std::map<std::string, std::string>> sources;
+            const mbk::Recording meaning = meaning_of(self);
+            for (const mbk::SourceFile& s : meaning.sources) {
+              sources.push_back({{"path", s.path}, {"format", s.format}, {"sha256", s.sha256}, {"trial", s.trial}});
+            }
+            return sources;
+          },
+          "Files that it was read from.");
+
+  using mbk::app::Answer;
+  py::class_<Answer>(m, "Answer", "What a command found.")
+      .def_property_readonly(
+          "json", [](const Answer& a) { return a.json ? a.text : std::string(); }, "The document of --json.")
+      .def_readonly("text", &Answer::text, "What the command prints.")
+      .def_readonly("exit_code", &Answer::exit_code)
+      .def_property_readonly(
+          "warnings", [](const Answer& a) { return mbk::app::warnings_of(a); }, "Codes and texts.")
+      .def_readonly("messages", &Answer::messages, "What the command says beside its answer.")
+      .def_property_readonly(
+          "errors",
+          [](const Answer& a) {
+            py::list errors;
+            for (const Error& error : a.errors) errors.append(to_python(error));
+            return errors;
+          },
+          "What could not be read or measured beside what could.");
+
+  m.def("call", &call_command, py::arg("command"), py::arg("options") = py::dict(),
+        py::arg("recordings") = std::vector<Recording>{}, py::arg("files") = py::list(),
+        py::arg("documents") = std::vector<std::string>{}, py::arg("progress") = py::none());
+  m.def("read_all", &read_files, py::arg("files"), py::arg("options") = py::dict(),
+        "Every recording that the files hold.");
+  m.def("describe", &mbk::app::describe_commands, "The options of every command, as JSON.");
+  m.def("recording_word", &mbk::app::recording_word);
+  m.def("document_word", &mbk::app::document_word);
+}

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Every command of the guide's table beside its twin in Python: the same document to the bit, the same text, the same
+file. The table is docs/guide/python.md; each command of README's table has a row in it."""
+
+import os
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/end_to_end"))
+import mbk  # noqa: E402
+import movement_test  # noqa: E402
+import sensor_test  # noqa: E402
+import springs_test  # noqa: E402
+
+MBK = os.environ["MBK"]
+TABLE = re.search(r"## Every command and its twin\n(.*?)\n\n", (ROOT / "docs/guide/python.md").read_text(encoding="utf-8"),
+                  re.DOTALL)[1]
+TWINS = [(line.replace("\\|", "|"), python) for line, python in re.findall(r"^\| `(mbk .*)` \| `(.*)` \|$", TABLE, re.M)]
+WITH_DOCUMENT = {" ".join(one["path"]) for one in mbk._calling.json.loads(
+    subprocess.run([MBK, "manual", "--json"], check=True, capture_output=True).stdout)["commands"]
+    if "--json" in [option["names"][-1] for option in one["options"]]}
+NO_TWIN = {"run": "a script watches it: mbk.live", "recover": "there is no short journal", "completion": "of shells",
+           "manual": "of man", "reproduce": "takes minutes"}
+
+
+def command(*words, folder):
+    process = subprocess.run([MBK, *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300, check=False)
+    if process.returncode in (2, 3):
+        raise AssertionError(f"{words}: exit {process.returncode}\n{process.stderr}")
+    return process.stdout
+
+
+def make_files(folder):
+    """What the table's commands read."""
+    command("simulate", "relaxed_sinusoidal", "--quiet", "--out", "log.mat", folder=folder)
+    command("simulate", "relaxed_sinusoidal", "--seed", 2, "--quiet", "--out", "other.mat", folder=folder)
+    command("simulate", "free_motion", "--quiet", "--out", "free.h5", folder=folder)
+    (folder / "result.json").write_text(command("measure", "log.mat", "--json", "--quiet", folder=folder))
+    (folder / "other.json").write_text(command("measure", "other.mat", "--json", "--quiet", folder=folder))
+    (folder / "robot.json").write_text(command("robot", "identify", "free.h5", "--json", "--quiet", folder=folder))
+    (folder / "spring.csv").write_text(springs_test.stretch(150))
+    rows = [f"{fx},{fy},{vx!r},{vy!r}" for cell in [sensor_test.Cell()] for fx, fy in sensor_test.loads()
+            for vx, vy in [cell.voltages(fx, fy)]]
+    (folder / "loads.csv").write_text("Fx,Fy,Vx,Vy\n" + "\n".join(rows) + "\n")
+    movement_test.write_reaches(folder / "reach.csv")
+    shutil.copy(ROOT / "examples/robots/double_pendulum.toml", folder / "planar.toml")
+    shutil.copy(ROOT / "examples/teleop/telerehabilitation.toml", folder)
+    noise = random.Random(1)
+    lines, angle, speed = ["time,position_rad,torque_Nm"], 0.0, 0.0
+    for k in range(20000):  # a joint of 0.01 kg·m², 0.1 N·m·s/rad, 5 N·m/rad, moved by a filtered noise
+        acceleration = noise.gauss(0, 4.0) - 30.0 * angle - 8.0 * speed
+        speed += 1e-3 * acceleration
+        angle += 1e-3 * speed
+        lines.append(f"{k / 1000},{angle!r},{-(0.01 * acceleration + 0.1 * speed + 5.0 * angle)!r}")
+    (folder / "wrist.csv").write_text("\n".join(lines) + "\n")
+
+
+def without_time(text):
+    """The log of a study says when each line was written, and what follows from that."""
+    text = re.sub(r'"(time|hash|head|digest)": "[^"]*"', r'"\1": ""', text)
+    return re.sub(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d:\d\d\S*", "", text)
+
+
+class Twins(unittest.TestCase):
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        made = tempfile.TemporaryDirectory(prefix="mbk-twins-")
+        cls.addClassCleanup(made.cleanup)
+        cls.shell, cls.python = pathlib.Path(made.name, "shell"), pathlib.Path(made.name, "python")
+        cls.shell.mkdir()
+        make_files(cls.shell)
+        shutil.copytree(cls.shell, cls.python)  # each has a folder of its own, with the same files under the same names
+
+    def test_every_command_of_the_readme_has_one(self):
+        readme = (ROOT / "README.md").read_text(encoding="utf-8")
+        named = re.findall(r"^\| `mbk ([a-z]+)(?: ([a-z]+(?:\\\|[a-z]+)*))?[ `]", readme, re.MULTILINE)
+        self.assertGreater(len(named), 20)
+        for name, below in named:
+            for path in [f"{name} {one}" for one in below.split("\\|")] if below else [name]:
+                with self.subTest(path):
+                    found = any(line.startswith(f"mbk {path}") for line, _ in TWINS)
+                    self.assertTrue(found or path.split()[0] in NO_TWIN or path == "robot check", path)
+
+    def test_both_say_the_same_to_the_bit(self):
+        self.assertGreater(len(TWINS), 30)
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        for line, python in TWINS:
+            with self.subTest(line):
+                words = shlex.split(line)[1:]
+                name = next(" ".join(words[:k]) for k in (2, 1) if " ".join(words[:k]) in WITH_DOCUMENT or k == 1)
+                with_document = name in WITH_DOCUMENT
+                shown = command(*words, *(["--json"] if with_document else []), folder=self.shell)
+                os.chdir(self.python)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    got = eval(python, {"mbk": mbk})  # noqa: S307 - the guide's own lines
+                if with_document:
+                    self.assertEqual(without_time(got.json), without_time(shown))
+                    self.assertEqual(got.to_dict(), mbk._calling.json.loads(got.json))
+                elif isinstance(got, pathlib.Path):
+                    self.assertEqual((self.python / got).read_bytes(), (self.shell / got).read_bytes())
+                else:
+                    self.assertEqual(without_time(str(got)), without_time(shown))
+
+
+if __name__ == "__main__":
+    unittest.main()
