@@ -19,6 +19,7 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/reading_options.h"
+#include "apps/mbk/usage_error.h"
 #include "mbk/base/core/edit_distance.h"
 #include "mbk/files/recording/in_memory.h"
 
@@ -75,19 +76,9 @@ std::string key_of(const Call& call, std::span<const std::string> words) {
 
 /// With the name that was perhaps meant.
 tl::unexpected<Error> no_option(const CLI::App& command, const std::string& name) {
-  std::string nearest;
-  std::size_t least = 3;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& known : option->get_lnames()) {
-      const auto distance = static_cast<std::size_t>(edit_distance(known, name));
-      if (distance < least) {
-        least = distance;
-        nearest = known;
-      }
-    }
-  }
+  const std::string meant = meant_word("--" + name, option_names(command));
   return bad_usage(fmt::format("'{}' is no option of {}", name, command.get_name()),
-                   nearest.empty() ? "" : fmt::format("'{}' is one", nearest));
+                   meant.empty() ? "" : fmt::format("'{}' is one", meant.substr(2)));
 }
 
 /// As it would be typed, word by word.
@@ -131,7 +122,7 @@ Result<void> parse(CLI::App& app, std::vector<std::string> typed, const std::str
   } catch (const CLI::Success&) {  // a page of help, or of ranges
     return bad_usage("that option answers with a text for people", help);
   } catch (const CLI::ParseError& error) {
-    return bad_usage(error.what(), help);
+    return bad_usage(usage_message(app, error), help);
   }
   return {};
 }

@@ -23,6 +23,7 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/process.h"
+#include "apps/mbk/usage_error.h"
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/core/words.h"
@@ -31,19 +32,10 @@ namespace {
 
 /// "mbk: what is wrong; which help to read".
 std::string one_line(const CLI::App* app, const CLI::Error& error) {
-  const auto chosen = app->get_subcommands();
-  if (!chosen.empty()) {
-    const CLI::App* const command = chosen.front();
-    const auto part = command->get_subcommands();
-    if (!part.empty()) {
-      return fmt::format("mbk: {}; see 'mbk {} {} --help'\n", error.what(), command->get_name(),
-                         part.front()->get_name());
-    }
-    return fmt::format("mbk: {}; see 'mbk {} --help'\n", error.what(), command->get_name());
-  }
-  const std::vector<std::string> words = app->remaining();
-  if (words.empty()) return "mbk: no command; see 'mbk --help'\n";
-  return fmt::format("mbk: '{}' is an unknown command; see 'mbk --help'\n", words.front());
+  const auto* const of_words = dynamic_cast<const CLI::ParseError*>(&error);
+  const std::string wrong = of_words != nullptr ? mbk::app::usage_message(*app, *of_words) : error.what();
+  return fmt::format("mbk: {}{} see '{} --help'\n", wrong, wrong.ends_with('?') ? "" : ";",
+                     mbk::app::typed_command(*app));
 }
 
 /// On standard error where there is no memory to make a line in. What cannot be written is lost: the exit code tells.

@@ -146,6 +146,22 @@ class Commands(Case):
         self.refused(WRONG_USAGE, "measure", says=["FILE", "mbk measure --help"])
         self.refused(WRONG_USAGE, "ellipse", says=["RESULT.json", "mbk ellipse --help"])
 
+    def test_what_was_meant_is_named(self):
+        log = make_log().path
+        for said, typed in (("did you mean '--cutoff'? see 'mbk measure --help'", ("measure", log, "--cutof=5")),
+                            ("did you mean 'measure'? see 'mbk --help'", ("mesure", log)),
+                            ("did you mean 'add'? see 'mbk study --help'", ("study", "ad"))):
+            self.refused(WRONG_USAGE, *typed, says=said)
+        ran = self.refused(WRONG_USAGE, "measure", log, "--nonsense")
+        self.assertNotIn("did you mean", ran.err)
+
+    def test_the_number_of_words_is_said_as_a_person_would(self):
+        log = make_log().path
+        self.refused(WRONG_USAGE, "simulate", "relaxed", "rigid", says="'rigid' is one word too many for 'mbk simulate'")
+        self.refused(WRONG_USAGE, "compare", log, log, log, says="FILE takes at most 2, and 3 were given")
+        self.refused(WRONG_USAGE, "study", says="no command; there are init, add")
+        self.refused(WRONG_USAGE, "measure", log, "--cutoff", says="--cutoff needs a value, HZ|none")
+
     def test_overwrite_without_out(self):
         self.refused(WRONG_USAGE, "measure", make_log().path, "--overwrite", says="--out")
 

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "mbk/base/config/key_unit.h"
 #include "mbk/base/config/toml_tree.h"
@@ -73,21 +75,6 @@ std::string element(std::string_view path, std::size_t i) {
 }
 
 using Keys = std::set<std::string, std::less<>>;
-
-/// The known key that `key` was probably meant to be, or "".
-std::string nearest(std::string_view key, const Keys& known) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(2, key.size() / 3) + 1;
-  if (key.size() > 100) return best;
-  for (const std::string& candidate : known) {
-    const std::size_t d = edit_distance(key, candidate);
-    if (d < least && d < candidate.size()) {
-      least = d;
-      best = candidate;
-    }
-  }
-  return best;
-}
 
 struct UnknownKey {
   std::string section;
@@ -169,7 +156,9 @@ class Reading {
       if (path == kTrialKey && !trials.empty()) continue;
       if (std::ranges::any_of(family(), [&](const Reading* r) { return r->left_to_others.contains(path); })) continue;
       if (!known.contains(key)) {
-        if (!first || value.line < first->line) first = UnknownKey{section, key, value.line, nearest(key, known)};
+        if (!first || value.line < first->line)
+          first = UnknownKey{section, key, value.line,
+                             meant_word(key, std::vector<std::string>(known.begin(), known.end()))};
       } else if (const List* list = std::get_if<List>(&value.value)) {
         for (std::size_t i = 0; i < list->size(); ++i) search((*list)[i], element(path, i), first);
       } else {

@@ -21,4 +21,19 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+std::string meant_word(std::string_view word, std::span<const std::string> known) {
+  constexpr std::size_t kLongest = 100;
+  if (word.size() > kLongest) return "";
+  std::string meant;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t d = edit_distance(word, candidate);
+    if (d < least && d < candidate.size()) {
+      least = d;
+      meant = candidate;
+    }
+  }
+  return meant;
+}
+
 }  // namespace mbk

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 #include <string>
+#include <vector>
 
 namespace mbk {
 namespace {
@@ -36,6 +37,15 @@ TEST(EditDistance, IsThatOfItsDefinition) {
     EXPECT_EQ(edit_distance(a, b), slow_distance(a, b)) << a << " " << b;
     EXPECT_EQ(edit_distance(a, b), edit_distance(b, a));
   }
+}
+
+TEST(MeantWord, IsTheNearestThatIsNearEnough) {
+  const std::vector<std::string> known{"--from", "--form", "--cutoff", "--to"};
+  EXPECT_EQ(meant_word("--cutof", known), "--cutoff");
+  EXPECT_EQ(meant_word("--frmo", known), "--from");  // as near as --form, and before it
+  EXPECT_EQ(meant_word("--nonsense", known), "");
+  EXPECT_EQ(meant_word(std::string(101, 'x'), {{std::string(101, 'x')}}), "");
+  EXPECT_EQ(meant_word("ab", {{"cd"}}), "");  // nothing of it would be left
 }
 
 }  // namespace
