@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
@@ -87,6 +91,24 @@ std::string reliability_line(const OutcomeReliability& one) {
                             digits(found.error[0].sem), digits(found.error[0].mdc95), one.unit);
 }
 
+/// Each note once, behind all outcomes that it is of.
+std::string notes_of(std::span<const OutcomeReliability> all) {
+  std::vector<std::pair<std::string, std::string>> outcomes_by_note;
+  for (const OutcomeReliability& one : all) {
+    for (const std::string& note : one.notes) {
+      const auto known = std::ranges::find(outcomes_by_note, note, [](const auto& entry) { return entry.first; });
+      if (known == outcomes_by_note.end()) {
+        outcomes_by_note.emplace_back(note, one.outcome);
+      } else {
+        known->second += ", " + one.outcome;
+      }
+    }
+  }
+  std::string text;
+  for (const auto& [note, outcomes] : outcomes_by_note) text += item("  ! ", outcomes + ": " + note);
+  return text;
+}
+
 std::string reliability_table(const std::vector<OutcomeReliability>& all) {
   std::string text;
   for (std::size_t begin = 0; begin < all.size();) {
@@ -109,9 +131,7 @@ std::string reliability_table(const std::vector<OutcomeReliability>& all) {
                           "MDC", "unit");
       for (std::size_t k = begin; k < end; ++k) text += reliability_line(all[k]);
     }
-    for (std::size_t k = begin; k < end; ++k) {
-      for (const std::string& note : all[k].notes) text += item("  ! ", all[k].outcome + ": " + note);
-    }
+    text += notes_of(std::span(all).subspan(begin, end - begin));
     begin = end;
   }
   return text;
@@ -300,6 +320,7 @@ std::string reliability_text(const StudyStatistics& statistics, bool details) {
     text +=
         "\nn×k: people who have each of k sessions. ICC(A,1) with its 95 % interval; SEM:\n"
         "standard error of measurement (agreement) of a session's mean; MDC: 1.96 √2 SEM.\n"
+        "An ICC below 0 says no more than 0 does: its interval begins there.\n"
         "--outcome NAME shows all forms, limits of agreement, trials, the mixed model.\n";
   }
   return text;
