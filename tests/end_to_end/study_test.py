@@ -21,6 +21,7 @@ import time
 
 import command
 import schemas
+from kinarm_test import write_exam
 from command import BAD_DATA, FINE, WRONG_USAGE, run
 
 KILLS = int(os.environ.get("MBK_STUDY_KILLS", "20"))
@@ -272,6 +273,23 @@ class Importing(StudyCase):
         self.assertEqual(stored["model"], measured["model"])
         self.assertEqual(self.checked()["problems"], [])
 
+    def test_what_an_exam_says_of_a_person_unseen_is_stripped(self):
+        exam = write_exam(self.folder / "exam.kinarm", (1, 2), sides=("Left", "Right"))
+        self.do("defaults", "--side", "left", "--channels", "Fx=-force_x,Fy=-force_y")
+        self.refused(BAD_DATA, "study", "add", exam, "--participant", 7, "--study", self.study, says=("exam", "--strip"))
+        self.assertEqual(list(self.study.glob("recordings/*/*")), [])
+        ran = self.do("add", exam, "--participant", 7, "--strip")
+        self.assertIn("recording 2", ran.out)
+        everything = b"".join(path.read_bytes() for path in self.study.rglob("*") if path.is_file())
+        for secret in (b"Erika", b"1961", b"Musterfrau"):
+            self.assertNotIn(secret, everything)
+        # how the exam is read was applied when the copy was made, and is not applied again
+        run("study", "measure", "--study", self.study)
+        stored = self.do("show", 2, "--result").json["model"]
+        measured = run("measure", exam, "--side", "left", "--trial", 2, "--json", "--channels",
+                       "Fx=-force_x,Fy=-force_y").json["model"]
+        self.assertEqual(stored, measured)
+
     def test_refuses_a_name_for_a_participant(self):
         self.refused(WRONG_USAGE, "study", "add", self.trials[0], "--study", self.study, "--participant", "Jane",
                      says="Jane")
@@ -330,6 +348,10 @@ class DataSets(StudyCase):
         self.assertEqual(numbers(other), numbers(self.study))
         again = self.mbk("study", "import", data_set, "--study", other)
         self.assertEqual(again.out.count("there already"), 4)
+
+    def test_of_nothing_are_not_made(self):
+        self.refused(WRONG_USAGE, "study", "export", "--bids", self.folder / "none", "--study", self.study, says="nothing")
+        self.assertFalse((self.folder / "none").exists())
 
     def test_leave_out_what_is_excluded_and_are_not_written_over(self):
         data_set = self.exported()
