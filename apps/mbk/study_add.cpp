@@ -163,7 +163,7 @@ class Adder {
     KnownFacts known = facts;
     const auto condition = recording->metadata.find("condition");  // in full; a name has only its letters and digits
     if (facts.condition && condition != recording->metadata.end() &&
-        store::bids_label(condition->second) == *facts.condition) {
+        store::is_bids_label(*facts.condition, condition->second)) {
       known.condition = condition->second;
     }
     const auto trial = check(*recording, known, {});

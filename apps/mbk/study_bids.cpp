@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -106,6 +107,11 @@ int export_bids(const store::Store& study, const store::StudyList& list, const f
   if (!defaults) return report_error(defaults.error());
   const auto measuring = measuring_of(*defaults);
   if (!measuring) return report_error(measuring.error());
+  const auto counts = [](const store::ListedRecording& one) { return !one.recording.excluded_why; };
+  if (std::ranges::none_of(list.recordings, counts)) {
+    return report_error({ErrorKind::usage, "there is nothing to export: no recording that is not excluded",
+                         "'mbk study add' brings recordings in; 'mbk study list' shows them", ""});
+  }
   auto made = NewFolder::of(folder);
   if (!made) return report_error(made.error());
   const auto labels = labels_of(list);

@@ -21,6 +21,8 @@ import time
 
 import command
 import schemas
+from c3d_test import limb, texts, write_c3d
+from kinarm_test import write_exam
 from command import BAD_DATA, FINE, WRONG_USAGE, run
 
 KILLS = int(os.environ.get("MBK_STUDY_KILLS", "20"))
@@ -272,6 +274,43 @@ class Importing(StudyCase):
         self.assertEqual(stored["model"], measured["model"])
         self.assertEqual(self.checked()["problems"], [])
 
+    def test_what_an_exam_says_of_a_person_unseen_is_stripped(self):
+        exam = write_exam(self.folder / "exam.kinarm", (1, 2), sides=("Left", "Right"))
+        self.do("defaults", "--side", "left", "--channels", "x=hand_x,y=hand_y,Fx=force_x,Fy=force_y")
+        self.refused(BAD_DATA, "study", "add", exam, "--participant", 7, "--study", self.study, says=("exam", "--strip"))
+        self.assertEqual(list(self.study.glob("recordings/*/*")), [])
+        ran = self.do("add", exam, "--participant", 7, "--strip")
+        self.assertIn("recording 2", ran.out)
+        everything = b"".join(path.read_bytes() for path in self.study.rglob("*") if path.is_file())
+        for secret in (b"Erika", b"1961", b"Musterfrau"):
+            self.assertNotIn(secret, everything)
+        # how the exam is read was applied when the copy was made, and is not applied again
+        run("study", "measure", "--study", self.study)
+        stored = self.do("show", 2, "--result").json["model"]
+        measured = run("measure", exam, "--side", "left", "--trial", 2, "--json", "--channels",
+                       "x=hand_x,y=hand_y,Fx=force_x,Fy=force_y").json["model"]
+        self.assertEqual(stored, measured)
+
+    def test_what_a_c3d_file_says_of_a_person_unseen_is_stripped(self):
+        angle, torque = limb(4000)
+        file = write_c3d(self.folder / "limb.c3d", {}, {"Knee angle": angle, "Torque": torque}, ["deg", "Nm"])
+        plain = command.copy(file, self.folder / "plain.c3d")
+        data = file.read_bytes()
+        end = len(data[:1536].rstrip(b"\0")) + 1
+        subjects = b"\x08\xfdSUBJECTS\x03\0\0" + texts(3, "NAMES", ["Erika Muster"])
+        file.write_bytes((data[:end] + subjects).ljust(1536, b"\0") + data[1536:])
+        self.do("defaults", "--axes", "1", "--channels", "x=Knee angle,F=Torque")
+        self.do("add", plain, "--participant", 6)
+        self.refused(BAD_DATA, "study", "add", file, "--participant", 7, "--study", self.study,
+                     says=("SUBJECTS:NAMES", "--strip"))
+        ran = self.do("add", file, "--participant", 7, "--strip")
+        self.assertIn("SUBJECTS:NAMES", ran.err)
+        everything = b"".join(path.read_bytes() for path in self.study.rglob("*") if path.is_file())
+        self.assertNotIn(b"Erika", everything)
+        run("study", "measure", "--study", self.study)
+        models = [self.do("show", number, "--result").json["model"] for number in (1, 2)]
+        self.assertEqual(models[0], models[1])
+
     def test_refuses_a_name_for_a_participant(self):
         self.refused(WRONG_USAGE, "study", "add", self.trials[0], "--study", self.study, "--participant", "Jane",
                      says="Jane")
@@ -330,6 +369,10 @@ class DataSets(StudyCase):
         self.assertEqual(numbers(other), numbers(self.study))
         again = self.mbk("study", "import", data_set, "--study", other)
         self.assertEqual(again.out.count("there already"), 4)
+
+    def test_of_nothing_are_not_made(self):
+        self.refused(WRONG_USAGE, "study", "export", "--bids", self.folder / "none", "--study", self.study, says="nothing")
+        self.assertFalse((self.folder / "none").exists())
 
     def test_leave_out_what_is_excluded_and_are_not_written_over(self):
         data_set = self.exported()

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
+/// Among more people than that one alone changes little, and leaving each out in turn costs much.
+constexpr int kMostJudgedByOthers = 40;
+
 using SessionValues = std::map<std::int64_t, std::vector<double>>;  ///< by session
 
 double mean_of(const std::vector<double>& values, bool axial) {
@@ -188,8 +191,10 @@ std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns, const 
     one.why_unknown = error.why_unknown;
     for (const auto& [number, values] : values_of(columns, *column, one.condition, participant)) {
       Course course = course_of(number, values, one.axial, error);
-      const bool stands_out = std::ranges::any_of(
-          course.changes, [](const Change& change) { return std::abs(change.difference) > change.mdc; });
+      const bool stands_out = one.repeated_participants <= kMostJudgedByOthers &&
+                              std::ranges::any_of(course.changes, [](const Change& change) {
+                                return std::abs(change.difference) > change.mdc;
+                              });
       const DetectableChange others =
           stands_out ? without(number, columns, *column, one.condition) : DetectableChange();
       if (stands_out && others.known()) {

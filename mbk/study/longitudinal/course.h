@@ -87,8 +87,8 @@ struct DetectableChange {
 [[nodiscard]] ChangeVerdict verdict_of(double difference, double mdc, const Interval& mdc95);
 
 /// Of every outcome and condition that the statistics tell of. Whoever differs by more than the minimal detectable
-/// change of all people is judged by that of all others, where that is known: one large change among few people would
-/// otherwise hide itself.
+/// change of all people is judged by that of all others, where that is known and there are no more than 40: one large
+/// change among few people would otherwise hide itself.
 /// @param participant  only that one's courses; the minimal detectable change is still that of all people
 [[nodiscard]] std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns,
                                                   const statistics::StudyStatistics& statistics,

@@ -31,7 +31,8 @@ Document change_json(const Change& change) {
   return {{"first_session", change.first_session},   {"last_session", change.last_session},
           {"first", number(change.first)},           {"last", number(change.last)},
           {"difference", number(change.difference)}, {"mdc95", number(change.mdc)},
-          {"mdc95_interval", pair(change.mdc95)},    {"verdict", word_of(change.verdict)}};
+          {"mdc95_interval", pair(change.mdc95)},    {"by_others", change.by_others},
+          {"verdict", word_of(change.verdict)}};
 }
 
 Document course_json(const Course& course) {

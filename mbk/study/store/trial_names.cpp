@@ -223,6 +223,13 @@ std::string bids_label(std::string_view condition) {
   return label;
 }
 
+bool is_bids_label(std::string_view label, std::string_view condition) {
+  const std::string own = bids_label(condition);
+  if (!label.starts_with(own)) return false;
+  label.remove_prefix(own.size());
+  return label.empty() || (label.starts_with('x') && whole_number(label.substr(1)));
+}
+
 Result<KnownFacts> facts_of_bids(std::string_view name) {
   KnownFacts facts;
   std::string task, acquisition;

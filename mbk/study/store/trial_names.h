@@ -70,6 +70,10 @@ struct Sheet {
 /// Letters and digits of a condition, as BIDS wants them in a name: "stiff_100%" → "stiff100". "" → "unnamed".
 [[nodiscard]] std::string bids_label(std::string_view condition);
 
+/// Whether that is the label of a condition, or that and a number, since another condition has the same letters and
+/// digits: "stiff100x2".
+[[nodiscard]] bool is_bids_label(std::string_view label, std::string_view condition);
+
 /// From the metadata of a recording: participant, session, condition, trial.
 [[nodiscard]] KnownFacts facts_of(const std::map<std::string, std::string>& metadata);
 

@@ -139,5 +139,29 @@ TEST(ASummary, OfOneParticipantHasNoDeviation) {
   EXPECT_TRUE(std::isnan(summarise_outcomes(table_of("K", {{1, 5}, {1, 7}}))[0].standard_deviation));
 }
 
+TEST(BidsNames, SayWhoseTrialItIs) {
+  const auto facts = facts_of_bids("sub-07_ses-2_task-reach_acq-fast_tracksys-robot_run-01_motion");
+  ASSERT_TRUE(facts);
+  EXPECT_EQ(facts->participant, 7);
+  EXPECT_EQ(facts->session, 2);
+  EXPECT_EQ(facts->condition, "reach-fast");
+  EXPECT_EQ(facts->trial, 1);
+  EXPECT_EQ(facts_of_bids("sub-1_task-unnamed_motion")->condition, "");
+  EXPECT_EQ(facts_of_bids("sub-1_motion")->condition, std::nullopt);
+  for (const char* name : {"sub-jane_task-x", "sub-0_task-x", "sub-_task-x", "sub-1_ses-pre_task-x", "sub-1_run-a"}) {
+    EXPECT_FALSE(facts_of_bids(name)) << name;
+  }
+}
+
+TEST(BidsNames, LabelsAreLettersAndDigits) {
+  EXPECT_EQ(bids_label("stiff_100%"), "stiff100");
+  EXPECT_EQ(bids_label(""), "unnamed");
+  EXPECT_EQ(bids_label("–"), "other");
+  EXPECT_TRUE(is_bids_label("stiff100", "stiff 100"));
+  EXPECT_TRUE(is_bids_label("stiff100x2", "stiff 100"));
+  EXPECT_FALSE(is_bids_label("stiff100x", "stiff 100"));
+  EXPECT_FALSE(is_bids_label("stiff1000", "stiff 100"));
+}
+
 }  // namespace
 }  // namespace mbk::store
