@@ -85,10 +85,10 @@ TEST(InMemory, KeepsWhatWasReadAsItWas) {
 }
 
 TEST(InMemory, SaysWhatIsWrong) {
-  EXPECT_EQ(InMemory::of({}).error().kind, ErrorKind::usage);
+  EXPECT_EQ(InMemory::of(std::vector<InMemory::Signal>()).error().kind, ErrorKind::usage);
   EXPECT_THAT(InMemory::of({{"", "", ramp(1.0)}}).error().message, HasSubstr("no name"));
   EXPECT_THAT(InMemory::of({{"x", "", ramp(1.0)}, {"x", "", ramp(1.0)}}).error().message, HasSubstr("'x'"));
-  EXPECT_THAT(InMemory::of({{"x", "", ramp(1.0)}, {"F", "", Vector::Zero(3)}}).error().message, HasSubstr("3"));
+  EXPECT_THAT(InMemory::of({{"x", "", ramp(1.0)}, {"F", "", Vector(Vector::Zero(3))}}).error().message, HasSubstr("3"));
   EXPECT_THAT(InMemory::of({{"x", "", Vector()}}).error().message, HasSubstr("empty"));
   EXPECT_EQ(InMemory::of({{"x", "", ramp(1.0)}}, std::nan("")).error().kind, ErrorKind::usage);
 }
