@@ -278,6 +278,12 @@ class ModuleTest(unittest.TestCase):
         self.assert_error(lambda: _mbk.call("measure", {"parts": True}, [self.recording]), "--parts", code=2)
         for command in ("", "run", "measures", "robot", "manual", "measure --json", "robot identify x"):
             self.assert_error(lambda name=command: _mbk.call(name, {}, [], ["log.mat"]), "command", code=2)
+        self.assert_error(lambda: _mbk.call("measure", {}, [], ["log.mat\0.txt"]), "zero byte", code=2)
+        self.assert_error(lambda: _mbk.call("measure", {"": 1}, [], ["log.mat"]), "option", code=2)
+        self.assert_error(lambda: _mbk.read_all(["log.mat"], {"cutoff": 5}), "cutoff", code=2)
+        os.link("log.mat", b"\xff.mat")
+        self.assertTrue(_mbk.call("info", {"json": False}, [], [b"\xff.mat"]).exit_code == 0)
+        self.assertEqual(_mbk.read_all([os.fsdecode(b"\xff.mat")])[0].samples, self.recording.samples)
         error = self.assert_error(lambda: _mbk.call("measure", {}, [], ["-none.mat"]), "-none.mat", code=3)
         self.assertEqual((error.file, error.what), ("-none.mat", "there is no such file"))
         self.assertTrue(error.hint)

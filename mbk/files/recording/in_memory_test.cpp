@@ -31,7 +31,7 @@ TEST(InMemory, HoldsNumbersWhereTheyStandForAsLongAsSomebodyNeedsThem) {
     const auto recording = made->read({});
     ASSERT_TRUE(recording) << recording.error().line();
     EXPECT_EQ(recording->find("position")->values, Vector(x / 1000.0));
-    EXPECT_EQ(recording->time, ramp(0.01));
+    EXPECT_EQ(recording->time, Vector(ramp(1.0) / 100.0));
     EXPECT_EQ(recording->metadata.at("participant"), "7");
     EXPECT_EQ(recording->events.size(), 1u);
     EXPECT_FALSE(alive.expired());
