@@ -51,6 +51,7 @@ BENCHMARKS = [
     Benchmark("whole_command", "whole_command.py", full=("--runs", "21", *BIN), short=("--runs", "3", *BIN)),
     Benchmark("identify_command", "identify_command.py", full=("--runs", "21", *BIN), short=("--runs", "3", *BIN)),
     Benchmark("pipeline", "pipeline.py", full=("--turns", "21", *BIN), short=("--turns", "3", *BIN)),
+    Benchmark("python_layer", "python_layer.py", full=("--turns", "11", *BIN), short=("--turns", "2", *BIN)),
     Benchmark("many_files", "many_files.py", full=BIN, short=("--files", "4", "--runs", "1", *BIN)),
     Benchmark("stages", "stages.cpp", "bench_stages", short=("--benchmark_min_time=0.02",)),
     Benchmark("simulation", "simulation.py", full=("--runs", "9", *BIN), short=("--runs", "2", *BIN)),

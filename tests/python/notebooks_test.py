@@ -57,7 +57,6 @@ class Notebooks(unittest.TestCase):
                 tables += "<table" in data.get("text/html", "")
         self.assertGreaterEqual(pictures, 2)
         self.assertGreaterEqual(tables, 1)
-        return book
 
     def test_there_are_three_without_stored_outputs(self):
         paths = sorted(NOTEBOOKS.glob("*.ipynb"))

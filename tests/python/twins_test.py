@@ -53,6 +53,7 @@ def make_files(folder):
     (folder / "loads.csv").write_text("Fx,Fy,Vx,Vy\n" + "\n".join(rows) + "\n")
     movement_test.write_reaches(folder / "reach.csv")
     shutil.copy(ROOT / "examples/robots/double_pendulum.toml", folder / "planar.toml")
+    shutil.copy(ROOT / "examples/robots/double_pendulum.urdf", folder)
     shutil.copy(ROOT / "examples/teleop/telerehabilitation.toml", folder)
     noise = random.Random(1)
     lines, angle, speed = ["time,position_rad,torque_Nm"], 0.0, 0.0

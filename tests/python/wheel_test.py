@@ -55,8 +55,7 @@ class Wheel(unittest.TestCase):
         ran(self.python, "-m", "pip", "install", "--no-index", self.wheel, env=clean())
         shown = ran(self.python, "-c", SCRIPT, cwd=self.folder, env=clean())
         self.assertIn(str(self.folder / "venv"), shown)
-        self.assertIn("mbk", ran(self.python, "-m", "pip", "show", "mbk", env=clean()))
-        self.assertIn("No broken", ran(self.python, "-m", "pip", "check", env=clean()))
+        self.assertIn("Requires: numpy", ran(self.python, "-m", "pip", "show", "mbk", env=clean()))
         ran(self.python, "-m", "pip", "uninstall", "-y", "mbk", env=clean())
         with self.assertRaises(AssertionError):
             ran(self.python, "-c", "import mbk", cwd=self.folder, env=clean())

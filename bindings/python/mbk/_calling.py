@@ -10,20 +10,38 @@ import re
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Union
+from typing import Any, Protocol, Union
 
 import numpy as np
 
 from mbk import _documents, _errors, _mbk
 from mbk._recording import Recording
 
-if TYPE_CHECKING:
-    import pandas
-    import xarray
+
+class Table(Protocol):
+    """A pandas DataFrame: a channel in each column."""
+
+    @property
+    def columns(self) -> Any: ...
+
+    @property
+    def index(self) -> Any: ...
+
+    def to_numpy(self) -> Any: ...
+
+
+class DataSet(Protocol):
+    """An xarray Dataset: a channel in each variable."""
+
+    @property
+    def data_vars(self) -> Any: ...
+
+    @property
+    def coords(self) -> Any: ...
+
 
 # What a function takes in place of the name of a file.
-Source = Union[str, "os.PathLike[str]", Recording, _documents.Document, Mapping[str, Any], "pandas.DataFrame",
-               "xarray.Dataset"]
+Source = Union[str, "os.PathLike[str]", Recording, _documents.Document, Mapping[str, Any], Sequence[Any], Table, DataSet]
 
 
 class _Given:
