@@ -124,13 +124,14 @@ Commands all_commands(const std::string& typed) {
   };
 }
 
-/// The options of all commands are half of what it takes to start: where the first word on the command line names a
-/// command, only that one is made. `completion` and `manual` speak of all.
+/// The options of all commands are more than half of what it takes to start: where the first word on the command line
+/// names a command, only that one is made, and for the version none. `completion` and `manual` speak of all.
 mbk::app::Actions commands_for(std::string_view first, CLI::App& app, const std::string& typed) {
   const Commands all = all_commands(typed);
   const bool one = first != "completion" && first != "manual" &&
                    std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
   mbk::app::Actions made;
+  if (first == "--version") return made;
   for (const auto& [name, add] : all) {
     if (!one || name == first) made.emplace_back(name, add(app));
   }
