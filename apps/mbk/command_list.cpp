@@ -61,6 +61,7 @@ Actions add_commands(std::string_view first, CLI::App& app, const std::string& t
   const bool one = first != "completion" && first != "manual" &&
                    std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
   Actions made;
+  if (first == "--version") return made;
   for (const auto& [name, add] : all) {
     if (!one || name == first) made.emplace_back(name, add(app));
   }

@@ -122,6 +122,7 @@ Result<FileInPassing> FileInPassing::open(const std::filesystem::path& file) {
   void* const room =
       ::mmap(nullptr, open->size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();
+  ::madvise(room, open->size, MADV_HUGEPAGE);  // only advice: it may fail
   return FileInPassing(std::exchange(open->descriptor.number, -1), open->size, static_cast<char*>(room));
 }
 
@@ -131,18 +132,32 @@ FileInPassing::FileInPassing(FileInPassing&& other) noexcept
       read_(other.read_),
       forgotten_(other.forgotten_),
       data_(std::exchange(other.data_, nullptr)),
-      sum_(other.sum_) {}
+      sum_(std::move(other.sum_)),
+      ahead_(std::move(other.ahead_)) {}
 
 FileInPassing::~FileInPassing() {
+  if (ahead_.valid()) ahead_.wait();
   if (descriptor_ >= 0) ::close(descriptor_);
   if (data_ != nullptr) ::munmap(data_, size_);
 }
 
+void FileInPassing::read_ahead() {
+  const auto read = [descriptor = descriptor_, to = data_ + read_, count = std::min(kPiece, size_ - read_),
+                     sum = sum_.get()]() -> Result<void> {
+    if (auto ok = read_bytes(descriptor, to, count); !ok) return ok;
+    sum->add(std::as_bytes(std::span(to, count)));
+    return {};
+  };
+  // With both, a system that has no thread left does it when it is asked for.
+  const bool several = size_ > kPiece;
+  ahead_ = std::async(several ? std::launch::async | std::launch::deferred : std::launch::deferred, read);
+}
+
 Result<void> FileInPassing::read_on() {
-  const std::size_t count = std::min(kPiece, size_ - read_);
-  if (auto ok = read_bytes(descriptor_, data_ + read_, count); !ok) return ok;
-  sum_.add(std::as_bytes(std::span(data_ + read_, count)));
-  read_ += count;
+  if (!ahead_.valid()) read_ahead();
+  if (auto ok = ahead_.get(); !ok) return ok;
+  read_ += std::min(kPiece, size_ - read_);
+  if (read_ < size_) read_ahead();
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <span>
 #include <string>
@@ -61,15 +62,18 @@ class FileInPassing {
   /// The bytes before that place are needed no more, but for the first piece.
   void forget(std::size_t before);
   /// Of the whole file, which must have been read.
-  [[nodiscard]] std::string sha256() { return sum_.hex(); }
+  [[nodiscard]] std::string sha256() { return sum_->hex(); }
 
  private:
   FileInPassing(int descriptor, std::size_t size, char* data) : descriptor_(descriptor), size_(size), data_(data) {}
+  /// Reads the next piece and adds it to the sum, beside whoever works on what is there.
+  void read_ahead();
 
   int descriptor_;
   std::size_t size_, read_ = 0, forgotten_ = kPiece;
   char* data_;  ///< as much room as the file needs, of which only what is written to takes memory
-  Sha256 sum_;
+  std::unique_ptr<Sha256> sum_ = std::make_unique<Sha256>();
+  std::future<Result<void>> ahead_;  ///< of the piece behind what was read
 };
 
 /// The first bytes of a file, or as many as it has; none of what is no file, or cannot be read.

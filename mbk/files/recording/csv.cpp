@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -303,17 +304,26 @@ class Table {
     return kDay * column.midnights + instant.seconds;
   }
 
-  /// The rows so far of a long table, again and again.
+  /// The rows so far of a long table, again and again, while those behind them are read.
   void put_on_disk() {
     constexpr Index kAtOnce = 1 << 17;
     on_disk_from_ = rows_ + kAtOnce;
     if (numbers_.front().size() <= kLong) return;
-    for (std::size_t c = 0; c < columns_; ++c) {
-      on_disk_[c] += disk_.take(numbers_[c].data() + on_disk_[c], rows_ - on_disk_[c]);
-    }
+    wait_for_disk();
+    // With both, a system that has no thread left does it when it is waited for.
+    writing_ = std::async(std::launch::async | std::launch::deferred, [this, rows = rows_] {
+      for (std::size_t c = 0; c < columns_; ++c) {
+        on_disk_[c] += disk_.take(numbers_[c].data() + on_disk_[c], rows - on_disk_[c]);
+      }
+    });
+  }
+
+  void wait_for_disk() {
+    if (writing_.valid()) writing_.get();
   }
 
   Result<void> finish() {
+    wait_for_disk();
     if (decimal_commas_ && !comma_is_sure_) {
       return bad_data(fmt::format("'{}' and all others like it may have a decimal comma or one between thousands",
                                   printable(comma_cell_)),
@@ -411,6 +421,7 @@ class Table {
   }
 
   void make_rows(Index rows) {
+    wait_for_disk();
     for (Vector& column : numbers_) column.conservativeResize(rows);
     on_disk_.assign(columns_, 0);  // the longer ones stand elsewhere
   }
@@ -423,7 +434,8 @@ class Table {
   std::vector<Index> on_disk_;   ///< of each column, the numbers at its begin whose memory is a file's
   Index on_disk_from_ = 0;       ///< rows at which it is time for more
   DiskPages disk_;
-  bool trailing_ = false;  ///< every line ends with a separator
+  std::future<void> writing_;  ///< of them; it ends before what it writes is gone
+  bool trailing_ = false;      ///< every line ends with a separator
   bool decimal_commas_ = false, comma_is_sure_ = false;
   std::string comma_cell_;  ///< the first that has one
   Index rows_ = 0;          ///< complete ones so far

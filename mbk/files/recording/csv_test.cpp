@@ -111,10 +111,18 @@ TEST(DecodeCsv, ReadsEveryNumberAsTheCLibraryDoes) {
                                     "9007199254740.993",
                                     "0.9007199254740993",
                                     "0.28412345678901234",
+                                    "9007199254740993.000",
+                                    "900719925474099.25",
+                                    "4503599627370497.5",
+                                    "450359962737049.75",
+                                    "9999999999999999999",
+                                    "10000000000000000001",
+                                    ".9999999999999999999",
+                                    "0.0000000000000000001",
                                     "1.5e-3"};
   std::mt19937 random(1);  // NOLINT(cert-msc32-c, cert-msc51-cpp): the same numbers every time
-  for (int k = 0; k < 2000; ++k) {
-    const auto digits = static_cast<std::size_t>(1 + random() % 17);
+  for (int k = 0; k < 3000; ++k) {
+    const auto digits = static_cast<std::size_t>(1 + random() % 20);
     std::string cell;
     while (cell.size() < digits) cell += static_cast<char>('0' + random() % 10);
     cell.insert(random() % (cell.size() + 1), ".");

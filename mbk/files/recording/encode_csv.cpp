@@ -51,7 +51,8 @@ void append_number(std::string& text, double value) {
     return;
   }
   char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  const char* const end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  text.append(digits, static_cast<std::size_t>(end - digits));
 }
 
 Result<std::string> encode_csv(const Recording& recording) {

@@ -8,7 +8,6 @@
 #include <limits>
 #include <numeric>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "mbk/base/core/nan.h"
@@ -49,18 +48,37 @@ std::vector<EnergySums> hull_from(const EnergyBlock& block, std::size_t vertex) 
   return hull;
 }
 
-/// Whether no sample of the block reaches λ: −E₀ − E ≤ λ (S₀ + S) for each, and so for the vertex at which the hull's
-/// slope falls below λ. What is that close to it that rounding decides is looked at.
-bool stays_below(const EnergyBlock& block, const EnergySums& before, double largest) {
-  if (std::isnan(largest)) return false;
-  const auto steeper = [&](double slope) { return slope > largest; };
-  const auto vertex = std::ranges::partition_point(block.slopes, steeper) - block.slopes.begin();
-  const EnergySums& farthest = block.hull[static_cast<std::size_t>(vertex)];
-  const double reached = -before.absorbed - farthest.absorbed;
-  const double limit = largest * (before.squared_velocity + farthest.squared_velocity);
-  constexpr double kRounding = 1e-12;
-  const double size = std::abs(before.absorbed) + std::abs(farthest.absorbed) + std::abs(limit);
-  return reached < limit - kRounding * size;
+/// Whether S reaches `first` inside a block before which the sums are those.
+bool is_cut(const EnergyBlock& block, const EnergySums& before, double first) {
+  return before.squared_velocity + block.total.squared_velocity >= first &&
+         before.squared_velocity + block.hull.front().squared_velocity < first;
+}
+
+/// No λ in a block is above it, with S from `first` on.
+double highest_possible(const EnergyBlock& block, const EnergySums& before, double first) {
+  const double missing = -(before.absorbed + block.least_absorbed);
+  const double least = std::max(first, before.squared_velocity + block.hull.front().squared_velocity);
+  return missing / (missing > 0.0 ? least : before.squared_velocity + block.total.squared_velocity);
+}
+
+/// Raises the largest λ, or NaN, to that in a block with S from `first` on.
+void look_into(const EnergyBlock& block, const EnergySums& before, double first, double& largest) {
+  const auto too_early = [&](const EnergySums& sum) { return before.squared_velocity + sum.squared_velocity < first; };
+  if (too_early(block.total) || highest_possible(block, before, first) <= largest) return;
+  std::vector<EnergySums> part;
+  const bool cut = is_cut(block, before, first);
+  if (cut) {
+    const auto vertex = std::ranges::partition_point(block.sums, too_early) - block.sums.begin();
+    part = hull_from(block, static_cast<std::size_t>(vertex));
+  }
+  // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const EnergySums& sum : cut ? part : block.hull) {
+    const double shortage = -(before.absorbed + sum.absorbed) / (before.squared_velocity + sum.squared_velocity);
+    if (shortage < highest) break;
+    highest = shortage;
+  }
+  if (!(highest <= largest)) largest = highest;
 }
 
 /// What a bootstrap is about.
@@ -150,10 +168,7 @@ EnergyBlock energy_block(double duration, std::vector<EnergySums> sums) {
   block.next = next_vertices(sums);
   block.sums = std::move(sums);
   block.hull = hull_from(block, 0);
-  for (std::size_t k = 1; k < block.hull.size(); ++k) {
-    const EnergySums &from = block.hull[k - 1], &to = block.hull[k];
-    block.slopes.push_back((from.absorbed - to.absorbed) / (to.squared_velocity - from.squared_velocity));
-  }
+  block.least_absorbed = std::ranges::min(block.hull, {}, &EnergySums::absorbed).absorbed;
   return block;
 }
 
@@ -172,38 +187,21 @@ double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vecto
   const double first = first_share * end;
   double largest = kNaN;
   EnergySums before;
+  const EnergyBlock* outlined = nullptr;
+  EnergySums before_outlined;
   for (const std::size_t k : order) {
     const EnergyBlock& block = blocks[k];
-    const auto too_early = [&](const EnergySums& sum) {
-      return before.squared_velocity + sum.squared_velocity < first;
-    };
-    const auto shortage = [&](const EnergySums& sum) {
-      return -(before.absorbed + sum.absorbed) / (before.squared_velocity + sum.squared_velocity);
-    };
-    if (!too_early(block.total) && !stays_below(block, before, largest)) {
-      const bool cut = too_early(block.hull.front()), made = cut && block.sums.empty();
-      const EnergyBlock whole = made ? energy_block(block.duration, block.again()) : EnergyBlock();
-      const EnergyBlock& inside = made ? whole : block;
-      const auto vertex = cut ? std::ranges::partition_point(inside.sums, too_early) - inside.sums.begin() : 0;
-      // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
-      double highest = -std::numeric_limits<double>::infinity();
-      const auto falls = [&](const EnergySums& sum) {
-        const double following = shortage(sum);
-        if (following < highest) return true;
-        highest = following;
-        return false;
-      };
-      if (cut) {
-        for (auto at = static_cast<std::size_t>(vertex); !falls(inside.sums[at]) && inside.next[at] != at;) {
-          at = inside.next[at];
-        }
-      } else {
-        std::ignore = std::ranges::any_of(block.hull, falls);
-      }
-      if (!(highest <= largest)) largest = highest;
+    if (block.sums.empty() && is_cut(block, before, first)) {  // to be made only where it can matter
+      outlined = &block;
+      before_outlined = before;
+    } else {
+      look_into(block, before, first, largest);
     }
     before.squared_velocity += block.total.squared_velocity;
     before.absorbed += block.total.absorbed;
+  }
+  if (outlined != nullptr && highest_possible(*outlined, before_outlined, first) > largest) {
+    look_into(energy_block(outlined->duration, outlined->again()), before_outlined, first, largest);
   }
   return largest;
 }

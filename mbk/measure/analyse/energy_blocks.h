@@ -19,8 +19,8 @@ struct EnergySums {
 struct EnergyBlock {
   double duration = 0;            ///< [s]
   EnergySums total;               ///< at its end
+  double least_absorbed = 0;      ///< E of the sample at which it is least
   std::vector<EnergySums> hull;   ///< those of the samples that the upper hull of them all touches, the first included
-  std::vector<double> slopes;     ///< −dE/dS from each vertex of the hull to the next; they fall
   std::vector<EnergySums> sums;   ///< after each interval; S never falls. Empty where `again` makes them.
   std::vector<std::size_t> next;  ///< for each of `sums` the next at which λ can be larger; the last vertex has its own
   std::function<std::vector<EnergySums>()> again;  ///< makes `sums`; asked for where a bootstrap cuts the block in two

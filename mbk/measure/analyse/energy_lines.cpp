@@ -68,22 +68,27 @@ double total_variance(const Columns& signal) {
   return sum / static_cast<double>(signal.rows());
 }
 
-/// How far a signal is from itself `lag` samples later: 0 the same, about 1 nothing in common. Every `step`-th sample.
-double unlike_itself(const Columns& signal, Index lag, Index step, double variance) {
-  double sum = 0.0;
-  Index count = 0;
+/// How far a signal is from itself some samples later, for as many lags as asked, one after another: 0 the same, about
+/// 1 nothing in common. Every `step`-th sample. All of them in one walk, as a long signal comes from the disk.
+Vector unlike_itself(const Columns& signal, Index first_lag, Index lags, Index step, double variance) {
+  Vector sums = Vector::Zero(lags), counts = Vector::Zero(lags), distances(lags);
   recording::InPassing passing({signal});
-  for (Index i = 0; i + lag < signal.rows(); i += step, ++count) {
+  for (Index i = 0; i + first_lag < signal.rows(); i += step) {
     passing.reached(i);
-    double distance = 0.0;
+    const Index there = std::min(lags, signal.rows() - first_lag - i);
+    std::fill_n(distances.data(), there, 0.0);
     for (Index axis = 0; axis < signal.cols(); ++axis) {
-      const double change = signal(i + lag, axis) - signal(i, axis);
-      distance += change * change;
+      const double* const later = signal.col(axis).data() + i + first_lag;
+      const double now = signal(i, axis);
+      for (Index k = 0; k < there; ++k) distances[k] += (later[k] - now) * (later[k] - now);
     }
-    sum += distance;
+    for (Index k = 0; k < there; ++k) {
+      sums[k] += distances[k];
+      counts[k] += 1.0;
+    }
   }
   passing.let_go_before(signal.rows());
-  return sum / (2.0 * variance * static_cast<double>(count));
+  return sums.array() / (2.0 * variance * counts.array());
 }
 
 /// The same of every sample for each lag from 0 to `last`: Σ |x(i + l) − x(i)|² is two sums of squares less twice the
@@ -116,7 +121,7 @@ struct Periods {
 Periods periods_of(const Columns& signal, Index length, double variance) {
   Periods periods{signal.rows() - length, length, 1};
   while (periods.begin >= length) {
-    if (unlike_itself(signal.part(periods.begin - length, 2 * length), length, 1, variance) > kRepeats) break;
+    if (unlike_itself(signal.part(periods.begin - length, 2 * length), length, 1, 1, variance)[0] > kRepeats) break;
     periods.begin -= length;
     ++periods.count;
   }
@@ -139,10 +144,15 @@ std::optional<Periods> periods_of(const Columns& reference, double rate) {
   for (Index lag = step; lag <= longest; lag += step) {
     went_away = went_away || coarse[lag / step] > kUnlike;
     if (!went_away || coarse[lag / step] > kNearlyRepeats) continue;
-    Index best = lag;
-    double least = unlike_itself(reference, lag, step, variance);
-    for (Index near = lag - step; near <= std::min(best + 2 * step, longest); ++near) {  // down to the bottom
-      const double here = unlike_itself(reference, near, step, variance);
+    Index best = lag, first = lag - step;
+    Vector nearby = unlike_itself(reference, first, std::min(3 * step, longest - first) + 1, step, variance);
+    double least = nearby[step];
+    for (Index near = first; near <= std::min(best + 2 * step, longest); ++near) {  // down to the bottom
+      if (near - first == nearby.size()) {
+        first = near;
+        nearby = unlike_itself(reference, first, std::min(3 * step, longest - first) + 1, step, variance);
+      }
+      const double here = nearby[near - first];
       if (here < least) std::tie(best, least) = std::pair{near, here};
     }
     const Periods found = periods_of(reference, best, variance);
