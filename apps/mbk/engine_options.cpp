@@ -8,12 +8,15 @@
 #include <csignal>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <thread>
 
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/word_options.h"
+#include "mbk/files/contents/sha256.h"
+#include "mbk/study/batch/merge.h"
 
 namespace mbk::app {
 namespace {
@@ -60,11 +63,9 @@ struct Measured {
   std::int64_t memory_mb = 0;
 };
 
-Result<Measured> measured_cost(const Request& request) {
+Measured measured_cost(const Request& request) {
   constexpr std::size_t kUnits = 3;
   constexpr double kLongest = 10.0;  // [s]
-  const auto compute = unit_function_of(request.kind, request.specification);
-  if (!compute) return tl::unexpected(compute.error());
   const auto begin = std::chrono::steady_clock::now();
   const auto spent = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   double weight = 0.0;
@@ -72,7 +73,7 @@ Result<Measured> measured_cost(const Request& request) {
   for (std::size_t k = 0; k < count && spent() < kLongest; ++k) {
     const std::size_t unit = count == 1 ? 0 : k * (request.keys.size() - 1) / (count - 1);
     // What fails here fails in its chunk, too, and is told there.
-    std::ignore = (*compute)(static_cast<std::int64_t>(unit), request.keys[unit]);
+    std::ignore = request.compute(static_cast<std::int64_t>(unit), request.keys[unit]);
     weight += request.weights[unit];
   }
   Measured measured;
@@ -111,11 +112,10 @@ Result<JobFolder> begin_job(const EngineArguments& arguments, const Request& req
                             const batch::EngineOptions& options, const fs::path& folder) {
   const auto most = batch::max_chunks(options);
   if (!most) return tl::unexpected(most.error());
-  const auto cost = measured_cost(request);
-  if (!cost) return tl::unexpected(cost.error());
+  const Measured cost = measured_cost(request);
   std::vector<double> costs = request.weights;
   double total = 0.0;
-  for (double& one : costs) total += one *= cost->s_per_weight;
+  for (double& one : costs) total += one *= cost.s_per_weight;
   std::vector<std::int64_t> ends;
   if (arguments.chunk_units) {
     const std::vector<double> ones(costs.size(), 1.0);
@@ -128,7 +128,7 @@ Result<JobFolder> begin_job(const EngineArguments& arguments, const Request& req
   job.kind = request.kind;
   job.title = request.title;
   job.specification = specification.dump();
-  job.memory_mb = arguments.memory_mb.value_or(cost->memory_mb);
+  job.memory_mb = arguments.memory_mb.value_or(cost.memory_mb);
   return JobFolder::create(folder, std::move(job), request.keys, ends, costs);
 }
 
@@ -194,6 +194,29 @@ void add_engine_options(CLI::App& command, EngineArguments& arguments) {
   add(command.add_flag("--detach", arguments.detach,
                        "of Slurm: hand the tasks out and end; the same command later collects what they did"));
   add(command.add_flag("--keep-job", arguments.keep, "leave the job's folder where all is done"));
+}
+
+Result<std::vector<std::string>> results_of(const JobFolder& folder) {
+  std::vector<std::string> results;
+  const auto merged = batch::merge(folder, [&](batch::MergedUnit unit) -> Result<void> {
+    if (!unit.differing.empty()) {
+      return bad_data(
+          fmt::format("{} gives another result than {}", unit.differing[1].string(), unit.differing[0].string()),
+          "two machines computed it differently; nothing is shown", folder.folder().string());
+    }
+    if (unit.failed) return bad_data(unit.payload);
+    results.push_back(std::move(unit.payload));
+    return {};
+  });
+  if (!merged) return tl::unexpected(merged.error());
+  if (merged->missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
+  return results;
+}
+
+fs::path job_folder_here(const std::string& kind, const std::string& specification) {
+  constexpr std::size_t kDigits = 12;
+  const std::string sum = recording::sha256(std::as_bytes(std::span(specification)));
+  return fs::path("mbk-jobs") / fmt::format("{}-{}", kind, sum.substr(0, kDigits));
 }
 
 Result<fs::path> this_program() {

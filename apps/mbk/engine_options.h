@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct Request {
   std::string title;
   std::vector<std::string> keys;
   std::vector<double> weights;   ///< of the units: their costs, but for a common factor
+  batch::UnitFunction compute;   ///< a few units are done here first, to see what they cost
   std::filesystem::path folder;  ///< of the job, where --job-folder says none
 };
 
@@ -48,9 +50,19 @@ struct Carried {
 /// @fails  usage: there is another job in the folder. data: as batch::run.
 [[nodiscard]] Result<Carried> carry_out(const EngineArguments& arguments, const Request& request, bool quiet);
 
-/// What does the units of a job, by its kind.
-/// @fails  data: a kind that this mbk does not know; a specification that cannot be read; what it names has changed.
-[[nodiscard]] Result<batch::UnitFunction> unit_function_of(const std::string& kind, const std::string& specification);
+/// Gets what does the units of a job, and may use it as long as it runs.
+using UseUnits = std::function<Result<void>(const batch::UnitFunction& compute)>;
+
+/// Calls `use` with what does the units of a job, by its kind.
+/// @fails  data: a kind that this mbk does not know; a specification that cannot be read; what it names has changed. As
+/// `use`.
+[[nodiscard]] Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use);
+
+/// What each unit of a finished job gave.   @fails  data: a unit gave nothing, or different results.
+[[nodiscard]] Result<std::vector<std::string>> results_of(const batch::JobFolder& folder);
+
+/// Below the current folder: "mbk-jobs/KIND-…", the same for the same work.
+[[nodiscard]] std::filesystem::path job_folder_here(const std::string& kind, const std::string& specification);
 
 /// The path of this program.
 [[nodiscard]] Result<std::filesystem::path> this_program();

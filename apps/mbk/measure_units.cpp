@@ -33,7 +33,12 @@ Result<batch::UnitFunction> measure_units(const nlohmann::json& specification) {
                     "put it back, or begin the job again");
   }
   const fs::path folder = specification.at("study").get<std::string>();
-  return [measuring = *measuring, folder](std::int64_t /*number*/, const std::string& key) -> Result<std::string> {
+  return measure_units(*measuring, folder);
+}
+
+batch::UnitFunction measure_units(std::shared_ptr<const Measuring> measuring, fs::path folder) {
+  return [measuring = std::move(measuring), folder = std::move(folder)](std::int64_t /*number*/,
+                                                                        const std::string& key) -> Result<std::string> {
     const auto unit = unit_from(key);
     if (!unit) return tl::unexpected(unit.error());
     const auto result = measure_unit(*measuring, folder, *unit);

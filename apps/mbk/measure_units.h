@@ -18,6 +18,10 @@ inline constexpr std::string_view kMeasureKind = "measure";
 /// @fails  as measuring_of; data: a file that the options name has changed since the job was begun.
 [[nodiscard]] Result<batch::UnitFunction> measure_units(const nlohmann::json& specification);
 
+/// @param folder  of the study
+[[nodiscard]] batch::UnitFunction measure_units(std::shared_ptr<const Measuring> measuring,
+                                                std::filesystem::path folder);
+
 [[nodiscard]] std::string unit_key(const store::Unit& unit);
 /// @fails  data: no such key.
 [[nodiscard]] Result<store::Unit> unit_from(const std::string& key);

@@ -191,17 +191,18 @@ std::string sum_of(const std::string& text) {
 }
 
 /// Measures as a job of many processes. A job that was begun before is finished first, with its own recordings.
-int measure_as_job(store::Store& study, const GivenOptions& options, const Measuring& measuring,
+int measure_as_job(store::Store& study, const GivenOptions& options, const std::shared_ptr<const Measuring>& measuring,
                    const StudyMeasureArguments& arguments) {
   Tally tally;
   std::size_t count = 0;
-  const std::string options_sum = sum_of(measuring.key + '\n' + std::string(version()));
+  const std::string options_sum = sum_of(measuring->key + '\n' + std::string(version()));
   constexpr std::size_t kDigits = 12;
-  Request request{std::string(kMeasureKind), measure_specification(study.folder(), options, measuring)};
+  Request request{std::string(kMeasureKind), measure_specification(study.folder(), options, *measuring)};
+  request.compute = measure_units(measuring, study.folder());
   request.folder = study.folder() / "jobs" / ("measure-" + options_sum.substr(0, kDigits));
   const std::filesystem::path job_folder = arguments.engine.folder.value_or(request.folder);
   while (true) {
-    const auto units = study.pending(measuring.key, std::string(version()), arguments.again_failed && count == 0);
+    const auto units = study.pending(measuring->key, std::string(version()), arguments.again_failed && count == 0);
     if (!units) return report_error(units.error());
     if (units->empty() && !batch::JobFolder::is_there(job_folder)) return said_of(tally, count);
     auto lengths = lengths_of(study, *units);
@@ -213,7 +214,7 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const Measu
     const auto carried = carry_out(arguments.engine, request, arguments.quiet);
     if (!carried) return report_error(carried.error());
     if (!carried->folder) return *carried->code;
-    ResultQueue queue(study, measuring, arguments.study.role);
+    ResultQueue queue(study, *measuring, arguments.study.role);
     const auto collected = collect(*carried->folder, queue);
     tally += queue.tally;
     if (!collected) return report_error(collected.error());
@@ -235,7 +236,7 @@ int run(const CLI::App& command, const StudyMeasureArguments& arguments) {
   for (const auto& [name, values] : given_options(command)) (*options)[name] = values;
   const auto measuring = measuring_of(*options);
   if (!measuring) return report_error(measuring.error());
-  if (arguments.engine.kind) return measure_as_job(*study, *options, **measuring, arguments);
+  if (arguments.engine.kind) return measure_as_job(*study, *options, *measuring, arguments);
   const auto units = study->pending((*measuring)->key, std::string(version()), arguments.again_failed);
   if (!units) return report_error(units.error());
   ResultQueue queue(*study, **measuring, arguments.study.role, *units);

@@ -9,6 +9,7 @@
 #include "apps/mbk/engine_options.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
+#include "mbk/base/core/vector4.h"
 #include "mbk/study/batch/merge.h"
 
 namespace mbk::app {
@@ -50,11 +51,24 @@ int run(const WorkArguments& arguments) {
     if (::getppid() == 1) return kBadData;  // it is gone already
   }
   if (auto ok = folder->check_program(); !ok) return report_error(ok.error());
-  const auto compute = unit_function_of(folder->job().kind, folder->job().specification);
-  if (!compute) return report_error(compute.error());
-  const auto done = batch::work(*folder, *arguments.chunk, *compute, {arguments.heartbeat_s});
-  if (!done) return report_error(done.error());
-  const std::string text = fmt::format("chunk {}: {} units, {} failed\n", *arguments.chunk, done->units, done->failed);
+  // Before anything computes: processors of different kinds then give the same digits.
+  const std::string& simd_of_job = folder->job().simd;
+  ::setenv("MBK_SIMD", simd_of_job.c_str(), 1);
+  if (word_of(simd()) != simd_of_job) {
+    return report_error({ErrorKind::data,
+                         fmt::format("the job was begun on a processor of kind {}, and this one is of kind {}",
+                                     simd_of_job, word_of(simd())),
+                         fmt::format("begin it with MBK_SIMD={}", word_of(simd())), folder->folder().string()});
+  }
+  batch::ChunkDone done;
+  const auto worked = with_units(*folder, [&](const batch::UnitFunction& compute) -> Result<void> {
+    const auto one = batch::work(*folder, *arguments.chunk, compute, {arguments.heartbeat_s});
+    if (!one) return tl::unexpected(one.error());
+    done = *one;
+    return {};
+  });
+  if (!worked) return report_error(worked.error());
+  const std::string text = fmt::format("chunk {}: {} units, {} failed\n", *arguments.chunk, done.units, done.failed);
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   return kFine;
 }

@@ -40,6 +40,7 @@ class PrivateSlurm:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="slurm-"))
         self.cpus, self.memory_mb, self.max_array, self.settings = cpus, memory_mb, max_array, settings
         self.daemons = {}
+        self.host = socket.gethostname().split(".")[0]
         self.environment = dict(os.environ, SLURM_CONF=str(self.folder / "slurm.conf"))
         self.environment["PATH"] += ":/usr/sbin:/sbin"
 
@@ -56,7 +57,7 @@ class PrivateSlurm:
 
     def write_settings(self):
         controller, node = free_ports(2)
-        host = socket.gethostname().split(".")[0]
+        host = self.host
         for name in ("munge", "state", "spool"):
             (self.folder / name).mkdir()
         self.folder.chmod(0o755)

@@ -37,11 +37,14 @@ class Engine {
   [[nodiscard]] virtual Result<void> submit(std::span<const std::int64_t> chunks) = 0;
   /// Those that wait or run, from whichever process handed them out.   @fails  data: nobody answers.
   [[nodiscard]] virtual Result<std::map<std::int64_t, Alive>> alive() = 0;
+  /// Those that run or wait; an engine that cannot end one alone may end all.
   virtual void cancel(std::span<const std::int64_t> chunks) = 0;
   /// Everything, and waits a while until it is gone.
   virtual void cancel_all() = 0;
   /// Why a chunk ended without a shard: "killed by signal 9"; as far as it is known.
   [[nodiscard]] virtual std::string why_ended(std::int64_t chunk) = 0;
+  /// Whether a chunk that ended without a shard was begun at all; otherwise the next attempt is its first.
+  [[nodiscard]] virtual bool was_begun(std::int64_t /*chunk*/) const { return true; }
   /// Between two looks at it [s].
   [[nodiscard]] virtual double interval_s() const = 0;
   /// So long after its end a shard may still come into sight on another machine's disk [s].

@@ -16,6 +16,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_files.h"
@@ -97,9 +98,17 @@ Result<Job> job_from(const fs::path& file) {
     if (json.at("schema") != "mbk.job/1") {
       return bad_data("is of another version of mbk", "finish it with the version that began it", file.string());
     }
-    return Job{json.at("id"),      json.at("kind"),     json.at("specification").dump(),
-               json.at("program"), json.at("title"),    json.at("units"),
-               json.at("chunks"),  json.at("memory_mb")};
+    Job job;
+    job.id = json.at("id");
+    job.kind = json.at("kind");
+    job.specification = json.at("specification").dump();
+    job.program = json.at("program");
+    job.simd = json.at("simd");
+    job.title = json.at("title");
+    job.units = json.at("units");
+    job.chunks = json.at("chunks");
+    job.memory_mb = json.at("memory_mb");
+    return job;
   } catch (const nlohmann::json::exception&) {
     return damaged(file);
   }
@@ -149,6 +158,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
     if (auto ok = store::make_folder(one); !ok) return tl::unexpected(ok.error());
   }
   job.program = program_identity();
+  job.simd = word_of(simd());
   job.units = std::ssize(keys);
   job.chunks = std::ssize(ends);
   std::string units, chunks;
@@ -170,7 +180,8 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
     sum.add(std::as_bytes(std::span(text)));
     sum.add(std::as_bytes(std::span("\0", 1)));
   };
-  for (const std::string* const text : {&job.kind, &job.specification, &job.program, &units, &chunks}) add(*text);
+  for (const std::string* const text : {&job.kind, &job.specification, &job.program, &job.simd, &units, &chunks})
+    add(*text);
   job.id = sum.hex();
   if (auto ok = write_whole(folder / kUnits, units); !ok) return tl::unexpected(ok.error());
   if (auto ok = write_whole(folder / kChunks, chunks); !ok) return tl::unexpected(ok.error());
@@ -180,6 +191,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
       {"title", job.title},
       {"kind", job.kind},
       {"program", job.program},
+      {"simd", job.simd},
       {"units", job.units},
       {"chunks", job.chunks},
       {"memory_mb", job.memory_mb},

@@ -16,6 +16,7 @@ struct Job {
   std::string kind;           ///< which work: "measure"
   std::string specification;  ///< JSON, in the kind's own terms
   std::string program;        ///< that made it, and that alone does it: version and build
+  std::string simd;           ///< of the process that made it (core/vector4.h): with others, last digits may differ
   std::string title;          ///< for people: "mbk study measure, 300 recordings"
   std::int64_t units = 0, chunks = 0;
   std::int64_t memory_mb = 0;  ///< that a process needs for it

@@ -91,8 +91,23 @@ Result<ShardEnd> check_shard(const JobFolder& folder, const Chunk& chunk, const 
   if (end->kind != RecordKind::end) return bad_data("holds too many units", "", file.string());
   const auto json = nlohmann::json::parse(end->payload, nullptr, false);
   if (!json.is_object()) return bad_data("its end cannot be read", "", file.string());
-  return ShardEnd{"", json.value("units", std::int64_t{0}), json.value("failed", std::int64_t{0}),
-                  json.value("wall_s", 0.0), json.value("cpu_s", 0.0)};
+  return ShardEnd{json.value("host", std::string()), json.value("units", std::int64_t{0}),
+                  json.value("failed", std::int64_t{0}), json.value("wall_s", 0.0), json.value("cpu_s", 0.0)};
+}
+
+Result<std::vector<FinishedTask>> finished_tasks(const JobFolder& folder) {
+  const auto chunks = folder.chunks();
+  if (!chunks) return tl::unexpected(chunks.error());
+  const auto files = list_shards(folder);
+  if (!files) return tl::unexpected(files.error());
+  std::vector<FinishedTask> tasks;
+  for (const ShardFile& file : *files) {
+    if (file.state != ShardFile::State::whole || file.chunk < 0 || file.chunk >= std::ssize(*chunks)) continue;
+    const Chunk& chunk = (*chunks)[static_cast<std::size_t>(file.chunk)];
+    const auto end = check_shard(folder, chunk, file.path);
+    if (end) tasks.push_back({chunk.number, chunk.expected_s, *end});
+  }
+  return tasks;
 }
 
 Result<MergeReport> merge(const JobFolder& folder, const std::function<Result<void>(MergedUnit)>& take) {

@@ -37,6 +37,16 @@ struct ShardEnd {
 [[nodiscard]] Result<ShardEnd> check_shard(const JobFolder& folder, const Chunk& chunk,
                                            const std::filesystem::path& file);
 
+/// A chunk that is done, and what it took.
+struct FinishedTask {
+  std::int64_t chunk = 0;
+  double expected_s = 0.0;
+  ShardEnd end;
+};
+
+/// By chunk and shard; shards that are damaged are passed over.
+[[nodiscard]] Result<std::vector<FinishedTask>> finished_tasks(const JobFolder& folder);
+
 /// What is told of each unit, in the order of their numbers.
 struct MergedUnit {
   std::int64_t number = 0;

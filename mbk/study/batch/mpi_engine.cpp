@@ -10,6 +10,7 @@
 
 #include "mbk/study/batch/child_process.h"
 #include "mbk/study/batch/engines.h"
+#include "mbk/study/batch/merge.h"
 
 namespace mbk::batch {
 namespace {
@@ -37,6 +38,7 @@ class MpiEngine : public Engine {
   Result<std::map<std::int64_t, Alive>> alive() override {
     if (process_) {
       code_ = process_->wait(0.0);
+      note_begun();
       if (code_) {
         process_.reset();
         handed_out_.clear();
@@ -46,20 +48,25 @@ class MpiEngine : public Engine {
       if (auto ok = start(std::exchange(waiting_, {})); !ok) return tl::unexpected(ok.error());
     }
     std::map<std::int64_t, Alive> all;
-    for (const std::int64_t chunk : handed_out_) all[chunk] = {};
+    for (const std::int64_t chunk : handed_out_) all[chunk] = {begun_.contains(chunk), ""};
     for (const std::int64_t chunk : waiting_) all[chunk] = {};
     return all;
   }
 
   void cancel(std::span<const std::int64_t> chunks) override {
-    for (const std::int64_t chunk : chunks) waiting_.erase(chunk);
+    bool running = false;
+    for (const std::int64_t chunk : chunks) running = waiting_.erase(chunk) == 0 || running;
+    if (!running || !process_) return;
+    // A rank cannot be reached from here. What the others have done of their chunks is taken over.
+    process_->send(SIGTERM);
+    if (!process_->wait(kEndsWithin)) process_->send(SIGKILL);
   }
 
   void cancel_all() override {
     waiting_.clear();
     if (!process_) return;
     process_->send(SIGTERM);
-    std::ignore = process_->wait(10.0);
+    std::ignore = process_->wait(kEndsWithin);
     process_.reset();
     handed_out_.clear();
   }
@@ -69,14 +76,31 @@ class MpiEngine : public Engine {
     return last_line(log());
   }
 
+  bool was_begun(std::int64_t chunk) const override { return begun_.empty() || begun_.contains(chunk); }
   double interval_s() const override { return 0.1; }
   double settle_s() const override { return 0.0; }
 
  private:
+  static constexpr double kEndsWithin = 10.0;  // [s]
+
+  /// The chunks of which this run has begun a shard.
+  void note_begun() {
+    const auto files = list_shards(folder_);
+    if (!files) return;
+    for (const ShardFile& file : *files) {
+      if (!before_.contains(file.path.stem())) begun_.insert(file.chunk);
+    }
+  }
+
   fs::path log() const { return folder_.logs() / fmt::format("mpirun-{}.txt", runs_); }
 
   Result<void> start(const std::set<std::int64_t>& chunks) {
     ++runs_;
+    before_.clear();
+    begun_.clear();
+    const auto files = list_shards(folder_);
+    if (!files) return tl::unexpected(files.error());
+    for (const ShardFile& file : *files) before_.insert(file.path.stem());
     const fs::path list = folder_.folder() / fmt::format("mpi-{}.txt", runs_);
     std::ofstream stream(list, std::ios::trunc);
     for (const std::int64_t chunk : chunks) stream << chunk << "\n";
@@ -100,7 +124,8 @@ class MpiEngine : public Engine {
   int tasks_, runs_ = 0;
   std::optional<ChildProcess> process_;
   std::optional<int> code_;
-  std::set<std::int64_t> handed_out_, waiting_;
+  std::set<std::int64_t> handed_out_, waiting_, begun_;
+  std::set<fs::path> before_;  ///< names of shards, without their ends, that were there when it began
 };
 
 }  // namespace

@@ -197,6 +197,10 @@ class Run {
   }
 
   void lose(Known& known, std::int64_t number, std::vector<std::int64_t>& missing) {
+    if (!engine_.was_begun(number)) {
+      missing.push_back(number);
+      return;
+    }
     ++known.losses;
     const std::string why = engine_.why_ended(number);
     ++state_.losses[why.empty() ? "ended without a result" : why];

@@ -147,7 +147,8 @@ Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitF
       ++done.units;
     }
   }
-  const nlohmann::json end = {{"units", done.units},
+  const nlohmann::json end = {{"host", header.host},
+                              {"units", done.units},
                               {"failed", done.failed},
                               {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
                               {"cpu_s", cpu_seconds()}};
