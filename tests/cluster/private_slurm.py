@@ -91,6 +91,7 @@ JobCompType=jobcomp/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU_Memory
 SchedulerType=sched/backfill
+SchedulerParameters=batch_sched_delay=0,sched_interval=1,bf_interval=1
 MaxArraySize={self.max_array}
 MaxJobCount=20000
 MinJobAge=300

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 
 #include "mbk/study/batch/test_jobs.h"
@@ -48,6 +49,7 @@ TEST_F(Merge, OfManyResultsTakesLittleTimeAndMemory) {
     fmt::print("{} results of {} bytes: {:.2f} s, {:.0f} MB at most\n", results, kBytes, seconds, megabytes);
     const bool good = report && report->results == results && bytes == kBytes * static_cast<std::size_t>(results) &&
                       seconds < 30.0 && megabytes < 300.0;
+    std::fflush(stdout);
     ::_exit(good ? 0 : 1);
   }
   int status = 0;
