@@ -20,8 +20,8 @@ import private_slurm  # noqa: E402
 from processes import ended_by_kill, workers_of  # noqa: E402
 
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-VALIDATE = ("validate", "reliability", "--runs", "80", "--json", "--quiet")
-SHORT = ("--chunk-units", "5")
+VALIDATE = ("validate", "reliability", "--runs", "48", "--json", "--quiet")
+SHORT = ("--chunk-units", "3")
 
 
 def short_trials(folder, count):
@@ -157,7 +157,7 @@ class Local(Engines, JobCase):
         self.assertEqual(there, here)
 
     def test_the_same_table_by_any_chunks(self):
-        for units in (7, 80):
+        for units in (7, 48):
             ran = self.job(*VALIDATE, "--chunk-units", units, code=self.judged)
             self.assertEqual(ran.out, self.table)
         self.assertFalse((self.folder / "mbk-jobs").exists())
