@@ -47,6 +47,7 @@ Commands all_commands(const std::string& typed) {
       {"sensor", add_sensor},
       {"robot", add_robot},
       {"study", add_study},
+      {"work", add_work},
       {"validate", add_validate},
       {"reproduce", add_reproduce},
       {"completion", add_completion},

@@ -45,6 +45,7 @@ Action add_validate(CLI::App& app);
 Action add_reproduce(CLI::App& app);
 Action add_robot(CLI::App& app);
 Action add_study(CLI::App& app);
+Action add_work(CLI::App& app);
 
 /// These two speak of the whole tree below `app`, as it is when they run.
 Action add_completion(CLI::App& app);

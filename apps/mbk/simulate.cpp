@@ -3,18 +3,22 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/job_kinds.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
 #include "apps/mbk/readers_option.h"
 #include "apps/mbk/scenario_argument.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/files/contents/sha256.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/present/report/schedule_text.h"
 #include "mbk/simulate/laboratory/scenario.h"
+#include "mbk/study/store/store.h"
 
 namespace mbk::app {
 namespace {
@@ -29,6 +33,7 @@ struct SimulateArguments {
   int seeds = 1;
   unsigned threads = 0;
   std::optional<Readers> readers;
+  EngineArguments engine;
   bool blind = false, overwrite = false, list = false, facts = false, quiet = false;
 };
 
@@ -135,9 +140,94 @@ int show_facts(const SimulateArguments& arguments) {
   return kFine;
 }
 
+/// Makes one recording.   @returns  its line of the summary
+Result<std::string> perform(const SimulateArguments& arguments, recording::Format format, const Job& job,
+                            const laboratory::SimulateOptions& options) {
+  auto performance = laboratory::simulate(job.scenario, options);
+  if (!performance) return tl::unexpected(performance.error().in(place_of(arguments, job)));
+  const std::string line = summary_line(job, *performance);
+  if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
+  if (auto ok = recording::write(performance->recording, job.file, format, arguments.overwrite,
+                                 arguments.readers.value_or(job.scenario.readers));
+      !ok) {
+    return tl::unexpected(ok.error());
+  }
+  return line;
+}
+
+/// What does the recordings by their numbers. One that is there was written by a process that ended afterwards.
+Result<batch::UnitFunction> units_of(SimulateArguments arguments) {
+  arguments.overwrite = true;
+  auto jobs = jobs_of(arguments);
+  if (!jobs) return tl::unexpected(jobs.error());
+  const auto format = recording::format_of(arguments.out);
+  if (!format) return tl::unexpected(format.error());
+  return [arguments = std::move(arguments), jobs = std::move(*jobs), format = *format](
+             std::int64_t number, const std::string&) -> Result<std::string> {
+    if (number >= std::ssize(jobs)) return bad_data("the scenario no longer has that many trials", "begin again");
+    return perform(arguments, format, jobs[static_cast<std::size_t>(number)], {});
+  };
+}
+
+/// The scenario's text, which a job rests on.
+Result<std::string> scenario_sum(const std::string& scenario) {
+  if (const auto* ready = laboratory::find_ready_scenario(scenario); ready != nullptr) {
+    return recording::sha256(std::as_bytes(std::span(ready->text)));
+  }
+  return store::file_sha256(scenario);
+}
+
+Result<std::string> specification_of(const SimulateArguments& arguments) {
+  const auto sum = scenario_sum(arguments.scenario);
+  if (!sum) return tl::unexpected(sum.error());
+  nlohmann::json json = {
+      {"scenario", arguments.scenario},       {"scenario_sha256", *sum},  {"trials", arguments.trials},
+      {"out", arguments.out.string()},        {"seeds", arguments.seeds}, {"blind", arguments.blind},
+      {"folder", fs::current_path().string()}};
+  if (arguments.seed) json["seed"] = *arguments.seed;
+  if (arguments.readers) json["readers"] = word_of(*arguments.readers);
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+int simulate_elsewhere(const SimulateArguments& arguments, const std::vector<Job>& jobs) {
+  const auto specification = specification_of(arguments);
+  if (!specification) return report_error(specification.error());
+  Request request{std::string(kSimulateKind), *specification};
+  request.folder = job_folder_here(request.kind, *specification);
+  const fs::path folder = arguments.engine.folder.value_or(request.folder);
+  // What a job that was interrupted has written may be there.
+  if (!batch::JobFolder::is_there(folder)) {
+    if (auto ok = check_files(jobs, arguments); !ok) return report_error(ok.error());
+  }
+  request.title = fmt::format("mbk simulate {}, {} recordings", arguments.scenario, jobs.size());
+  for (std::size_t k = 0; k < jobs.size(); ++k) request.keys.push_back(std::to_string(k));
+  request.weights.assign(jobs.size(), 1.0);
+  request.compute = [&](std::int64_t number, const std::string&) -> Result<std::string> {
+    const auto performance = laboratory::simulate(jobs[static_cast<std::size_t>(number)].scenario, {});
+    return performance ? Result<std::string>("") : tl::unexpected(performance.error());
+  };
+  const auto carried = carry_out(arguments.engine, request, arguments.quiet);
+  if (!carried) return report_error(carried.error());
+  if (carried->code) return *carried->code;
+  const auto lines = results_of(*carried->folder);
+  if (!lines) return report_error(lines.error());
+  if (!arguments.quiet) {
+    std::string text;
+    for (const std::string& line : *lines) text += line;
+    if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  }
+  if (!arguments.engine.keep) {
+    if (auto ok = carried->folder->remove(); !ok) return report_error(ok.error());
+    std::error_code ignored;
+    if (!arguments.engine.folder) fs::remove(folder.parent_path(), ignored);  // where nothing else stands in it
+  }
+  return kFine;
+}
+
 int run(const SimulateArguments& arguments, recording::Format format) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
+  if (arguments.engine.kind) return simulate_elsewhere(arguments, *jobs);
   if (auto ok = check_files(*jobs, arguments); !ok) return report_error(ok.error());
   const int count = static_cast<int>(jobs->size());
   std::vector<std::string> lines(jobs->size());
@@ -149,12 +239,10 @@ int run(const SimulateArguments& arguments, recording::Format format) {
         const Job& job = (*jobs)[static_cast<std::size_t>(i)];
         laboratory::SimulateOptions options;
         if (count == 1) options.progress = [&](double fraction) { progress.reached(fraction); };
-        auto performance = laboratory::simulate(job.scenario, options);
-        if (!performance) return tl::unexpected(performance.error().in(place_of(arguments, job)));
-        lines[static_cast<std::size_t>(i)] = summary_line(job, *performance);
-        if (arguments.blind) performance->recording = laboratory::without_truth(std::move(performance->recording));
-        return recording::write(performance->recording, job.file, format, arguments.overwrite,
-                                arguments.readers.value_or(job.scenario.readers));
+        auto line = perform(arguments, format, job, options);
+        if (!line) return tl::unexpected(line.error());
+        lines[static_cast<std::size_t>(i)] = std::move(*line);
+        return {};
       },
       [&](int i) { progress.count(++done, count, (*jobs)[static_cast<std::size_t>(i)].file.string()); });
   if (!made) return report_error(made.error());
@@ -167,6 +255,28 @@ int run(const SimulateArguments& arguments, recording::Format format) {
 }
 
 }  // namespace
+
+Result<batch::UnitFunction> simulate_units(const nlohmann::json& specification) {
+  SimulateArguments arguments;
+  std::error_code error;
+  fs::current_path(specification.at("folder").get<std::string>(), error);
+  if (error) return bad_data(error.message(), "every machine must see the folder in which the job was begun");
+  arguments.scenario = specification.at("scenario");
+  const auto sum = scenario_sum(arguments.scenario);
+  if (!sum) return tl::unexpected(sum.error());
+  if (*sum != specification.at("scenario_sha256")) {
+    return bad_data("it has changed since the job was begun", "put it back, or begin again", arguments.scenario);
+  }
+  arguments.trials = specification.at("trials").get<std::vector<std::string>>();
+  arguments.out = specification.at("out").get<std::string>();
+  arguments.seeds = specification.at("seeds");
+  arguments.blind = specification.at("blind");
+  if (specification.contains("seed")) arguments.seed = specification.at("seed").get<std::uint64_t>();
+  if (specification.contains("readers")) {
+    arguments.readers = value_of<Readers>(specification.at("readers").get<std::string>());
+  }
+  return units_of(std::move(arguments));
+}
 
 Action add_simulate(CLI::App& app) {
   auto arguments = std::make_shared<SimulateArguments>();
@@ -182,6 +292,8 @@ Action add_simulate(CLI::App& app) {
       "      a commented file to begin your own with; every key carries its unit\n"
       "  mbk simulate mine.toml --out mine.mat --seeds 20\n"
       "      mine_seed1.mat … mine_seed20.mat, as many at a time as there are cores\n"
+      "  mbk simulate mine.toml --out mine.h5 --seeds 10000 --engine slurm\n"
+      "      as a job array on the cluster\n"
       "  mbk simulate rig_table_5_1 --trial K5_M5 --out rig.mat\n"
       "  mbk simulate mine.toml --facts\n"
       "      peaks, speed, crest factor and band of the perturbation, before anything moves\n\n"
@@ -209,6 +321,7 @@ Action add_simulate(CLI::App& app) {
   command->add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
   command->add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
   add_readers_option(*command, arguments->readers);
+  add_engine_options(*command, arguments->engine);
   command->add_flag("--list", arguments->list, "the ready scenarios");
   command->add_flag("--facts", arguments->facts,
                     "what the perturbation demands: peaks, speed, band; simulates nothing");

@@ -21,11 +21,12 @@ Action add_study(CLI::App& app) {
   const Actions actions = {{"init", add_study_init(*group)},       {"defaults", add_study_defaults(*group)},
                            {"add", add_study_add(*group)},         {"import", add_study_import(*group)},
                            {"list", add_study_list(*group)},       {"show", add_study_show(*group)},
-                           {"measure", add_study_measure(*group)}, {"exclude", add_study_exclude(*group)},
-                           {"summary", add_study_summary(*group)}, {"plan", add_study_plan(*group)},
-                           {"report", add_study_report(*group)},   {"export", add_study_export(*group)},
-                           {"forget", add_study_forget(*group)},   {"check", add_study_check(*group)},
-                           {"log", add_study_log(*group)},         {"backup", add_study_backup(*group)}};
+                           {"measure", add_study_measure(*group)}, {"status", add_study_status(*group)},
+                           {"exclude", add_study_exclude(*group)}, {"summary", add_study_summary(*group)},
+                           {"plan", add_study_plan(*group)},       {"report", add_study_report(*group)},
+                           {"export", add_study_export(*group)},   {"forget", add_study_forget(*group)},
+                           {"check", add_study_check(*group)},     {"log", add_study_log(*group)},
+                           {"backup", add_study_backup(*group)}};
   return [group, actions] { return run_chosen(*group, actions); };
 }
 

@@ -12,6 +12,7 @@ Action add_study_import(CLI::App& group);
 Action add_study_list(CLI::App& group);
 Action add_study_show(CLI::App& group);
 Action add_study_measure(CLI::App& group);
+Action add_study_status(CLI::App& group);
 Action add_study_exclude(CLI::App& group);
 Action add_study_summary(CLI::App& group);
 Action add_study_plan(CLI::App& group);

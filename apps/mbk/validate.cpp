@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/job_kinds.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
@@ -46,6 +48,7 @@ struct ValidateArguments {
   std::optional<std::filesystem::path> charts;
   Link link = Link::function;
   std::vector<std::string> faults, conditions;
+  EngineArguments engine;
   bool json = false, quiet = false, overwrite = false, page = false;
 };
 
@@ -117,6 +120,67 @@ Result<ValidationTable> perform(const validation::Study& study, const validation
   return validation::udp_faults_study({options, program, arguments.faults});
 }
 
+/// A study asks for its runs once or several times; each time is a job.
+std::filesystem::path stage_folder(const std::filesystem::path& whole, int stage) {
+  return whole / fmt::format("stage-{}", stage);
+}
+
+/// What a study's runs depend on.
+nlohmann::json specification_of(const ValidateArguments& arguments, const validation::StudyOptions& options) {
+  return {
+      {"study", arguments.study}, {"runs", options.runs}, {"seed", options.seed}, {"conditions", arguments.conditions}};
+}
+
+/// Has the runs of a study done by --engine.
+class RunsElsewhere {
+ public:
+  RunsElsewhere(const ValidateArguments& arguments, const validation::StudyOptions& options)
+      : arguments_(arguments),
+        specification_(specification_of(arguments, options)),
+        folder_(arguments.engine.folder.value_or(
+            job_folder_here(fmt::format("{}-{}", kValidateKind, arguments.study), specification_.dump()))) {}
+
+  Result<std::vector<std::string>> operator()(int count, const std::function<Result<std::string>(int)>& work) {
+    EngineArguments engine = arguments_.engine;
+    engine.folder = stage_folder(folder_, stages);
+    nlohmann::json specification = specification_;
+    specification["stage"] = stages++;
+    Request request{std::string(kValidateKind), specification.dump()};
+    request.title = fmt::format("mbk validate {} --runs {} --seed {}", arguments_.study,
+                                specification_.at("runs").get<int>(), specification_.at("seed").get<std::uint64_t>());
+    for (int k = 0; k < count; ++k) request.keys.push_back(std::to_string(k));
+    request.weights.assign(request.keys.size(), 1.0);
+    request.compute = [&](std::int64_t number, const std::string&) { return work(static_cast<int>(number)); };
+    const auto carried = carry_out(engine, request, arguments_.quiet);
+    if (!carried) return tl::unexpected(carried.error());
+    if (carried->code) {
+      code = carried->code;
+      return bad_data("some runs are missing");
+    }
+    return results_of(*carried->folder);
+  }
+
+  /// Removes the jobs, unless they are to be kept.
+  void clear() const {
+    if (arguments_.engine.keep) return;
+    std::error_code ignored;
+    for (int stage = 0; stage < stages; ++stage) {
+      const auto folder = batch::JobFolder::open(stage_folder(folder_, stage));
+      if (folder) std::ignore = folder->remove();
+    }
+    std::filesystem::remove(folder_, ignored);  // where nothing else stands in it
+    if (!arguments_.engine.folder) std::filesystem::remove(folder_.parent_path(), ignored);
+  }
+
+  int stages = 0;
+  std::optional<int> code;  ///< what the command ends with where a job did not come to its end
+
+ private:
+  const ValidateArguments& arguments_;
+  nlohmann::json specification_;
+  std::filesystem::path folder_;
+};
+
 int run(const ValidateArguments& arguments) {
   const validation::Study& study = *find_study(arguments.study);
   if (arguments.page) {
@@ -130,8 +194,21 @@ int run(const ValidateArguments& arguments) {
   options.seed = arguments.seed;
   options.threads = arguments.threads;
   options.progress = [&](int done, int of) { progress.count(done, of); };
+  std::optional<RunsElsewhere> elsewhere;
+  if (arguments.engine.kind) {
+    if (arguments.link != Link::function || !arguments.faults.empty()) {
+      return report_error(
+          {ErrorKind::usage, "robots behind UDP run in real time, in this process alone", "leave out --engine", ""});
+    }
+    elsewhere.emplace(arguments, options);
+    options.elsewhere = [&](int count, const std::function<Result<std::string>(int)>& work) {
+      return (*elsewhere)(count, work);
+    };
+  }
   const auto table = perform(study, options, arguments);
+  if (elsewhere && elsewhere->code) return *elsewhere->code;
   if (!table) return report_error(table.error());
+  if (elsewhere) elsewhere->clear();
   const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   if (arguments.charts) {
@@ -141,6 +218,34 @@ int run(const ValidateArguments& arguments) {
 }
 
 }  // namespace
+
+Result<void> with_validation_units(const nlohmann::json& specification, const batch::JobFolder& folder,
+                                   const UseUnits& use) {
+  ValidateArguments arguments;
+  arguments.study = specification.at("study");
+  arguments.conditions = specification.at("conditions").get<std::vector<std::string>>();
+  const validation::Study* const study = find_study(arguments.study);
+  if (study == nullptr) return bad_data(fmt::format("there is no study '{}'", arguments.study));
+  validation::StudyOptions options;
+  options.runs = specification.at("runs");
+  options.seed = specification.at("seed");
+  options.threads = 1;
+  const int wanted = specification.at("stage");
+  int stage = 0;
+  std::optional<Result<void>> used;
+  options.elsewhere = [&](int /*count*/,
+                          const std::function<Result<std::string>(int)>& work) -> Result<std::vector<std::string>> {
+    if (stage < wanted) {  // is done, and stands beside this one
+      const auto earlier = batch::JobFolder::open(stage_folder(folder.folder().parent_path(), stage++));
+      return earlier ? results_of(*earlier) : tl::unexpected(earlier.error());
+    }
+    used = use([&](std::int64_t number, const std::string&) { return work(static_cast<int>(number)); });
+    return bad_data("the study goes on in the process that began the job");
+  };
+  const auto table = perform(*study, options, arguments);
+  if (used) return *used;
+  return table ? bad_data("the study has no such part") : Result<void>(tl::unexpected(table.error()));
+}
 
 Action add_validate(CLI::App& app) {
   auto arguments = std::make_shared<ValidateArguments>();
@@ -153,6 +258,8 @@ Action add_validate(CLI::App& app) {
            "  mbk validate coverage --runs 2000 --seed 7 --json\n"
            "  mbk validate participant --charts charts\n"
            "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
+           "  mbk validate recovery --runs 5000 --engine slurm --tasks 200\n"
+           "      on the cluster; the table is the same to the byte\n"
            "  mbk validate faults --link udp --runs 2\n"
            "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
            "A row is met where its 95 % interval lies inside what is expected. It falls short where its\n"
@@ -194,6 +301,7 @@ Action add_validate(CLI::App& app) {
                                   ->check(not_empty());
   command->add_flag("--overwrite", arguments->overwrite, "replace those files where they are there")->needs(charts);
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  add_engine_options(*command, arguments->engine);
   return [arguments] { return run(*arguments); };
 }
 

@@ -7,11 +7,11 @@
 #include <iterator>
 #include <utility>
 
-#include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/impedance_fit.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/passivity_index.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/simulated_trials.h"
@@ -177,6 +177,7 @@ void add_pulses(const Runs& runs, ValidationTable& table) {
 
 Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
+  if (options.elsewhere) return only_here();
   std::vector<std::pair<const Task*, std::uint64_t>> plans;
   std::array<std::size_t, kTasks.size() + 1> begins{};
   for (std::size_t task = 0; task < kTasks.size(); ++task) {
@@ -185,21 +186,12 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
     begins[task + 1] = plans.size();
   }
   const auto count = static_cast<int>(plans.size());
-  Runs all(plans.size());
-  int done = 0;
-  const auto ran = numeric::parallel_for(
-      count, options.threads,
-      [&](int i) -> Result<void> {
-        const auto& [task, seed] = plans[static_cast<std::size_t>(i)];
-        auto run = perform(*task, seed);
-        if (!run) return tl::unexpected(run.error());
-        all[static_cast<std::size_t>(i)] = std::move(*run);
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, count);
-      });
+  auto ran = each_run_here(options, count, [&](int i) {
+    const auto& [task, seed] = plans[static_cast<std::size_t>(i)];
+    return perform(*task, seed);
+  });
   if (!ran) return tl::unexpected(ran.error());
+  Runs& all = *ran;
   const auto of_task = [&](std::size_t task) {
     const auto at = [&](std::size_t k) { return all.begin() + static_cast<std::ptrdiff_t>(begins[k]); };
     return Runs(std::make_move_iterator(at(task)), std::make_move_iterator(at(task + 1)));

@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/model.h"
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/simulate/laboratory/prescribed_motion.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
 
@@ -174,24 +174,20 @@ void add_called(const std::vector<std::vector<Called>>& runs, int kind, bool act
 
 Result<ValidationTable> coverage(const CoverageOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
-  std::vector<Held> held(static_cast<std::size_t>(options.runs));
-  std::vector<std::vector<Called>> called(static_cast<std::size_t>(options.runs));
-  int done = 0;
-  const auto ran = numeric::parallel_for(
-      options.runs, options.threads,
-      [&](int run) -> Result<void> {
-        auto one = held_by(options, run);
-        if (!one) return tl::unexpected(one.error());
-        held[static_cast<std::size_t>(run)] = std::move(*one);
-        auto arms = called_in(options, run);
-        if (!arms) return tl::unexpected(arms.error());
-        called[static_cast<std::size_t>(run)] = std::move(*arms);
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done);
-      });
+  const auto ran = each_run(options, options.runs, [&](int run) -> Result<std::pair<Held, std::vector<Called>>> {
+    auto one = held_by(options, run);
+    if (!one) return tl::unexpected(one.error());
+    auto arms = called_in(options, run);
+    if (!arms) return tl::unexpected(arms.error());
+    return std::pair(std::move(*one), std::move(*arms));
+  });
   if (!ran) return tl::unexpected(ran.error());
+  std::vector<Held> held;
+  std::vector<std::vector<Called>> called;
+  for (const auto& [one, arms] : *ran) {
+    held.push_back(one);
+    called.push_back(arms);
+  }
 
   ValidationTable table;
   table.study = "coverage";

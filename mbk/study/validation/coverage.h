@@ -5,15 +5,17 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/validation_table.h"
+#include "mbk/study/validation/study.h"
 
 namespace mbk::validation {
 
 struct CoverageOptions {
   int runs = 2000;
   std::uint64_t seed = 1;
-  unsigned threads = 0;               ///< 0: as many as there are cores
-  double remnant_force = 0.3;         ///< coloured force noise of the limb [N], first-order low-pass at 1.5 Hz
-  std::function<void(int)> progress;  ///< called with the number of runs that are done, from one thread at a time
+  unsigned threads = 0;        ///< 0: as many as there are cores
+  double remnant_force = 0.3;  ///< coloured force noise of the limb [N], first-order low-pass at 1.5 Hz
+  std::function<void(int done, int of)> progress;  ///< called after each run, never two at a time
+  Elsewhere elsewhere;                             ///< as in StudyOptions
 };
 
 /// How often do the nominal 95 % intervals of M, B, K, x₀, the ellipses, the antisymmetry and the excess of passivity

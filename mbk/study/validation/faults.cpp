@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <thread>
 
-#include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/base/realtime/clock.h"
 #include "mbk/experiment/session/plan.h"
@@ -15,6 +14,7 @@
 #include "mbk/files/recording/read.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
 #include "mbk/simulate/laboratory/simulation.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/fault_kinds.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
@@ -208,34 +208,24 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   const std::size_t faulty = jobs.size();
   for (int run = 0; run < 10 * options.runs; ++run) jobs.push_back({nullptr, TrialKind::position, run});
 
-  std::vector<Outcome> outcomes(jobs.size());
-  int done = 0;
-  const auto count = static_cast<int>(jobs.size());
-  const auto ran = numeric::parallel_for(
-      count, options.threads,
-      [&](int i) -> Result<void> {
-        const auto at = static_cast<std::size_t>(i);
-        const Job& job = jobs[at];
-        const std::uint64_t seed = 100'000 * options.seed + static_cast<std::uint64_t>(i);
-        if (job.kind == nullptr) {
-          protocol::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
-          trial.seed = seed;
-          const auto plan = session::make_plan(std::move(trial));
-          if (!plan) return tl::unexpected(plan.error());
-          const auto rehearsal = session::rehearse(*plan);
-          if (!rehearsal) return tl::unexpected(rehearsal.error());
-          outcomes[at].reason = rehearsal->trip.reason;
-          return {};
-        }
-        auto outcome = perform(*job.kind, job.trial_kind, seed, folder->path() / fmt::format("{}.h5", i));
-        if (!outcome) return tl::unexpected(outcome.error());
-        outcomes[at] = *outcome;
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, count);
-      });
+  const auto ran = each_run(options, static_cast<int>(jobs.size()), [&](int i) -> Result<Outcome> {
+    const Job& job = jobs[static_cast<std::size_t>(i)];
+    const std::uint64_t seed = 100'000 * options.seed + static_cast<std::uint64_t>(i);
+    if (job.kind != nullptr) {
+      return perform(*job.kind, job.trial_kind, seed, folder->path() / fmt::format("{}.h5", i));
+    }
+    protocol::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
+    trial.seed = seed;
+    const auto plan = session::make_plan(std::move(trial));
+    if (!plan) return tl::unexpected(plan.error());
+    const auto rehearsal = session::rehearse(*plan);
+    if (!rehearsal) return tl::unexpected(rehearsal.error());
+    Outcome outcome;
+    outcome.reason = rehearsal->trip.reason;
+    return outcome;
+  });
   if (!ran) return tl::unexpected(ran.error());
+  const std::vector<Outcome>& outcomes = *ran;
 
   ValidationTable table;
   table.study = "faults";

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/srivc.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/one_dimensional_trial.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
@@ -211,25 +211,16 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
   if (!scenarios) return tl::unexpected(scenarios.error());
   const std::size_t trials = kPrinted.size(), each = trials * static_cast<std::size_t>(options.runs);
   const std::size_t rows_from = (kSwitchingTimes.size() - 1) * kConditions.size() * each;
-  std::vector<Outcome> outcomes(rows_from + kConditions.size() * each);
-  int done = 0;
-  const auto count = static_cast<int>(outcomes.size());
-  const auto ran = numeric::parallel_for(
-      count, options.threads,
-      [&](int i) -> Result<void> {
-        const auto k = static_cast<std::size_t>(i), number = k % each, cell = k / each;
-        Scenario scenario = with_condition((*scenarios)[number % trials], kConditions[cell % kConditions.size()],
-                                           kSwitchingTimes[cell / kConditions.size()]);
-        scenario.seed = options.seed + number;
-        auto outcome = perform(scenario, k >= rows_from);
-        if (!outcome) return tl::unexpected(outcome.error());
-        outcomes[k] = std::move(*outcome);
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, count);
-      });
+  const auto count = static_cast<int>(rows_from + kConditions.size() * each);
+  const auto ran = each_run(options, count, [&](int i) {
+    const auto k = static_cast<std::size_t>(i), number = k % each, cell = k / each;
+    Scenario scenario = with_condition((*scenarios)[number % trials], kConditions[cell % kConditions.size()],
+                                       kSwitchingTimes[cell / kConditions.size()]);
+    scenario.seed = options.seed + number;
+    return perform(scenario, k >= rows_from);
+  });
   if (!ran) return tl::unexpected(ran.error());
+  const std::vector<Outcome>& outcomes = *ran;
 
   ValidationTable table;
   table.study = "one-dimensional";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/robot_trials.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
@@ -136,7 +137,10 @@ void add_without_coulomb(const Runs& runs, const Vector& truth, ValidationTable&
 }  // namespace
 
 Result<ValidationTable> robot_study(const StudyOptions& options) {
-  const auto ran = seeded_runs(options, perform);
+  if (options.runs < 1) return no_runs(options.runs);
+  if (options.elsewhere) return only_here();
+  const auto ran = each_run_here(options, options.runs,
+                                 [&](int i) { return perform(options.seed + static_cast<std::uint64_t>(i)); });
   if (!ran) return tl::unexpected(ran.error());
   const Runs& runs = *ran;
   const auto truth = true_parameters(FrictionModel::full);

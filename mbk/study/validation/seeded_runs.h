@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "mbk/base/numeric/parallel.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/study.h"
 
 namespace mbk::validation {
@@ -21,23 +21,8 @@ namespace mbk::validation {
 template <class Perform>
 auto seeded_runs(const StudyOptions& options, const Perform& perform)
     -> Result<std::vector<typename std::invoke_result_t<Perform, std::uint64_t>::value_type>> {
-  using Run = typename std::invoke_result_t<Perform, std::uint64_t>::value_type;
   if (options.runs < 1) return no_runs(options.runs);
-  std::vector<Run> runs(static_cast<std::size_t>(options.runs));
-  int done = 0;
-  const auto ran = numeric::parallel_for(
-      options.runs, options.threads,
-      [&](int i) -> Result<void> {
-        auto run = perform(options.seed + static_cast<std::uint64_t>(i));
-        if (!run) return tl::unexpected(run.error());
-        runs[static_cast<std::size_t>(i)] = std::move(*run);
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, options.runs);
-      });
-  if (!ran) return tl::unexpected(ran.error());
-  return runs;
+  return each_run(options, options.runs, [&](int i) { return perform(options.seed + static_cast<std::uint64_t>(i)); });
 }
 
 }  // namespace mbk::validation

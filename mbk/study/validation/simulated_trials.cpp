@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "mbk/base/numeric/parallel.h"
+#include "mbk/study/validation/each_run.h"
 
 namespace mbk::validation {
 namespace {
@@ -53,22 +53,8 @@ void perturb_along_a_diagonal(laboratory::Scenario& scenario) {
 }
 
 Result<std::vector<SimulatedTrial>> run_trials(const std::vector<TrialPlan>& plans, const StudyOptions& options) {
-  const auto count = static_cast<int>(plans.size());
-  std::vector<SimulatedTrial> trials(plans.size());
-  int done = 0;
-  const auto ran = numeric::parallel_for(
-      count, options.threads,
-      [&](int i) -> Result<void> {
-        auto trial = run(plans[static_cast<std::size_t>(i)]);
-        if (!trial) return tl::unexpected(trial.error());
-        trials[static_cast<std::size_t>(i)] = std::move(*trial);
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, count);
-      });
-  if (!ran) return tl::unexpected(ran.error());
-  return trials;
+  return each_run(options, static_cast<int>(plans.size()),
+                  [&](int i) { return run(plans[static_cast<std::size_t>(i)]); });
 }
 
 std::pair<std::string, std::string> rig_names(const std::string& trial) {

@@ -98,9 +98,8 @@ Result<ValidationTable> coverage_study(const StudyOptions& options) {
   coverage_options.runs = options.runs;
   coverage_options.seed = options.seed;
   coverage_options.threads = options.threads;
-  if (options.progress) {
-    coverage_options.progress = [&options](int done) { options.progress(done, options.runs); };
-  }
+  coverage_options.progress = options.progress;
+  coverage_options.elsewhere = options.elsewhere;
   return coverage(coverage_options);
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/validation_table.h"
@@ -12,12 +13,17 @@
 
 namespace mbk::validation {
 
+/// Has work(i), i = 0 … count − 1, done in other processes, and says what each gave, as bytes (each_run.h).
+using Elsewhere =
+    std::function<Result<std::vector<std::string>>(int count, const std::function<Result<std::string>(int)>& work)>;
+
 /// How large a study is made.
 struct StudyOptions {
   int runs = 1;  ///< seeds; what a run is stands at each study
   std::uint64_t seed = 1;
   unsigned threads = 0;                                 ///< 0: as many as there are cores
   std::function<void(int done, int of)> progress = {};  ///< called after each trial, never two at a time
+  Elsewhere elsewhere = {};                             ///< absent: all is done in this process
 };
 
 /// A method against known truth, by its name on the command line.

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "mbk/base/lti/rational.h"
-#include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/experiment/control/passivity_control.h"
 #include "mbk/simulate/laboratory/axis_loads.h"
 #include "mbk/simulate/laboratory/closed_loop.h"
 #include "mbk/simulate/laboratory/simulate_teleoperation.h"
 #include "mbk/simulate/participant/load.h"
+#include "mbk/study/validation/each_run.h"
 #include "mbk/study/validation/robot_trials.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
@@ -389,26 +389,24 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
   constexpr int kDesigns = static_cast<int>(kArchitectures.size());
   const int designs = kDesigns * options.runs;
-  std::vector<Cases> of_operators(kOperators.size(), Cases(static_cast<std::size_t>(designs)));
-  int done = 0;
-  const auto ran = numeric::parallel_for(
-      designs, options.threads,
-      [&](int i) -> Result<void> {
-        const auto at = static_cast<std::size_t>(i);
-        Random random(options.seed, static_cast<std::uint32_t>(i));
-        const Teleoperator design = random_design(kArchitectures[at % kArchitectures.size()], random);
-        for (std::size_t k = 0; k < kOperators.size(); ++k) {
-          const double a = lti::to_double(rounded(random.uniform(kOperators[k].lowest, kOperators[k].highest)));
-          auto one = perform(design, a, random);
-          if (!one) return tl::unexpected(one.error());
-          of_operators[k][at] = *one;
-        }
-        return {};
-      },
-      [&](int) {
-        if (options.progress) options.progress(++done, designs);
-      });
+  const auto ran = each_run(options, designs, [&](int i) -> Result<Cases> {
+    Random random(options.seed, static_cast<std::uint32_t>(i));
+    const Teleoperator design =
+        random_design(kArchitectures[static_cast<std::size_t>(i) % kArchitectures.size()], random);
+    Cases of_design;
+    for (const auto& with : kOperators) {
+      const double a = lti::to_double(rounded(random.uniform(with.lowest, with.highest)));
+      auto one = perform(design, a, random);
+      if (!one) return tl::unexpected(one.error());
+      of_design.push_back(*one);
+    }
+    return of_design;
+  });
   if (!ran) return tl::unexpected(ran.error());
+  std::vector<Cases> of_operators(kOperators.size());
+  for (const Cases& of_design : *ran) {
+    for (std::size_t k = 0; k < kOperators.size(); ++k) of_operators[k].push_back(of_design[k]);
+  }
 
   ValidationTable table;
   table.study = "teleoperation";

@@ -17,7 +17,7 @@
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/experiment/safety/gate.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/study/validation/child_process.h"
+#include "mbk/study/batch/child_process.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/temporary_folder.h"
 #include "mbk/study/validation/udp_fault_kinds.h"
@@ -201,14 +201,14 @@ class Runner {
     } else if (job.run % 2 == 1) {
       command.insert(command.end(), {"--version", "2"});
     }
-    auto robot = ChildProcess::start(command, file("-robot.log"));
+    auto robot = batch::ChildProcess::start(command, file("-robot.log"));
     if (!robot) return tl::unexpected(robot.error());
     if (!wait_until([&] { return port_of(file("-robot.log")).has_value(); }, kPatience)) {
       return bad_data("the robot does not listen: " + text_of(file("-robot.log")), "", command.front());
     }
     std::ofstream(file(".toml")) << experiment << "[device]\nkind = \"udp\"\nforce_latency_ticks = 1\nport = "
                                  << port_of(file("-robot.log")).value_or(0) << "\n";
-    auto mbk = ChildProcess::start({options_->program.string(), "run", file(".toml").string(), "--no-measure",
+    auto mbk = batch::ChildProcess::start({options_->program.string(), "run", file(".toml").string(), "--no-measure",
                                     "--quiet", "--out", file(".h5").string()},
                                    file(".log"));
     if (!mbk) return tl::unexpected(mbk.error());

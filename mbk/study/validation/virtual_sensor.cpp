@@ -217,6 +217,7 @@ ChartSeries series_of(const Trials& trials, Force force, bool masses) {
 
 Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
+  if (options.elsewhere) return only_here();
   const auto scenarios = ready("rig_table_5_1");
   if (!scenarios) return tl::unexpected(scenarios.error());
 

@@ -1,4 +1,4 @@
-#include "mbk/study/validation/child_process.h"
+#include "mbk/study/batch/child_process.h"
 
 #include <fcntl.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): kill
@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-namespace mbk::validation {
+namespace mbk::batch {
 
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command, const std::filesystem::path& output) {
   std::vector<char*> arguments;
@@ -22,9 +22,9 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   pid_t id = -1;
-  const int error = posix_spawn(&id, arguments[0], &files, nullptr, arguments.data(), environ);
+  const int error = posix_spawnp(&id, arguments[0], &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
-  if (error != 0) return bad_data(std::strerror(error), "it has to stand beside mbk", command.front());
+  if (error != 0) return bad_data(std::strerror(error), "check that it is there", command.front());
   return ChildProcess(id);
 }
 
@@ -55,4 +55,4 @@ std::optional<int> ChildProcess::wait(double longest) {
   return ended_;
 }
 
-}  // namespace mbk::validation
+}  // namespace mbk::batch

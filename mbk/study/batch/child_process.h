@@ -9,12 +9,12 @@
 
 #include "mbk/base/core/result.h"
 
-namespace mbk::validation {
+namespace mbk::batch {
 
 /// A program that runs beside this one; it is killed where it still runs when this goes.
 class ChildProcess {
  public:
-  /// @param command  the program and its arguments
+  /// @param command  the program, in the folders of PATH where it names none, and its arguments
   /// @param output  file that gets its standard output and standard error; it reads nothing
   /// @fails  data: it cannot be begun.
   [[nodiscard]] static Result<ChildProcess> start(const std::vector<std::string>& command,
@@ -26,6 +26,7 @@ class ChildProcess {
   ~ChildProcess();
 
   void send(int signal) const;
+  [[nodiscard]] pid_t id() const { return id_; }
 
   /// Until it ends, at most so long [s].
   /// @returns  its exit code; 128 and the signal's number where one ended it; absent where it still runs
@@ -37,4 +38,4 @@ class ChildProcess {
   std::optional<int> ended_;
 };
 
-}  // namespace mbk::validation
+}  // namespace mbk::batch
