@@ -8,6 +8,7 @@
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/statistics/study_statistics.h"
+#include "mbk/study/store/store_values.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/simulated_trials.h"
 #include "mbk/study/validation/study.h"
