@@ -29,7 +29,7 @@ LARGEST = ("M", "B", "K")
 
 
 def run(mbk, *arguments):
-    """Standard output of mbk, and what it took: wall and CPU seconds, greatest memory [MB]."""
+    """Standard output of mbk, and what it took: wall and CPU seconds."""
     start = time.perf_counter()
     with tempfile.TemporaryFile() as out:
         process = subprocess.Popen([str(mbk), *map(str, arguments)], stdout=out)
@@ -39,11 +39,11 @@ def run(mbk, *arguments):
         if process.returncode != 0:
             sys.exit(f"study.py: exit code {process.returncode} of: mbk {' '.join(map(str, arguments))[:200]}")
         out.seek(0)
-        return out.read().decode(), wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3
+        return out.read().decode(), wall, usage.ru_utime + usage.ru_stime
 
 
-def line(what, wall, cpu, memory, rate=""):
-    print(f"{what:<46} {wall:8.2f} s {cpu:8.2f} s CPU {memory:7.0f} MB  {rate}", flush=True)
+def line(what, wall, cpu, rate=""):
+    print(f"{what:<56} {wall:8.2f} s {cpu:8.2f} s CPU  {rate}", flush=True)
 
 
 def measured_study(mbk, folder, trials, threads):
@@ -68,12 +68,12 @@ def measured_study(mbk, folder, trials, threads):
     for file in sorted((study / "recordings").rglob("*")):  # into the page cache
         if file.is_file():
             file.read_bytes()
-    _, wall, cpu, memory = run(mbk, "study", "measure", "--study", study, "--quiet", "--threads", threads)
-    line(f"measure {trials} trials of 62.1 s", wall, cpu, memory,
+    _, wall, cpu = run(mbk, "study", "measure", "--study", study, "--quiet", "--threads", threads)
+    line(f"measure {trials} trials of 62.1 s", wall, cpu,
          f"{trials / wall:.0f} trials/s; {threads * trials / cpu:.0f} by CPU time")
-    out, wall, cpu, memory = run(mbk, "study", "measure", "--study", study, "--quiet")
+    out, wall, cpu = run(mbk, "study", "measure", "--study", study, "--quiet")
     assert out == "nothing new to measure\n", out
-    line("measure again, nothing changed", wall, cpu, memory)
+    line("measure again, nothing changed", wall, cpu)
 
 
 def outcome_names():
@@ -140,8 +140,8 @@ def main():
         if chosen.results > 0:
             study = filled_study(mbk, folder, chosen.results)
             for what in ((), ("--json",), ("--compare", "session", "1", "2")):
-                _, wall, cpu, memory = run(mbk, "study", "summary", "--study", study, *what)
-                line(f"summary of {chosen.results:,} results × 32 {' '.join(what)}", wall, cpu, memory)
+                _, wall, cpu = run(mbk, "study", "summary", "--study", study, *what)
+                line(f"summary of {chosen.results:,} results × 32 {' '.join(what)}", wall, cpu)
 
 
 if __name__ == "__main__":

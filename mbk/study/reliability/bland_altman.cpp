@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/reliability/distributions.h"
@@ -61,6 +62,17 @@ double tolerance_factor(int count, double content, double confidence) {
   return 0.5 * (low + high);
 }
 
+namespace {
+
+/// That of the last number of people is often that of the next.
+double tolerance_factor95(int people) {
+  thread_local std::pair<int, double> last = {0, 0.0};
+  if (last.first != people) last = {people, tolerance_factor(people, 0.95, 0.95)};
+  return last.second;
+}
+
+}  // namespace
+
 Result<BlandAltman> bland_altman(const Vector& first, const Vector& second) {
   if (first.size() != second.size()) {
     return bad_data(fmt::format("{} first and {} second measurements", first.size(), second.size()),
@@ -84,7 +96,7 @@ Result<BlandAltman> bland_altman(const Vector& first, const Vector& second) {
   result.bias95 = {result.bias - reach, result.bias + reach};
   result.upper = limit_of(result.bias, s, result.people, kPublishedNormal95);
   result.lower = limit_of(result.bias, s, result.people, -kPublishedNormal95);
-  const double k = tolerance_factor(result.people, 0.95, 0.95);
+  const double k = tolerance_factor95(result.people);
   result.tolerance95 = {result.bias - k * s, result.bias + k * s};
   return result;
 }

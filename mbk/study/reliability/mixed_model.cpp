@@ -815,6 +815,38 @@ Interval residual_interval(const Prepared& data, const Fitted& fit) {
   return Profile(data, false, parameters.count(), variances_at, fit.variances[kResidual], others).interval95();
 }
 
+ModelReliability without_numbers(Support support, int trials) {
+  ModelReliability result;
+  result.support = support;
+  result.trials = trials;
+  result.icc = result.sem_between = result.sem_within = result.mdc95_between = result.mdc95_within = kNaN;
+  result.icc95 = {0.0, 1.0};
+  result.sem_between95 = result.sem_within95 = {0.0, kInfinity};
+  return result;
+}
+
+/// Of the mean of so many trials.   @param of_residual  the interval of σ_e²
+ModelReliability reliability_of_mean(const Prepared& data, const Fitted& fit, const MixedModel& model,
+                                     const Interval& of_residual, int trials) {
+  ModelReliability result;
+  result.trials = trials;
+  const double m = trials;
+  const double within = (model.residual.value + model.typical_known_variance) / m;
+  const double between = model.session.value + within;
+  result.icc = model.participant.value / (model.participant.value + between);
+  result.sem_within = std::sqrt(within);
+  result.sem_between = std::sqrt(between);
+  result.mdc95_within = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_within;
+  result.mdc95_between = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_between;
+  const double scale2 = data.scale * data.scale;
+  const auto root = [&](double variance) { return std::sqrt(scale2 * variance + model.typical_known_variance / m); };
+  const Interval of_between = between_interval(data, fit, m);
+  result.sem_between95 = {root(of_between.first), root(of_between.second)};
+  result.sem_within95 = {root(of_residual.first / m), root(of_residual.second / m)};
+  result.icc95 = icc_interval(data, fit, m);
+  return result;
+}
+
 }  // namespace
 
 Result<MixedModel> fit_mixed_model(const Measurements& measurements) {
@@ -850,38 +882,35 @@ FixedEffect contrast(const MixedModel& model, const Vector& weights) {
 }
 
 Result<ModelReliability> model_reliability(const Measurements& measurements, int trials) {
-  if (trials < 1) return bad_usage(fmt::format("the mean of {} trials does not exist", trials), "ask for 1 or more");
+  auto fitted_once = fit_reliability(measurements, {&trials, 1});
+  if (!fitted_once) return tl::unexpected(fitted_once.error());
+  return fitted_once->of_trials.front();
+}
+
+Result<FittedReliability> fit_reliability(const Measurements& measurements, std::span<const int> trials) {
+  for (const int one : trials) {
+    if (one < 1) return bad_usage(fmt::format("the mean of {} trials does not exist", one), "ask for 1 or more");
+  }
   const auto data = prepare(measurements);
   if (!data) return tl::unexpected(data.error());
-  ModelReliability result;
-  result.trials = trials;
-  result.icc = result.sem_between = result.sem_within = result.mdc95_between = result.mdc95_within = kNaN;
-  result.icc95 = {0.0, 1.0};
-  result.sem_between95 = result.sem_within95 = {0.0, kInfinity};
+  FittedReliability result;
+  Support support = Support::enough;
   if (data->participants() < static_cast<std::size_t>(kMinPeople)) {
-    result.support = Support::too_few_people;
+    support = Support::too_few_people;
   } else if (data->sessions.size() == data->participants()) {
-    result.support = Support::too_few_sessions;
+    support = Support::too_few_sessions;
   }
-  if (result.support != Support::enough) return result;
+  if (support != Support::enough) {
+    for (const int one : trials) result.of_trials.push_back(without_numbers(support, one));
+    return result;
+  }
   const auto fit = fitted(*data);
   if (!fit) return tl::unexpected(fit.error());
-  const MixedModel model = summarised(*data, *fit);
-
-  const double m = trials;
-  const double within = (model.residual.value + model.typical_known_variance) / m;
-  const double between = model.session.value + within;
-  result.icc = model.participant.value / (model.participant.value + between);
-  result.sem_within = std::sqrt(within);
-  result.sem_between = std::sqrt(between);
-  result.mdc95_within = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_within;
-  result.mdc95_between = kPublishedNormal95 * std::numbers::sqrt2 * result.sem_between;
-  const double scale2 = data->scale * data->scale;
-  const auto root = [&](double variance) { return std::sqrt(scale2 * variance + model.typical_known_variance / m); };
-  const Interval of_between = between_interval(*data, *fit, m), of_residual = residual_interval(*data, *fit);
-  result.sem_between95 = {root(of_between.first), root(of_between.second)};
-  result.sem_within95 = {root(of_residual.first / m), root(of_residual.second / m)};
-  result.icc95 = icc_interval(*data, *fit, m);
+  result.model = summarised(*data, *fit);
+  const Interval of_residual = residual_interval(*data, *fit);
+  for (const int one : trials) {
+    result.of_trials.push_back(reliability_of_mean(*data, *fit, *result.model, of_residual, one));
+  }
   return result;
 }
 

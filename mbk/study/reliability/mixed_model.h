@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -90,5 +91,14 @@ struct ModelReliability {
 /// @param trials ≥ 1: m
 /// @fails  as fit_mixed_model; usage: trials < 1.
 [[nodiscard]] Result<ModelReliability> model_reliability(const Measurements& measurements, int trials = 1);
+
+/// A model and what follows from it for means of several numbers of trials.
+struct FittedReliability {
+  std::optional<MixedModel> model;  ///< absent where there are too few people or sessions
+  std::vector<ModelReliability> of_trials;
+};
+
+/// The same for each of some numbers of trials, from one fit.   @fails  as model_reliability
+[[nodiscard]] Result<FittedReliability> fit_reliability(const Measurements& measurements, std::span<const int> trials);
 
 }  // namespace mbk::reliability

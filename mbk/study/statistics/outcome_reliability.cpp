@@ -117,28 +117,23 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
         fmt::format("trials are not weighted by their standard errors: there are more than {}", kMostWeighted));
   }
   reliability::Measurements m = measurements_of(rows, result.weighted);
-  auto model = reliability::fit_mixed_model(m);
-  if (result.weighted && model && overstated(*model, m)) {
+  std::vector<int> trials = {1};
+  if (result.typical_trials > 1) trials.push_back(result.typical_trials);
+  auto fit = reliability::fit_reliability(m, trials);
+  if (result.weighted && fit && fit->model && overstated(*fit->model, m)) {
     notes.emplace_back(
         "trials are not weighted by their standard errors: these say more than what the trials differ by");
     result.weighted = false;
     m.known_variance.resize(0);
-    model = reliability::fit_mixed_model(m);
+    fit = reliability::fit_reliability(m, trials);
   }
-  if (!model) {
-    notes.push_back("no mixed model: " + model.error().message);
-    return result;
-  }
-  result.participant = model->participant.value;
-  result.session = model->session.value;
-  result.residual = model->residual.value;
-  result.known = model->typical_known_variance;
-  for (const int trials : {1, result.typical_trials}) {
-    if (trials == 1 && !result.of_trials.empty()) continue;
-    auto of_trials = reliability::model_reliability(m, trials);
-    if (!of_trials) return result;
-    result.of_trials.push_back(*of_trials);
-  }
+  if (!fit) notes.push_back("no mixed model: " + fit.error().message);
+  if (!fit || !fit->model) return result;
+  result.participant = fit->model->participant.value;
+  result.session = fit->model->session.value;
+  result.residual = fit->model->residual.value;
+  result.known = fit->model->typical_known_variance;
+  result.of_trials = std::move(fit->of_trials);
   result.support = Support::enough;
   return result;
 }

@@ -61,7 +61,7 @@ std::string head_of(const Pilot& pilot, const PlanGoal& goal) {
                       three_digits(std::sqrt(v.participant)), three_digits(std::sqrt(v.session)),
                       three_digits(std::sqrt(v.residual)), fmt::arg("unit", unit));
   if (goal.difference) {
-    text += fmt::format("to find a difference of {:g}{} {} with power {:g} at {:g} (t test)\n", *goal.difference, unit,
+    text += fmt::format("to find a difference of {:g}{} {} with power {:g} at {:g}\n", *goal.difference, unit,
                         goal.pairing == reliability::Pairing::paired ? "in the same people" : "between two groups",
                         goal.power, goal.level);
   }
@@ -126,10 +126,11 @@ std::string plan_text(const Pilot& pilot, const PlanGoal& goal, const std::vecto
   }
   std::string rest;
   if (goal.difference) {
-    rest += goal.pairing == reliability::Pairing::paired ? "people: each measured twice like that. "
-                                                         : "people: in each of the two groups. ";
+    rest += "Power: of a t test. ";
+    rest += goal.pairing == reliability::Pairing::paired ? "People: each measured twice like that. "
+                                                         : "People: in each of the two groups. ";
   }
-  rest += "sessions and trials: of each person, trials in each session. ";
+  rest += "Sessions and trials: of each person, trials in each session. ";
   if (goal.change) rest += "* the change can be detected. ";
   if (goal.change && plans.back().change_is_detectable == false) {
     rest += "None of these detects the change; more sessions help where trials no longer do. ";

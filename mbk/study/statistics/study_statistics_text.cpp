@@ -210,7 +210,7 @@ std::string matrices_text(const std::vector<MatrixSpread>& matrices) {
   for (const MatrixSpread& one : matrices) {
     if (one.support != Support::enough) continue;
     const auto quartiles = [](const Quartiles& q) {
-      return fmt::format("{} ({} to {})", digits(q.median), digits(q.lower), digits(q.upper));
+      return fmt::format("{} ({} to {})", digits(q.median, 2), digits(q.lower, 2), digits(q.upper, 2));
     };
     left_out += one.left_out;
     rows += fmt::format("  {:<20} {:<2} {:>22} {:>22} {:>8}\n", condition_title(one.condition), one.matrix,
