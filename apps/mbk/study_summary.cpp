@@ -87,7 +87,7 @@ Result<statistics::StatisticsOptions> statistics_options(const ComparingArgument
 
 void add_comparing_options(CLI::App& command, ComparingArguments& arguments) {
   command.add_option("--compare", arguments.compare, "condition, group or session, and which of them (all)")
-      ->type_name("WHAT [NAME...]");
+      ->type_name("WHAT");
   command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
 }
 namespace {

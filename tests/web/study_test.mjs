@@ -44,7 +44,7 @@ function page(name, file, ...args) {
 
 study("six", 6);
 study("two", 3);
-const whole = page("six", "study");
+const whole = page("six", "study", "--compare", "session", 1, 2);
 const stiffer = page("six", "stiffer", "--participant", 3);
 const same = page("six", "same", "--participant", 2);
 const few = page("two", "few");
@@ -114,6 +114,17 @@ test("the page of the study shows every participant, and what does not count wit
   assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="mdc"]', "value")), area.between_sessions.error[0].mdc95);
 }));
 
+test("differences have the p that was corrected for all tests, and an effect size", () => onPage(whole, async (tab) => {
+  const { comparison } = documentOf(whole).summary;
+  const area = comparison.outcomes.find(({ outcome }) => outcome === "stiffness_area");
+  const row = await tab.$eval("#comparison tbody tr", (one) => [...one.children].map((cell) => cell.textContent));
+  assert.equal(row[1], `${area.first_participants}\u00a0paired`);
+  assert.deepEqual(row.slice(3, 6).map(Number), [area.p, area.p_holm, area.permutation.p].map((value) => Number(value.toFixed(3))));
+  assert.equal(row[6], "no difference shown");
+  assert.match(await tab.textContent("#comparison caption"), new RegExp(`corrected for ${comparison.tests} tests`));
+  assert.ok((await tab.locator("#comparison svg.forest rect.value").count()) > 8);
+}));
+
 test("another outcome can be chosen by keyboard", () => onPage(whole, async (tab) => {
   const select = tab.locator("#sessions select");
   await select.selectOption("K_xx");
@@ -163,7 +174,7 @@ for (const [name, file] of Object.entries(files)) {
 }
 
 test("pictures, and A4 pages: that of a participant is short", async () => {
-  for (const [name, most] of [["whole", 8], ["stiffer", 3], ["few", 8]]) {
+  for (const [name, most] of [["whole", 9], ["stiffer", 3], ["few", 8]]) {
     await onPage(files[name], async (tab) => {
       const pages = (await picture(tab, `study-${name}`)).toString("latin1").match(/\/Type \/Page\b/g).length;
       assert.ok(pages <= most, `${name}: ${pages} pages`);

@@ -178,12 +178,21 @@ function ellipsesSection({ matrices }: StudyReport, conditions: string[]): HTMLE
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "Each ellipse is of the mean matrix of a session, all at one scale. The longer it is in a direction, the more force it takes to move the hand that way."));
 }
 
-const pText = (value: Value): string => (value === null ? "–" : value < 0.001 ? "< 0.001" : fixed(value, 3));
+const differenceWords: Record<Comparison["verdict"], string> = { differs: "differs", "not shown": "no difference shown", "too few people": "too few people", "no variation": "no variation" };
+
+function differencesTable(name: string, tests: number, all: Comparison[]): HTMLElement {
+  return table(`${name}; p by Student’s t, corrected for ${tests} tests (Holm)`, ["outcome", "people", "difference", "p", "p corrected", "p by permutation", "what that means"],
+    all.map((one) => [one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome),
+      one.pairing === "paired" ? `${one.first_participants} paired` : `${one.first_participants}, ${one.second_participants}`,
+      one.interval95 ? sized(one.difference, one.interval95 as [Value, Value], "difference") : plainly(one.difference),
+      pText(one.p), pText(one.p_holm), pText(one.permutation.p), differenceWords[one.verdict]]), "numbers comparison");
+}
+
+const pText = (value: Value): string => (value === null ? "–" : value < 0.001 ? "< 0.001" : fixed(value, 3));
 
 function comparisonSection({ summary }: StudyReport): HTMLElement | undefined {
   const { comparison } = summary;
   if (!comparison) return undefined;
-  const verdicts: Record<Comparison["verdict"], string> = { differs: "differs", "not shown": "no difference shown", "too few people": "too few people", "no variation": "no variation" };
   const blocks = new Map<string, Comparison[]>();
   for (const one of comparison.outcomes) {
     const key = [one.condition ? `${one.condition}: ` : "", `${conditionName(one.second)} against ${conditionName(one.first)}`].join("");
@@ -196,11 +205,9 @@ function comparisonSection({ summary }: StudyReport): HTMLElement | undefined {
       drawn.length > 0 ? forest(`Effect sizes of ${name}: ${drawn.map((one) => `${outcomeName(one.outcome)} ${fixed(one.effect?.g ?? null, 2)}`).join("; ")}`, "standardised difference g (Hedges)",
         drawn.map((one) => ({ name: shortName(one.outcome), value: one.effect?.g ?? null, low: one.effect?.interval95[0] ?? null, high: one.effect?.interval95[1] ?? null,
           text: `${fixed(one.effect?.g ?? null, 2)}${range(one.effect?.interval95[0] ?? null, one.effect?.interval95[1] ?? null, 2)}` })), 0) : "",
-      table(`${name}; p by permutation, corrected for ${comparison.tests} tests (Holm)`, ["outcome", "people", "difference", "p", "p corrected", "what that means"],
-        ordered.map((one) => [one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome),
-          one.pairing === "paired" ? `${one.first_participants} paired` : `${one.first_participants}, ${one.second_participants}`,
-          one.interval95 ? sized(one.difference, one.interval95 as [Value, Value], "difference") : plainly(one.difference),
-          pText(one.permutation.p), pText(one.p_holm), verdicts[one.verdict]]), "numbers comparison"));
+      differencesTable(name, comparison.tests, ordered.filter(({ outcome }) => isMain(outcome))),
+      ordered.some(({ outcome }) => !isMain(outcome))
+        ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), differencesTable(name, comparison.tests, ordered.filter(({ outcome }) => !isMain(outcome)))) : "");
   }), h("p", { class: "reading" }, "“No difference shown” is no proof that there is none."));
 }
 
