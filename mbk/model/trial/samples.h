@@ -8,8 +8,8 @@
 
 namespace mbk {
 
-/// The numbers of a signal, in memory of their own or where they stand already: in an array of whoever measures it. They
-/// are read as those of a Vector, and never written: copies share them.
+/// The numbers of a signal, in memory of their own or where they stand already: in an array of whoever measures it.
+/// They are read as those of a Vector, and never written: copies share them.
 class Samples : public Eigen::Map<const Vector> {
   using Map = Eigen::Map<const Vector>;
 
