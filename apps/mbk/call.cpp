@@ -123,6 +123,14 @@ Result<std::vector<std::string>> typed_words(const CLI::App& command, const Call
   return typed;
 }
 
+/// A name of a file would end where the zero stands.
+bool holds_zero(const Call& call) {
+  const auto has_zero = [](const std::string& text) { return text.find('\0') != std::string::npos; };
+  return has_zero(call.command) || std::ranges::any_of(call.words, has_zero) ||
+         std::ranges::any_of(call.options,
+                             [&](const CallOption& option) { return std::ranges::any_of(option.values, has_zero); });
+}
+
 /// @fails  usage: what the parser says
 Result<void> parse(CLI::App& app, std::vector<std::string> typed, const std::string& help) {
   std::ranges::reverse(typed);  // the parser takes them from the end
@@ -246,6 +254,7 @@ std::string document_word(std::size_t k) {
 
 Result<Answer> call(const Call& call) {
   return guarded([&]() -> Result<Answer> {
+    if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
     const auto prepared = prepareds().get(call, all_words(call));
     if (!prepared) return tl::unexpected(prepared.error());
     Caller caller(call);
@@ -292,6 +301,7 @@ Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call&
   CLI::App command("", "read");
   add_reading_options(command, reading);
   add_sensor_options(command, sensor);
+  if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
   auto typed = typed_words(command, call, all_words(call));
   if (!typed) return tl::unexpected(typed.error());
   if (auto ok = parse(command, std::move(*typed), ""); !ok) return tl::unexpected(ok.error());

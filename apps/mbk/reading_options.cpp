@@ -168,6 +168,7 @@ Result<Recording> RecordingReader::read_stored(int k) const {
   if (const auto& given = records_[static_cast<std::size_t>(k)].in_memory) {
     auto recording = given->read(options_of(k));
     if (!recording) return tl::unexpected(recording.error().in(file(k).string()));
+    if (recording->sources.empty()) recording->sources.push_back({file(k).string(), "arrays in memory", ""});
     return recording;
   }
   if (!parts_ && journal::is_journal(file(k))) {

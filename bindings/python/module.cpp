@@ -171,8 +171,13 @@ py::array channel_of(const Recording& recording, const std::string& name) {
 
 std::string text_of(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")().cast<std::string>();
+  if (py::isinstance<py::str>(value)) {  // a name of a file may be no UTF-8
+    const auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_EncodeFSDefault(value.ptr()));
+    if (!bytes) throw py::error_already_set();
+    return bytes;
+  }
+  if (py::isinstance<py::bytes>(value)) return value.cast<std::string>();
+  if (py::hasattr(value, "__fspath__")) return text_of(value.attr("__fspath__")());
   if (py::hasattr(value, "item") && !py::hasattr(value, "__len__")) return text_of(value.attr("item")());  // of NumPy
   return py::str(value).cast<std::string>();
 }

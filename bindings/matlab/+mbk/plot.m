@@ -15,7 +15,6 @@ function handles = plot(result)
   if planar
     names = {'M', 'B', 'K'};
     titles = {'Inertia', 'Damping', 'Stiffness'};
-    units = {'kg', 'N\cdots/m', 'N/m'};
     for k = 1:3
       handles(end + 1) = subplot(2, 3, k);
       matrix = model.(names{k});
@@ -25,8 +24,10 @@ function handles = plot(result)
       axis equal
       grid on
       title(titles{k});
-      xlabel(['x (' units{k} ')']);
-      ylabel(['y (' units{k} ')']);
+      unit = plain(result.units.(names{k}));
+      xlabel(['x (' unit ')']);
+      ylabel(['y (' unit ')']);
+      set(gca, 'FontSize', 9);
     end
     handles(end + 1) = subplot(2, 3, 4:6);
   else
@@ -43,8 +44,15 @@ function handles = plot(result)
   hold off
   grid on
   xlabel('frequency (Hz)');
-  ylabel('|M s^2 + B s + K| (N/m)');
+  ylabel(['|M s^2 + B s + K| (' plain(result.units.K) ')']);
+  xlim([0.1 20]);
   if planar
-    legend(labels);
+    legend(labels, 'Location', 'southeast');
   end
+end
+
+function text = plain(unit)
+% Without the dot between factors, which not every font has.
+  text = strrep(unit, char([194 183]), ' ');
+  text = strrep(text, char(183), ' ');
 end

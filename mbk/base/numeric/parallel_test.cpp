@@ -4,7 +4,10 @@
 
 #include <atomic>
 #include <new>
+#include <tuple>
 #include <vector>
+
+#include "mbk/base/core/requester.h"
 
 namespace mbk::numeric {
 namespace {
@@ -52,6 +55,33 @@ TEST(ParallelFor, AnExceptionReachesTheCallerFromAnyThread) {
 
 TEST(ParallelFor, DoesNothingWhereThereIsNothing) {
   EXPECT_TRUE(parallel_for(0, 4, [](int) -> Result<void> { return bad_data("called"); }));
+}
+
+/// Who wants so many turns.
+class Impatient : public Requester {
+ public:
+  explicit Impatient(int turns) : left_(turns) {}
+  bool stopped() override { return --left_ < 0; }
+
+ private:
+  std::atomic<int> left_;
+};
+
+TEST(ParallelFor, StopsWhereTheRequesterNoLongerWantsIt) {
+  for (const unsigned threads : {1u, 4u}) {
+    Impatient requester(5);
+    const Requester::Scope scope(&requester);
+    std::atomic<int> calls = 0, for_other = 0;
+    const auto work = [&](int) -> Result<void> {
+      ++calls;
+      if (Requester::current() != &requester) ++for_other;
+      return {};
+    };
+    EXPECT_THROW(std::ignore = parallel_for(1000, threads, work), Stopped);
+    EXPECT_EQ(calls, 5);
+    EXPECT_EQ(for_other, 0);
+  }
+  EXPECT_EQ(Requester::current(), nullptr);
 }
 
 }  // namespace
