@@ -42,13 +42,14 @@ and arm.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mbk)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_python}), python3-numpy")
+get_property(minor GLOBAL PROPERTY MBK_PYTHON_MINOR)
+math(EXPR next "0${minor} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${minor}~), python3 (<< 3.${next}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-xarray, mbk")
-set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Everything that the program mbk computes, for Python: recordings as NumPy arrays
-without a copy, each command as a function with the same options, results with
-units, tables for notebooks and pandas, and plots.")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "What the program mbk computes, for Python: recordings as NumPy arrays without
+a copy, each command as a function with the same options, results with units,
+tables for notebooks and pandas, and plots.")
 
 # The packages that hold what the libraries link, asked of dpkg.
 find_program(MBK_DPKG_QUERY dpkg-query)

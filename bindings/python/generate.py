@@ -29,7 +29,7 @@ RESULTS = {  # the class of what a command gives; Document where it has no class
     ("study", "summary"): "StudySummary",
 }
 NUMBERS = {"HZ": "float", "S": "float", "KG": "float", "MM": "float", "MS": "float", "DEG": "float", "V": "float",
-           "X": "float", "N": "int", "W": "int"}
+           "X": "float", "FLOAT": "float", "N": "int", "W": "int"}
 SPECIAL = {  # how it is called, and what comes back
     ("convert",): ("convert", "Path", "The file that was written."),
     ("simulate",): ("simulate", "Recording | list[Recording] | Path | str",
@@ -61,7 +61,7 @@ def type_of(option):
         elif option["files"] or option["folders"]:
             kinds.append("str | PathLike[str]" + (" | Document | Recording" if is_read(option) else ""))
         elif re.search(r"[,:\[]", part):
-            kinds.append("str | Sequence[float]")
+            kinds.append("str" if option["repeats"] else "str | Sequence[float]")
         else:
             kinds.append("str")
     kinds = list(dict.fromkeys(kind for one in kinds for kind in one.split(" | ")))

@@ -53,6 +53,20 @@ class Manual(Case):
         for command, path in pages().items():
             self.assertEqual(self.fine("manual", *command.path).out, path.read_text())
 
+    def test_as_json_it_has_every_command_and_option(self):
+        table = self.fine("manual", "--json").json  # which fits its schema: run() sees to that
+        known = {tuple(one["path"]): {name for option in one["options"] for name in option["names"]}
+                 for one in table["commands"]}
+        for command in every_command():
+            if command.path:
+                with self.subTest(command=command.name):
+                    self.assertLessEqual(set(command.options), known[tuple(command.path)])
+        self.assertEqual(len(known), len([one for one in every_command() if one.path]))
+        measure = next(one for one in table["commands"] if one["path"] == ["measure"])
+        mode = next(option for option in measure["options"] if option["names"] == ["--mode"])
+        self.assertEqual(mode["words"], ["default", "reference"])
+        self.refused(WRONG_USAGE, "manual", "--json", "measure")
+
     def test_every_option_stands_in_its_page(self):
         for command, path in pages().items():
             page = plain(path.read_text())
