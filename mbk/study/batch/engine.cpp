@@ -33,7 +33,7 @@ std::string last_line(const std::filesystem::path& log) {
   stream.seekg(std::max<std::streamoff>(0, size - kTail));
   std::string line, last;
   while (std::getline(stream, line)) {
-    if (line.find_first_not_of(" \r\t") != std::string::npos) last = line;
+    if (line.find_first_not_of(" \r\t-=") != std::string::npos) last = line;  // a line of dashes says nothing
   }
   return printable(last);
 }

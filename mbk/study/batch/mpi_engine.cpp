@@ -107,6 +107,9 @@ class MpiEngine : public Engine {
     stream.close();
     if (!stream) return bad_data("cannot be written", "check the disk and the folder", list.string());
     std::vector<std::string> command = {"mpirun", "-n", std::to_string(tasks_ + 1)};
+    command.insert(command.end(), {"--bind-to", "none"});
+    // The first rank only waits, so that one more than there are cores is no harm.
+    if (options_.extra.empty()) command.emplace_back("--oversubscribe");
     command.insert(command.end(), options_.extra.begin(), options_.extra.end());
     command.push_back((options_.program.parent_path() / "mbk_mpi").string());
     command.push_back(list.string());

@@ -18,6 +18,7 @@
 
 #include "mbk/study/batch/merge.h"
 #include "mbk/study/batch/shard.h"
+#include "mbk/study/batch/work.h"
 #include "mbk/study/store/store_files.h"
 
 namespace mbk::batch {
@@ -66,7 +67,8 @@ class Keeper {
 /// What is known of a chunk.
 struct Known {
   bool finished = false, handed_out = false, given_up = false;
-  int losses = 0;
+  int losses = 0;               ///< one after the other, without a unit done
+  std::int64_t units_left = 0;  ///< done by processes that ended
   std::optional<Clock::time_point> gone_since;
   std::uintmax_t bytes = 0;  ///< of its shards that are not whole
   std::optional<Clock::time_point> grew;
@@ -201,7 +203,11 @@ class Run {
       missing.push_back(number);
       return;
     }
-    ++known.losses;
+    ++losses_;
+    const std::int64_t left = units_left_done(folder_, chunks_[static_cast<std::size_t>(number)]);
+    known.losses = left > known.units_left ? 0 : known.losses + 1;
+    known.units_left = left;
+    something_done_ = something_done_ || left > 0;
     const std::string why = engine_.why_ended(number);
     ++state_.losses[why.empty() ? "ended without a result" : why];
     if (known.losses >= options_.attempts) {
@@ -215,9 +221,7 @@ class Run {
   /// Where nothing at all comes of it, trying on only fills the log.
   bool too_many_losses() const {
     constexpr std::int64_t kMany = 12;
-    std::int64_t losses = 0;
-    for (const auto& [why, count] : state_.losses) losses += count;
-    return losses >= kMany && state_.finished_units == finished_before_;
+    return losses_ >= kMany && !something_done_ && state_.finished_units == finished_before_;
   }
 
   std::string most_frequent_loss() const {
@@ -260,7 +264,8 @@ class Run {
   std::vector<Chunk> chunks_;
   std::vector<Known> known_;
   JobState state_;
-  bool answered_ = false;
+  bool answered_ = false, something_done_ = false;
+  std::int64_t losses_ = 0;
   double finished_cost_ = 0.0, cost_before_ = 0.0;
   std::int64_t finished_before_ = 0;
   Clock::time_point begin_ = Clock::now(), said_ = Clock::now();

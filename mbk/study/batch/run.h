@@ -29,7 +29,7 @@ struct JobState {
 enum class Stop { no, cancel, leave };
 
 struct RunOptions {
-  int attempts = 6;          ///< of a chunk whose processes end without a shard
+  int attempts = 6;          ///< of a chunk whose processes end without having done any unit of it
   double silence_s = 300.0;  ///< a running process whose shard does not grow for so long is taken for dead
   bool detach = false;       ///< hands out what is missing, and does not wait
   std::function<Stop()> stop = [] { return Stop::no; };

@@ -100,9 +100,13 @@ class Heartbeat {
   std::thread thread_;
 };
 
-constexpr int kEndsOfOneUnit = 2;
+constexpr int kEndsOfOneUnit = 3;
 
 }  // namespace
+
+std::int64_t units_left_done(const JobFolder& folder, const Chunk& chunk) {
+  return std::ssize(remains_of(folder, chunk).done);
+}
 
 Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitFunction& compute,
                        const WorkOptions& options) {

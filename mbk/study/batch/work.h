@@ -21,9 +21,12 @@ struct ChunkDone {
 };
 
 /// Does a chunk, one unit after the other, and leaves its shard. What a process that ended in the middle of this chunk
-/// had left is taken over. A unit in which two processes ended after it was begun counts as failed.
+/// had left is taken over. A unit in which three processes ended after it was begun counts as failed.
 /// @fails  usage: there is no such chunk. data: another program's job; the shard cannot be written.
 [[nodiscard]] Result<ChunkDone> work(const JobFolder& folder, std::int64_t chunk, const UnitFunction& compute,
                                      const WorkOptions& options = {});
+
+/// How many units of a chunk processes have done that ended before the chunk did.
+[[nodiscard]] std::int64_t units_left_done(const JobFolder& folder, const Chunk& chunk);
 
 }  // namespace mbk::batch
