@@ -33,7 +33,7 @@ void StopKeys::watch(session::LoopFlags& flags, const std::stop_token& over) noe
     constexpr int kWait = 20;  // [ms]
     if (poll(&input, 1, kWait) <= 0) continue;
     char key = 0;
-    const ssize_t came = read(STDIN_FILENO, &key, 1);
+    const ssize_t came = ::read(STDIN_FILENO, &key, 1);
     if (came < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (came != 1) {  // closed, and nobody at it can stop the robot any more
       flags.end_session = true;
