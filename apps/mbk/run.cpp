@@ -145,7 +145,7 @@ bool ask(const char* question, const session::LoopFlags& flags) {
     constexpr int kWait = 100;  // [ms]
     if (poll(&input, 1, kWait) <= 0) continue;
     std::array<char, 256> line{};
-    const ssize_t came = read(STDIN_FILENO, line.data(), line.size());
+    const ssize_t came = ::read(STDIN_FILENO, line.data(), line.size());
     if (came < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     return came > 0 && (line[0] == 'y' || line[0] == 'Y');
   }
