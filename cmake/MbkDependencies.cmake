@@ -35,7 +35,6 @@ mbk_link_statically(PkgConfig::MINIZIP INTERFACE_LINK_LIBRARIES libminizip.a)
 mbk_link_statically(PkgConfig::PUGIXML INTERFACE_LINK_LIBRARIES libpugixml.a)
 mbk_link_statically(PkgConfig::LIBZSTD INTERFACE_LINK_LIBRARIES libzstd.a)
 mbk_link_statically(PkgConfig::LIBLZ4 INTERFACE_LINK_LIBRARIES liblz4.a)
-mbk_link_statically(BZip2::BZip2 IMPORTED_LOCATION_RELEASE libbz2.a)
 mbk_link_statically(SQLite::SQLite3 IMPORTED_LOCATION libsqlite3.a)
 # orocos-kdl's CMake file names no target.
 pkg_check_modules(OROCOS_KDL REQUIRED IMPORTED_TARGET orocos-kdl)
