@@ -147,6 +147,12 @@ class Package(unittest.TestCase):
         dated.index = pandas.Timestamp("2026-05-04T12:00:00") + pandas.to_timedelta(table.index, unit="s")
         np.testing.assert_allclose(silent(mbk.measure, dated, handle_mass=0.194).model.K, want.K, rtol=1e-6)
 
+    def test_several_seeds_and_trials_come_in_their_order(self):
+        found = mbk.simulate("free_motion", seed=9, seeds=2)
+        self.assertEqual(len(found), 2)
+        for seed, one in zip((9, 10), found):
+            np.testing.assert_array_equal(one["torque_1"], mbk.simulate("free_motion", seed=seed)["torque_1"])
+
     def test_a_saved_recording_is_the_same(self):
         for ending in ("h5", "mat", "csv"):
             file = self.folder / f"saved.{ending}"

@@ -93,6 +93,23 @@ class Twins(unittest.TestCase):
                     found = any(line.startswith(f"mbk {path}") for line, _ in TWINS)
                     self.assertTrue(found or path.split()[0] in NO_TWIN or path == "robot check", path)
 
+    def test_the_guides_own_lines_run(self):
+        text = (ROOT / "docs/guide/python.md").read_text(encoding="utf-8")
+        blocks = [block for block in re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+                  if "mbk.live" not in block]
+        self.assertEqual(len(blocks), 4)
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        os.chdir(self.python)
+        names = {"mbk": mbk}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for block in blocks:
+                with self.subTest(block):
+                    exec(block, names)  # noqa: S102 - the guide's own lines
+        self.assertTrue(names["result"].usable)
+        self.assertAlmostEqual(names["result"].model.K[0, 0], 120, delta=1)
+
     def test_both_say_the_same_to_the_bit(self):
         self.assertGreater(len(TWINS), 30)
         before = os.getcwd()

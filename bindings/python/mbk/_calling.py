@@ -185,11 +185,16 @@ def simulate(command: str, sources: Sequence[Any], options: Mapping[str, Any], s
         return answer.text if "out" not in asked else pathlib.Path(asked["out"])
     with tempfile.TemporaryDirectory(prefix="mbk-") as folder:
         _answer(command, given, {**asked, "quiet": True, "out": os.path.join(folder, "simulated.h5")}, 4)
-        files = sorted(pathlib.Path(folder).iterdir())
+        files = sorted(pathlib.Path(folder).iterdir(), key=_natural)
         with _errors.translated():
             cores = [_mbk.read_all([file], {})[0] for file in files]
     recordings = [Recording(Recording._of(core), metadata=core.metadata, events=core.events) for core in cores]
     return recordings[0] if len(recordings) == 1 else recordings
+
+
+def _natural(path: pathlib.Path) -> list[Any]:
+    """seed2 before seed10."""
+    return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", path.name)]
 
 
 def read(command: str, sources: Sequence[Any], options: Mapping[str, Any], several: Mapping[str, str]) -> Any:
