@@ -15,7 +15,7 @@ TEXT = page.PAGE.read_text(encoding="utf-8")
 #: What times nothing by itself, and `mbk reproduce`, of which docs/guide/reproduce.md speaks.
 NO_TABLE = {"reproduce.py", "against.py", "callgrind.py", "commands.py", "instructions.py", "joblib_pipeline.py", "numpy_measure.py",
             "numpy_pipeline.py",
-            "plain_closed_loop.py", "pipeline.cpp", "transfer_function.cpp", "floor.cpp"}
+            "plain_closed_loop.py", "pipeline.cpp", "transfer_function.cpp", "floor.cpp", "plant.cpp"}
 
 
 class Page(unittest.TestCase):
