@@ -209,8 +209,8 @@ class Runner {
     std::ofstream(file(".toml")) << experiment << "[device]\nkind = \"udp\"\nforce_latency_ticks = 1\nport = "
                                  << port_of(file("-robot.log")).value_or(0) << "\n";
     auto mbk = batch::ChildProcess::start({options_->program.string(), "run", file(".toml").string(), "--no-measure",
-                                    "--quiet", "--out", file(".h5").string()},
-                                   file(".log"));
+                                           "--quiet", "--out", file(".h5").string()},
+                                          file(".log"));
     if (!mbk) return tl::unexpected(mbk.error());
     if (key) {
       // Somebody stops the trial.
