@@ -96,7 +96,7 @@ Action add_study_plan(CLI::App& group) {
   add_analysis_option(*command, *arguments);
   command->add_option("--outcome", arguments->outcome, "of this study, which is the pilot")->type_name("NAME");
   command->add_option("--condition", arguments->conditions, "of the pilot: one, or two that are compared")
-      ->type_name("NAME [NAME]")
+      ->type_name("NAME")
       ->expected(1, 2);
   command->add_option("--sd-people", arguments->sd_people, "standard deviation between people, instead of a pilot")
       ->check(not_negative());

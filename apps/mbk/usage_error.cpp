@@ -85,22 +85,23 @@ std::vector<std::string> option_names(const CLI::App& command) {
 
 std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = chosen(app);
-  const std::string kind = error.get_name(), said = error.what();
+  const std::string said = error.what();
+  const auto is = [&](CLI::ExitCodes kind) { return error.get_exit_code() == static_cast<int>(kind); };
   std::vector<std::string> left = command.remaining();
   if (left.empty()) left = app.remaining(true);
   const std::vector<std::string> parts = part_names(command);
   const bool wants_part = !parts.empty() && command.get_require_subcommand_min() > 0;
-  if (kind == "ExtrasError" || (kind == "RequiredError" && wants_part && !left.empty())) {
+  if (is(CLI::ExitCodes::ExtrasError) || (is(CLI::ExitCodes::RequiredError) && wants_part && !left.empty())) {
     return left.empty() ? said : unknown_word(command, left.front());
   }
-  if (kind == "RequiredError" && wants_part) {
+  if (is(CLI::ExitCodes::RequiredError) && wants_part) {
     return &command == &app ? "no command" : fmt::format("no command; there are {}", fmt::join(parts, ", "));
   }
-  if (kind == "ArgumentMismatch") return count_message(said);
-  if (const auto both = kind == "ExcludesError" ? split_at(said, " excludes ") : std::nullopt) {
+  if (is(CLI::ExitCodes::ArgumentMismatch)) return count_message(said);
+  if (const auto both = is(CLI::ExitCodes::ExcludesError) ? split_at(said, " excludes ") : std::nullopt) {
     return fmt::format("{} and {} cannot be given together", both->first, both->second);
   }
-  if (const auto both = kind == "RequiresError" ? split_at(said, " requires ") : std::nullopt) {
+  if (const auto both = is(CLI::ExitCodes::RequiresError) ? split_at(said, " requires ") : std::nullopt) {
     return fmt::format("{} needs {} beside it", both->first, both->second);
   }
   return said;

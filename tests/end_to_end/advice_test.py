@@ -19,6 +19,8 @@ from tf_test import oscillator
 ROOT = pathlib.Path(__file__).parents[2]
 CODES = json.loads((ROOT / "schemas/common.schema.json").read_text(encoding="utf-8"))["definitions"]["WarningCode"]["enum"]
 
+OF_OTHER_PROGRAMS = ("mpi_engine.cpp", "slurm_engine.cpp")  # which call mpirun and sbatch with options of theirs
+
 ADVICE = {}  # code: a function of the test case, which raises it and follows its advice
 
 
@@ -124,7 +126,7 @@ class Advice(Case):
         options |= {"--held-back", "--least-extension", "--most-delay", "--most-springs"}  # read for one version
         commands = {command.path[0] for command in tree if command.path}
         for source in sorted(ROOT.glob("mbk/**/*.cpp")) + sorted(ROOT.glob("apps/mbk/*.cpp")):
-            if source.name.endswith("_test.cpp"):
+            if source.name.endswith("_test.cpp") or source.name in OF_OTHER_PROGRAMS:
                 continue
             for text in re.findall(r'"((?:[^"\\\n]|\\.)*)"', source.read_text(encoding="utf-8")):
                 for option in re.findall(r"(?<![\w-])(--[a-z][a-z-]+)", text):
