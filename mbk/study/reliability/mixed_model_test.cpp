@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "mbk/base/numeric/random.h"
-#include "mbk/study/reliability/test_retest.h"
+#include "mbk/study/reliability/retest.h"
 
 namespace mbk::reliability {
 namespace mixed_model_test {

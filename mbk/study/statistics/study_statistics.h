@@ -13,7 +13,7 @@
 #include "mbk/study/reliability/bland_altman.h"
 #include "mbk/study/reliability/comparison.h"
 #include "mbk/study/reliability/mixed_model.h"
-#include "mbk/study/reliability/test_retest.h"
+#include "mbk/study/reliability/retest.h"
 #include "mbk/study/store/store_values.h"
 
 /// What a study says of people: how reliable each outcome is, and whether conditions, groups or sessions differ.

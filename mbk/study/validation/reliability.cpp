@@ -10,7 +10,7 @@
 #include "mbk/study/reliability/bland_altman.h"
 #include "mbk/study/reliability/comparison.h"
 #include "mbk/study/reliability/mixed_model.h"
-#include "mbk/study/reliability/test_retest.h"
+#include "mbk/study/reliability/retest.h"
 #include "mbk/study/validation/rows.h"
 #include "mbk/study/validation/seeded_runs.h"
 #include "mbk/study/validation/study.h"

@@ -1,4 +1,4 @@
-#include "mbk/study/reliability/test_retest.h"
+#include "mbk/study/reliability/retest.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "mbk/study/reliability/test_retest.h"
+#include "mbk/study/reliability/retest.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 
 namespace mbk::reliability {
-namespace test_retest_test {
+namespace retest_test {
 
 /// Shrout & Fleiss (1979), table 2: six people, four judges.
 Matrix shrout_and_fleiss() {
@@ -103,5 +103,5 @@ TEST(TestRetest, SaysWhatItLacks) {
   EXPECT_NE(refused.error().message.find("person 3 in session 2"), std::string::npos);
 }
 
-}  // namespace test_retest_test
+}  // namespace retest_test
 }  // namespace mbk::reliability
