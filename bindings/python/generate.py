@@ -16,7 +16,7 @@ import sys
 import textwrap
 
 WIDTH = 100
-LEFT_OUT = {"run", "completion", "manual"}  # an experiment needs a process of its own; the others are of shells
+LEFT_OUT = {"run", "work", "completion", "manual"}  # need processes of their own, or are of shells
 ONLY_COMMAND_LINE = {"--help", "--version", "--json", "--quiet"}
 NAMES = {"tf": "transfer_function", "import": "import_"}
 RESULTS = {  # the class of what a command gives; Document where it has no class of its own
