@@ -42,7 +42,7 @@ def run(mbk, *arguments):
         return out.read().decode(), wall, usage.ru_utime + usage.ru_stime
 
 
-def line(what, wall, cpu, rate=""):
+def row(what, wall, cpu, rate=""):
     print(f"{what:<56} {wall:8.2f} s {cpu:8.2f} s CPU  {rate}", flush=True)
 
 
@@ -69,11 +69,11 @@ def measured_study(mbk, folder, trials, threads):
         if file.is_file():
             file.read_bytes()
     _, wall, cpu = run(mbk, "study", "measure", "--study", study, "--quiet", "--threads", threads)
-    line(f"measure {trials} trials of 62.1 s", wall, cpu,
+    row(f"measure {trials} trials of 62.1 s", wall, cpu,
          f"{trials / wall:.0f} trials/s; {threads * trials / cpu:.0f} by CPU time")
     out, wall, cpu = run(mbk, "study", "measure", "--study", study, "--quiet")
     assert out == "nothing new to measure\n", out
-    line("measure again, nothing changed", wall, cpu)
+    row("measure again, nothing changed", wall, cpu)
 
 
 def outcome_names():
@@ -141,7 +141,7 @@ def main():
             study = filled_study(mbk, folder, chosen.results)
             for what in ((), ("--json",), ("--compare", "session", "1", "2")):
                 _, wall, cpu = run(mbk, "study", "summary", "--study", study, *what)
-                line(f"summary of {chosen.results:,} results × 32 {' '.join(what)}", wall, cpu)
+                row(f"summary of {chosen.results:,} results × 32 {' '.join(what)}", wall, cpu)
 
 
 if __name__ == "__main__":
