@@ -264,7 +264,7 @@ Result<batch::UnitFunction> simulate_units(const nlohmann::json& specification) 
   arguments.scenario = specification.at("scenario");
   const auto sum = scenario_sum(arguments.scenario);
   if (!sum) return tl::unexpected(sum.error());
-  if (*sum != specification.at("scenario_sha256")) {
+  if (*sum != specification.at("scenario_sha256").get<std::string>()) {
     return bad_data("it has changed since the job was begun", "put it back, or begin again", arguments.scenario);
   }
   arguments.trials = specification.at("trials").get<std::vector<std::string>>();

@@ -189,7 +189,7 @@ class ValueWriter {
       put(value.has_value());
       if (value) put(*value);
     } else if constexpr (kIs<Type, std::pair> || kIs<Type, std::tuple>) {
-      std::apply([this](const auto&... one) { (put(one), ...); }, value);
+      std::apply([this](const auto&... one) { (this->put(one), ...); }, value);
     } else if constexpr (requires {
                            value.derived().rows();
                            value.data();
@@ -201,7 +201,7 @@ class ValueWriter {
       put(value.value);
     } else {
       static_assert(std::is_aggregate_v<Type>, "only structs without constructors");
-      std::apply([this](const auto&... one) { (put(one), ...); }, members(value));
+      std::apply([this](const auto&... one) { (this->put(one), ...); }, members(value));
     }
   }
 
@@ -253,7 +253,7 @@ class ValueReader {
       value.reset();
       if (there) get(value.emplace());
     } else if constexpr (kIs<Type, std::pair> || kIs<Type, std::tuple>) {
-      std::apply([this](auto&... one) { (get(one), ...); }, value);
+      std::apply([this](auto&... one) { (this->get(one), ...); }, value);
     } else if constexpr (requires {
                            value.derived().rows();
                            value.data();
@@ -266,7 +266,7 @@ class ValueReader {
       get(value.value);
     } else {
       static_assert(std::is_aggregate_v<Type>, "only structs without constructors");
-      std::apply([this](auto&... one) { (get(one), ...); }, members(value));
+      std::apply([this](auto&... one) { (this->get(one), ...); }, members(value));
     }
   }
 
