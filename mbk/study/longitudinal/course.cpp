@@ -154,7 +154,7 @@ DetectableChange detectable_change(const statistics::OutcomeReliability& reliabi
     return not_known("directions lie too far apart to be compared by numbers");
   }
   if (model.support != reliability::Support::enough || model.of_trials.empty()) {
-    return not_known("the variances of this study cannot be told apart");
+    return not_known("the variances of this study are not identifiable");
   }
   error.session = std::isfinite(model.session) ? model.session : 0.0;
   error.trial = model.residual + (std::isfinite(model.known) ? model.known : 0.0);

@@ -240,7 +240,7 @@ export function studySections(report: StudyReport): HTMLElement[] {
 }
 
 export const studyGlossary: [string, string][] = [
-  ["ICC", "intraclass correlation: the share of all variance that is between people. Near 1 people can be told apart by one measurement; near 0 they cannot"],
+  ["ICC", "intraclass correlation: the share of all variance that is between people. Near 1 one measurement distinguishes people; near 0 it does not"],
   ["SEM", "standard error of measurement: what one person’s repeated measurements scatter by, one standard deviation"],
   ["MDC", "minimal detectable change: the difference between two measurements of a person that 95 % of people who did not change stay below"],
   ["Ellipse", "for each direction, how strongly the hand resists being moved that way. Area: how much altogether; shape: longest over shortest axis; orientation: of the long axis, counter-clockwise from x"],
