@@ -24,9 +24,11 @@ class Random {
 
   /// Uniform on {0, …, count − 1}; draws that would favour the small numbers are rejected. count > 0.
   std::uint64_t below(std::uint64_t count) {
-    const std::uint64_t excess = (0 - count) % count;  // 2⁶⁴ mod count
     std::uint64_t draw = engine_();
-    while (draw < excess) draw = engine_();
+    if (draw < count) {                                  // hardly ever
+      const std::uint64_t excess = (0 - count) % count;  // 2⁶⁴ mod count
+      while (draw < excess) draw = engine_();
+    }
     return draw % count;
   }
 

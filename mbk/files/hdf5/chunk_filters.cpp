@@ -65,6 +65,14 @@ std::size_t unshuffle_doubles(const std::byte* from, std::size_t count, std::byt
 
 }  // namespace
 
+std::span<std::byte> Unpacker::Room::of(std::size_t bytes) {
+  if (size < bytes) {
+    data = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    size = bytes;
+  }
+  return {data.get(), bytes};
+}
+
 Unpacker::Unpacker(const Filters& filters, std::size_t chunk_bytes)
     : filters_(filters), chunk_bytes_(chunk_bytes), decompressor_(nullptr, libdeflate_free_decompressor) {}
 
@@ -130,12 +138,12 @@ Result<Bytes> Unpacker::undo(const Filters::Step& step, Bytes bytes) {
 Result<Bytes> Unpacker::inflate(Bytes bytes) {
   if (decompressor_ == nullptr) decompressor_.reset(libdeflate_alloc_decompressor());
   if (decompressor_ == nullptr) throw std::bad_alloc();
-  inflated_.resize(chunk_bytes_ + kChecksumSize);  // a checksum may have been packed with it
+  const auto inflated = inflated_.of(chunk_bytes_ + kChecksumSize);  // a checksum may have been packed with it
   std::size_t read = 0, size = 0;
-  switch (libdeflate_zlib_decompress_ex(decompressor_.get(), bytes.data(), bytes.size(), inflated_.data(),
-                                        inflated_.size(), &read, &size)) {
+  switch (libdeflate_zlib_decompress_ex(decompressor_.get(), bytes.data(), bytes.size(), inflated.data(),
+                                        inflated.size(), &read, &size)) {
     case LIBDEFLATE_SUCCESS:
-      return Bytes(inflated_).first(size);
+      return inflated.first(size);
     case LIBDEFLATE_INSUFFICIENT_SPACE:
       return damaged("the compressed data of a chunk holds more than the chunk");
     default:
@@ -145,27 +153,27 @@ Result<Bytes> Unpacker::inflate(Bytes bytes) {
 
 /// LZF, as h5py packs.
 Result<Bytes> Unpacker::expand(Bytes bytes) {
-  expanded_.resize(chunk_bytes_ + kChecksumSize);
-  const unsigned size = bytes.size() > kUnsignedMost || expanded_.size() > kUnsignedMost
+  const auto expanded = expanded_.of(chunk_bytes_ + kChecksumSize);
+  const unsigned size = bytes.size() > kUnsignedMost || expanded.size() > kUnsignedMost
                             ? 0
-                            : lzf_decompress(bytes.data(), static_cast<unsigned>(bytes.size()), expanded_.data(),
-                                             static_cast<unsigned>(expanded_.size()));
+                            : lzf_decompress(bytes.data(), static_cast<unsigned>(bytes.size()), expanded.data(),
+                                             static_cast<unsigned>(expanded.size()));
   if (size == 0) return damaged("the compressed data of a chunk is damaged, ends early, or holds more than the chunk");
-  return Bytes(expanded_).first(size);
+  return expanded.first(size);
 }
 
 Bytes Unpacker::unshuffle(Bytes bytes, std::size_t element_size) {
   if (element_size <= 1 || bytes.size() / element_size <= 1) return bytes;
   const std::size_t count = bytes.size() / element_size;
-  ordered_.resize(bytes.size());
-  std::size_t done = element_size == kDouble ? unshuffle_doubles(bytes.data(), count, ordered_.data()) : 0;
+  const auto ordered = ordered_.of(bytes.size());
+  std::size_t done = element_size == kDouble ? unshuffle_doubles(bytes.data(), count, ordered.data()) : 0;
   for (; done < count; ++done) {
-    for (std::size_t k = 0; k < element_size; ++k) ordered_[done * element_size + k] = bytes[k * count + done];
+    for (std::size_t k = 0; k < element_size; ++k) ordered[done * element_size + k] = bytes[k * count + done];
   }
   const std::size_t elements = count * element_size;
   std::copy(bytes.begin() + static_cast<std::ptrdiff_t>(elements), bytes.end(),
-            ordered_.begin() + static_cast<std::ptrdiff_t>(elements));
-  return ordered_;
+            ordered.begin() + static_cast<std::ptrdiff_t>(elements));
+  return ordered;
 }
 
 }  // namespace mbk::hdf5

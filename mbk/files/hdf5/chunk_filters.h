@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,9 +46,14 @@ class Unpacker {
   const Filters& filters_;
   std::size_t chunk_bytes_;
   std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor_;
-  std::vector<std::byte> inflated_;
-  std::vector<std::byte> expanded_;
-  std::vector<std::byte> ordered_;
+  /// Bytes that are not zeroed first.
+  struct Room {
+    std::unique_ptr<std::byte[]> data;
+    std::size_t size = 0;
+    /// At least so many, with whatever stands there.
+    std::span<std::byte> of(std::size_t bytes);
+  };
+  Room inflated_, expanded_, ordered_;
 };
 
 }  // namespace mbk::hdf5

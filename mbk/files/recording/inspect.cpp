@@ -178,23 +178,19 @@ bool can_clip(std::string_view name) {
   return std::ranges::any_of(kSensors, [&](std::string_view sensor) { return name.starts_with(sensor); });
 }
 
-/// Of finite values between facts.min and facts.max.
+/// Of values between facts.min and facts.max. Every run that is long enough holds a sample whose number is a multiple
+/// of that length, so that no others are looked at.
 void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& facts) {
-  Index at_extremes = 0;
-  for (const double value : values) at_extremes += (value == facts.min ? 1 : 0) + (value == facts.max ? 1 : 0);
-  if (at_extremes < kRunLength) return;
-  Index runs = 0;
-  Index covered = 0;
-  for (Index begin = 0; begin < values.size();) {
-    Index end = begin + 1;
-    if (values[begin] == facts.min || values[begin] == facts.max) {
-      while (end < values.size() && values[end] == values[begin]) ++end;
-      if (end - begin >= kRunLength) {
-        ++runs;
-        covered += end - begin;
-      }
-    }
-    begin = end;
+  Index runs = 0, covered = 0, next = 0;
+  for (Index i = 0; i < values.size(); i += kRunLength) {
+    if (i < next || (values[i] != facts.min && values[i] != facts.max)) continue;
+    Index begin = i, end = i + 1;
+    while (begin > next && values[begin - 1] == values[i]) --begin;
+    while (end < values.size() && values[end] == values[i]) ++end;
+    next = end;
+    if (end - begin < kRunLength) continue;
+    ++runs;
+    covered += end - begin;
   }
   facts.clipped_fraction = static_cast<double>(covered) / static_cast<double>(values.size());
   facts.clipped = runs >= kRuns && facts.clipped_fraction >= kClippedFraction;

@@ -59,70 +59,89 @@ struct Exchange {
   [[nodiscard]] double absorbed(Index i) const { return unbroken[static_cast<std::size_t>(i)] ? work(i) : 0.0; }
 };
 
-/// First derivative of the position by the preparation's own smoothing, never across a break; made block by block, for
-/// whoever walks along the samples in their order.
-class Velocity {
+/// What the intervals bring, and the first derivative of the position by the preparation's own smoothing, never across
+/// a break; made block by block, for whoever walks along the samples in their order.
+class Intervals {
  public:
-  static constexpr Index kBlock = 1 << 19;
+  static constexpr Index kBlock = 1 << 18;
   /// @param at_once  samples of a block
-  explicit Velocity(const Exchange& exchange, Index at_once = kBlock)
+  explicit Intervals(const Exchange& exchange, Index at_once = kBlock)
       : exchange_(exchange), at_once_(at_once), passing_(exchange.in_passing()) {}
 
-  /// N×n; NaN where the smoothing does not reach.
-  [[nodiscard]] auto row(Index i) { return rows_.row(place(i)); }
-  /// Whether energy and velocity are both known throughout an interval.
-  [[nodiscard]] bool is_known(Index i) {
-    return exchange_.unbroken[static_cast<std::size_t>(i)] && std::isfinite(squares_[place(i + 1)]) &&
-           std::isfinite(squares_[place(i)]);
+  /// Interval i, of which the values below speak from now on; false where its energy or velocity is not known
+  /// throughout.
+  [[nodiscard]] bool reach(Index i) {
+    if (i < begin_ || i + 1 >= begin_ + velocity_.rows()) load(i + 1);
+    at_ = i - begin_;
+    return std::isfinite(squared_[at_]);
   }
-  [[nodiscard]] double squared(Index i) {
-    const double behind = squares_[place(i + 1)];
-    return 0.5 * exchange_.step(i) * (squares_[place(i)] + behind);
-  }
-  [[nodiscard]] double path(Index i) {
-    const double behind = std::sqrt(squares_[place(i + 1)]);
-    return 0.5 * exchange_.step(i) * (std::sqrt(squares_[place(i)]) + behind);
-  }
+  [[nodiscard]] double absorbed() const { return absorbed_[at_]; }
+  [[nodiscard]] double squared() const { return squared_[at_]; }  ///< ∫ v·v dt
+  [[nodiscard]] double path() const { return path_[at_]; }        ///< ∫ |v| dt
+  /// The sum of the velocities at both ends, along an axis.
+  [[nodiscard]] double velocities(Index axis) const { return velocity_(at_, axis) + velocity_(at_ + 1, axis); }
 
   /// Nobody walks on from here.
   void leave() {
-    passing_.let_go_before(std::min(exchange_.samples(), begin_ + rows_.rows() + exchange_.smoothing.half_window()));
+    passing_.let_go_before(
+        std::min(exchange_.samples(), begin_ + velocity_.rows() + exchange_.smoothing.half_window()));
   }
 
  private:
-  /// In the rows that are there, which are others then where it was none of them.
-  Index place(Index i) {
-    if (i < begin_ || i >= begin_ + rows_.rows()) load(i);
-    return i - begin_;
-  }
   /// Rows from a little before sample i on, so that a few steps back need no other block; all of a short recording.
   void load(Index i) {
-    const Index samples = exchange_.samples(), half = exchange_.smoothing.half_window();
+    const Index samples = exchange_.samples();
     begin_ = samples <= at_once_ ? 0 : std::max<Index>(0, i - std::max<Index>(1, at_once_ / 8));
     const Index end = std::min(samples, begin_ + at_once_);
-    if (rows_.rows() == 0) passing_ = exchange_.in_passing(begin_);
+    if (velocity_.rows() == 0) passing_ = exchange_.in_passing(begin_);
     passing_.reached(begin_);
-    rows_.setConstant(end - begin_, exchange_.position.cols(), kNaN);
+    differentiate(end);
+    integrate(end);
+  }
+
+  /// N×n; NaN where the smoothing does not reach.
+  void differentiate(Index end) {
+    const Index half = exchange_.smoothing.half_window();
+    velocity_.setConstant(end - begin_, exchange_.position.cols(), kNaN);
     auto broken = std::ranges::lower_bound(exchange_.breaks, begin_);
     Index first = broken == exchange_.breaks.begin() ? 0 : *std::prev(broken) + 1;  // of the samples without a break
     while (first < end) {
-      const Index last = broken == exchange_.breaks.end() ? samples : *broken + 1;
+      const Index last = broken == exchange_.breaks.end() ? exchange_.samples() : *broken + 1;
       const Index from = std::max(begin_, first + half), to = std::min(end, last - half);
       if (last - first >= exchange_.smoothing.window && from < to) {
         const auto piece = dsp::savitzky_golay(
             exchange_.smoothing, 1, exchange_.position.middle_rows(from - half, to - from + 2 * half), exchange_.rate);
-        if (piece) rows_.middleRows(from - begin_, to - from) = *piece;  // such filters were tried
+        if (piece) velocity_.middleRows(from - begin_, to - from) = *piece;  // such filters were tried
       }
       first = last;
       if (broken != exchange_.breaks.end()) ++broken;
     }
-    squares_ = rows_.rowwise().squaredNorm();
+  }
+
+  void integrate(Index end) {
+    const Index count = std::max<Index>(0, end - begin_ - 1);
+    const auto time = exchange_.clock->segment(begin_, end - begin_).array() - (*exchange_.clock)[0];
+    const Eigen::ArrayXd half_step = 0.5 * (time.tail(count) - time.head(count));
+    squared_ = velocity_.rowwise().squaredNorm();  // at the samples, to begin with
+    path_ = squared_.sqrt();
+    squared_.head(count) = half_step * (squared_.head(count) + squared_.tail(count));
+    path_.head(count) = half_step * (path_.head(count) + path_.tail(count));
+    absorbed_.setZero(count);
+    for (Index k = 0; k < exchange_.position.cols(); ++k) {
+      const auto place = exchange_.position.col(k).segment(begin_, end - begin_).array();
+      const auto force = exchange_.force.col(k).segment(begin_, end - begin_).array();
+      absorbed_ -= 0.5 * (force.head(count) + force.tail(count)) * (place.tail(count) - place.head(count));
+    }
+    const auto from = std::ranges::lower_bound(exchange_.breaks, begin_),
+               to = std::ranges::lower_bound(exchange_.breaks, begin_ + count);
+    for (auto broken = from; broken != to; ++broken) squared_[*broken - begin_] = kNaN;
   }
 
   const Exchange& exchange_;
-  Index at_once_, begin_ = 0;
-  Matrix rows_;
-  Vector squares_;  ///< |row|²
+  Index at_once_, begin_ = 0, at_ = 0;
+  Matrix velocity_;
+  Eigen::ArrayXd squared_;  ///< NaN where the interval is not known
+  Eigen::ArrayXd path_, absorbed_;
   recording::InPassing passing_;
 };
 
@@ -215,7 +234,7 @@ std::vector<Range> equal_ranges(const Exchange& exchange, double block_s) {
   return ranges;
 }
 
-EnergyPart part_of(const Exchange& exchange, Velocity& velocity, const Range& range) {
+EnergyPart part_of(const Exchange& exchange, Intervals& intervals, const Range& range) {
   EnergyPart part;
   part.from_s = exchange.time(range.first);
   part.to_s = exchange.time(range.last);
@@ -227,10 +246,10 @@ EnergyPart part_of(const Exchange& exchange, Velocity& velocity, const Range& ra
       distance += away * away;
     }
     if (distance > farthest) farthest = distance;
-    if (!velocity.is_known(i)) continue;
-    part.absorbed += exchange.absorbed(i);
-    part.path_length += velocity.path(i);
-    part.squared_velocity += velocity.squared(i);
+    if (!intervals.reach(i)) continue;
+    part.absorbed += intervals.absorbed();
+    part.path_length += intervals.path();
+    part.squared_velocity += intervals.squared();
   }
   part.largest_displacement = std::sqrt(farthest);
   part.shortage = part.squared_velocity > 0.0 ? -part.absorbed / part.squared_velocity : kNaN;
@@ -238,15 +257,16 @@ EnergyPart part_of(const Exchange& exchange, Velocity& velocity, const Range& ra
 }
 
 /// The sums of a range after each of its intervals that are known, and how long those are [s].
-std::pair<std::vector<EnergySums>, double> sums_of(const Exchange& exchange, Velocity& velocity, const Range& range) {
+std::pair<std::vector<EnergySums>, double> sums_of(const Exchange& exchange, Intervals& intervals, const Range& range) {
   double duration = 0.0;
   EnergySums sum;
   std::vector<EnergySums> sums;
+  sums.reserve(static_cast<std::size_t>(range.last - range.first));
   for (Index i = range.first; i < range.last; ++i) {
-    if (!velocity.is_known(i)) continue;
+    if (!intervals.reach(i)) continue;
     duration += exchange.step(i);
-    sum.squared_velocity += velocity.squared(i);
-    sum.absorbed += exchange.absorbed(i);
+    sum.squared_velocity += intervals.squared();
+    sum.absorbed += intervals.absorbed();
     sums.push_back(sum);
   }
   return {std::move(sums), duration};
@@ -275,27 +295,27 @@ struct Division {
 
 /// The first blocks are kept as they are; of what is beyond, in a long recording, only the outline: the bootstrap looks
 /// into few of them.
-Division divide(const std::shared_ptr<const Exchange>& exchange, Velocity& velocity, const PreparedTrial& trial,
+Division divide(const std::shared_ptr<const Exchange>& exchange, Intervals& intervals, const PreparedTrial& trial,
                 double block_s) {
   constexpr std::size_t kKept = std::size_t{1} << 20;  // sums
   std::vector<Range> ranges = parts_of(*exchange, trial, block_s);
   Division division;
   if (has_perturbations(trial)) {
-    for (const Range& range : ranges) division.parts.push_back(part_of(*exchange, velocity, range));
+    for (const Range& range : ranges) division.parts.push_back(part_of(*exchange, intervals, range));
     for (std::size_t k = 0; k + 1 < ranges.size(); ++k) ranges[k].last = ranges[k + 1].first;
     ranges.front().first = exchange->window.first;
     ranges.back().last = exchange->window.last;
   }
   std::size_t kept = 0;
   for (const Range& range : ranges) {
-    if (!has_perturbations(trial)) division.parts.push_back(part_of(*exchange, velocity, range));
-    auto [sums, duration] = sums_of(*exchange, velocity, range);
+    if (!has_perturbations(trial)) division.parts.push_back(part_of(*exchange, intervals, range));
+    auto [sums, duration] = sums_of(*exchange, intervals, range);
     if (sums.empty()) continue;
     kept += sums.size();
     EnergyBlock block = energy_block(duration, std::move(sums));
     if (kept > kKept) {
       block = outline(std::move(block), [exchange, range] {
-        Velocity here(*exchange, 2 * (range.last - range.first + 2));
+        Intervals here(*exchange, 2 * (range.last - range.first + 2));
         auto inside = sums_of(*exchange, here, range).first;
         here.leave();
         return inside;
@@ -336,17 +356,16 @@ struct Afterwards {
 };
 
 /// @param first  ∫ v·v dt from which on λ counts
-Afterwards walk_again(const Exchange& exchange, Velocity& velocity, double first, const std::optional<Curl>& curl) {
+Afterwards walk_again(const Exchange& exchange, Intervals& intervals, double first, const std::optional<Curl>& curl) {
   Afterwards found;
   double s = 0.0, e = 0.0, largest = kNaN;
   for (Index i = exchange.window.first; i < exchange.window.last; ++i) {
-    if (!velocity.is_known(i)) continue;
-    s += velocity.squared(i);
-    e += exchange.absorbed(i);
+    if (!intervals.reach(i)) continue;
+    s += intervals.squared();
+    e += intervals.absorbed();
     double product = 0.0;
     for (Index k = 0; k < exchange.force.cols(); ++k) {
-      const double behind = velocity.row(i + 1)[k];
-      product += (velocity.row(i)[k] + behind) * (exchange.force(i + 1, k) - exchange.force(i, k));
+      product += intervals.velocities(k) * (exchange.force(i + 1, k) - exchange.force(i, k));
     }
     found.added_per_delay += 0.5 * product;
     if (curl) found.curl += curl->work(exchange, i);
@@ -416,8 +435,8 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
   auto made = exchange_of(recording, trial);
   if (!made) return tl::unexpected(made.error());
   const auto exchange = std::make_shared<const Exchange>(std::move(*made));
-  Velocity velocity(*exchange);
-  const auto [parts, blocks] = divide(exchange, velocity, trial, options.block_s);
+  Intervals intervals(*exchange);
+  const auto [parts, blocks] = divide(exchange, intervals, trial, options.block_s);
   if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());
 
   Energy energy;
@@ -426,7 +445,8 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
   if (model != nullptr && trial.axes == 2 && model->K.rows() == 2 && model->K.allFinite()) {
     curl = Curl{impedance::antisymmetric_part(model->K), centre_of(*model, *exchange)};
   }
-  const Afterwards found = walk_again(*exchange, velocity, options.first_share * energy.account.squared_velocity, curl);
+  const Afterwards found =
+      walk_again(*exchange, intervals, options.first_share * energy.account.squared_velocity, curl);
   energy.from_s = exchange->time(exchange->window.first);
   energy.to_s = exchange->time(exchange->window.last);
   energy.left_out_s = std::max(0.0, energy.to_s - energy.from_s - energy.account.duration);
@@ -460,10 +480,10 @@ Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings
     auto made = exchange_of(*recordings[k], trials[k]);
     if (!made) return tl::unexpected(made.error());
     const auto exchange = std::make_shared<const Exchange>(std::move(*made));
-    Velocity velocity(*exchange);
+    Intervals intervals(*exchange);
     const bool own = has_perturbations(trials[k]);
     perturbations = perturbations && own;
-    std::vector<EnergyBlock> more = divide(exchange, velocity, trials[k], options.block_s).blocks;
+    std::vector<EnergyBlock> more = divide(exchange, intervals, trials[k], options.block_s).blocks;
     std::ranges::move(more, std::back_inserter(blocks));
   }
   if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());

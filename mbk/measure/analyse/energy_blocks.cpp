@@ -64,22 +64,85 @@ double highest_possible(const EnergyBlock& block, const EnergySums& before, doub
 /// Raises the largest λ, or NaN, to that in a block with S from `first` on.
 void look_into(const EnergyBlock& block, const EnergySums& before, double first, double& largest) {
   const auto too_early = [&](const EnergySums& sum) { return before.squared_velocity + sum.squared_velocity < first; };
-  if (too_early(block.total) || highest_possible(block, before, first) <= largest) return;
-  std::vector<EnergySums> part;
-  const bool cut = is_cut(block, before, first);
-  if (cut) {
-    const auto vertex = std::ranges::partition_point(block.sums, too_early) - block.sums.begin();
-    part = hull_from(block, static_cast<std::size_t>(vertex));
-  }
+  if (too_early(block.total)) return;
   // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
   double highest = -std::numeric_limits<double>::infinity();
-  for (const EnergySums& sum : cut ? part : block.hull) {
+  const auto rises = [&](const EnergySums& sum) {
     const double shortage = -(before.absorbed + sum.absorbed) / (before.squared_velocity + sum.squared_velocity);
-    if (shortage < highest) break;
+    if (shortage < highest) return false;
     highest = shortage;
+    return true;
+  };
+  if (is_cut(block, before, first)) {
+    auto vertex = static_cast<std::size_t>(std::ranges::partition_point(block.sums, too_early) - block.sums.begin());
+    while (rises(block.sums[vertex]) && block.next[vertex] != vertex) vertex = block.next[vertex];
+  } else {
+    std::ranges::find_if_not(block.hull, rises);
   }
   if (!(highest <= largest)) largest = highest;
 }
+
+/// Finds the largest λ of the same blocks in many orders.
+class Shortages {
+ public:
+  Shortages(const std::vector<EnergyBlock>& blocks, double first_share) : blocks_(blocks), first_share_(first_share) {
+    EnergySums all;
+    for (const EnergyBlock& block : blocks) add(block, all);
+    usual_ = all.squared_velocity > 0.0 ? -all.absorbed / all.squared_velocity : 0.0;
+    for (const EnergyBlock& block : blocks) {
+      double above = -std::numeric_limits<double>::infinity();
+      for (const EnergySums& sum : block.hull) {
+        above = std::max(above, -sum.absorbed - usual_ * sum.squared_velocity);
+      }
+      above_.push_back(above);
+    }
+  }
+
+  /// As largest_shortage.
+  [[nodiscard]] double largest(const std::vector<std::size_t>& order) const {
+    double end = 0.0;
+    for (const std::size_t k : order) end += blocks_[k].total.squared_velocity;
+    if (!(end > 0.0)) return kNaN;
+    const double first = first_share_ * end;
+    double largest = kNaN;
+    EnergySums before;
+    const EnergyBlock* outlined = nullptr;
+    EnergySums before_outlined;
+    for (const std::size_t k : order) {
+      const EnergyBlock& block = blocks_[k];
+      if (block.sums.empty() && is_cut(block, before, first)) {  // to be made only where it can matter
+        outlined = &block;
+        before_outlined = before;
+      } else if (!stays_below(k, before, largest)) {
+        look_into(block, before, first, largest);
+      }
+      add(block, before);
+    }
+    if (outlined != nullptr && !(highest_possible(*outlined, before_outlined, first) <= largest)) {
+      look_into(energy_block(outlined->duration, outlined->again()), before_outlined, first, largest);
+    }
+    return largest;
+  }
+
+ private:
+  static void add(const EnergyBlock& block, EnergySums& sums) {
+    sums.squared_velocity += block.total.squared_velocity;
+    sums.absorbed += block.total.absorbed;
+  }
+
+  /// No λ in a block is above `slope`: no point of it stands above the line of that slope through (−S₀, E₀). How far
+  /// points stand above a line of another slope is known, and within the block both lines part by little.
+  [[nodiscard]] bool stays_below(std::size_t k, const EnergySums& before, double slope) const {
+    const double parted = usual_ - slope, least = blocks_[k].hull.front().squared_velocity;
+    const double farthest = parted > 0.0 ? blocks_[k].total.squared_velocity : least;
+    return above_[k] + parted * farthest <= before.absorbed + slope * before.squared_velocity;
+  }
+
+  const std::vector<EnergyBlock>& blocks_;
+  double first_share_;
+  double usual_;               ///< λ of all blocks at their end
+  std::vector<double> above_;  ///< of each block the largest −E − usual_·S
+};
 
 /// What a bootstrap is about.
 struct Totals {
@@ -88,15 +151,29 @@ struct Totals {
   [[nodiscard]] double shortage_at_end() const { return -absorbed / squared_velocity; }
 };
 
-Totals totals_of(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order, double first_share) {
+Totals totals_of(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
+                 const Shortages& shortages) {
   Totals totals;
   for (const std::size_t k : order) {
     totals.duration += blocks[k].duration;
     totals.squared_velocity += blocks[k].total.squared_velocity;
     totals.absorbed += blocks[k].total.absorbed;
   }
-  totals.shortage_largest = largest_shortage(blocks, order, first_share);
+  totals.shortage_largest = shortages.largest(order);
   return totals;
+}
+
+/// Puts the first and the last sixteenth in order, where all percentiles below stand, and what is between them between.
+void sort_ends(std::vector<double>& values) {
+  const std::ptrdiff_t end = std::ssize(values) / 16 + 2;
+  if (2 * end >= std::ssize(values)) {
+    std::ranges::sort(values);
+    return;
+  }
+  std::ranges::nth_element(values, values.begin() + end);
+  std::ranges::nth_element(values.begin() + end, values.end() - end, values.end());
+  std::sort(values.begin(), values.begin() + end);
+  std::sort(values.end() - end, values.end());
 }
 
 /// Percentiles of the bootstrap, widened for few blocks: of n blocks it finds a variance that is (n − 1)/n of the true
@@ -116,14 +193,14 @@ class Percentiles {
   double blocks_;
 };
 
-void add_intervals(const std::vector<EnergyBlock>& blocks, double first_share, int replicates, std::uint64_t seed,
-                   EnergyAccount& account) {
+void add_intervals(const std::vector<EnergyBlock>& blocks, const Shortages& shortages, int replicates,
+                   std::uint64_t seed, EnergyAccount& account) {
   numeric::Random random(seed);
   Matrix drawn(replicates, 4);
   std::vector<std::size_t> order(blocks.size());
   for (Index i = 0; i < replicates; ++i) {
     for (std::size_t& k : order) k = static_cast<std::size_t>(random.below(blocks.size()));
-    const Totals totals = totals_of(blocks, order, first_share);
+    const Totals totals = totals_of(blocks, order, shortages);
     drawn.row(i) << totals.absorbed, totals.mean_power(), totals.shortage_at_end(), totals.shortage_largest;
   }
   std::array<Vector, 4> sorted;
@@ -133,7 +210,7 @@ void add_intervals(const std::vector<EnergyBlock>& blocks, double first_share, i
     for (const double value : drawn.col(column)) {
       if (std::isfinite(value)) known.push_back(value);
     }
-    std::ranges::sort(known);
+    sort_ends(known);
     sorted[static_cast<std::size_t>(column)] = Eigen::Map<const Vector>(known.data(), static_cast<Index>(known.size()));
   }
   const Percentiles percentiles(blocks.size());
@@ -181,36 +258,15 @@ EnergyBlock outline(EnergyBlock block, std::function<std::vector<EnergySums>()> 
 
 double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
                         double first_share) {
-  double end = 0.0;
-  for (const std::size_t k : order) end += blocks[k].total.squared_velocity;
-  if (!(end > 0.0)) return kNaN;
-  const double first = first_share * end;
-  double largest = kNaN;
-  EnergySums before;
-  const EnergyBlock* outlined = nullptr;
-  EnergySums before_outlined;
-  for (const std::size_t k : order) {
-    const EnergyBlock& block = blocks[k];
-    if (block.sums.empty() && is_cut(block, before, first)) {  // to be made only where it can matter
-      outlined = &block;
-      before_outlined = before;
-    } else {
-      look_into(block, before, first, largest);
-    }
-    before.squared_velocity += block.total.squared_velocity;
-    before.absorbed += block.total.absorbed;
-  }
-  if (outlined != nullptr && highest_possible(*outlined, before_outlined, first) > largest) {
-    look_into(energy_block(outlined->duration, outlined->again()), before_outlined, first, largest);
-  }
-  return largest;
+  return Shortages(blocks, first_share).largest(order);
 }
 
 EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbations, double first_share, int replicates,
                          std::uint64_t seed) {
   std::vector<std::size_t> in_order(blocks.size());
   std::iota(in_order.begin(), in_order.end(), 0U);
-  const Totals totals = totals_of(blocks, in_order, first_share);
+  const Shortages shortages(blocks, first_share);
+  const Totals totals = totals_of(blocks, in_order, shortages);
   EnergyAccount account;
   account.duration = totals.duration;
   account.absorbed = totals.absorbed;
@@ -221,7 +277,7 @@ EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbati
   account.blocks = static_cast<Index>(blocks.size());
   account.absorbed95 = account.mean_power95 = account.shortage_at_end95 = account.shortage_largest95 = {kNaN, kNaN};
   account.lower95 = account.upper95 = kNaN;
-  if (blocks.size() >= kEnoughBlocks) add_intervals(blocks, first_share, replicates, seed, account);
+  if (blocks.size() >= kEnoughBlocks) add_intervals(blocks, shortages, replicates, seed, account);
   decide(perturbations, account);
   return account;
 }
