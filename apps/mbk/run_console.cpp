@@ -23,6 +23,8 @@ void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
       ->type_name("N")
       ->check(whole_number(0, 65535));
   command.add_flag("--wait", arguments.wait, "the console starts each trial; nothing moves before");
+  command.add_option("--texts", arguments.texts, "of the participant's page: en, de, or a .toml file with your own")
+      ->type_name("TEXTS");
 }
 
 std::string time_text(const realtime::CycleRecord& record) {
@@ -39,10 +41,15 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const con
   const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
   if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
   if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
+  std::vector<std::string> names;
+  for (const session::Plan& plan : experiment.plans) names.push_back(plan.trial.name);
+  const auto texts = console::find_texts(arguments.texts, names);
+  if (!texts) return tl::unexpected(texts.error());
   auto opened = console::Console::open(arguments.port, experiment.plans, flags,
                                        [](const std::string& line) { say("mbk: console: {}\n", line); });
   if (!opened) return tl::unexpected(opened.error());
   run.console_ = std::move(*opened);
+  run.console_->show_texts(*texts);
   run.page_ = std::make_unique<console::PageOperator>(
       *run.console_, arguments.wait, [](const std::string& warning) { say("mbk: warning: {}\n", warning); });
   say("console:              {}\nparticipant's screen: {}\nonly to watch:        {}\n", run.console_->address(),

@@ -115,7 +115,7 @@ class ConsoleOfASession : public testing::Test {
   /// A page as far as the server can tell.
   struct Page {
     beast::websocket::stream<tcp::socket, false> socket;
-    Json you, state, estimate, refused;
+    Json you, state, session, texts, estimate, refused;
     std::size_t frames = 0;
 
     void tell(const std::string& message, bool text = true) {
@@ -133,7 +133,9 @@ class ConsoleOfASession : public testing::Test {
       EXPECT_TRUE(schemas::fits(text, "console"));
       const Json message = Json::parse(text);
       const std::string type = message.at("type");
-      (type == "you" ? you : type == "state" ? state : type == "estimate" ? estimate : refused) = message;
+      const std::map<std::string, Json*> kinds = {{"you", &you},     {"state", &state},       {"session", &session},
+                                                  {"texts", &texts}, {"estimate", &estimate}, {"refused", &refused}};
+      *kinds.at(type) = message;
     }
     template <class Condition>
     bool read_until(const Condition& condition) {
@@ -145,8 +147,13 @@ class ConsoleOfASession : public testing::Test {
     }
   };
 
+  /// That a page was told that control is there.
+  static auto control(std::string_view where) {
+    return [where](Page& page) { return page.you != Json() && page.you.at("control") == where; };
+  }
+
   std::unique_ptr<Page> open(const std::string& token, const std::string& origin) {
-    auto page = std::make_unique<Page>(Page{beast::websocket::stream<tcp::socket, false>(connected()), {}, {}, {}, {}});
+    auto page = std::make_unique<Page>(Page{beast::websocket::stream<tcp::socket, false>(connected())});
     page->socket.set_option(beast::websocket::stream_base::decorator(
         [&](beast::websocket::request_type& request) { request.set(http::field::origin, origin); }));
     beast::error_code error;
@@ -241,14 +248,11 @@ TEST_F(ConsoleOfASession, APortThatIsTakenIsSaid) {
 
 TEST_F(ConsoleOfASession, TheFirstPageControlsAndTheNextTakesOver) {
   auto first = open(token_), second = open(token_), watching = open(viewing_token_);
-  const auto controls = [](bool expected) {
-    return [=](Page& page) { return page.you == Json() ? false : page.you.at("controls") == expected; };
-  };
-  EXPECT_TRUE(first->read_until(controls(true)));
-  EXPECT_TRUE(second->read_until(controls(false)));
-  EXPECT_TRUE(watching->read_until(controls(false)));
-  EXPECT_EQ(second->you.at("may_stop"), true);
-  EXPECT_EQ(watching->you.at("may_stop"), false);
+  EXPECT_TRUE(first->read_until(control("here")));
+  EXPECT_TRUE(second->read_until(control("elsewhere")));
+  EXPECT_TRUE(watching->read_until(control("elsewhere")));
+  EXPECT_EQ(second->you.at("may_control"), true);
+  EXPECT_EQ(watching->you.at("may_control"), false);
 
   for (Page* page : {second.get(), watching.get()}) {
     page->tell(R"({"command":"note","text":"mine"})");
@@ -256,17 +260,112 @@ TEST_F(ConsoleOfASession, TheFirstPageControlsAndTheNextTakesOver) {
   }
   EXPECT_TRUE(logged("'note' from a page that only watches"));
   EXPECT_TRUE(console_->take_notes().empty());
-  watching->tell(R"({"command":"stop"})");
-  EXPECT_TRUE(soon([&] { return logged("'stop' from a page that only watches"); }));
-  EXPECT_FALSE(session_.flags().operator_stop);
-  second->tell(R"({"command":"stop"})");
-  EXPECT_TRUE(soon([&] { return session_.flags().operator_stop.load(); }));
-
   first.reset();
-  EXPECT_TRUE(second->read_until(controls(true)));
+  EXPECT_TRUE(second->read_until(control("here")));
   second.reset();
   EXPECT_TRUE(soon([&] { return !console_->status().controlled; }));
+  EXPECT_TRUE(watching->read_until(control("nobody")));
   EXPECT_EQ(console_->status().viewers, 1);
+}
+
+TEST_F(ConsoleOfASession, EveryPageCanStop) {
+  auto first = open(token_), second = open(token_), watching = open(viewing_token_);
+  EXPECT_TRUE(watching->read_until(control("elsewhere")));
+  for (Page* page : {first.get(), second.get(), watching.get()}) {
+    session_.flags().operator_stop = false;
+    page->tell(R"({"command":"stop"})");
+    EXPECT_TRUE(soon([&] { return session_.flags().operator_stop.load(); }));
+  }
+}
+
+TEST_F(ConsoleOfASession, APageWithTheOperatorsTokenTakesControl) {
+  auto first = open(token_), second = open(token_), watching = open(viewing_token_);
+  EXPECT_TRUE(first->read_until(control("here")));
+  watching->tell(R"({"command":"control"})");
+  EXPECT_TRUE(soon([&] { return logged("'control' from a page that only watches"); }));
+  second->tell(R"({"command":"control"})");
+  EXPECT_TRUE(second->read_until(control("here")));
+  EXPECT_TRUE(first->read_until(control("elsewhere")));
+  first->tell(R"({"command":"note","text":"mine"})");
+  EXPECT_TRUE(first->read_until([](Page& one) { return !one.refused.is_null(); }));
+  second->tell(R"({"command":"note","text":"mine"})");
+  EXPECT_TRUE(soon([&] { return console_->take_notes().size() == 1; }));
+}
+
+TEST_F(ConsoleOfASession, APageThatIsLoadedAgainKeepsControl) {
+  auto first = open(token_ + "&page=1"), second = open(token_ + "&page=2");
+  EXPECT_TRUE(first->read_until(control("here")));
+  first.reset();
+  EXPECT_TRUE(second->read_until(control("kept")));
+  EXPECT_TRUE(console_->status().controlled);
+  auto again = open(token_ + "&page=1");
+  EXPECT_TRUE(again->read_until(control("here")));
+  EXPECT_TRUE(second->read_until(control("elsewhere")));
+  again.reset();
+  EXPECT_TRUE(second->read_until(control("kept")));
+  second->tell(R"({"command":"control"})");  // need not wait
+  EXPECT_TRUE(second->read_until(control("here")));
+}
+
+TEST_F(ConsoleOfASession, WhatIsExcludedIsShownAndTakenOnceWithItsWindows) {
+  auto page = open(token_);
+  page->tell(R"({"command":"exclude","attempt":1,"text":"coughed"})");
+  EXPECT_TRUE(page->read_until([](Page& one) { return !one.refused.is_null(); }));
+  EXPECT_NE(page->refused.at("why").get<std::string>().find("no trial number 1"), std::string::npos);
+  const auto outcome = perform(session_, folder_ / "trial.h5");
+  console_->judge({Grade::poor, "the model explains 40 % of the force in x", {40.0, 91.0}});
+  const auto attempt = [](Page& one) { return one.session.at("attempts").at(0); };
+  EXPECT_TRUE(page->read_until([&](Page& one) {
+    return one.session != Json() && !one.session.at("attempts").empty() && attempt(one).at("grade") == "poor";
+  }));
+  EXPECT_EQ(attempt(*page).at("vaf"), Json({40.0, 91.0}));
+  EXPECT_TRUE(console_->take_exclusions().empty());
+
+  page->tell(R"({"command":"exclude","attempt":1,"text":"spoke; laughed","from_s":1.5,"to_s":4})");
+  page->tell(R"({"command":"exclude","attempt":1,"text":"coughed"})");
+  EXPECT_TRUE(page->read_until([&](Page& one) { return attempt(one).at("excluded") == "coughed"; }));
+  EXPECT_EQ(attempt(*page).at("windows").at(0), Json({{"from_s", 1.5}, {"to_s", 4.0}, {"why", "spoke; laughed"}}));
+  auto taken = console_->take_exclusions();
+  ASSERT_EQ(taken.size(), 1U);
+  EXPECT_EQ(taken[0].recording, outcome.recording);
+  EXPECT_EQ(taken[0].excluded, "coughed");
+  EXPECT_EQ(taken[0].excluded_windows, "1.5-4 s: spoke; laughed");
+  EXPECT_TRUE(console_->take_exclusions().empty());
+
+  page->refused = {};
+  page->tell(R"({"command":"exclude","attempt":1,"text":"late","from_s":1,"to_s":1000})");
+  EXPECT_TRUE(page->read_until([](Page& one) { return !one.refused.is_null(); }));
+  page->tell(R"({"command":"include","attempt":1})");
+  EXPECT_TRUE(page->read_until([&](Page& one) { return attempt(one).at("excluded") == ""; }));
+  taken = console_->take_exclusions();
+  ASSERT_EQ(taken.size(), 1U);
+  EXPECT_EQ(taken[0].excluded + taken[0].excluded_windows, "");
+}
+
+TEST_F(ConsoleOfASession, AnExclusionStandsInTheRecordingAndGoesAgain) {
+  PageOperator conductor(*console_, true, {});
+  auto page = open(token_);
+  const auto outcome = perform(session_, folder_ / "trial.h5");
+  const auto metadata = [&] { return recording::read(outcome.recording, {}).value().metadata; };
+  const auto tell_and_keep = [&](const std::string& command) {
+    page->tell(command);
+    ASSERT_TRUE(soon([&] {
+      EXPECT_TRUE(conductor.keep_notes());
+      return metadata().contains("excluded") == (command.find("exclude") != std::string::npos);
+    }));
+  };
+  tell_and_keep(R"({"command":"exclude","attempt":1,"text":"coughed\ntwice"})");
+  EXPECT_EQ(metadata().at("excluded"), "coughed twice");
+  EXPECT_FALSE(metadata().contains("excluded_windows"));
+  tell_and_keep(R"({"command":"include","attempt":1})");
+}
+
+TEST_F(ConsoleOfASession, WhatTheParticipantsPageSaysReachesThePageThatComesLater) {
+  console_->show_texts(find_texts("de", {}).value());
+  auto page = open(viewing_token_);
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.texts != Json(); }));
+  EXPECT_EQ(page->texts.at("language"), "de");
+  EXPECT_EQ(page->texts.at("sentences").at("wait"), "Bitte warten.");
 }
 
 TEST_F(ConsoleOfASession, MalformedMessagesAreRefusedLoggedAndAtLastEndTheConnection) {
@@ -488,7 +587,7 @@ TEST_F(ConsoleOfASession, ANoteNeverTakesThePlaceOfAnAnswer) {
   const auto asks = [](const char* question) {
     return [=](Page& one) { return !one.state.is_null() && one.state["question"] == question; };
   };
-  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  ASSERT_TRUE(page->read_until(control("here")));
   for (int k = 0; k < 20; ++k) {
     Action decided = Action::stop;
     std::thread asking([&] { decided = console_->ask(Question::begin); });
@@ -508,7 +607,7 @@ TEST_F(ConsoleOfASession, ThePageConductsAnExperiment) {
   const auto asks = [](const char* question) {
     return [=](Page& one) { return !one.state.is_null() && one.state["question"] == question; };
   };
-  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  ASSERT_TRUE(page->read_until(control("here")));
   std::vector<std::string> warned;
   PageOperator conductor(*console_, true, [&](const std::string& warning) { warned.push_back(warning); });
   const conduct::Experiment experiment{plans_, folder_ / "trial.h5"};
@@ -542,7 +641,7 @@ TEST_F(ConsoleOfASession, ThePageConductsAnExperiment) {
 
 TEST_F(ConsoleOfASession, NotesOfARecordingAreBoundedAndTheRefusalIsSaid) {
   auto page = open(token_);
-  ASSERT_TRUE(page->read_until([](Page& one) { return one.you.is_object() && one.you["controls"] == true; }));
+  ASSERT_TRUE(page->read_until(control("here")));
   const std::string text(1800, 'a');
   const std::size_t fit = kMaxNoteBytes / text.size();
   for (std::size_t i = 0; i <= fit; ++i) page->tell(Json{{"command", "note"}, {"text", text}}.dump());

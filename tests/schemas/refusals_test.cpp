@@ -125,7 +125,7 @@ TEST(ASchema, OfAListRefusesAWrongOneInIt) {
 }
 
 TEST(ASchema, OfOneOfSeveralKindsRefusesAMixture) {
-  const Json you = {{"type", "you"}, {"controls", true}, {"may_stop", true}, {"dropped_frames", 0}};
+  const Json you = {{"type", "you"}, {"control", "here"}, {"may_control", true}, {"dropped_frames", 0}};
   EXPECT_TRUE(fits(you.dump(), "console"));
   Json refused = you;
   refused["type"] = "refused";

@@ -225,6 +225,16 @@ export const violations = async (page) => {
   return list.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join("; ")}`);
 };
 
+/** What axe finds while the screen's user likes it light, and dark: contrast among the rest. The page is light again after that. */
+export async function violationsInBoth(page) {
+  const found = [];
+  for (const colorScheme of ["dark", "light"]) {
+    await page.emulateMedia({ colorScheme });
+    found.push(...(await violations(page)).map((one) => `${colorScheme}: ${one}`));
+  }
+  return found;
+}
+
 /** Screenshot at 1440 px and an A4 PDF, to be looked at. */
 export async function picture(page, name) {
   await scrollThrough(page);

@@ -3,7 +3,8 @@
 //   robot {"motors": "on", "confirmed_off": false, "stop_button": false, "link": true, "fault": 0, "sentence": ""}
 //   ask reset      the page is asked, and what it decided is printed; "begin" and "after" too
 //   report FILE    the report of its trial
-//   quit
+//   judge poor 40 91 WHY    a trial was performed: its grade, what the model explains on each axis [%], why it is not
+//   good quit
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include <iostream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -51,6 +53,26 @@ RobotStatus robot_of(const nlohmann::json& said) {
   return robot;
 }
 
+mbk::console::Judgement judgement_of(const std::string& said) {
+  std::istringstream in(said);
+  std::string grade;
+  mbk::console::Judgement judgement;
+  judgement.vaf.resize(2);
+  in >> grade >> judgement.vaf[0] >> judgement.vaf[1] >> std::ws;
+  judgement.grade = mbk::value_of<mbk::console::Grade>(grade).value_or(mbk::console::Grade::none);
+  std::getline(in, judgement.why);
+  return judgement;
+}
+
+/// A trial that is over as soon as it has begun.
+void perform(Console& console, const mbk::session::Plan& plan) {
+  console.begin(0, mbk::session::header_of(plan, {}), "trial.h5", 4.0);
+  mbk::session::TrialOutcome outcome;
+  outcome.recording = "trial.h5";
+  outcome.ended = "completed";
+  console.finish(outcome);
+}
+
 /// Until the page decided other than to write a note.
 void ask(Console& console, Question question) {
   Action decided = Action::note;
@@ -76,6 +98,9 @@ int main() {
     const std::string what = line.substr(0, line.find(' ')), rest = line.substr(line.find(' ') + 1);
     if (what == "robot") {
       (*console)->show_robot(robot_of(nlohmann::json::parse(rest)));
+    } else if (what == "judge") {
+      perform(**console, *plan);
+      (*console)->judge(judgement_of(rest));
     } else if (what == "report") {
       std::ifstream file(rest, std::ios::binary);
       (*console)->show_report(std::string(std::istreambuf_iterator<char>(file), {}));

@@ -1,9 +1,9 @@
 // The console of mbk run in a browser: a run from its first click to its reports, stops, lost connections, strangers.
 import assert from "node:assert/strict";
-import { existsSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, screenshot, scrollThrough, start, startDouble, violations } from "./browser.mjs";
+import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, screenshot, scrollThrough, start, startDouble, violations, violationsInBoth } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -80,7 +80,8 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   const operator = await visit(running.operator);
   const { page, click, banner, perturbing, rests } = operator;
   await rests();
-  assert.deepEqual(await violations(page), []);
+  await page.getByText("This page controls.").waitFor();
+  assert.deepEqual(await violationsInBoth(page), []);
   await screenshot(page, "console-ready");
 
   await page.getByRole("button", { name: "Begin: relaxed" }).focus();
@@ -90,11 +91,32 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await click("Add the note");
   await page.waitForSelector(".cells", { timeout: 60_000 });
   await page.waitForFunction(() => document.querySelector(".tightening")?.textContent.includes("narrowed by"), undefined, { timeout: 60_000 });
-  assert.deepEqual(await violations(page), []);
+  assert.deepEqual(await violationsInBoth(page), []);
   await screenshot(page, "console-running");
 
   await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".estimate h2"), /whole perturbation, 14 s/);
+  assert.match(await page.textContent(".verdict"), /Completed and good.*The model explains [\d.]+ % in x, [\d.]+ % in y/);
+  assert.match(await page.getByRole("button", { name: "Begin the next: rigid" }).getAttribute("class"), /main/);
+  await page.getByRole("button", { name: "1 relaxed" }).click();
+  await page.locator(".course canvas").scrollIntoViewIfNeeded();
+  const course = await page.locator(".course canvas").boundingBox();
+  await page.mouse.move(course.x + 0.25 * course.width, course.y + 9);
+  await page.mouse.down();
+  await page.mouse.move(course.x + 0.5 * course.width, course.y + 9);
+  await page.mouse.up();
+  const [from, to] = await Promise.all(["from", "to"].map((name) => page.inputValue(`.exclusion [name=${name}]`)));
+  assert.ok(from > 2 && Math.abs(to / from - 2) < 0.05, `dragged from a quarter to a half: ${from} to ${to} s`);
+  await page.locator(".exclusion [name=from]").fill("3.5");
+  await page.locator(".exclusion [name=to]").fill("5");
+  await page.getByLabel("Reason").fill("a b"); // the space bar writes
+  await click("Exclude the window");
+  await page.getByText("3.5 to 5 s excluded: a b").waitFor();
+  await page.getByLabel("Reason").fill("coughed");
+  assert.deepEqual(await violationsInBoth(page), []);
+  await screenshot(page, "console-excluding");
+  await click("Exclude the trial");
+  await page.getByText("Excluded: coughed", { exact: true }).waitFor();
   await click("Begin the next: rigid");
   await perturbing();
   await screenshot(page, "console-force");
@@ -109,14 +131,21 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   const [report] = await Promise.all([page.context().waitForEvent("page"), page.getByRole("link", { name: "Open the report of relaxed" }).click()]);
   await report.waitForSelector("main section");
   assert.match(await report.textContent("main"), /stiffness/i);
-  await screenshot(page, "console-over");
-  assert.deepEqual(await violations(page), []);
+  await page.getByText("Timing of the loop").click();
+  await page.locator(".histogram").first().waitFor();
+  assert.equal(await page.locator(".attempt").count(), 3); // relaxed, rigid, rigid again
+  await screenshot(page, "console-over", { fullPage: true });
+  await page.emulateMedia({ colorScheme: "dark" });
+  await screenshot(page, "console-over-dark", { fullPage: true });
+  assert.deepEqual(await violationsInBoth(page), []);
   assert.deepEqual(operator.said, []);
   assert.deepEqual(operator.foreign(), []);
   assert.equal(await ended(operator, running), 0);
 
   const of = (name) => JSON.parse(mbk("info", "--json", name).out).metadata;
   assert.equal(of("whole_relaxed.h5").notes, "talked to the nurse");
+  assert.equal(of("whole_relaxed.h5").excluded, "coughed");
+  assert.equal(of("whole_relaxed.h5").excluded_windows, "3.5-5 s: a b");
   assert.equal(of("whole_rigid.h5").ended, "ended early by the operator");
   assert.equal(of("whole_rigid_2.h5").notes, "better");
 });
@@ -182,10 +211,14 @@ test("the stop button and the space bar trip the gate; a reset takes two steps",
   const byButton = await pressAndMeasure(page, () => page.locator(".stop").click());
   await page.getByRole("button", { name: "Reset …" }).waitFor();
   assert.match(await page.textContent(".banner"), /Stopped.*the operator stopped it/);
-  assert.deepEqual(await violations(page), []);
+  await page.locator(".verdict.stopped").waitFor();
+  assert.match(await page.textContent(".stop"), /STOPPEDin effect until the reset/); // none is pending
+  assert.deepEqual(await violationsInBoth(page), []);
   await screenshot(page, "console-stopped");
   await click("Reset …");
   await click("Confirm: cause cleared, participant OK; reset");
+  await page.locator("button.main", { hasText: "Repeat this trial" }).waitFor();
+  assert.match(await page.textContent(".stop"), /STOPspace bar/);
   await click("Repeat this trial");
   await perturbing();
   await page.getByRole("button", { name: "End this trial early" }).focus();  // the space bar does not press it
@@ -264,35 +297,151 @@ test("a wrong token and a foreign page get nothing, and that is logged", async (
   running.child.kill("SIGKILL");
 });
 
-test("who only watches sees everything and can do nothing", async () => {
-  const running = await run("watched", "--wait", "--speed", "4", "--trial", "relaxed");
+test("who only watches sees everything, and can do nothing but stop", async () => {
+  const running = await run("watched", "--wait", "--speed", "1", "--trial", "relaxed");
   const operator = await visit(running.operator);
   const watching = await visit(running.viewing);
   await operator.click("Begin: relaxed");
   await watching.banner("Running");
-  assert.ok(await watching.page.locator(".stop").isDisabled());
   assert.equal(await watching.page.locator(".actions button").count(), 0);
-  assert.match(await watching.page.textContent("footer"), /only watches/);
+  assert.match(await watching.page.textContent(".control"), /This page watches: another page controls\. STOP and the space bar work here too/);
+  assert.ok(!(await watching.page.getByRole("button", { name: "Take control" }).isVisible()));
+  assert.match(await watching.page.textContent(".stop"), /STOPspace bar, from this page too/);
+  assert.match(await operator.page.textContent(".control"), /This page controls\. 1 other page is open/);
   const rates = await Promise.all([operator, watching].map(async ({ page }) => (await page.waitForFunction(() => document.documentElement.dataset.framesPerSecond, undefined, { timeout: 60_000 })).jsonValue()));
   console.log(`frames drawn per second by two pages: ${rates.join(", ")}`);
+  assert.deepEqual(await violationsInBoth(watching.page), []);
+  await screenshot(watching.page, "console-watching");
+  await watching.page.keyboard.press("Space");
+  await operator.banner("Stopped");
+  await watching.banner("Stopped");
   await watching.close();
+  await operator.click("End the session");
+  assert.equal(await ended(operator, running), 5);
+});
+
+test("another page of the operator takes control, and the one that controls keeps it when it is loaded again", async () => {
+  const running = await run("control", "--wait", "--trial", "relaxed");
+  const first = await visit(running.operator);
+  const second = await visit(running.operator);
+  const begin = (of) => of.page.getByRole("button", { name: "Begin: relaxed" });
+  const says = (of, words) => of.page.locator(".control", { hasText: words }).waitFor({ timeout: 60_000 });
+  await says(first, "This page controls.");
+  await begin(first).waitFor();
+  await says(second, "another page controls.");
+  assert.equal(await begin(second).count(), 0);
+  await first.page.reload();
+  await says(first, "This page controls.");
+  await says(second, "another page controls.");
+  await screenshot(second.page, "console-second");
+  await second.click("Take control");
+  await says(second, "This page controls.");
+  await begin(second).waitFor();
+  await says(first, "another page controls.");
+  await first.page.getByRole("button", { name: "Take control" }).waitFor();
+  assert.equal(await begin(first).count(), 0);
+  await second.click("No trial");
+  await first.close();
+  assert.equal(await ended(second, running), 0);
+});
+
+test("a trial that was completed but is poor says why, and suggests to repeat it", async () => {
+  const { operator, has, tell, until, code } = await robotReports();
+  const { page, click } = operator;
+  tell("judge poor 40 91 the model explains 40 % of the force in x");
+  tell("ask after");
+  await has(".verdict", "Completed, but poor");
+  await has(".verdict", "The model explains 40 % of the force in x.");
+  await page.locator(".actions button.main", { hasText: "Repeat this trial" }).waitFor();
+  assert.doesNotMatch(await page.getByRole("button", { name: "Finish" }).getAttribute("class"), /main/);
+  await has(".attempt", "40 % explained");
+  assert.deepEqual(await violationsInBoth(page), []);
+  await screenshot(page, "console-poor");
+  await click("Repeat this trial");
+  await until(/decided repeat/);
+  tell("quit");
+  assert.equal(await ended(operator, { code }), 0);
+});
+
+/** How the lines of the page's plots go: of each stroke its colour, its width and where it is on the whole. */
+function watchStrokes() {
+  const { beginPath, lineTo, stroke } = CanvasRenderingContext2D.prototype;
+  globalThis.strokes = [];
+  Object.assign(CanvasRenderingContext2D.prototype, {
+    beginPath() {
+      this.heights = [];
+      beginPath.call(this);
+    },
+    lineTo(x, y) {
+      this.heights?.push(y);
+      lineTo.call(this, x, y);
+    },
+    stroke() {
+      const { heights = [] } = this;
+      if (this.canvas === document.querySelector(".trace canvas")) globalThis.strokes.push({ colour: this.strokeStyle, width: this.lineWidth, height: heights.length > 0 ? heights.reduce((sum, y) => sum + y, 0) / heights.length : NaN });
+      stroke.call(this);
+    },
+  });
+}
+
+/** Counts what is drawn on the participant's page. */
+function watchPictures() {
+  const { fill } = CanvasRenderingContext2D.prototype;
+  globalThis.pictures = 0;
+  CanvasRenderingContext2D.prototype.fill = function (...args) {
+    ++globalThis.pictures;
+    return fill.apply(this, args);
+  };
+}
+
+/** Pearson's correlation. */
+function correlation(pairs) {
+  const mean = (k) => pairs.reduce((sum, pair) => sum + pair[k], 0) / pairs.length;
+  const [x, y] = [mean(0), mean(1)];
+  const moment = (i, j) => pairs.reduce((sum, pair) => sum + (pair[i] - [x, y][i]) * (pair[j] - [x, y][j]), 0);
+  return moment(0, 1) / Math.sqrt(moment(0, 0) * moment(1, 1));
+}
+
+test("in a force trial the command is drawn with the sign of the hand's force, in other lines", async () => {
+  const running = await run("signs", "--wait", "--speed", "2", "--trial", "rigid");
+  const operator = await visit(running.operator, { script: watchStrokes });
+  await operator.click("Begin: rigid");
+  await operator.perturbing();
+  const pairs = await eventually(async () => {
+    // in each picture command x, command y, x, y; dashes leave every other piece of a command out
+    const found = await operator.page.evaluate(() => {
+      const all = globalThis.strokes.slice(-4 * 600);
+      return all.flatMap((one, k) => (one.width > 4 && one.height === one.height && all[k + 2]?.width < 4 && all[k + 2].colour === one.colour && all[k + 2].height === all[k + 2].height ? [[one.height, all[k + 2].height]] : []));
+    });
+    assert.ok(found.length > 150, String(found.length));
+    return found;
+  });
+  const same = correlation(pairs.slice(-150));
+  assert.ok(same > 0.5, `correlation ${same} of force and command as they are drawn`);
+  assert.match(await operator.page.textContent(".trace"), /Force of the hand on the robot \[N\].*−command x.*Time \[s\]/);
+  await screenshot(operator.page, "console-signs");
+  await operator.click("End this trial early");
   await operator.click("Finish");
   assert.equal(await ended(operator, running), 0);
 });
 
-test("the participant sees handle and target, mirrored and turned as the operator likes", async () => {
-  const running = await run("participant", "--wait", "--speed", "1", "--trial", "rigid");
+test("the participant reads what to do in the words of the study, and sees handle and target as the operator likes", async () => {
+  const texts = join(folder, "study.toml");
+  writeFileSync(texts, `${readFileSync(join(import.meta.dirname, "..", "..", "examples", "texts", "de.toml"), "utf8")}\n[trial.rigid]\nhold = "Gegenhalten!"\n`);
+  const running = await run("participant", "--wait", "--speed", "1", "--trial", "rigid", "--texts", texts);
   const operator = await visit(running.operator);
   const participant = await visit(running.participant);
   const mirrored = await visit(`${running.participant}#mirrored&turned=90&magnified=1.5`);
   const { page } = participant;
-  assert.match(await page.textContent(".please-wait"), /Please wait/);
+  const says = (words) => page.locator(".instruction", { hasText: words }).waitFor({ timeout: 60_000 });
+  await says("Bitte warten.");
+  assert.equal(await page.getAttribute("html", "lang"), "de");
   await operator.click("Begin: rigid");
-  await operator.banner("Running");
+  await says("Der Roboter bewegt Ihre Hand.");
   const place = (of) => of.page.waitForFunction(() => document.querySelector("canvas").dataset.handle).then((handle) => handle.jsonValue());
   const before = await place(participant);
-  await operator.perturbing();
-  await page.waitForFunction((first) => document.querySelector(".please-wait").textContent === "" && document.querySelector("canvas").dataset.handle !== first, before, { timeout: 60_000 });
+  await says("Gegenhalten!");
+  await page.waitForFunction((first) => document.querySelector("canvas").dataset.handle !== first, before, { timeout: 60_000 });
   assert.deepEqual(await violations(page), []);
   await screenshot(page, "participant");
   await screenshot(mirrored.page, "participant-mirrored");
@@ -303,11 +452,36 @@ test("the participant sees handle and target, mirrored and turned as the operato
   assert.deepEqual(await violations(page), []);
   assert.deepEqual([...participant.said, ...mirrored.said], []);
   assert.deepEqual(participant.foreign(), []);
-  await operator.click("End this trial early");
-  await operator.click("Finish");
+  await operator.page.locator(".stop").click();
+  await says("Der Roboter hat angehalten.");
+  await operator.click("End the session");
   await participant.close();
   await mirrored.close();
+  assert.equal(await ended(operator, running), 5);
+});
+
+test("in a relaxed trial the participant's picture is steady, and the trial ends with a word of thanks", async () => {
+  const running = await run("steady", "--wait", "--speed", "8", "--trial", "relaxed");
+  const operator = await visit(running.operator);
+  const participant = await visit(running.participant, { script: watchPictures });
+  const { page } = participant;
+  await operator.click("Begin: relaxed");
+  const pictures = await page.waitForFunction(() => document.querySelector('.instruction[data-text="relax"]') && document.querySelector('canvas[data-steady="true"]:not([data-handle])') && globalThis.pictures, undefined, { timeout: 60_000 }).then((value) => value.jsonValue());
+  await screenshot(page, "participant-steady");
+  await page.waitForFunction(() => document.querySelector('.instruction:not([data-text="relax"])'), undefined, { timeout: 60_000 });
+  assert.equal(await page.evaluate(() => globalThis.pictures), pictures, "nothing was drawn anew while nothing changed");
+  await page.locator(".instruction", { hasText: "Thank you. That went well." }).waitFor({ timeout: 60_000 });
+  await operator.click("Finish");
+  await participant.close();
   assert.equal(await ended(operator, running), 0);
+});
+
+test("texts that are not whole are refused before anything moves, with what is missing", () => {
+  writeFileSync(join(folder, "half.toml"), 'language = "fr"\nwait = "Un moment."\n');
+  const { code, err } = mbk("run", experiment, "--out", "half.h5", "--console", "--texts", "half.toml");
+  assert.equal(code, 3);
+  assert.match(err, /half\.toml.*old/);
+  assert.ok(!existsSync(join(folder, "half.h5")));
 });
 
 test("without --wait it goes on by itself, and stays while a page is open", async () => {

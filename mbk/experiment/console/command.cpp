@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
 namespace mbk::console {
 namespace {
+
+constexpr std::uint64_t kMaxAttempt = 1'000'000;
 
 tl::unexpected<Error> refused(std::string message) {
   return bad_usage(std::move(message), "reload the page");
@@ -35,6 +38,22 @@ Result<nlohmann::json> parse(std::string_view text) {
   return message;
 }
 
+/// Whether a command has the key.
+bool knows(Action action, std::string_view key) {
+  switch (action) {
+    case Action::note:
+      return key == "text";
+    case Action::reset:
+      return key == "code";
+    case Action::exclude:
+      return key == "text" || key == "attempt" || key == "from_s" || key == "to_s";
+    case Action::include:
+      return key == "attempt";
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 Result<Command> parse_command(std::string_view json) {
@@ -47,17 +66,35 @@ Result<Command> parse_command(std::string_view json) {
   const auto action = value_of<Action>(name);
   if (!action) return refused(fmt::format("unknown command '{:.40}'", name));
 
-  Command command{*action, {}};
-  const char* const key = command.action == Action::note ? "text" : command.action == Action::reset ? "code" : nullptr;
-  for (const auto& [other, value] : message.items()) {
-    if (other == "command") continue;
-    if (key == nullptr || other != key) return refused(fmt::format("'{}' has no '{:.40}'", name, other));
-    if (!value.is_string()) return refused(fmt::format("the {} of '{}' is no text", key, name));
-    command.text = value.get<std::string>();
+  Command command;
+  command.action = *action;
+  for (const auto& [key, value] : message.items()) {
+    if (key == "command") continue;
+    if (!knows(*action, key)) return refused(fmt::format("'{}' has no '{:.40}'", name, key));
+    const bool text = key == "text" || key == "code";
+    if (text && !value.is_string()) return refused(fmt::format("the {} of '{}' is no text", key, name));
+    if (!text && !value.is_number()) return refused(fmt::format("the {} of '{}' is no number", key, name));
+  }
+  for (const char* const key : {"text", "code"}) {
+    if (message.contains(key)) command.text = message.at(key).get<std::string>();
   }
   if (command.text.size() > kLongestNote) return refused(fmt::format("a text is longer than {} bytes", kLongestNote));
-  if (command.action == Action::note && command.text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    return refused("a note is empty");
+  if (knows(*action, "text") && command.text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    return refused(fmt::format("the text of '{}' is empty", name));
+  }
+  if (knows(*action, "attempt")) {
+    const auto attempt = message.find("attempt");
+    if (attempt == message.end() || !attempt->is_number_unsigned() || attempt->get<std::uint64_t>() == 0 ||
+        attempt->get<std::uint64_t>() > kMaxAttempt) {
+      return refused(fmt::format("the attempt of '{}' is no number from 1 on", name));
+    }
+    command.attempt = attempt->get<int>();
+  }
+  if (message.contains("from_s") != message.contains("to_s")) return refused("a window has one end");
+  if (message.contains("from_s")) {
+    command.window = Window{message.at("from_s").get<double>(), message.at("to_s").get<double>()};
+    const auto [from, to] = *command.window;
+    if (!(from >= 0.0 && to > from)) return refused(fmt::format("the window {:g} to {:g} s is empty", from, to));
   }
   return command;
 }

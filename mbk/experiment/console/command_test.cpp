@@ -6,8 +6,8 @@ namespace mbk::console {
 namespace {
 
 TEST(Command, EveryActionHasANameThatLeadsBackToIt) {
-  for (const Action action :
-       {Action::stop, Action::end, Action::start, Action::repeat, Action::next, Action::abort, Action::reset}) {
+  for (const Action action : {Action::stop, Action::end, Action::start, Action::repeat, Action::next, Action::abort,
+                              Action::reset, Action::control}) {
     const auto command = parse_command(R"({"command":")" + std::string(word_of(action)) + R"("})");
     ASSERT_TRUE(command) << command.error().line();
     EXPECT_EQ(command->action, action);
@@ -18,6 +18,32 @@ TEST(Command, EveryActionHasANameThatLeadsBackToIt) {
 TEST(Command, ANoteCarriesItsTextAndAResetItsCode) {
   EXPECT_EQ(parse_command(R"({"command":"note","text":"talked"})")->text, "talked");
   EXPECT_EQ(parse_command(R"({"command":"reset","code":"7"})")->text, "7");
+}
+
+TEST(Command, AnExclusionCarriesItsAttemptItsReasonAndItsWindow) {
+  const auto whole = parse_command(R"({"command":"exclude","attempt":3,"text":"coughed"})");
+  ASSERT_TRUE(whole) << whole.error().line();
+  EXPECT_EQ(whole->attempt, 3);
+  EXPECT_EQ(whole->text, "coughed");
+  EXPECT_FALSE(whole->window);
+  const auto part = parse_command(R"({"command":"exclude","attempt":1,"text":"coughed","from_s":1.5,"to_s":4})");
+  ASSERT_TRUE(part) << part.error().line();
+  EXPECT_EQ(part->window->from, 1.5);
+  EXPECT_EQ(part->window->to, 4.0);
+  EXPECT_EQ(parse_command(R"({"command":"include","attempt":2})")->attempt, 2);
+}
+
+TEST(Command, AnExclusionThatIsNotWholeIsRefused) {
+  const std::string begin = R"({"command":"exclude","attempt":)";
+  for (const std::string& message :
+       {begin + "1}", begin + R"(1,"text":" "})", begin + R"(0,"text":"a"})", begin + R"(-1,"text":"a"})",
+        begin + R"(1.5,"text":"a"})", begin + R"("1","text":"a"})", begin + R"(1000000000000,"text":"a"})",
+        begin + R"(1,"text":"a","from_s":1})", begin + R"(1,"text":"a","to_s":1})",
+        begin + R"(1,"text":"a","from_s":2,"to_s":2})", begin + R"(1,"text":"a","from_s":-1,"to_s":2})",
+        std::string(R"({"command":"exclude","text":"a"})"), std::string(R"({"command":"include"})"),
+        std::string(R"({"command":"include","attempt":1,"text":"a"})")}) {
+    EXPECT_FALSE(parse_command(message)) << message;
+  }
 }
 
 TEST(Command, WhatIsNoCommandIsRefused) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
@@ -27,6 +28,7 @@ constexpr std::uint64_t kDiskBeats = 120;
 constexpr std::size_t kMaxReports = 30;  // that can still be opened: of a session of months the last ones
 constexpr std::size_t kShownNotes = 20;  // in a state, and their bytes
 constexpr std::size_t kShownNoteBytes = 8 << 10;
+constexpr std::size_t kMaxWindows = 20;    // that are excluded of a trial
 constexpr std::size_t kLongestText = 600;  // in a state, of each sentence [bytes]
 
 Json times_json(const realtime::CycleRecord& record) {
@@ -75,7 +77,40 @@ std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string axis_name(Eigen::Index axis) {
+  return axis == 0 ? "x" : "y";
+}
+
+/// Why conduct::poor is true of it.
+std::string weakness(const Identification& found) {
+  std::string why;
+  for (Eigen::Index axis = 0; axis < found.fit.vaf.size(); ++axis) {
+    if (found.fit.vaf[axis] >= conduct::kPoor) continue;
+    why += fmt::format("{}{:.0f} % of the force in {}", why.empty() ? "the model explains " : " and ",
+                       found.fit.vaf[axis], axis_name(axis));
+  }
+  if (!why.empty() || found.usable) return why;
+  return found.warnings.empty() ? "the result is not usable" : "not usable: " + found.warnings.front().message;
+}
+
 }  // namespace
+
+Judgement Judgement::of(const conduct::Performed& performed) {
+  using safety::Reason;
+  if (performed.stopped()) {
+    const Reason reason = performed.outcome.trip.reason;
+    const bool person = reason == Reason::operator_stop || reason == Reason::stop_button;
+    return {person ? Grade::stopped : Grade::tripped, safety::sentence(performed.outcome.trip), {}};
+  }
+  if (!performed.measured) return {Grade::recorded, "it was not measured", {}};
+  if (!*performed.measured) return {Grade::poor, "not measured: " + performed.measured->error().line(), {}};
+  const Identification& found = (*performed.measured)->identification;
+  Judgement judgement{performed.poor() ? Grade::poor : Grade::good, performed.poor() ? weakness(found) : "", {}};
+  for (const double share : found.fit.vaf) {
+    if (std::isfinite(share)) judgement.vaf.push_back(share);
+  }
+  return judgement;
+}
 
 Console::Console(const std::vector<session::Plan>& plans, session::LoopFlags& flags)
     : flags_(flags), protocol_(plans.empty() ? "" : plans.front().trial.protocol) {
@@ -86,6 +121,7 @@ Console::Console(const std::vector<session::Plan>& plans, session::LoopFlags& fl
     listed.condition = trial.condition;
     listed.home = trial.home;
     listed.force = !std::holds_alternative<control::PositionMode>(trial.control);
+    listed.task = plan.schedule.reaches() != nullptr ? "reach" : listed.force ? "hold" : "relax";
     listed.duration = plan.schedule.duration();
     trials_.push_back(std::move(listed));
   }
@@ -146,7 +182,12 @@ void Console::begin(std::size_t index, const journal::Header& header, const std:
   listed.recording = target.string();
   listed.ending.clear();
   listed.report = 0;
-  running_ = changed_ = true;
+  attempts_.push_back({.trial = index, .recording = target.string()});
+  if (attempts_.size() > kMaxAttempts) {
+    attempts_.pop_front();
+    ++forgotten_attempts_;
+  }
+  running_ = changed_ = session_changed_ = true;
   said_.clear();
 }
 
@@ -197,9 +238,27 @@ void Console::finish(const session::TrialOutcome& outcome) {
   listed.progress = trip_.reason == safety::Reason::none ? Progress::done : Progress::stopped;
   listed.recording = outcome.recording.string();
   listed.ending = outcome.ended;
+  if (!attempts_.empty()) {
+    attempts_.back().recording = listed.recording;
+    attempts_.back().duration = last_.time;
+    attempts_.back().over = true;
+    session_changed_ = true;
+  }
   dropped_ticks_ = outcome.ending.dropped;
   running_ = false;
   changed_ = true;
+}
+
+void Console::judge(Judgement judgement) {
+  const std::scoped_lock lock(mutex_);
+  if (!attempts_.empty()) attempts_.back().judgement = std::move(judgement);
+  session_changed_ = true;
+}
+
+void Console::show_texts(const Texts& texts) {
+  const std::scoped_lock lock(mutex_);
+  texts_ = std::make_shared<std::string>(dump(
+      {{"type", "texts"}, {"language", texts.language}, {"sentences", texts.sentences}, {"trials", texts.trials}}));
 }
 
 Console::Times Console::times(bool watched) {
@@ -276,6 +335,20 @@ std::vector<std::string> Console::take_notes() {
   return std::exchange(notes_, {});
 }
 
+std::vector<Exclusion> Console::take_exclusions() {
+  const std::scoped_lock lock(mutex_);
+  std::vector<Exclusion> taken;
+  for (Attempt& attempt : attempts_) {
+    if (!std::exchange(attempt.changed, false)) continue;
+    std::string windows;
+    for (const auto& [window, why] : attempt.windows) {
+      windows += fmt::format("{}{:g}-{:g} s: {}", windows.empty() ? "" : "; ", window.from, window.to, why);
+    }
+    taken.push_back({attempt.recording, attempt.excluded, std::move(windows)});
+  }
+  return taken;
+}
+
 Page Console::page(std::string_view path) {
   if (path == "/" || path == "/participant") return operator_page_;
   constexpr std::string_view kReport = "/report/";
@@ -304,6 +377,9 @@ Result<void> Console::command(const Command& command) {
       return {};
     case Action::note:
       return note(command.text);
+    case Action::exclude:
+    case Action::include:
+      return exclude(command);
     default:
       break;
   }
@@ -339,8 +415,38 @@ Result<void> Console::note(const std::string& text) {
     shown_note_bytes_ -= shown_notes_.front().size();
     shown_notes_.pop_front();
   }
-  if (question_ != Question::none && !decision_) decide(Action::note);  // never instead of an answer
+  wake();
   return {};
+}
+
+Result<void> Console::exclude(const Command& command) {
+  const int place = command.attempt - 1 - forgotten_attempts_;
+  if (place < 0 || place >= std::ssize(attempts_)) {
+    return bad_usage(fmt::format("there is no trial number {} on this page", command.attempt));
+  }
+  Attempt& attempt = attempts_[static_cast<std::size_t>(place)];
+  if (!attempt.over) return bad_usage("the trial still runs", "exclude it when it is over");
+  if (command.action == Action::include) {
+    attempt.excluded.clear();
+    attempt.windows.clear();
+  } else if (!command.window) {
+    attempt.excluded = command.text;
+  } else if (command.window->to > attempt.duration) {
+    return bad_usage(fmt::format("the window ends at {:g} s, behind the end of the trial at {:.3f} s",
+                                 command.window->to, attempt.duration));
+  } else if (attempt.windows.size() == kMaxWindows) {
+    return bad_usage(fmt::format("{} windows of this trial are excluded already", kMaxWindows), "exclude the trial");
+  } else {
+    attempt.windows.emplace_back(*command.window, command.text);
+  }
+  attempt.changed = session_changed_ = true;
+  wake();
+  return {};
+}
+
+/// Whoever asks looks at notes and exclusions; never instead of an answer.
+void Console::wake() {
+  if (question_ != Question::none && !decision_) decide(Action::note);
 }
 
 void Console::decide(Action action) {
@@ -374,6 +480,7 @@ std::string Console::state_locked() const {
                       {"duration_s", listed.duration},
                       {"home_m", {listed.home[0], listed.home[1]}},
                       {"reference_unit", listed.force ? "N" : "m"},
+                      {"task", listed.task},
                       {"progress", kProgress[static_cast<std::size_t>(listed.progress)]},
                       {"recording", listed.recording},
                       {"ending", beginning(listed.ending)},
@@ -424,9 +531,31 @@ std::string Console::state_locked() const {
                {"viewing", server_ ? viewing_address() : ""}});
 }
 
+std::string Console::session_locked() const {
+  Json attempts = Json::array();
+  int number = forgotten_attempts_;
+  for (const Attempt& attempt : attempts_) {
+    Json windows = Json::array();
+    for (const auto& [window, why] : attempt.windows) {
+      windows.push_back({{"from_s", window.from}, {"to_s", window.to}, {"why", beginning(why)}});
+    }
+    attempts.push_back({{"number", ++number},
+                        {"trial", attempt.trial},
+                        {"name", trials_[attempt.trial].name},
+                        {"recording", attempt.recording},
+                        {"duration_s", attempt.duration},
+                        {"grade", word_of(attempt.judgement.grade)},
+                        {"why", beginning(attempt.judgement.why)},
+                        {"vaf", attempt.judgement.vaf},
+                        {"excluded", beginning(attempt.excluded)},
+                        {"windows", std::move(windows)}});
+  }
+  return dump({{"type", "session"}, {"attempts", std::move(attempts)}});
+}
+
 void Console::beat() {
   sending_.clear();
-  Message state, estimate;
+  Message state, estimate, session, texts;
   std::uint32_t trial = 0;
   robot::Geometry geometry;
   {
@@ -436,6 +565,8 @@ void Console::beat() {
     trial = static_cast<std::uint32_t>(current_);
     geometry = geometry_;
     estimate = std::exchange(estimate_, nullptr);
+    texts = std::exchange(texts_, nullptr);
+    if (std::exchange(session_changed_, false)) session = std::make_shared<std::string>(session_locked());
     if (beats_ % kDiskBeats == 0) {
       std::error_code error;
       const auto folder = target_.parent_path();
@@ -446,7 +577,9 @@ void Console::beat() {
     changed_ = false;
     ++beats_;
   }
+  if (texts) server_->send(Topic::texts, texts);
   if (state) server_->send(Topic::state, state);
+  if (session) server_->send(Topic::session, session);
   if (estimate) server_->send(Topic::estimate, estimate);
   if (!sending_.empty()) server_->send_frame(std::make_shared<std::string>(frame(sending_, geometry, trial)));
 }

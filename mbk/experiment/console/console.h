@@ -16,8 +16,10 @@
 
 #include "mbk/base/core/words.h"
 #include "mbk/base/realtime/cycle_record.h"
+#include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/console/live_estimate.h"
 #include "mbk/experiment/console/server.h"
+#include "mbk/experiment/console/texts.h"
 #include "mbk/experiment/device/device.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
@@ -37,6 +39,40 @@ enum class Question {
   using enum Question;
   return std::to_array<Word<Question>>({{none, ""}, {begin, "begin"}, {after, "after"}, {reset, "reset"}});
 }
+
+/// What a trial is worth that was performed.
+enum class Grade {
+  none,      ///< it runs, or is not judged yet
+  recorded,  ///< and nothing else: it is not measured
+  good,
+  poor,     ///< could not be measured, or the model is not usable or explains little
+  stopped,  ///< by the operator or the robot's stop button
+  tripped,  ///< by any other limit of the gate
+};
+
+[[nodiscard]] constexpr auto word_table(Grade) {
+  using enum Grade;
+  return std::to_array<Word<Grade>>(
+      {{none, ""}, {recorded, "recorded"}, {good, "good"}, {poor, "poor"}, {stopped, "stopped"}, {tripped, "tripped"}});
+}
+
+struct Judgement {
+  Grade grade = Grade::none;
+  std::string why;          ///< it is not good; a sentence without its full stop
+  std::vector<double> vaf;  ///< variance accounted for on each axis [%]; empty: not measured
+
+  [[nodiscard]] static Judgement of(const conduct::Performed& performed);
+};
+
+/// What the operator has said of a recording: it is excluded, or windows of it, as metadata have it.
+struct Exclusion {
+  std::filesystem::path recording;
+  std::string excluded;          ///< why; empty: it is not
+  std::string excluded_windows;  ///< "1.5-4 s: coughed; 7-9 s: spoke"; empty: none
+};
+
+/// Attempts that pages can still see and exclude: of a session of months the last ones.
+inline constexpr std::size_t kMaxAttempts = 200;
 
 /// What is known of the robot itself, between trials too.
 struct RobotStatus {
@@ -83,6 +119,12 @@ class Console {
   /// The trial is over. Returns once the last estimate is there.
   void finish(const session::TrialOutcome& outcome);
 
+  /// All is known of the trial that is over.
+  void judge(Judgement judgement);
+
+  /// What the participant's page says from now on.
+  void show_texts(const Texts& texts);
+
   /// How long the ticks of the last trial took and how late they came, apart for those while pages were open and for
   /// the others.
   struct Times {
@@ -93,9 +135,9 @@ class Console {
   /// Its report can be opened.   @param html  of report::page; empty: there is none, for a reason that `why` says
   void show_report(std::string html, std::string why = "");
 
-  /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note came, and the question
-  /// is to be asked again. A stop while it waits asks for a reset before anything else. Where the program is asked to
-  /// end (LoopFlags::end_session) the answer is abort.
+  /// Asks the page, and waits until it decides: start, repeat, next, abort or reset; or a note or an exclusion came
+  /// (Action::note for both), and the question is to be asked again. A stop while it waits asks for a reset before
+  /// anything else. Where the program is asked to end (LoopFlags::end_session) the answer is abort.
   [[nodiscard]] Action ask(Question question);
 
   /// What the answer came to, where it could not be done.
@@ -110,6 +152,9 @@ class Console {
   /// Remarks that belong to the recording of the trial that is running or was last, and are not in it yet.
   [[nodiscard]] std::vector<std::string> take_notes();
 
+  /// Each recording of which something was excluded or included since the last call, as it is now.
+  [[nodiscard]] std::vector<Exclusion> take_exclusions();
+
   /// What pages get as the state, as JSON. For tests.
   [[nodiscard]] std::string state();
 
@@ -120,10 +165,22 @@ class Console {
     double duration = 0.0;  ///< of the perturbation [s]
     Eigen::Vector2d home;   ///< [m]
     bool force = false;     ///< the perturbation is a force
+    std::string task;       ///< of the participant: the key of its text
     Progress progress = Progress::waiting;
     std::string recording, ending;
     int report = 0;  ///< its number, from 1; 0: none
     std::string report_missing;
+  };
+  /// A trial that was begun; each repetition is another one.
+  struct Attempt {
+    std::size_t trial;  ///< in the list
+    std::string recording;
+    bool over = false;
+    double duration = 0.0;  ///< [s]
+    Judgement judgement;
+    std::string excluded;                                 ///< why; empty: it is not
+    std::vector<std::pair<Window, std::string>> windows;  ///< that are excluded, and why
+    bool changed = false;                                 ///< and nobody has taken that yet
   };
 
   Console(const std::vector<session::Plan>& plans, session::LoopFlags& flags);
@@ -131,11 +188,14 @@ class Console {
   Result<void> command(const Command& command);
   Result<void> reset(const std::string& code);
   Result<void> note(const std::string& text);
+  Result<void> exclude(const Command& command);
+  void wake();
   void decide(Action action);
   void beat();
   void estimated(const LiveEstimate::Estimate& estimate);
   void watch_throwing(std::span<const journal::Tick> ticks);
   [[nodiscard]] std::string state_locked() const;
+  [[nodiscard]] std::string session_locked() const;
 
   session::LoopFlags& flags_;
   std::string protocol_, reset_code_, said_;
@@ -149,9 +209,11 @@ class Console {
   std::deque<std::string> shown_notes_;
   std::size_t shown_note_bytes_ = 0, recording_notes_ = 0, recording_note_bytes_ = 0;  // the last two: of one recording
   std::uint64_t note_count_ = 0;
+  std::deque<Attempt> attempts_;  // the last ones
+  int forgotten_attempts_ = 0;    // before them
   RobotStatus robot_;
   std::size_t current_ = 0;
-  bool running_ = false, changed_ = true, over_ = false;
+  bool running_ = false, changed_ = true, session_changed_ = true, over_ = false;
   Question question_ = Question::none;
   std::optional<Action> decision_;
 
@@ -164,7 +226,7 @@ class Console {
   Times times_;
   std::array<Times, 2> times_apart_;  // without pages, with pages
   safety::Trip trip_;
-  Message estimate_;
+  Message estimate_, texts_;
   std::uint64_t beats_ = 0;
   std::uintmax_t disk_free_ = 0;
   std::unique_ptr<LiveEstimate> live_;

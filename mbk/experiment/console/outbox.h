@@ -14,8 +14,8 @@ namespace mbk::console {
 using Message = std::shared_ptr<const std::string>;
 
 /// Messages of which only the newest counts.
-enum class Topic { you, state, estimate, refusal };
-inline constexpr std::size_t kTopics = 4;
+enum class Topic { you, texts, state, session, estimate, refusal };
+inline constexpr std::size_t kTopics = 6;
 
 /// What still has to go to one viewer, in a room that does not grow: of each topic the newest message, and so many
 /// frames of samples. Where one too many comes, the oldest frame is dropped and counted.

@@ -79,16 +79,29 @@ void PageOperator::recorded(const session::TrialOutcome& outcome) {
   console_.finish(outcome);
 }
 
+Result<void> PageOperator::judged(const conduct::Performed& performed) {
+  console_.judge(Judgement::of(performed));
+  return keep_notes();
+}
+
 Result<void> PageOperator::keep_notes() {
+  for (const Exclusion& one : console_.take_exclusions()) {
+    warn_of_names("the reason", one.excluded + one.excluded_windows);
+    const auto kept =
+        session::set_metadata(one.recording, {{"excluded", one.excluded}, {"excluded_windows", one.excluded_windows}});
+    if (!kept) return kept;
+  }
   if (recording_.empty()) return {};
   const auto notes = console_.take_notes();
-  for (const std::string& note : notes) {
-    const std::string warning = protocol::personal_warning("the note", note, false);
-    if (warning.empty()) continue;
-    if (warn_) warn_(warning);
-    console_.say(warning);
-  }
+  for (const std::string& note : notes) warn_of_names("the note", note);
   return notes.empty() ? Result<void>{} : session::annotate(recording_, notes);
+}
+
+void PageOperator::warn_of_names(std::string_view what, const std::string& text) {
+  const std::string warning = protocol::personal_warning(std::string(what), text, false);
+  if (warning.empty()) return;
+  if (warn_) warn_(warning);
+  console_.say(warning);
 }
 
 bool PageOperator::decides(const conduct::Performed& performed) const {

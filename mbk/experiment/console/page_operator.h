@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/console/console.h"
@@ -27,8 +28,8 @@ class PageOperator : public conduct::Operator {
   void idle(const session::IdleState& seen) override;
   void recorded(const session::TrialOutcome& outcome) override;
 
-  /// Keeps its notes.
-  [[nodiscard]] Result<void> judged(const conduct::Performed& /*performed*/) override { return keep_notes(); }
+  /// Shows what it is worth, and keeps its notes.
+  [[nodiscard]] Result<void> judged(const conduct::Performed& performed) override;
 
   /// Asks the page where it decides, resets the gate where that says so, and keeps notes meanwhile.
   [[nodiscard]] conduct::Next next(session::Session& session, const conduct::Performed& performed) override;
@@ -37,13 +38,16 @@ class PageOperator : public conduct::Operator {
   /// a page is in control.
   [[nodiscard]] bool decides(const conduct::Performed& performed) const;
 
-  /// Remarks go into the recording of the last trial.   @fails  as session::annotate
+  /// Remarks go into the recording of the last trial, exclusions into those that they speak of.
+  /// @fails  as session::annotate and set_metadata
   [[nodiscard]] Result<void> keep_notes();
 
   /// Of the last trial; empty before the first is recorded.
   [[nodiscard]] const std::filesystem::path& recording() const { return recording_; }
 
  private:
+  void warn_of_names(std::string_view what, const std::string& text);
+
   Console& console_;
   bool wait_;
   std::function<void(const std::string&)> warn_;

@@ -40,8 +40,11 @@ std::string random_token() {
 
 }  // namespace
 
-Server::Implementation::Implementation(Handlers handlers)
-    : handlers_(std::move(handlers)), token_(random_token()), viewing_token_(random_token()) {}
+Server::Implementation::Implementation(Handlers handlers, std::chrono::milliseconds control_kept)
+    : handlers_(std::move(handlers)),
+      control_kept_(control_kept),
+      token_(random_token()),
+      viewing_token_(random_token()) {}
 
 Server::Implementation::~Implementation() {
   stop();
@@ -133,8 +136,9 @@ void Server::Implementation::wait_for_beat() {
 Server::Server(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 Server::~Server() = default;
 
-Result<std::unique_ptr<Server>> Server::listen(std::uint16_t port, Handlers handlers) {
-  auto implementation = std::make_unique<Implementation>(std::move(handlers));
+Result<std::unique_ptr<Server>> Server::listen(std::uint16_t port, Handlers handlers,
+                                               std::chrono::milliseconds control_kept) {
+  auto implementation = std::make_unique<Implementation>(std::move(handlers), control_kept);
   if (auto ok = implementation->open(port); !ok) return tl::unexpected(ok.error());
   return std::unique_ptr<Server>(new Server(std::move(implementation)));
 }

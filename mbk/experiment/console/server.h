@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -16,8 +17,9 @@ namespace mbk::console {
 
 /// Pages and a stream of messages over HTTP and WebSocket, for browsers on this machine: it listens on 127.0.0.1 and
 /// nowhere else. Whoever wants anything shows one of two tokens, which are made anew for each server: the operator's,
-/// or that of viewers who may only watch. The first page with the operator's token controls; when it goes, the next one
-/// that has the token does. A stop is taken from every page that has it.
+/// or that of viewers who only watch. The first page with the operator's token controls, until another one that has the
+/// token takes control. When it goes, control is kept for the same page for a while, for it may only be loaded again;
+/// then the next one with the token has it. A stop is taken from every page, whichever token it has.
 ///   Refused: a Host that is not this machine (a foreign name that was pointed here) or not named exactly once, an
 ///   Origin
 /// that is not this server, a target that is no path, a wrong token, a message that is no command. What is refused is
@@ -27,7 +29,7 @@ namespace mbk::console {
 /// there are too many of them, the oldest is closed for the newest; holders of each token have places of their own.
 /// Together they are at most half of the descriptors that the process may have, and each costs a bounded room. A viewer
 /// that takes nothing costs its Outbox and a buffer of the operating system; one that gives no sign of life is closed,
-/// as is one that floods; from a page of the operator's no stop is lost for what else it sends. Everything happens on
+/// as is one that floods; no stop is lost for what else a page sends. Everything happens on
 /// one thread, which no exception ends.
 class Server {
  public:
@@ -38,9 +40,13 @@ class Server {
     std::function<void(const std::string&)> log;          ///< one line about what was refused
   };
 
+  /// For so long control is kept for a page that has gone.
+  static constexpr std::chrono::milliseconds kControlKept{10'000};
+
   /// @param port  0: any that is free
   /// @fails  usage: the port is taken.
-  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(std::uint16_t port, Handlers handlers);
+  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(std::uint16_t port, Handlers handlers,
+                                                              std::chrono::milliseconds control_kept = kControlKept);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   ~Server();
@@ -62,7 +68,7 @@ class Server {
 
   struct Status {
     int viewers = 0;
-    bool controlled = false;           ///< a page with the operator's token is there
+    bool controlled = false;           ///< a page controls, or control is kept for it
     std::uint64_t dropped_frames = 0;  ///< of viewers that did not take them, of all since the start
     std::uint64_t refused = 0;
   };

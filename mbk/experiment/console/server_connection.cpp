@@ -27,26 +27,31 @@ bool same(std::string_view one, std::string_view other) {
   return difference == 0;
 }
 
-struct Target {
-  std::string_view path, token;
-};
-
-/// "/report/1?token=…". A token that is there twice is none.
-Target split(std::string_view target) {
-  Target found{target.substr(0, target.find('?')), {}};
-  constexpr std::string_view kKey = "token=";
-  std::string_view query = target.substr(std::min(found.path.size() + 1, target.size()));
-  int tokens = 0;
+/// What a query gives for a key, "token="; nothing where that is there twice.
+std::string_view value_in(std::string_view query, std::string_view key) {
+  std::string_view found;
+  int times = 0;
   while (!query.empty()) {
     const std::string_view part = query.substr(0, query.find('&'));
-    if (part.starts_with(kKey)) {
-      found.token = part.substr(kKey.size());
-      ++tokens;
+    if (part.starts_with(key)) {
+      found = part.substr(key.size());
+      ++times;
     }
     query.remove_prefix(std::min(part.size() + 1, query.size()));
   }
-  if (tokens > 1) found.token = {};
-  return found;
+  return times == 1 ? found : std::string_view();
+}
+
+struct Target {
+  std::string_view path, token, page;
+};
+
+/// "/report/1?token=…", "/stream?token=…&page=…"
+Target split(std::string_view target) {
+  const std::string_view path = target.substr(0, target.find('?'));
+  const std::string_view query = target.substr(std::min(path.size() + 1, target.size()));
+  constexpr std::size_t kLongestKey = 64;
+  return {path, value_in(query, "token="), value_in(query, "page=").substr(0, kLongestKey)};
 }
 
 std::string_view view(beast::string_view text) {
@@ -116,7 +121,7 @@ class Server::Implementation::Connection : public std::enable_shared_from_this<C
       leave_strangers();
       place = server_.place(rights);
       if (place && websocket::is_upgrade(request)) {
-        server_.open_page(std::move(stream_), rights, std::move(place), request);
+        server_.open_page(std::move(stream_), rights, std::move(place), split(view(request.target())).page, request);
         return;
       }
     }

@@ -69,7 +69,7 @@ struct Capacity {
 
 class Server::Implementation {
  public:
-  explicit Implementation(Handlers handlers);
+  Implementation(Handlers handlers, std::chrono::milliseconds control_kept);
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
   ~Implementation();
@@ -139,13 +139,17 @@ class Server::Implementation {
   Rights admit(const Request& request);
   [[nodiscard]] std::pair<http::status, Page> page_for(const Request& request, Rights rights, bool placed);
   /// The connection becomes one of a page.
-  void open_page(beast::tcp_stream stream, Rights rights, Place place, const Request& request);
+  void open_page(beast::tcp_stream stream, Rights rights, Place place, std::string_view key, const Request& request);
   void add(const std::shared_ptr<Viewer>& viewer);
   void remove(Viewer& viewer);
   void choose_controller();
+  void give_control(Viewer& viewer);
+  /// Who controls, as the viewer is told: "here", "elsewhere", "kept", "nobody".
+  [[nodiscard]] std::string_view control_for(const Viewer& viewer) const;
   void receive(Viewer& viewer, std::string_view text, bool is_text);
 
   Handlers handlers_;
+  std::chrono::milliseconds control_kept_;
   std::string token_, viewing_token_;
   // outlive the connections, which end with the context
   Capacity capacity_;
@@ -160,6 +164,9 @@ class Server::Implementation {
   std::uint16_t port_ = 0;
   std::array<std::string, 2> hosts_;
   std::list<std::shared_ptr<Viewer>> viewers_;  // in the order in which they came
+  Viewer* controller_ = nullptr;                // one of them
+  std::string kept_for_;                        // key of the page that controlled last; empty: control is not kept
+  std::chrono::steady_clock::time_point kept_until_;
   std::array<Message, kTopics> newest_;
   std::atomic<int> viewer_count_{0};
   std::atomic<bool> controlled_{false};

@@ -51,7 +51,7 @@ class FloodedServer : public testing::Test {
     server_.reset();
   }
 
-  void open() {
+  void open(std::chrono::milliseconds control_kept = Server::kControlKept) {
     Server::Handlers handlers;
     handlers.page = [this](std::string_view path) {
       if (throws_) throw std::runtime_error("no page today");
@@ -70,7 +70,7 @@ class FloodedServer : public testing::Test {
       const std::scoped_lock lock(mutex_);
       log_.push_back(line);
     };
-    server_ = Server::listen(0, std::move(handlers)).value();
+    server_ = Server::listen(0, std::move(handlers), control_kept).value();
   }
 
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
@@ -228,7 +228,20 @@ TEST_F(FloodedServer, HugeHeadersAndGarbageAreCutOff) {
   EXPECT_EQ(get(page()), 200U);
 }
 
-TEST_F(FloodedServer, EveryStopOfAnOperatorsPageIsObeyedWhateverElseItSends) {
+TEST_F(FloodedServer, ControlIsKeptForAWhileAndGoesToTheNextPageThen) {
+  open(200ms);
+  auto first = stream(server_->token() + "&page=1");
+  ASSERT_TRUE(soon([&] { return server_->status().controlled; }));
+  first.reset();
+  ASSERT_TRUE(soon([&] { return server_->status().viewers == 0; }));
+  EXPECT_TRUE(soon([&] { return !server_->status().controlled; }));  // nobody came in time
+  auto second = stream(server_->token() + "&page=2");
+  EXPECT_TRUE(soon([&] { return server_->status().controlled; }));
+  second->write(net::buffer(std::string(R"({"command":"end"})")));
+  EXPECT_TRUE(soon([&] { return others_ == 1; }));
+}
+
+TEST_F(FloodedServer, EveryStopOfAPageIsObeyedWhateverElseItSends) {
   auto operators = stream(server_->token());
   ASSERT_NE(operators, nullptr);
   std::thread reading([&] {  // the bytes alone: a WebSocket is not for two threads

@@ -50,8 +50,9 @@ class Bucket {
 /// A page that is open: the stream of messages to it, and its commands.
 class Server::Implementation::Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(Implementation& server, beast::tcp_stream stream, Rights rights, Place place)
-      : server_(server), place_(std::move(place)), socket_(std::move(stream)), rights_(rights) {}
+  /// @param key  by which the page is known when it is loaded again; may be empty
+  Viewer(Implementation& server, beast::tcp_stream stream, Rights rights, Place place, std::string_view key)
+      : server_(server), place_(std::move(place)), socket_(std::move(stream)), rights_(rights), key_(key) {}
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
@@ -94,21 +95,21 @@ class Server::Implementation::Viewer : public std::enable_shared_from_this<Viewe
     return outbox_.dropped() - before;
   }
 
-  /// Says who it is, where that has changed or frames were dropped.
+  /// Says who controls, where that has changed or frames were dropped.
   void introduce() {
-    if (said_ && said_controls_ == controls && said_dropped_ == outbox_.dropped()) return;
-    said_ = true;
-    said_controls_ = controls;
+    const std::string_view control = server_.control_for(*this);
+    if (said_control_ == control && said_dropped_ == outbox_.dropped()) return;
+    said_control_ = control;
     said_dropped_ = outbox_.dropped();
-    put(Topic::you,
-        std::make_shared<std::string>(fmt::format(R"({{"type":"you","controls":{},"may_stop":{},"dropped_frames":{}}})",
-                                                  controls, rights_ == Rights::control, said_dropped_)));
+    put(Topic::you, std::make_shared<std::string>(
+                        fmt::format(R"({{"type":"you","control":"{}","may_control":{},"dropped_frames":{}}})", control,
+                                    rights_ == Rights::control, said_dropped_)));
   }
 
   void close() { beast::get_lowest_layer(socket_).close(); }
 
   [[nodiscard]] Rights rights() const { return rights_; }
-  bool controls = false;
+  [[nodiscard]] const std::string& key() const { return key_; }
   int malformed = 0;
   Bucket messages{kMessages};
 
@@ -158,23 +159,26 @@ class Server::Implementation::Viewer : public std::enable_shared_from_this<Viewe
   Place place_;
   websocket::stream<beast::tcp_stream, false> socket_;  // uncompressed
   Rights rights_;
+  std::string key_;
   beast::flat_buffer buffer_;
   Outbox outbox_{kMaxFrames};
   Message sending_;
-  bool said_ = false, said_controls_ = false;
+  std::string_view said_control_;  // empty: nothing was said
   std::uint64_t said_dropped_ = 0;
   Bucket pings_{kPings};
 };
 
 void Server::Implementation::beat() {
   handlers_.beat();
+  choose_controller();
   for (const auto& viewer : viewers_) viewer->introduce();
   sum_up();
   spare_.take();
 }
 
-void Server::Implementation::open_page(beast::tcp_stream stream, Rights rights, Place place, const Request& request) {
-  std::make_shared<Viewer>(*this, std::move(stream), rights, std::move(place))->run(request);
+void Server::Implementation::open_page(beast::tcp_stream stream, Rights rights, Place place, std::string_view key,
+                                       const Request& request) {
+  std::make_shared<Viewer>(*this, std::move(stream), rights, std::move(place), key)->run(request);
 }
 
 void Server::Implementation::add(const std::shared_ptr<Viewer>& viewer) {
@@ -188,21 +192,34 @@ void Server::Implementation::add(const std::shared_ptr<Viewer>& viewer) {
 }
 
 void Server::Implementation::remove(Viewer& viewer) {
+  if (controller_ == &viewer) {
+    controller_ = nullptr;
+    kept_until_ = std::chrono::steady_clock::now() + control_kept_;
+  }
   std::erase_if(viewers_, [&](const auto& other) { return other.get() == &viewer; });
-  viewer.controls = false;
   viewer_count_ = static_cast<int>(viewers_.size());
   choose_controller();
 }
 
 void Server::Implementation::choose_controller() {
-  const auto controls = [](const auto& viewer) { return viewer->controls; };
-  const auto found = std::ranges::find_if(viewers_, controls);
-  if (found == viewers_.end()) {
-    const auto next =
-        std::ranges::find_if(viewers_, [](const auto& viewer) { return viewer->rights() == Rights::control; });
-    if (next != viewers_.end()) (*next)->controls = true;
-  }
-  controlled_ = std::ranges::any_of(viewers_, controls);
+  if (controller_ != nullptr) return;
+  if (std::chrono::steady_clock::now() >= kept_until_) kept_for_.clear();
+  const auto next = std::ranges::find_if(viewers_, [&](const auto& viewer) {
+    return viewer->rights() == Rights::control && (kept_for_.empty() || viewer->key() == kept_for_);
+  });
+  if (next != viewers_.end()) give_control(**next);
+  controlled_ = controller_ != nullptr || !kept_for_.empty();
+}
+
+void Server::Implementation::give_control(Viewer& viewer) {
+  controller_ = &viewer;
+  kept_for_ = viewer.key();
+  controlled_ = true;
+}
+
+std::string_view Server::Implementation::control_for(const Viewer& viewer) const {
+  if (controller_ != nullptr) return controller_ == &viewer ? "here" : "elsewhere";
+  return kept_for_.empty() ? "nobody" : "kept";
 }
 
 void Server::Implementation::receive(Viewer& viewer, std::string_view text, bool is_text) {
@@ -221,14 +238,14 @@ void Server::Implementation::receive(Viewer& viewer, std::string_view text, bool
     return;
   }
   const bool stop = command->action == Action::stop;
-  if (!in_time && !(stop && viewer.rights() == Rights::control)) {
+  if (!in_time && !stop) {
     refusal(Refusal::haste, fmt::format("more than {} messages a second", kMessages.per_second));
     // a page of the operator's stays: a stop may be among what comes next
     if (viewer.rights() != Rights::control && ++viewer.malformed > kMaxMalformed) viewer.close();
     return;
   }
-  const bool may = viewer.controls || (viewer.rights() == Rights::control && stop);
-  if (!may) {
+  if (command->action == Action::control && viewer.rights() == Rights::control) return give_control(viewer);
+  if (!stop && controller_ != &viewer) {
     return refusal(Refusal::command, fmt::format("'{}' from a page that only watches", word_of(command->action)));
   }
   if (auto done = handlers_.command(*command); !done) refusal(Refusal::command, done.error().line());

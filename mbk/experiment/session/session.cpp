@@ -81,6 +81,22 @@ bool holds_the_same(const fs::path& target, const Recording& recording) {
   });
 }
 
+std::string one_line(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  return printable(std::move(text));
+}
+
+/// Writes the recording anew with the metadata as `change` leaves them.   @fails  as recording::read and write
+template <class Change>
+Result<void> change_metadata(const fs::path& file, const Change& change) {
+  auto recording = recording::read(file, {});
+  if (!recording) return tl::unexpected(recording.error());
+  const auto format = recording::format_of(file);
+  if (!format) return tl::unexpected(format.error());
+  change(recording->metadata);
+  return recording::write(*recording, file, *format, true, recording::readers_of(file));
+}
+
 /// Until the loop has a thread: whatever is in the way leaves the robot stopped, and no journal without ticks.
 struct NotBegun {
   fs::path journal;
@@ -215,16 +231,19 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
 }
 
 Result<void> annotate(const fs::path& file, const std::vector<std::string>& notes) {
-  auto recording = recording::read(file, {});
-  if (!recording) return tl::unexpected(recording.error());
-  const auto format = recording::format_of(file);
-  if (!format) return tl::unexpected(format.error());
-  std::string& text = recording->metadata["notes"];
-  for (std::string note : notes) {
-    std::ranges::replace(note, '\n', ' ');
-    text += (text.empty() ? "" : " | ") + printable(std::move(note));
-  }
-  return recording::write(*recording, file, *format, true, recording::readers_of(file));
+  return change_metadata(file, [&](auto& metadata) {
+    std::string& text = metadata["notes"];
+    for (const std::string& note : notes) text += (text.empty() ? "" : " | ") + one_line(note);
+  });
+}
+
+Result<void> set_metadata(const fs::path& file, const std::map<std::string, std::string>& wanted) {
+  return change_metadata(file, [&](auto& metadata) {
+    for (const auto& [key, text] : wanted) {
+      metadata.erase(key);
+      if (!text.empty()) metadata[key] = one_line(text);
+    }
+  });
 }
 
 Result<Recovered> recover(const fs::path& file, const fs::path& target, const RecoverOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -76,6 +77,11 @@ class Session {
 /// Adds remarks to the metadata of a recording, as `notes` in one line with " | " between them.
 /// @fails  data: the recording cannot be read or written.
 [[nodiscard]] Result<void> annotate(const std::filesystem::path& recording, const std::vector<std::string>& notes);
+
+/// Sets metadata of a recording, in one line each; an empty text takes what is there away.
+/// @fails  data: the recording cannot be read or written.
+[[nodiscard]] Result<void> set_metadata(const std::filesystem::path& recording,
+                                        const std::map<std::string, std::string>& metadata);
 
 /// The journal beside a recording: NAME.h5 → NAME.h5.journal.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& recording);

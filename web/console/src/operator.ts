@@ -1,21 +1,19 @@
 // The operator's page: what happens, whether it is safe, and what to do next.
 import type { ConsoleCommand, ListedTrial, RobotState, State, You } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
+import { AttemptsPanel, gradeSigns, verdict } from "./attempts";
+import { ControlLine } from "./control";
 import { EstimatePanel } from "./estimate";
-import { histogram } from "./histogram";
+import { MachinePanel } from "./machine";
 import { Stream } from "./stream";
 import { Traces } from "./traces";
+import { clock, seconds, text } from "./words";
 
-const period = 1000; // of a tick [µs]
 const signs = { waiting: "○", running: "▶", done: "✓", stopped: "■" };
 
-/** Writes only what has changed, so that a reader's place and a button's focus stay. */
-function text(element: HTMLElement, words: string): void {
-  if (element.textContent !== words) element.textContent = words;
-}
-
-const seconds = (value: number): string => `${Math.max(value, 0).toFixed(1)} s`;
-const clock = (value: number): string => `${Math.floor(value / 60)}:${String(Math.floor(value % 60)).padStart(2, "0")}`;
+/** Where the space bar writes, and stops nothing. */
+const writes = (target: EventTarget | null): target is HTMLElement =>
+  target instanceof HTMLTextAreaElement || (target instanceof HTMLInputElement && (target.type === "text" || target.type === "number"));
 
 /** What the robot says of itself, in one line. */
 function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence }: RobotState): string {
@@ -29,13 +27,15 @@ function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence 
 
 class OperatorPage {
   private state: State | undefined;
-  private you: You = { type: "you", controls: false, may_stop: false, dropped_frames: 0 };
+  private you: You = { type: "you", control: "nobody", may_control: false, dropped_frames: 0 };
   private connected = false;
   private pressed = false; // stop was pressed, and the answer is not there yet
   private shown = "";
-  private nextHistograms = 0;
   private readonly traces = new Traces();
   private readonly estimate = new EstimatePanel();
+  private readonly machine = new MachinePanel();
+  private readonly attempts = new AttemptsPanel((command) => this.tell(command));
+  private readonly control = new ControlLine(() => this.tell({ command: "control" }));
   private frames = 0;
   private counted = performance.now();
 
@@ -44,14 +44,15 @@ class OperatorPage {
   private readonly bannerWords = h("p", { class: "banner-words" });
   private readonly robot = h("p", { class: "robot" });
   private readonly alarm = h("div", { class: "alarm", role: "alert" }); // empty where there is none
-  private readonly stop = h("button", { type: "button", class: "stop" }, h("span", { "aria-hidden": true }, "■ "), "STOP", h("small", {}, "space bar"));
+  private readonly stopWord = h("span", {}, "STOP");
+  private readonly stopHint = h("small", {}, "space bar");
+  private readonly stop = h("button", { type: "button", class: "stop" }, h("span", { "aria-hidden": true }, "■ "), this.stopWord, this.stopHint);
   private readonly phase = h("p", { class: "phase" });
   private readonly progress = h("progress", { max: 1, value: 0, "aria-label": "Progress of the trial" });
   private readonly time = h("p", { class: "time" });
   private readonly trials = h("ol", { class: "trials" });
+  private readonly verdict = h("div", { role: "status" });
   private readonly actions = h("div", { class: "actions", role: "group", "aria-label": "What next" });
-  private readonly histograms = h("div", { class: "histograms" });
-  private readonly facts = h("p", { class: "facts-line" });
   private readonly said = h("p", { class: "said", role: "status" });
   private readonly note = h("textarea", { id: "note", rows: 2, maxlength: 600 });
   private readonly addNote = h("button", { type: "submit" }, "Add the note");
@@ -63,8 +64,16 @@ class OperatorPage {
       this.state = state;
       this.draw();
     },
+    session: ({ attempts }) => {
+      this.attempts.show(attempts);
+      this.shown = "";
+      this.draw();
+    },
     estimate: (estimate) => this.estimate.show(estimate),
-    frame: (frame) => this.traces.add(frame),
+    frame: (frame) => {
+      this.traces.add(frame);
+      this.attempts.add(frame);
+    },
     you: (you) => {
       this.you = you;
       this.draw();
@@ -88,12 +97,12 @@ class OperatorPage {
     });
     root.replaceWith(
       h("div", { class: "operator" },
-        h("header", {}, this.alarm, this.banner, this.stop),
+        h("header", {}, this.alarm, this.banner, this.stop, this.control.element),
         h("main", {},
           h("section", { class: "now", "aria-labelledby": "now-title" },
-            h("h1", { id: "now-title" }, "Trials"), this.phase, this.progress, this.time, this.actions, this.said, this.trials, notes, this.notes),
-          h("section", { class: "signals", "aria-label": "Live signals" }, this.traces.element,
-            h("section", { class: "machine", "aria-label": "Timing of the loop" }, this.histograms, this.facts)),
+            h("h1", { id: "now-title" }, "Trials"), this.phase, this.progress, this.time, this.verdict, this.actions, this.said, this.trials, notes, this.notes),
+          h("div", { class: "signals" }, h("section", { "aria-label": "Live signals" }, this.traces.element),
+            this.machine.element, this.attempts.element),
           this.estimate.element),
         h("footer", {}, this.links)));
     // when it goes down, not when it is let go; a click without a pointer is that of a keyboard or a reading aid
@@ -101,7 +110,7 @@ class OperatorPage {
     this.stop.addEventListener("click", ({ detail }) => detail === 0 && this.pressStop());
     addEventListener("keydown", (event) => this.key(event), { capture: true });
     addEventListener("keyup", (event) => {
-      if (event.code === "Space" && event.target !== this.note) event.preventDefault();
+      if (event.code === "Space" && !writes(event.target)) event.preventDefault();
     }, { capture: true });
     const paint = () => {
       if (this.traces.draw()) ++this.frames;
@@ -113,8 +122,8 @@ class OperatorPage {
   }
 
   private key(event: KeyboardEvent): void {
-    if (event.target === this.note) {
-      if (event.key === "Escape") this.note.blur();
+    if (writes(event.target)) {
+      if (event.key === "Escape") event.target.blur();
       return;
     }
     if (event.code !== "Space") return;
@@ -146,7 +155,8 @@ class OperatorPage {
   private draw(): void {
     const { state } = this;
     this.drawBanner(state);
-    this.stop.disabled = !this.connected || !this.you.may_stop || !state || state.over;
+    this.drawStop(state);
+    this.control.show(this.you, this.connected, state);
     if (!state) return;
     const trial = state.trials[state.current] as ListedTrial;
     document.title = `${state.robot.confirmed_off === false ? "MOTORS NOT CONFIRMED OFF – " : state.safety.tripped ? "STOPPED – " : ""}${trial.name} – mbk console`;
@@ -157,23 +167,20 @@ class OperatorPage {
       : "");
     if (state.said) text(this.said, state.said);
     this.drawRarely(state);
-    this.drawHistograms(state);
-    text(this.facts, [
-      `${state.ticks} ticks, ${state.dropped_ticks} dropped`,
-      `${(state.disk_free_bytes / 1e9).toFixed(1)} GB free on the disk`,
-      `${state.viewers} ${state.viewers === 1 ? "page" : "pages"} open`,
-      this.you.dropped_frames > 0 ? `${this.you.dropped_frames} pictures left out here` : "",
-    ].filter(Boolean).join(" · "));
+    this.machine.show(state, this.you);
   }
 
-  /** Once a second: a second page on the same machine wants its part of the processor too. */
-  private drawHistograms(state: State): void {
-    const now = performance.now();
-    if (now < this.nextHistograms && state.running) return;
-    this.nextHistograms = now + 1000;
-    this.histograms.replaceChildren(
-      histogram("Computing a tick:", state.times.compute, period),
-      histogram("Lateness of a tick:", state.times.lateness, period));
+  /** Loud while it has something to stop; after a stop it says that it is in effect, and still takes another one. */
+  private drawStop(state: State | undefined): void {
+    const inEffect = this.connected && state?.safety.tripped === true;
+    this.stop.disabled = !this.connected || !state || state.over;
+    this.stop.classList.toggle("in-effect", inEffect);
+    text(this.stopWord, inEffect ? "STOPPED" : "STOP");
+    text(this.stopHint, inEffect ? "in effect until the reset" : this.controls ? "space bar" : "space bar, from this page too");
+  }
+
+  private get controls(): boolean {
+    return this.you.control === "here";
   }
 
   private waitingFor(state: State): string {
@@ -228,41 +235,45 @@ class OperatorPage {
 
   /** What holds buttons and links is made anew only where it changes. */
   private drawRarely(state: State): void {
-    const shown = JSON.stringify([state.trials, state.current, state.running, state.question, state.reset_code, state.over, state.notes, state.note_count, state.robot.link && state.robot.stop_button, this.you.controls, this.connected]);
+    const shown = JSON.stringify([state.trials, state.current, state.running, state.question, state.reset_code, state.over, state.notes, state.note_count, state.robot.link && state.robot.stop_button, this.you, this.connected]);
     if (shown === this.shown) return;
     this.shown = shown;
     const trial = state.trials[state.current] as ListedTrial;
     this.traces.choose(trial.home_m, trial.reference_unit);
-    this.trials.replaceChildren(...state.trials.map((one, k) => this.listed(one, k === state.current)));
+    this.trials.replaceChildren(...state.trials.map((one, k) => this.listed(one, k, state)));
+    const last = this.attempts.last;
+    this.verdict.replaceChildren(...(!state.running && last && last.grade !== "" ? [verdict(last)] : []));
+    this.attempts.allow(this.controls && this.connected);
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset["command"] : undefined;
     this.actions.replaceChildren(...this.buttons(state));
     this.actions.querySelector<HTMLElement>(`[data-command="${focused}"]`)?.focus();
-    this.addNote.disabled = this.note.disabled = !this.connected || !this.you.controls;
+    this.addNote.disabled = this.note.disabled = !this.connected || !this.controls;
     const earlier = state.note_count - state.notes.length;
     this.notes.replaceChildren(
       ...(earlier > 0 ? [h("li", { class: "earlier" }, `${earlier} earlier ${earlier === 1 ? "note" : "notes"}, not shown`)] : []),
       ...state.notes.map((note) => h("li", {}, note)));
     const link = (address: string, name: string) => h("a", { href: address, target: "_blank", rel: "noopener" }, name);
     this.links.replaceChildren(
-      ...(this.you.may_stop
+      ...(this.you.may_control
         ? [link(state.participant, "Participant's screen"), " · ", link(state.viewing, "A page that only watches"), " · "]
         : []),
-      this.you.controls ? "This page controls." : this.you.may_stop ? "Another page controls; this one can stop." : "This page only watches.",
-      ` The gate is software: the button that cuts the motors' power stays necessary. ${state.software}`);
+      `The gate is software: the button that cuts the motors' power stays necessary. ${state.software}`);
   }
 
-  private listed(trial: ListedTrial, current: boolean): HTMLElement {
+  private listed(trial: ListedTrial, place: number, state: State): HTMLElement {
+    const current = place === state.current;
+    const grade = trial.progress === "done" ? this.attempts.lastOf(place)?.grade || "good" : "good";
     const token = encodeURIComponent(new URLSearchParams(location.search).get("token") ?? "");
     const words = trial.progress === "waiting" ? clock(trial.duration_s) : trial.progress === "running" ? "running" : trial.ending;
-    return h("li", { class: trial.progress, "aria-current": current ? "step" : undefined },
-      h("span", { class: "sign", "aria-hidden": true }, signs[trial.progress]),
+    return h("li", { class: `${trial.progress} ${trial.progress === "done" ? grade : ""}`, "aria-current": current ? "step" : undefined },
+      h("span", { class: "sign", "aria-hidden": true }, trial.progress === "done" ? gradeSigns[grade] : signs[trial.progress]),
       h("span", {}, h("strong", {}, trial.name), h("small", {}, [trial.condition, words].filter(Boolean).join(" · ")),
         trial.report > 0 && h("a", { href: `/report/${trial.report}?token=${token}`, target: "_blank", rel: "noopener" }, `Open the report of ${trial.name}`),
         trial.report_missing && h("small", { class: "care-text" }, `no report: ${trial.report_missing}`)));
   }
 
   private buttons(state: State): HTMLElement[] {
-    if (!this.you.controls || !this.connected || state.over) return [];
+    if (!this.controls || !this.connected || state.over) return [];
     const button = (command: ConsoleCommand["command"], words: string, more: Omit<ConsoleCommand, "command"> = {}, kind = "") => {
       const made = h("button", { type: "button", class: kind, "data-command": command }, words);
       made.addEventListener("click", () => this.tell({ command, ...more }));
@@ -274,9 +285,13 @@ class OperatorPage {
     switch (state.question) {
       case "begin":
         return [button("start", `Begin: ${name(state.current)}`, {}, "main"), button("abort", "No trial: end the session")];
-      case "after":
-        return [button("next", last ? "Finish" : `Begin the next: ${name(state.current + 1)}`, {}, "main"), button("repeat", "Repeat this trial"),
-          ...(last ? [] : [button("abort", "End the session")])];
+      case "after": {
+        const grade = this.attempts.last?.grade ?? "";
+        const repeat = grade === "poor" || grade === "stopped" || grade === "tripped"; // is what is suggested
+        const next = button("next", last ? "Finish" : `Begin the next: ${name(state.current + 1)}`, {}, repeat ? "" : "main");
+        const again = button("repeat", "Repeat this trial", {}, repeat ? "main" : "");
+        return [...(repeat ? [again, next] : [next, again]), ...(last ? [] : [button("abort", "End the session")])];
+      }
       case "reset":
         if (state.robot.link && state.robot.stop_button) {
           const waits = button("reset", "Reset …");

@@ -9,10 +9,18 @@ export interface Line {
   offset: number;
 }
 
-// Okabe and Ito's colours; dashes distinguish references without any
-const blue = "#0072b2";
-const vermilion = "#d55e00";
-const [ink, grid] = ["#333", "#e4e4e4"];
+// dashes distinguish references without any colour
+interface Colours {
+  paper: string;
+  label: string;
+  grid: string;
+  lines: [string, string];
+}
+function colours(): Colours {
+  const style = getComputedStyle(document.documentElement);
+  const token = (name: string) => style.getPropertyValue(name).trim();
+  return { paper: token("--paper"), label: token("--label"), grid: token("--grid"), lines: [token("--first"), token("--second")] };
+}
 const dash = 5; // buckets drawn, and left out
 const [left, right, above, below] = [64, 16, 8, 30]; // around the lines [CSS pixels]
 const overhang = 7; // of a time's label, to the left of the lines
@@ -31,6 +39,7 @@ export class Plot {
   readonly element: HTMLElement;
   private readonly canvas = h("canvas", { "aria-hidden": true });
   private readonly paint = this.canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
+  private colours = colours();
   private lines: (Line | undefined)[] = [];
   private low: number; // ends of the scale
   private high: number;
@@ -47,7 +56,7 @@ export class Plot {
     this.element = h("figure", { class: "trace" },
       h("figcaption", {}, h("strong", {}, `${title} [${unit}]`),
         ...names.map((name, k) => h("span", { class: `key ${k % 2 === 0 ? "x" : "y"} ${k < 2 ? "" : "dashed"}` }, name))),
-      drawing);
+      drawing, h("p", { class: "axis-title" }, "Time [s]"));
     new ResizeObserver(() => {
       const { clientWidth, clientHeight } = drawing;
       if (clientWidth <= left + right || clientHeight <= above + below) return; // not shown
@@ -62,6 +71,12 @@ export class Plot {
   show(lines: (Line | undefined)[]): void {
     this.lines = lines;
     this.whole = true;
+  }
+
+  /** The screen's user likes it dark now, or light again. */
+  recolour(): void {
+    this.colours = colours();
+    this.clear();
   }
 
   /** Nothing but the axes, until there is something. */
@@ -79,7 +94,7 @@ export class Plot {
     } else {
       if (moved > 0) this.move(moved, to);
       // what the line drew before the last bucket stays; its ends are round, so that nothing of it reaches further
-      const reach = Math.ceil(1.5 * this.sharp);
+      const reach = Math.ceil(3 * this.sharp);
       const from = Math.max(this.x0, Math.floor(this.x((this.last - 0.5) * width)) - reach);
       this.emptied(from);
       this.draws(samples, Math.max(samples.first, this.last - 3), from);
@@ -118,8 +133,10 @@ export class Plot {
       if (!line) continue;
       for (let number = samples.first; number <= samples.last; ++number) {
         const [from, to] = [samples.low(number, line.from), samples.high(number, line.from)];
-        low = Math.min(low, Number.isFinite(from) ? line.scale * (from - line.offset) : low);
-        high = Math.max(high, Number.isFinite(to) ? line.scale * (to - line.offset) : high);
+        for (const value of [line.scale * (from - line.offset), line.scale * (to - line.offset)]) {
+          if (value < low) low = value;
+          if (value > high) high = value;
+        }
       }
     }
     const end = (now: number, wanted: number): number => {
@@ -137,11 +154,11 @@ export class Plot {
     this.moved = Math.floor(to * this.perSecond);
     this.upTo = to;
     this.labels = [];
-    paint.fillStyle = "#fff";
+    paint.fillStyle = this.colours.paper;
     paint.fillRect(0, 0, canvas.width, canvas.height);
     this.emptied(this.x0);
     paint.font = `${fontSize * sharp}px system-ui, sans-serif`;
-    paint.fillStyle = ink;
+    paint.fillStyle = this.colours.label;
     paint.textAlign = "right";
     paint.textBaseline = "middle";
     const step = this.valueStep;
@@ -163,7 +180,7 @@ export class Plot {
   /** Times behind `from`, up to `to`. */
   private label(from: number, to: number): void {
     const { paint, sharp } = this;
-    paint.fillStyle = ink;
+    paint.fillStyle = this.colours.label;
     paint.textAlign = "center";
     paint.textBaseline = "top";
     const step = this.timeStep;
@@ -182,12 +199,11 @@ export class Plot {
     const { paint, canvas, sharp, x0, bottom } = this;
     const kept = canvas.width - x0 - by;
     paint.drawImage(canvas, x0 + by, 0, kept, canvas.height, x0, 0, kept, canvas.height);
-    paint.fillStyle = "#fff";
+    paint.fillStyle = this.colours.paper;
     paint.fillRect(canvas.width - by, 0, by, canvas.height);
     this.moved += by;
-    const first = this.labels[0];
-    if (first && this.x(first.time) - first.half < x0) {
-      const begin = x0 - overhang * sharp;
+    const begin = x0 - overhang * sharp;
+    for (let first = this.labels[0]; first && this.x(first.time) - first.half < x0; first = this.labels[0]) {
       paint.fillRect(begin, bottom + 1, Math.ceil(this.x(first.time) + first.half) - begin, canvas.height - bottom - 1);
       this.labels.shift();
     }
@@ -200,9 +216,9 @@ export class Plot {
     const { paint, canvas, sharp, bottom } = this;
     const end = this.x0 + this.inside;
     const thin = Math.max(1, Math.round(sharp));
-    paint.fillStyle = "#fff";
+    paint.fillStyle = this.colours.paper;
     paint.fillRect(from, 0, canvas.width - from, bottom);
-    paint.fillStyle = grid;
+    paint.fillStyle = this.colours.grid;
     const values = this.valueStep;
     for (let k = Math.ceil(this.low / values); k * values <= this.high; ++k) {
       paint.fillRect(from, Math.round(this.y(k * values)), end - from, thin);
@@ -223,10 +239,12 @@ export class Plot {
     paint.rect(from, 0, this.x0 + this.inside - from, this.bottom);
     paint.clip();
     paint.lineJoin = "round";
-    this.lines.forEach((line, k) => {
-      if (!line) return;
-      paint.strokeStyle = k % 2 === 0 ? blue : vermilion;
-      paint.lineWidth = (k < 2 ? 2 : 1.6) * sharp;
+    for (const k of [2, 3, 0, 1]) { // references below what was measured: both are seen where they agree
+      const line = this.lines[k];
+      if (!line) continue;
+      paint.strokeStyle = this.colours.lines[k % 2 === 0 ? 0 : 1];
+      paint.lineWidth = (k < 2 ? 2 : 5) * sharp;
+      paint.globalAlpha = k < 2 ? 1 : 0.55;
       paint.beginPath();
       let drawing = false;
       let before = NaN; // twice the middle of the bucket before
@@ -247,7 +265,7 @@ export class Plot {
         paint.lineTo(this.x((number + 0.7) * width), this.y(line.scale * (other - line.offset)));
       }
       paint.stroke();
-    });
+    }
     paint.restore();
   }
 }

@@ -1,5 +1,5 @@
 // What the server sends, and what it is told: one WebSocket that opens itself again after it was lost.
-import type { ConsoleCommand, ConsoleMessage, LiveEstimate, State, You } from "@mbk/shared/documents";
+import type { ConsoleCommand, ConsoleMessage, ConsoleTexts, LiveEstimate, PerformedTrials, State, You } from "@mbk/shared/documents";
 
 /** Columns of a frame, as mbk/experiment/console/frame.h says. */
 export const column = { time: 0, hand: 1, force: 3, reference: 5, acceleration: 7, torque: 9, compute: 11, late: 12 };
@@ -31,11 +31,22 @@ export function decode(bytes: ArrayBuffer): Frame | undefined {
 
 export interface Listener {
   state(state: State): void;
+  session?(session: PerformedTrials): void;
+  texts?(texts: ConsoleTexts): void;
   estimate?(estimate: LiveEstimate): void;
   frame(frame: Frame): void;
   you?(you: You): void;
   refused?(why: string): void;
   connected(connected: boolean): void;
+}
+
+/** By this the page is known when it is loaded again, so that it keeps control; of this tab alone. */
+function pageKey(): string {
+  const kept = sessionStorage.getItem("page");
+  if (kept) return kept;
+  const made = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  sessionStorage.setItem("page", made);
+  return made;
 }
 
 const againAfter = 1000; // [ms]
@@ -61,7 +72,7 @@ export class Stream {
 
   private open(): void {
     const token = new URLSearchParams(location.search).get("token") ?? "";
-    const socket = new WebSocket(`ws://${location.host}/stream?token=${encodeURIComponent(token)}`);
+    const socket = new WebSocket(`ws://${location.host}/stream?token=${encodeURIComponent(token)}&page=${pageKey()}`);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => {
       if (socket !== this.socket) return;
@@ -94,6 +105,8 @@ export class Stream {
     }
     const message: ConsoleMessage = JSON.parse(data);
     if (message.type === "state") this.listener.state(message);
+    else if (message.type === "session") this.listener.session?.(message);
+    else if (message.type === "texts") this.listener.texts?.(message);
     else if (message.type === "estimate") this.listener.estimate?.(message);
     else if (message.type === "you") this.listener.you?.(message);
     else if (message.type === "refused") this.listener.refused?.(message.why);

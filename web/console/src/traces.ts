@@ -7,7 +7,7 @@ import { column, type Frame } from "./stream";
 export class Traces {
   readonly element: HTMLElement;
   private readonly samples = new Samples();
-  private readonly force = new Plot("Force of the hand on the robot", "N", ["x", "y", "command x", "command y"], 2);
+  private readonly force = new Plot("Force of the hand on the robot", "N", ["x", "y", "−command x", "−command y"], 2);
   private readonly position = new Plot("Position from the test location", "mm", ["x", "y", "reference x", "reference y"], 5);
   private trial = -1;
   private newest = 0; // first sample of the newest frame [s]
@@ -15,6 +15,10 @@ export class Traces {
 
   constructor() {
     this.element = h("div", { class: "traces" }, this.force.element, this.position.element);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      for (const plot of [this.force, this.position]) plot.recolour();
+      this.fresh = this.samples.last >= 0;
+    });
   }
 
   /** What belongs to the trial: where home is, and what its reference is. */
@@ -22,7 +26,7 @@ export class Traces {
     const pair = (from: number, scale: number, offset = [0, 0]): Line[] =>
       [0, 1].map((axis) => ({ from: from + axis, scale, offset: offset[axis] as number }));
     const millimetres = 1000;
-    const force = referenceUnit === "N" ? pair(column.reference, 1) : [];
+    const force = referenceUnit === "N" ? pair(column.reference, -1) : []; // what the hand answers the robot's command with
     const place = referenceUnit === "m" ? pair(column.reference, millimetres, home) : [];
     this.force.show([...pair(column.force, 1), force[0], force[1]]);
     this.position.show([...pair(column.hand, millimetres, home), place[0], place[1]]);
