@@ -110,8 +110,9 @@ function(mbk_install)
   # The folders keep their places beside each other, so that the links between the documents hold.
   install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright
           DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-  install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
-          PATTERN docs/site EXCLUDE)  # what builds the site out of them
+  install(DIRECTORY docs examples bridge DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
+          PATTERN docs/site EXCLUDE  # what builds the site out of them
+          REGEX "/bridge/.*(_test\\.|CMakeLists|__pycache__)" EXCLUDE)
 
   get_property(modules GLOBAL PROPERTY MBK_MODULES)
   add_library(mbk_all INTERFACE)

@@ -1,0 +1,16 @@
+function [bridge, bytes] = mbk_bridge_state(bridge, sample)
+%MBK_BRIDGE_STATE  The bytes to send to bridge.master.
+%   [bridge, bytes] = mbk_bridge_state(bridge, sample)   sample: of mbk_sample.
+%   Where bridge.awake is false nobody listens: do not send them.
+%#codegen
+if bridge.awake
+  bridge.sequence = bridge.sequence + 1;
+end
+flags = [sample.stop_pressed, sample.motors_on, sample.has_force, sample.has_acceleration, bridge.watchdog_expired, ...
+         sample.drives_measure] * [1; 2; 4; 8; 16; 32];
+bytes = mbk_pack_state(struct('version', bridge.version, 'flags', flags, 'session', bridge.session, ...
+                              'rejected', bridge.rejected, 'sequence', bridge.sequence, 'answered', sample.obeyed, ...
+                              'time_s', sample.time_s, 'encoder', sample.encoder, 'force', sample.force, ...
+                              'acceleration', sample.acceleration, 'measured', sample.measured, ...
+                              'fault', sample.fault));
+end
