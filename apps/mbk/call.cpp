@@ -17,10 +17,12 @@
 #include "apps/mbk/command_list.h"
 #include "apps/mbk/command_tree.h"
 #include "apps/mbk/commands.h"
+#include "apps/mbk/commands_json.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/reading_options.h"
 #include "apps/mbk/usage_error.h"
 #include "mbk/base/core/edit_distance.h"
+#include "mbk/base/core/version.h"
 #include "mbk/files/recording/in_memory.h"
 
 namespace mbk::app {
@@ -143,7 +145,7 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
   CLI::App probe;
   const Actions unused = add_commands(first, probe, "");
   const CLI::App* const command = path.empty() ? nullptr : find_command(probe, path);
-  if (command == nullptr || std::ranges::find(kNotCallable, first) != kNotCallable.end()) {
+  if (command == nullptr || !can_be_called(first)) {
     return bad_usage(fmt::format("'{}' is no command that can be called", call.command), "see 'mbk --help'");
   }
   auto behind = typed_words(*command, call, words);
@@ -227,13 +229,6 @@ std::vector<std::string> all_words(const Call& call) {
   return words;
 }
 
-nlohmann::json option_json(const OptionText& option) {
-  return {{"names", option.names},       {"value", option.value},       {"description", option.description},
-          {"group", option.group},       {"required", option.required}, {"repeats", option.repeats},
-          {"needs", option.needs},       {"excludes", option.excludes}, {"words", option.values.words},
-          {"files", option.values.files}};
-}
-
 }  // namespace
 
 std::string recording_word(std::size_t k) {
@@ -313,25 +308,15 @@ Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call&
   });
 }
 
+bool can_be_called(std::string_view command) {
+  return std::ranges::find(kNotCallable, command.substr(0, command.find(' '))) == kNotCallable.end();
+}
+
 std::string describe_commands() {
   CLI::App app;
   app.name("mbk");
   const Actions unused = add_commands("", app, "");
-  const CommandText root = describe(app);
-  nlohmann::json commands = nlohmann::json::array();
-  for_each_command(root, [&](const CommandText& command) {
-    if (!command.commands.empty() || command.path.size() < 2) return;
-    if (std::ranges::find(kNotCallable, command.path[1]) != kNotCallable.end()) return;
-    nlohmann::json one{{"command", command.joined(" ").substr(4)},
-                       {"description", command.description},
-                       {"footer", command.footer},
-                       {"options", nlohmann::json::array()},
-                       {"positionals", nlohmann::json::array()}};
-    for (const OptionText& option : command.options) one["options"].push_back(option_json(option));
-    for (const OptionText& option : command.positionals) one["positionals"].push_back(option_json(option));
-    commands.push_back(std::move(one));
-  });
-  return commands.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return commands_json(describe(app), std::string(version()));
 }
 
 }  // namespace mbk::app

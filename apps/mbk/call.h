@@ -65,7 +65,10 @@ struct Answer {
 /// @throws  Stopped where `stop` said so
 [[nodiscard]] Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call& call);
 
-/// Every command that can be called with its options, as JSON: what --help says on every level.
+/// Whether a command ("robot identify") runs in a process that calls it.
+[[nodiscard]] bool can_be_called(std::string_view command);
+
+/// Every command with its options: the document of `mbk manual --json`, to the last byte.
 [[nodiscard]] std::string describe_commands();
 
 }  // namespace mbk::app

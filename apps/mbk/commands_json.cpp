@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/mbk/call.h"
+
 namespace mbk::app {
 namespace {
 
@@ -29,6 +31,7 @@ Json command_json(const CommandText& command) {
   json["path"] = std::vector<std::string>(command.path.begin() + 1, command.path.end());  // without "mbk"
   json["summary"] = command.description;
   json["footer"] = command.footer;
+  json["callable"] = command.commands.empty() && can_be_called(command.path[1]);
   json["arguments"] = Json::array();
   for (const OptionText& positional : command.positionals) json["arguments"].push_back(option_json(positional));
   json["options"] = Json::array();

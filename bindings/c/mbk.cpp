@@ -332,6 +332,6 @@ const char* mbk_commands(void) {
     static const std::string kCommands = mbk::app::describe_commands();
     return kCommands.c_str();
   } catch (...) {  // no memory
-    return "[]";
+    return nullptr;
   }
 }

@@ -174,7 +174,8 @@ MBK_API size_t mbk_answer_error_count(const mbk_answer* answer);
 MBK_API const mbk_error* mbk_answer_error(const mbk_answer* answer, size_t k);
 MBK_API void mbk_answer_free(mbk_answer* answer);
 
-/* Every command that can be called, with its options, defaults and explanations, as JSON. */
+/* Every command with its options, defaults and explanations, and whether it can be called: the document that
+   `mbk manual --json` writes (schemas/commands.schema.json). NULL where there is not enough memory for it. */
 MBK_API const char* mbk_commands(void);
 
 #ifdef __cplusplus

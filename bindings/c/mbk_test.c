@@ -206,7 +206,7 @@ int main(void) {
   make_trial();
   EXPECT(mbk_api_version() >= MBK_API_VERSION);
   EXPECT(*mbk_version() != '\0');
-  EXPECT(strstr(mbk_commands(), "\"command\":\"measure\"") != NULL);
+  EXPECT(strstr(mbk_commands(), "\"schema\": \"mbk.commands/1\"") != NULL);
   test_measures_what_is_in_memory();
   test_copies_what_stands_apart();
   test_says_what_is_wrong();

@@ -11,13 +11,22 @@
 // digit.
 #include <mex.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "mbk.h"
+
+// Where the host notes that Ctrl-C was pressed: each has one of these, and does not act before the MEX file returns.
+extern "C" {
+extern volatile std::sig_atomic_t octave_interrupt_state __attribute__((weak));
+bool utIsInterruptPending() __attribute__((weak));
+}
 
 namespace {
 
@@ -54,12 +63,25 @@ std::vector<mbk_option> options_of(const std::vector<std::string>& texts) {
   return options;
 }
 
+const char* identifier_of(int exit_code) {
+  switch (exit_code) {
+    case MBK_WRONG_USAGE:
+      return "mbk:usage";
+    case MBK_NOT_USABLE:
+      return "mbk:not_usable";
+    case MBK_STOPPED:
+      return "mbk:stopped";
+    default:
+      return "mbk:data";
+  }
+}
+
 [[noreturn]] void fail(mbk_error* error) {
   Failure failure{"mbk:data", "unknown error"};
   if (error != nullptr) {
     const int code = mbk_error_exit_code(error);
-    failure.identifier = code == MBK_WRONG_USAGE ? "mbk:usage" : code == MBK_NOT_USABLE ? "mbk:not_usable" : "mbk:data";
-    failure.text = mbk_error_line(error);
+    failure.identifier = identifier_of(code);
+    failure.text = code == MBK_STOPPED ? "stopped by Ctrl-C" : mbk_error_line(error);
     mbk_error_free(error);
   }
   throw failure;
@@ -247,6 +269,28 @@ mxArray* array_of(const Json& json) {
   }
 }
 
+// ---- Ctrl-C ----
+
+/// Asks the host, on its own thread, whether Ctrl-C was pressed. The host acts on it when the call has ended.
+class Interruption {
+ public:
+  /// As mbk_request::stop; from any thread.   @param context  an Interruption
+  static int pressed(void* context) {
+    auto& self = *static_cast<Interruption*>(context);
+    if (!self.pressed_ && std::this_thread::get_id() == self.host_ && is_pending()) self.pressed_ = true;
+    return self.pressed_ ? 1 : 0;
+  }
+
+ private:
+  static bool is_pending() {
+    if (&octave_interrupt_state != nullptr) return octave_interrupt_state > 0;
+    return utIsInterruptPending != nullptr && utIsInterruptPending();
+  }
+
+  const std::thread::id host_ = std::this_thread::get_id();
+  std::atomic<bool> pressed_ = false;
+};
+
 // ---- what can be asked for ----
 
 mxArray* warnings_of(const mbk_answer* answer) {
@@ -294,6 +338,9 @@ void call(int results, mxArray* result[], int count, const mxArray* given[]) {
   request.document_count = document_texts.size();
   request.recordings = &recording;
   request.recording_count = recording == nullptr ? 0 : 1;
+  Interruption interruption;
+  request.stop = &Interruption::pressed;
+  request.context = &interruption;
   mbk_answer* answer = nullptr;
   mbk_error* error = nullptr;
   mbk_call(&request, &answer, &error);

@@ -55,6 +55,37 @@ function check_alike(a, b, what)
   check(numel(a) > 3 && isequal(size(a), size(b)) && isequal(num2hex(a(:)), num2hex(b(:))), what);
 end
 
+function check_near(a, b, what)
+  check(numel(a) >= 3 && isequal(size(a), size(b)) && all(abs(a - b) <= 1e-9 * max(abs(b))), what);
+end
+
+function numbers = model_of(data, varargin)
+  result = mbk.identify(data, 'axes', 1, varargin{:});
+  numbers = numbers_of(result.model);
+end
+
+% What the line of that colour shows.
+function y = shown(handle, colour)
+  lines = findobj(handle, 'type', 'line', 'color', colour);
+  y = get(lines(1), 'ydata');
+  y = y(:);
+end
+
+function check_labelled(handles, count, what)
+  check(numel(handles) == count, sprintf('%s: %d axes', what, numel(handles)));
+  for k = 1:numel(handles)
+    check(~isempty(get(get(handles(k), 'ylabel'), 'string')), [what ': labelled axes']);
+  end
+  check(~isempty(get(get(handles(end), 'xlabel'), 'string')), [what ': labelled axes']);
+end
+
+function keep_picture(name)
+  if ~isempty(getenv('MBK_PICTURES'))
+    print(gcf(), fullfile(getenv('MBK_PICTURES'), [name '.png']), '-dpng', '-S900,700');
+  end
+  clf();
+end
+
 global failures
 failures = 0;
 addpath(getenv('MBK_OCTAVE'));
@@ -105,13 +136,43 @@ whole.units = struct('x', 'mm');
 converted = mbk.identify(whole, 'axes', 1);
 check(isequal(size(converted.model.K), [1 1]), 'single precision in mm');
 
-% What looks like iddata.
-data = struct('OutputData', recording.hand_x, 'InputData', recording.force_x, 'Ts', 1e-3, 'OutputName', {{'x'}}, ...
-              'InputName', {{'F'}}, 'OutputUnit', {{'m'}}, 'InputUnit', {{'N'}});
-identified = mbk.identify(data, 'axes', 1);
-direct = mbk.identify(struct('time', (0:numel(recording.time) - 1)' * 1e-3, 'x', recording.hand_x, ...
-                             'F', recording.force_x), 'axes', 1);
-check_alike(numbers_of(identified), numbers_of(direct), 'iddata');
+% Objects that MATLAB has; here others stand in for them. iddata and a struct with its fields, short names or long.
+addpath(fullfile(pwd(), 'stand_ins'));
+x = recording.hand_x;
+force = recording.force_x;
+direct = mbk.identify(struct('time', (0:numel(x) - 1)' * 1e-3, 'x', x, 'F', force), 'axes', 1);
+data = iddata();
+data.OutputData = 1000 * x;
+data.InputData = force;
+data.Ts = 1;
+data.Tstart = 0;
+data.TimeUnit = 'milliseconds';
+data.OutputName = {'x'};
+data.InputName = {'F'};
+data.OutputUnit = {'mm'};
+data.InputUnit = {'N'};
+check_near(model_of(data), numbers_of(direct.model), 'iddata');
+short = struct('y', x, 'u', force, 'Ts', 1e-3);
+check_near(model_of(short, 'channels', 'x=y1,F=u1'), numbers_of(direct.model), 'y, u and Ts');
+check_error(@() mbk.identify(short, 'axes', 1), 'mbk:data', 'y1', 'y and u, not said which is which');
+data.OutputData = {x, x};
+check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'getexp', 'several experiments');
+data.OutputData = x;
+data.Domain = 'Frequency';
+check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'frequency domain', 'frequencies');
+data.Domain = 'Time';
+data.TimeUnit = 'years';
+check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'years', 'a unit of time');
+data.TimeUnit = 'seconds';
+data.Ts = [];
+check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'Ts', 'no sample time');
+columns = struct('x', 1000 * x, 'F', force);
+table = timetable(duration((0:numel(x) - 1)'), columns, {'mm', 'N'});
+check_near(model_of(table), numbers_of(direct.model), 'timetable');
+columns = struct('hand', [x, recording.hand_y], 'force', [force, recording.force_y]);
+table = timetable(duration((0:numel(x) - 1)'), columns, {});
+found = mbk.identify(table, 'channels', 'x=hand_1,y=hand_2,Fx=force_1,Fy=force_2');
+check(isequal(size(found.model.K), [2 2]), 'a timetable with several columns in a variable');
 
 % Results as input of other commands.
 verdict = mbk.passivity(info);
@@ -135,16 +196,51 @@ warning('off', 'all');
 
 % Help and plots.
 check(~isempty(strfind(evalc('help mbk.measure'), 'NAME, VALUE')), 'help');
-figure_number = figure('visible', 'off');
-handles = mbk.plot(result);
-check(numel(handles) == 4, 'a plot of each matrix, and one over frequency');
-for k = 1:numel(handles)
-  check(~isempty(get(get(handles(k), 'xlabel'), 'string')), 'labelled axes');
-end
-if ~isempty(getenv('MBK_PICTURE'))
-  print(figure_number, getenv('MBK_PICTURE'), '-dpng', '-S900,700');
-end
-close(figure_number);
+figure('visible', 'off');
+blue = mbk.internal.style('first');
+orange = mbk.internal.style('second');
+check_labelled(mbk.plot(result), 4, 'a plot of each matrix, and one over frequency');
+keep_picture('ellipses');
+check_labelled(mbk.plot(direct), 4, 'one axis');
+keep_picture('one_axis');
+absorbed = mbk.passivity(log_file);
+handles = mbk.plot(absorbed);
+check_labelled(handles, 2, 'energy');
+check(isequal(shown(handles(1), blue), absorbed.recordings.absorbed_J), 'the energy that was absorbed');
+keep_picture('energy');
+check_labelled(mbk.plot_energy(result), 1, 'the energy of a result');
+keep_picture('energy_of_result');
+explored = mbk.explore(log_file, 'only', 'frequency-response');
+handles = mbk.plot(explored);
+response = explored.frequency_response.responses(1);
+check(numel(handles) == 3 * numel(explored.frequency_response.responses), 'Bode of each input and output');
+check_labelled(handles(1:3), 3, 'Bode');
+check(isequal(shown(handles(1), blue), response.magnitude), 'a magnitude');
+check(isequal(shown(handles(2), blue), response.phase_deg), 'a phase');
+keep_picture('bode');
+fitted = mbk.tf(log_file, 'input', '-Fx', 'output', 'x', 'poles', 2, 'zeros', 0);
+handles = mbk.plot(fitted);
+check_labelled(handles, 2, 'Bode of a transfer function');
+check(isequal(shown(handles(1), blue), fitted.frequency_response.magnitude), 'its magnitude');
+keep_picture('tf');
+handles = mbk.plot_fit(log_file, struct('handle_mass', 0));
+check_labelled(handles, 4, 'the fit');
+measured = shown(handles(1), mbk.internal.style('other'));
+residual = shown(handles(2), blue);
+left = measured - shown(handles(1), orange) - residual;  % of numbers that a report rounds
+check(max(abs(left)) < 0.01 * std(residual) && std(residual) < 0.2 * std(measured), 'the fit');
+keep_picture('fit');
+close();
+check_error(@() mbk.plot(facts), 'mbk:usage', 'no plot', 'no plot of facts');
+check_error(@() mbk.plot_energy(facts), 'mbk:usage', 'passivity', 'no energy of facts');
+
+% Ctrl-C ends a call long before it would end by itself.
+script = ['addpath(''' getenv('MBK_OCTAVE') '''); warning(''off'', ''all''); unwind_protect; ' ...
+          'mbk.validate(''coverage'', ''runs'', 100000, ''threads'', 1); unwind_protect_cleanup; puts(''over''); end'];
+octave = fullfile(OCTAVE_HOME(), 'bin', 'octave-cli');
+began = time();
+[~, said] = system(sprintf('timeout --foreground -s INT 3 "%s" --no-gui -q -f --eval "%s" 2>&1', octave, script));
+check(time() - began < 20 && ~isempty(strfind(said, 'over')), ['Ctrl-C: ' said]);
 
 % Nothing leaks.
 short = struct('time', recording.time(1:3000), 'x', recording.hand_x(1:3000), 'F', recording.force_x(1:3000));

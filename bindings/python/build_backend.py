@@ -1,7 +1,8 @@
 """Builds the wheel of mbk with CMake, as pip asks for it (PEP 517). It needs no package of Python.
 
-`pip install .` configures and builds in build/wheel. With MBK_BUILD set to a build folder of this tree, that is used
-instead. The wheel holds the shared libraries that the module links, but for those of the C and C++ runtimes.
+`pip install .` configures and builds in build/wheel, or in the folder that `--config-settings build-dir=…` names, with
+the options of CMake that the environment variable CMAKE_ARGS holds. With MBK_BUILD set to a build folder of this tree,
+that is taken as it is. The wheel holds the shared libraries that the module links, but for those of the C and C++ runtimes.
 """
 
 import base64
@@ -9,6 +10,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -52,15 +54,16 @@ def metadata():
     return "\n".join([*lines, "Description-Content-Type: text/markdown", "", text])
 
 
-def built():
-    """A build folder with the package in it."""
+def built(settings):
+    """A build folder with the package in it.   settings: what pip was given as --config-settings, or None"""
     given = os.environ.get("MBK_BUILD")
     if given:
         return pathlib.Path(given).resolve()
-    folder = ROOT / "build/wheel"
+    folder = ROOT / (settings or {}).get("build-dir", "build/wheel")
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     run("cmake", "-S", ROOT, "-B", folder, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DMBK_BUILD_TESTS=OFF",
-        "-DMBK_PYTHON=ON", f"-DPython3_EXECUTABLE={getattr(sys, '_base_executable', sys.executable)}")
+        "-DMBK_PYTHON=ON", f"-DPython3_EXECUTABLE={getattr(sys, '_base_executable', sys.executable)}",
+        *shlex.split(os.environ.get("CMAKE_ARGS", "")))
     run("cmake", "--build", folder, "--parallel", "--target", "mbk_python_package")
     return folder
 
@@ -130,7 +133,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     info = f"mbk-{version()}.dist-info"
     records = []
     with tempfile.TemporaryDirectory() as staging:
-        package = staged(built(), pathlib.Path(staging))
+        package = staged(built(config_settings), pathlib.Path(staging))
         with zipfile.ZipFile(pathlib.Path(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
 
             def add(path, content, mode=0o644):

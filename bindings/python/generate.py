@@ -16,7 +16,6 @@ import sys
 import textwrap
 
 WIDTH = 100
-LEFT_OUT = {"run", "work", "completion", "manual"}  # need processes of their own, or are of shells
 ONLY_COMMAND_LINE = {"--help", "--version", "--json", "--quiet"}
 NAMES = {"tf": "transfer_function", "import": "import_"}
 RESULTS = {  # the class of what a command gives; Document where it has no class of its own
@@ -247,12 +246,11 @@ def main():
     table = json.loads(pathlib.Path(sys.argv[1]).read_text(encoding="utf-8"))
     folder = pathlib.Path(sys.argv[2])
     groups = {one["path"][0]: one["summary"] for one in table["commands"]}
-    parents = {tuple(one["path"][:-1]) for one in table["commands"] if len(one["path"]) > 1}
     modules = {}
     info = next(one for one in table["commands"] if one["path"] == ["info"])
     reading = {**info, "path": ["read"], "summary": "a recording in memory", "footer": ""}
     for one in [reading, *table["commands"]]:
-        if one["path"][0] in LEFT_OUT or tuple(one["path"]) in parents:
+        if not one["callable"]:
             continue
         command = Command(one)
         modules.setdefault(command.module, []).append(command)

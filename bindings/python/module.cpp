@@ -363,7 +363,7 @@ PYBIND11_MODULE(_mbk, m) {
         py::arg("documents") = std::vector<std::string>{}, py::arg("progress") = py::none());
   m.def("read_all", &read_files, py::arg("files"), py::arg("options") = py::dict(),
         "Every recording that the files hold.");
-  m.def("describe", &mbk::app::describe_commands, "The options of every command, as JSON.");
+  m.def("describe", &mbk::app::describe_commands, "The document of 'mbk manual --json'.");
   m.def("recording_word", &mbk::app::recording_word);
   m.def("document_word", &mbk::app::document_word);
 }

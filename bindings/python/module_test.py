@@ -160,9 +160,16 @@ class ModuleTest(unittest.TestCase):
         self.assertLessEqual(codes, {code for code, _ in poor.warnings})
 
     def test_the_table_of_options(self):
-        commands = {one["command"]: one for one in json.loads(_mbk.describe())}
-        self.assertIn("study measure", commands)
-        self.assertNotIn("run", commands)
+        self.assertEqual(_mbk.describe(), subprocess.run([MBK, "manual", "--json"], check=True, capture_output=True,
+                                                         text=True).stdout)
+        commands = {" ".join(one["path"]): one for one in json.loads(_mbk.describe())["commands"]}
+        self.assertTrue(commands["study measure"]["callable"])
+        self.assertFalse(commands["study"]["callable"] or commands["run"]["callable"])
+        for name, one in commands.items():
+            if not one["callable"]:
+                with self.assertRaises(_mbk.Error, msg=name) as caught:
+                    _mbk.call(name)
+                self.assertIn("no command that can be called", caught.exception.what)
         cutoff = next(one for one in commands["measure"]["options"] if "--cutoff" in one["names"])
         self.assertEqual(cutoff["value"], "HZ|none")
         self.assertEqual(cutoff["words"], ["none"])

@@ -10,6 +10,7 @@ import math
 import os
 import pathlib
 import pickle
+import signal
 import subprocess
 import tempfile
 import threading
@@ -316,7 +317,7 @@ class Package(unittest.TestCase):
             "one axis": onedimensional.plot, "exploration": silent(mbk.explore, self.log, only="frequency-response").plot,
             "tf": silent(mbk.tf, self.log, input="-Fx", output="x", poles=2, zeros=0).plot,
             "springs": mbk.springs.field("rig_springs_table_3_1", trial="config_1").plot,
-            "validation": mbk.validate("springs", runs=2).plot,
+            "validation": mbk.validate("coverage", runs=2).plot,
             "teleop": mbk.teleop(pathlib.Path(__file__).parents[2] / "examples/teleop/position_position.toml").plot}
         for name, draw in figures.items():
             with self.subTest(name):
@@ -395,6 +396,20 @@ class Package(unittest.TestCase):
         counting.join()
         self.assertEqual(found, [want] * 4)
         self.assertGreater(ticks[0], 5)
+
+    def test_ctrl_c_ends_long_calls(self):
+        scenario = self.folder / "long.toml"
+        scenario.write_text('[control]\nkind = "position"\n[perturbation]\nkind = "multisine"\npeak_deg = 2\n'
+                            'duration_s = 1200\n[participant]\nkind = "arm"\n')
+        calls = {"a long simulation": lambda: mbk.simulate(scenario), "many": lambda: mbk.simulate("free_motion", seeds=9999),
+                 "validate": lambda: mbk.validate("coverage", runs=100_000)}
+        for name, call in calls.items():
+            with self.subTest(name):
+                began = time.monotonic()
+                threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+                with self.assertRaises(KeyboardInterrupt):
+                    call()
+                self.assertLess(time.monotonic() - began, 5.0)
 
     def test_memory_stays_flat(self):
         t, x, reaction = joint(1500)

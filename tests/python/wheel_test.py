@@ -14,17 +14,7 @@ import unittest
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCRIPT = """
-import numpy as np, mbk
-t = np.arange(20000) / 1000
-x = 0.02 * np.sin(9 * t) + 0.01 * np.sin(23 * t)
-v, a = 0.18 * np.cos(9 * t) + 0.23 * np.cos(23 * t), -1.62 * np.sin(9 * t) - 5.29 * np.sin(23 * t)
-found = mbk.measure(mbk.Recording(time=t, x=x, F=-(0.01 * a + 0.1 * v + 5 * x)), cutoff="none")
-assert abs(found.model.K[0, 0] - 5) < 0.05, found.model.K
-mbk.simulate("free_motion").save("free.h5")
-assert mbk.read("free.h5").rate_hz == 1000
-print(mbk.__version__, mbk.__file__)
-"""
+SCRIPT = pathlib.Path(__file__).with_name("in_the_wheel.py").read_text(encoding="utf-8")
 
 
 def ran(*command, **options):

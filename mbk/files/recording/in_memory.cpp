@@ -19,6 +19,15 @@ bool without_options(const ReadOptions& o) {
          o.trial.empty() && o.arm.empty();
 }
 
+/// The numbers of a signal where they stand. Nothing that reads contents writes into them: a channel is a copy.
+SharedMatrix shared(const InMemory::Signal& signal) {
+  auto keeper = std::make_shared<Samples>(signal.values);
+  auto* const at = const_cast<double*>(signal.values.data());
+  const Index count = signal.values.size();
+  const Index rows = signal.rows == 0 ? count : signal.rows;
+  return {at, rows, count / std::max<Index>(rows, 1), std::move(keeper)};
+}
+
 /// What only files have.
 Result<void> check_options(const ReadOptions& options) {
   const auto refused = [](const char* option) {
@@ -82,12 +91,7 @@ Contents InMemory::contents() const {
   contents.format = kFormat;
   contents.table = std::ranges::all_of(signals_, [](const Signal& signal) { return signal.rows == 0; });
   for (const Signal& signal : signals_) {
-    Array array{.name = signal.name, .values = {}};
-    if (signal.rows == 0) {
-      array.values = SharedMatrix::of_column(Vector(signal.values));
-    } else {
-      array.values = SharedMatrix(Matrix(signal.values.reshaped(signal.rows, signal.values.size() / signal.rows)));
-    }
+    Array array{.name = signal.name, .values = shared(signal)};
     array.unit = signal.unit;
     array.signal = true;
     array.rate_hz = rate_hz_;

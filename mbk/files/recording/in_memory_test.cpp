@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 namespace mbk::recording {
 namespace {
@@ -37,6 +38,25 @@ TEST(InMemory, HoldsNumbersWhereTheyStandForAsLongAsSomebodyNeedsThem) {
     EXPECT_FALSE(alive.expired());
   }
   EXPECT_TRUE(alive.expired());
+}
+
+TEST(InMemory, IsReadWhereItStands) {
+  const Vector x = ramp(0.1);
+  const Matrix logs = Matrix::Random(19, kSamples);
+  const auto owner = std::make_shared<int>(1);
+  std::optional<Contents> contents;
+  {
+    const auto made = InMemory::of({{"x", "mm", Samples(x.data(), kSamples, owner)},
+                                    {"logs", "", Samples(logs.data(), logs.size(), owner), logs.rows()}});
+    ASSERT_TRUE(made) << made.error().line();
+    contents = made->contents();
+  }
+  EXPECT_EQ(contents->arrays[0].values.data(), x.data());
+  EXPECT_EQ(contents->arrays[1].values.data(), logs.data());
+  EXPECT_EQ(contents->arrays[1].values.cols(), kSamples);
+  EXPECT_EQ(owner.use_count(), 3);
+  contents.reset();
+  EXPECT_EQ(owner.use_count(), 1);
 }
 
 TEST(InMemory, IsReadByAMapAsAFileIs) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/requester.h"
 #include "mbk/model/robot/workspace.h"
 #include "mbk/simulate/laboratory/truth_text.h"
 
@@ -216,8 +217,9 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
     if (experiment.watch) experiment.watch(state);
     result.energy_absorbed = state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
     loop->advance();
-    if (experiment.progress && i % 1000 == 0) {
-      experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
+    if (i % 1000 == 0) {
+      stop_where_unwanted();
+      if (experiment.progress) experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
     }
   }
   recording.channels = std::move(channels.channels);

@@ -1,7 +1,10 @@
-function [result, info] = run(command, inputs)
-% What a function of +mbk does: data first, then names of options, each with its value.
+function [result, info] = run(command, inputs, more)
+% What a function of +mbk does: data first, then names of options, each with its value. more: further options, as texts.
+  if nargin < 3
+    more = {};
+  end
   [data, words, documents, rest] = mbk.internal.take_data(inputs);
-  options = mbk.internal.option_texts(rest);
+  options = [mbk.internal.option_texts(rest), more];
   [result, text, warnings, exit_code, messages] = mbk_mex('call', command, options, words, documents, ...
                                                                data.signals, data.metadata, data.events);
   info = struct('text', text, 'exit_code', exit_code, 'warnings', warnings, 'messages', {messages});

@@ -90,7 +90,7 @@ function [data, documents] = of_one(data, given)
     data.signals = of_timetable(given);
   elseif isa(given, 'table')
     data.signals = of_columns(empty_signals(), given, given.Properties.VariableNames, given.Properties.VariableUnits);
-  elseif isa(given, 'iddata') || (isstruct(given) && isfield(given, 'OutputData') && isfield(given, 'InputData'))
+  elseif isa(given, 'iddata') || (isstruct(given) && numel(given) == 1 && has_fields_of_iddata(given))
     data.signals = of_iddata(given);
   elseif isstruct(given) && numel(given) == 1
     data = of_struct(data, given);
@@ -129,7 +129,7 @@ end
 function signals = of_timetable(data)
   times = data.Properties.RowTimes;
   if isa(times, 'datetime')
-    times = times - times(1);
+    times = times - times(1);  % durations
   end
   signals = added(empty_signals(), 'time', 's', seconds(times));
   signals = of_columns(signals, data, data.Properties.VariableNames, data.Properties.VariableUnits);
@@ -152,33 +152,89 @@ function signals = of_columns(signals, data, names, units)
   end
 end
 
+function yes = has_fields_of_iddata(data)
+  yes = all(isfield(data, {'OutputData', 'InputData', 'Ts'})) || all(isfield(data, {'y', 'u', 'Ts'}));
+end
+
 function signals = of_iddata(data)
-  outputs = data.OutputData;
-  inputs = data.InputData;
-  count = size(outputs, 1);
-  start = 0;
-  if isfield_or_property(data, 'Tstart') && ~isempty(data.Tstart)
-    start = data.Tstart;
+% One experiment in time, sampled evenly: outputs and inputs by their names, y1, u1, ... where they have none.
+  outputs = first_property(data, {'OutputData', 'y'});
+  inputs = first_property(data, {'InputData', 'u'});
+  step = property(data, 'Ts');
+  if size(outputs, 1) == 1  % of a struct; iddata has columns
+    outputs = outputs(:);
+    inputs = inputs(:);
   end
-  signals = added(empty_signals(), 'time', 's', start + (0:count - 1)' * data.Ts);
-  signals = of_matrix(signals, outputs, data.OutputName, data, 'OutputUnit');
-  signals = of_matrix(signals, inputs, data.InputName, data, 'InputUnit');
+  if iscell(outputs) || iscell(inputs) || iscell(step)
+    error('mbk:usage', 'iddata of several experiments: give one, as getexp(data, 1)');
+  end
+  if strcmpi(property(data, 'Domain'), 'Frequency')
+    error('mbk:usage', 'iddata in the frequency domain: give what was measured over time');
+  end
+  if ~isnumeric(step) || ~isscalar(step) || ~(step > 0) || ~isfinite(step)
+    error('mbk:usage', 'iddata without a sample time Ts: give time, position and force as arrays');
+  end
+  start = property(data, 'Tstart');
+  if ~isscalar(start) || ~isfinite(start)
+    start = 0;
+  end
+  seconds_of_unit = time_unit(property(data, 'TimeUnit'));
+  time = (start + (0:size(outputs, 1) - 1)' * step) * seconds_of_unit;
+  signals = added(empty_signals(), 'time', 's', time);
+  signals = of_matrix(signals, outputs, property(data, 'OutputName'), 'y', property(data, 'OutputUnit'));
+  signals = of_matrix(signals, inputs, property(data, 'InputName'), 'u', property(data, 'InputUnit'));
 end
 
-function yes = isfield_or_property(data, name)
-  yes = (isstruct(data) && isfield(data, name)) || (isobject(data) && isprop(data, name));
+function value = property(data, name)
+% Of an object or a struct; [] where it has none of that name.
+  try
+    value = data.(name);
+  catch
+    value = [];
+  end
 end
 
-function signals = of_matrix(signals, values, names, data, unit_name)
-  if ~iscell(names)
+function value = first_property(data, names)
+  value = [];
+  for k = 1:numel(names)
+    if isempty(value)
+      value = property(data, names{k});
+    end
+  end
+end
+
+function factor = time_unit(name)
+% In seconds.
+  names = {'', 'seconds', 'milliseconds', 'microseconds', 'nanoseconds', 'minutes', 'hours'};
+  factors = [1, 1, 1e-3, 1e-6, 1e-9, 60, 3600];
+  if isempty(name)
+    name = '';
+  end
+  found = strcmp(char(name), names);
+  if ~any(found)
+    error('mbk:usage', 'the TimeUnit %s is not known: seconds, milliseconds, microseconds and minutes are', char(name));
+  end
+  factor = factors(find(found, 1));
+end
+
+function signals = of_matrix(signals, values, names, letter, units)
+% Names and units: a text or a cell of texts.
+  if ischar(names)
     names = {names};
   end
+  if ischar(units)
+    units = {units};
+  end
   for c = 1:size(values, 2)
-    unit = '';
-    if isfield_or_property(data, unit_name) && numel(data.(unit_name)) >= c && iscell(data.(unit_name))
-      unit = data.(unit_name){c};
+    name = sprintf('%s%d', letter, c);
+    if numel(names) >= c && ~isempty(names{c})
+      name = names{c};
     end
-    signals = added(signals, names{c}, unit, values(:, c));
+    unit = '';
+    if numel(units) >= c
+      unit = units{c};
+    end
+    signals = added(signals, name, unit, values(:, c));
   end
 end
 
