@@ -24,7 +24,8 @@ void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
       ->check(whole_number(0, 65535));
   command.add_flag("--wait", arguments.wait, "the console starts each trial; nothing moves before");
   command.add_option("--texts", arguments.texts, "of the participant's page: en, de, or a .toml file with your own")
-      ->type_name("TEXTS");
+      ->type_name("TEXTS")
+      ->check(not_empty());
 }
 
 std::string time_text(const realtime::CycleRecord& record) {
@@ -38,12 +39,15 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const con
   if (arguments.wait && arguments.wanted == false) {
     return bad_usage("--wait waits for the console, which --no-console omits", "omit one of the two");
   }
+  if (!arguments.texts.empty() && arguments.wanted == false) {
+    return bad_usage("--texts are those of the console, which --no-console omits", "omit one of the two");
+  }
   const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
   if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
   if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
   std::vector<std::string> names;
   for (const session::Plan& plan : experiment.plans) names.push_back(plan.trial.name);
-  const auto texts = console::find_texts(arguments.texts, names);
+  const auto texts = console::find_texts(arguments.texts.empty() ? "en" : arguments.texts, names);
   if (!texts) return tl::unexpected(texts.error());
   auto opened = console::Console::open(arguments.port, experiment.plans, flags,
                                        [](const std::string& line) { say("mbk: console: {}\n", line); });

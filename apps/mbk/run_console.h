@@ -15,7 +15,7 @@ struct ConsoleArguments {
   std::optional<bool> wanted;  ///< absent: at a terminal
   std::uint16_t port = 0;      ///< 0: any that is free
   bool wait = false;           ///< the page starts each trial
-  std::string texts = "en";    ///< of the participant's page: ready ones, or a file
+  std::string texts;           ///< of the participant's page: ready ones, or a file; empty: "en"
 };
 
 void add_console_options(CLI::App& command, ConsoleArguments& arguments);

@@ -89,8 +89,12 @@ std::string weakness(const Identification& found) {
     why += fmt::format("{}{:.0f} % of the force in {}", why.empty() ? "the model explains " : " and ",
                        found.fit.vaf[axis], axis_name(axis));
   }
-  if (!why.empty() || found.usable) return why;
-  return found.warnings.empty() ? "the result is not usable" : "not usable: " + found.warnings.front().message;
+  if (found.usable) return why;
+  why += why.empty() ? "the result is not usable" : "; it is not usable";
+  for (const Warning& warning : found.warnings) {
+    why += (&warning == &found.warnings.front() ? ": " : "; ") + warning.message;
+  }
+  return why;
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ export class AttemptsPanel {
 
   private name(): void {
     const chosen = this.ofChosen();
-    if (chosen) this.picture.draw(this.courses.get(chosen.number), chosen.duration_s, chosen.windows, this.window());
+    if (chosen) this.picture.draw({ course: this.courses.get(chosen.number), duration: chosen.duration_s, excluded: chosen.windows, chosen: this.window() });
     text(this.exclude, this.window() ? "Exclude the window" : "Exclude the trial");
   }
 

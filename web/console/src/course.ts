@@ -34,16 +34,23 @@ export class Course {
 
 const [width, height] = [720, 72]; // [px]
 
+interface Shown {
+  course: Course | undefined;
+  duration: number; // [s]
+  excluded: ExcludedWindow[];
+  chosen: { from_s: number; to_s: number } | undefined;
+}
+
 /** A picture of a course, with what is excluded of it; where the pointer is dragged over it a window is chosen. */
 export class CoursePicture {
   readonly element: HTMLElement;
   private readonly canvas = h("canvas", { width, height, "aria-hidden": true }); // the fields say the same
-  private duration = 1;
+  private shown: Shown | undefined;
 
   constructor(choose: (from: number, to: number) => void) {
     this.element = h("figure", { class: "course" }, h("figcaption", {}, "Force of the hand [N] over the trial: drag to choose a window"), this.canvas);
     let from: number | undefined;
-    const time = (event: PointerEvent) => Math.min(Math.max(event.offsetX / this.canvas.clientWidth, 0), 1) * this.duration;
+    const time = (event: PointerEvent) => Math.min(Math.max(event.offsetX / this.canvas.clientWidth, 0), 1) * (this.shown?.duration ?? 0);
     this.canvas.addEventListener("pointerdown", (event) => {
       from = time(event);
       this.canvas.setPointerCapture(event.pointerId);
@@ -54,12 +61,13 @@ export class CoursePicture {
       choose(Math.min(from, to), Math.max(from, to));
     });
     for (const over of ["pointerup", "pointercancel"] as const) this.canvas.addEventListener(over, () => (from = undefined));
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.shown && this.draw(this.shown));
   }
 
-  draw(course: Course | undefined, duration: number, excluded: ExcludedWindow[], chosen: { from_s: number; to_s: number } | undefined): void {
+  draw(shown: Shown): void {
+    const { course, duration, excluded, chosen } = (this.shown = shown);
     this.element.hidden = !course;
     if (!course) return;
-    this.duration = duration;
     const paint = this.canvas.getContext("2d") as CanvasRenderingContext2D;
     const style = getComputedStyle(document.documentElement);
     const fill = (token: string) => (paint.fillStyle = style.getPropertyValue(token));

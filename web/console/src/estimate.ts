@@ -4,6 +4,7 @@ import { h } from "@mbk/shared/dom";
 import { ellipsePanels } from "@mbk/shared/ellipses";
 import { fixed, withHalfWidth } from "@mbk/shared/format";
 import { matrices, methodNames, unitsOf } from "@mbk/shared/result";
+import { type Band, ellipseBand } from "@mbk/shared/uncertainty";
 import { plainWarnings } from "@mbk/shared/warnings";
 
 const cells: [number, number][] = [[0, 0], [0, 1], [1, 0], [1, 1]];
@@ -40,12 +41,24 @@ class Tightening {
 export class EstimatePanel {
   readonly element = h("section", { class: "estimate", "aria-labelledby": "estimate-title" });
   private readonly tightening = new Tightening();
+  private newest: LiveEstimate | undefined;
 
   constructor() {
     this.show({ type: "estimate" });
   }
 
-  show(estimate: LiveEstimate): void {
+  /** The bands of the ellipses first, each in a task of its own: together they would take a picture of the traces. */
+  show(estimate: LiveEstimate, bands: (Band | undefined)[] = []): void {
+    if (bands.length === 0) this.newest = estimate;
+    else if (this.newest !== estimate) return;
+    const { result } = estimate;
+    const next = matrices[bands.length];
+    if (!result?.usable || !next) return this.draw(estimate, bands);
+    const band = ellipseBand(next.symbol, result);
+    setTimeout(() => this.show(estimate, [...bands, band]));
+  }
+
+  private draw(estimate: LiveEstimate, bands: (Band | undefined)[]): void {
     const { result } = estimate;
     const title = (words: string) => h("h2", { id: "estimate-title" }, "Impedance", h("small", {}, words));
     if (!result) {
@@ -59,7 +72,7 @@ export class EstimatePanel {
     const history = from > 0 ? [] : this.tightening.add(result.standard_error as unknown as Record<string, Value[][]>);
     const seconds = ((estimate.perturbed_s ?? 0) - from).toFixed(0);
     const span = estimate.final ? ` of the whole perturbation, ${seconds} s` : from > 0 ? ` of the last ${seconds} s: the stiffness changed` : ` so far, from ${seconds} s`;
-    const ellipses = ellipsePanels(result);
+    const ellipses = result.usable ? ellipsePanels(result, undefined, bands) : undefined;
     this.element.replaceChildren(
       title(`${span}, by ${methodNames[result.method]}`),
       !result.usable ? "" : h(
@@ -74,7 +87,7 @@ export class EstimatePanel {
               withHalfWidth(result.model[symbol][i]?.[j] ?? null, result.standard_error[symbol][i]?.[j] ?? null, `${symbol}${i}${j}`))),
           )),
       ),
-      (result.usable && ellipses) || "",
+      ellipses ?? "",
       h(
         "p",
         { class: "tightening" },

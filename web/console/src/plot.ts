@@ -40,6 +40,7 @@ export class Plot {
   private readonly canvas = h("canvas", { "aria-hidden": true });
   private readonly paint = this.canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
   private colours = colours();
+  private sharp = devicePixelRatio;
   private lines: (Line | undefined)[] = [];
   private low: number; // ends of the scale
   private high: number;
@@ -60,6 +61,7 @@ export class Plot {
     new ResizeObserver(() => {
       const { clientWidth, clientHeight } = drawing;
       if (clientWidth <= left + right || clientHeight <= above + below) return; // not shown
+      this.sharp = devicePixelRatio;
       this.canvas.width = Math.round(clientWidth * this.sharp);
       this.canvas.height = Math.round(clientHeight * this.sharp);
       this.clear();
@@ -103,9 +105,6 @@ export class Plot {
     this.last = samples.last;
   }
 
-  private get sharp(): number {
-    return devicePixelRatio;
-  }
   private get x0(): number {
     return Math.round(left * this.sharp);
   }

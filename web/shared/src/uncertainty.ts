@@ -21,6 +21,9 @@ function normal(random: () => number): () => number {
   return () => Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
 }
 
+/** Three for each draw, always the same. */
+const standard = Float64Array.from({ length: 3 * draws }, normal(uniform(1)));
+
 /** Lower triangular L of L Lᵀ = C; zero where C has no variance left. */
 function cholesky(C: number[][]): number[][] {
   const L = C.map((row) => row.map(() => 0));
@@ -37,13 +40,15 @@ function cholesky(C: number[][]): number[][] {
   return L;
 }
 
-type Symmetric = [number, number, number]; // xx, xy, yy
-
-/** How far the ellipse {S u : |u| = 1} reaches in a direction: 1/|S⁻¹ u|. */
-export function radiusOf([xx, xy, yy]: Symmetric, angle: number): number {
+/** How far each ellipse {S u : |u| = 1} of `drawn`, three numbers xx, xy, yy each, reaches in a direction: 1/|S⁻¹ u|. */
+function reaches(drawn: Float64Array, angle: number, into: Float64Array): void {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
-  const across = Math.hypot(yy * c - xy * s, xx * s - xy * c);
-  return across > 0 ? Math.abs(xx * yy - xy * xy) / across : 0;
+  for (let one = 0; one < draws; ++one) {
+    const [xx, xy, yy] = [drawn[3 * one] as number, drawn[3 * one + 1] as number, drawn[3 * one + 2] as number];
+    const [along, across] = [yy * c - xy * s, xx * s - xy * c];
+    const inverse = Math.sqrt(along * along + across * across);
+    into[one] = inverse > 0 ? Math.abs(xx * yy - xy * xy) / inverse : 0;
+  }
 }
 
 /** Covariance of xx, (xy + yx)/2, yy; none where the result does not hold it. */
@@ -72,14 +77,19 @@ export function ellipseBand(symbol: "M" | "B" | "K", result: Result): Band | und
   if (!covariance || mean.some((value) => typeof value !== "number" || !Number.isFinite(value))) return undefined;
   if (!covariance.some((row, i) => (row[i] ?? 0) > 0)) return undefined;
   const L = cholesky(covariance);
-  const next = normal(uniform(1));
-  const drawn = Array.from({ length: draws }, () => {
-    const z = L.map(() => next());
-    return mean.map((m, i) => (m as number) + (L[i] as number[]).reduce((sum, l, k) => sum + l * (z[k] ?? 0), 0)) as Symmetric;
+  const drawn = new Float64Array(3 * draws);
+  mean.forEach((m, i) => {
+    const [l0, l1, l2] = L[i] as [number, number, number];
+    for (let at = 0; at < drawn.length; at += 3) {
+      drawn[at + i] = (m as number) + (l0 * (standard[at] as number) + l1 * (standard[at + 1] as number) + l2 * (standard[at + 2] as number));
+    }
   });
-  const quantiles = Array.from({ length: directions }, (_, k) => {
-    const radii = drawn.map((one) => radiusOf(one, (2 * Math.PI * k) / directions)).sort((a, b) => a - b);
+  const radii = new Float64Array(draws);
+  const quantiles = Array.from({ length: directions / 2 }, (_, k) => {
+    reaches(drawn, (2 * Math.PI * k) / directions, radii);
+    radii.sort();
     return [radii[tail] ?? 0, radii[draws - 1 - tail] ?? 0] as const;
   });
-  return { low: quantiles.map(([low]) => low), high: quantiles.map(([, high]) => high) };
+  const all = [...quantiles, ...quantiles]; // an ellipse reaches as far to the other side
+  return { low: all.map(([low]) => low), high: all.map(([, high]) => high) };
 }
