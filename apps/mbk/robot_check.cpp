@@ -1,59 +1,121 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
-#include "apps/mbk/output.h"
+#include "apps/mbk/output_options.h"
+#include "apps/mbk/robot_check_report.h"
 #include "apps/mbk/robot_commands.h"
 #include "apps/mbk/scenario_argument.h"
 #include "mbk/experiment/session/live_check.h"
+#include "mbk/experiment/session/machine_check.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::app {
 namespace {
 
+constexpr int kNotAllTested = 6;
+constexpr double kSaySo = 2.0;  // what takes longer is said [s]
+
 struct RobotCheckArguments {
   std::string file;
-  std::optional<double> live;
+  std::optional<double> live, timing;
+  std::string link;
+  bool motors = false;
+  double rate_hz = 1000.0;
+  int local_port = 0;
+  OutputArguments output;
 };
 
-std::string findings_text(const std::vector<session::Finding>& findings) {
-  using Verdict = session::Finding::Verdict;
-  std::string text;
-  for (const session::Finding& one : findings) {
-    const char* word = one.verdict == Verdict::fine ? "fine" : one.verdict == Verdict::doubtful ? "look" : "WRONG";
-    text += fmt::format("  {:<6}{}\n", word, one.text);
+/// "192.168.7.2:25000"; the port may be missing.
+Result<drivers::UdpAddress> address_of(const std::string& given) {
+  constexpr std::uint16_t kPort = 25000;
+  const std::size_t colon = given.rfind(':');
+  if (colon == std::string::npos) return drivers::UdpAddress::find(given, kPort);
+  std::uint16_t port = 0;
+  const char* const end = given.data() + given.size();
+  const auto [at, error] = std::from_chars(given.data() + colon + 1, end, port);
+  if (error != std::errc() || at != end || port == 0) {
+    return bad_usage(fmt::format("--link: {} names no port from 1 to 65535", quoted(given)),
+                     "write it as 192.168.7.2:25000");
   }
-  return text;
+  return drivers::UdpAddress::find(given.substr(0, colon), port);
+}
+
+Result<RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments) {
+  const auto text = read_scenario_text(arguments.file);
+  if (!text) return tl::unexpected(text.error());
+  const auto setup = session::read_robot_setup(text->text, text->file, laboratory::read_simulation);
+  if (!setup) return tl::unexpected(setup.error());
+  if (arguments.live && !setup->has_device) {
+    return tl::unexpected(
+        Error{ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
+  }
+  RobotCheckReport::Setup found{arguments.file, session::setup_text(*setup), session::check_setup(*setup), "", {}};
+  if (!arguments.live) return found;
+  const auto robot = protocol::make_device(setup->trial);
+  if (!robot) return tl::unexpected(robot.error());
+  const auto record = session::watch_robot(**robot, setup->trial.rate, *arguments.live);
+  if (!record) return tl::unexpected(record.error());
+  found.live_text = session::live_text(*setup, (*robot)->facts(), *record);
+  found.live = session::check_live(*setup, (*robot)->facts(), *record);
+  return found;
+}
+
+Result<RobotCheckReport::Link> check_link(const RobotCheckArguments& arguments) {
+  const auto robot = address_of(arguments.link);
+  if (!robot) return tl::unexpected(robot.error());
+  auto wire = drivers::UdpBridgeWire::open(*robot, static_cast<std::uint16_t>(arguments.local_port));
+  if (!wire) return tl::unexpected(wire.error());
+  drivers::BridgeCheckOptions options;
+  options.rate = arguments.rate_hz;
+  options.motors = arguments.motors;
+  if (options.motors && !arguments.output.quiet) say("the motors of {} go on, with command 0\n", robot->text());
+  auto report = drivers::check_bridge(*wire, options);
+  if (!report) return tl::unexpected(report.error());
+  return RobotCheckReport::Link{robot->text(), options, std::move(*report)};
+}
+
+RobotCheckReport::Timing check_timing(const RobotCheckArguments& arguments) {
+  if (*arguments.timing > kSaySo && !arguments.output.quiet) say("measuring for {:g} s\n", *arguments.timing);
+  RobotCheckReport::Timing found{
+      realtime::read_machine(), realtime::measure_lateness(1.0 / arguments.rate_hz, *arguments.timing), {}};
+  found.findings = session::check_machine(found.machine, found.lateness);
+  return found;
+}
+
+Result<RobotCheckReport> check_all(const RobotCheckArguments& arguments) {
+  RobotCheckReport report;
+  if (!arguments.file.empty()) {
+    auto setup = check_setup(arguments);
+    if (!setup) return tl::unexpected(setup.error());
+    report.setup = std::move(*setup);
+  }
+  if (!arguments.link.empty()) {
+    auto link = check_link(arguments);
+    if (!link) return tl::unexpected(link.error());
+    report.link = std::move(*link);
+  }
+  if (arguments.timing) report.timing = check_timing(arguments);
+  return report;
 }
 
 int run(const RobotCheckArguments& arguments) {
-  const auto text = read_scenario_text(arguments.file);
-  if (!text) return report_error(text.error());
-  const auto setup = session::read_robot_setup(text->text, text->file, laboratory::read_simulation);
-  if (!setup) return report_error(setup.error());
-  if (arguments.live && !setup->has_device) {
-    return report_error(
-        {ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
+  if (auto ok = arguments.output.to.check({}); !ok) return report_error(ok.error());
+  if (arguments.file.empty() && arguments.link.empty() && !arguments.timing) {
+    return report_error({ErrorKind::usage, "there is nothing to check",
+                         "name a FILE, or give --link ADDRESS or --rt; --help says more", ""});
   }
-  const std::vector<session::Finding> findings = session::check_setup(*setup);
-  bool wrong = session::worst(findings) == session::Finding::Verdict::wrong;
-  if (auto ok = Output().write(session::setup_text(*setup) + findings_text(findings)); !ok) {
+  const auto report = check_all(arguments);
+  if (!report) return report_error(report.error());
+  if (auto ok = arguments.output.to.write(arguments.output.json ? json_of(*report) : text_of(*report)); !ok) {
     return report_error(ok.error());
   }
-  if (!arguments.live) return wrong ? kNotUsable : kFine;
-  const auto robot = protocol::make_device(setup->trial);
-  if (!robot) return report_error(robot.error());
-  const auto record = session::watch_robot(**robot, setup->trial.rate, *arguments.live);
-  if (!record) return report_error(record.error());
-  const auto seen = session::check_live(*setup, (*robot)->facts(), *record);
-  if (auto ok = Output().write(session::live_text(*setup, (*robot)->facts(), *record) + findings_text(seen)); !ok) {
-    return report_error(ok.error());
-  }
-  wrong = wrong || session::worst(seen) == session::Finding::Verdict::wrong;
-  return wrong ? kNotUsable : kFine;
+  return report->wrong() ? kNotUsable : report->incomplete() ? kNotAllTested : kFine;
 }
 
 }  // namespace
@@ -66,18 +128,53 @@ Action add_robot_check(CLI::App& group) {
       "  mbk robot check my_experiment.toml\n"
       "      geometry, limits, wiring and device as understood, and what cannot be meant\n"
       "  mbk robot check my_experiment.toml --live 5\n"
-      "      also five seconds of readings, motors off; turn the joints, press the stop button\n\n"
-      "Do both before anyone sits down at a new robot. The keys of [device] stand in docs/guide/devices.md.\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable, or the robot does not answer, 4 something is wrong.");
-  command->add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
-      ->required()
-      ->check(suggests(ready_scenario_names()));
+      "      also five seconds of readings, motors off; turn the joints, press the stop button\n"
+      "  mbk robot check --link 192.168.7.2:25000 --motors\n"
+      "      whether the robot's program keeps every rule of the link: a bridge of your own\n"
+      "  mbk robot check --rt 60\n"
+      "      how punctually this machine wakes a session's loop, and what holds it up\n\n"
+      "Do all of it before anyone sits down at a new robot. The keys of [device] and the rules of the link stand in\n"
+      "docs/guide/devices.md, a bridge to begin with in docs/guide/your_own_robot.md.\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable, or the robot does not answer, 4 something is wrong, 6 not "
+      "every "
+      "rule of the link was tested.");
+  CLI::Option* const file =
+      command
+          ->add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
+          ->check(suggests(ready_scenario_names()));
   command->add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
       ->type_name("S")
       ->expected(0, 1)
       ->default_str("2")
       ->option_text("S")
+      ->check(positive())
+      ->needs(file);
+  CLI::Option* const link =
+      command
+          ->add_option("--link", arguments->link,
+                       "a robot's program behind UDP, every rule that it has to keep (port 25000)")
+          ->type_name("ADDRESS")
+          ->check(not_empty());
+  command
+      ->add_flag("--motors", arguments->motors,
+                 "also the rules for which its motors go on, with command 0: nobody at the robot, a hand on its stop "
+                 "button")
+      ->needs(link);
+  command->add_option("--local-port", arguments->local_port, "where --link listens; 0: any that is free (0)")
+      ->type_name("N")
+      ->check(whole_number(0, 65535))
+      ->needs(link);
+  command
+      ->add_option("--rt", arguments->timing, "wake a loop for so long as a session does, and say how late it was (10)")
+      ->type_name("S")
+      ->expected(0, 1)
+      ->default_str("10")
+      ->option_text("S")
       ->check(positive());
+  command->add_option("--rate", arguments->rate_hz, "of --link and --rt, Hz (1000)")
+      ->type_name("HZ")
+      ->check(positive());
+  add_output_options(*command, arguments->output, "mbk.robot_check/1");
   return [arguments] { return run(*arguments); };
 }
 

@@ -6,13 +6,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <string>
 
 #include "mbk/base/realtime/clock.h"
+#include "mbk/base/realtime/thread_setup.h"
 #include "mbk/simulate/laboratory/find_scenario.h"
 #include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/study/validation/rule_breakers.h"
 #include "mbk/study/validation/udp_fault_kinds.h"
 
 namespace {
@@ -25,12 +28,33 @@ constexpr char kHelp[] =
     "It runs at its own clock of 1 kHz. Each line on standard output is a JSON object of what truly happens: ticks of\n"
     "its clock since the first greeting, monotonic time, and what its motors do whatever the robot says. The last one\n"
     "is 'end', which SIGTERM and Ctrl-C bring about.\n"
-    "Example: mbk_misbehaving_robot relaxed_sinusoidal --fault latched-frozen-answer --at 2 --port 25000";
+    "With --breaks its program breaks a rule of the link from the beginning, for 'mbk robot check --link' to find; it\n"
+    "prints where it listens, and nothing more.\n"
+    "Examples:\n"
+    "  mbk_misbehaving_robot relaxed_sinusoidal --fault latched-frozen-answer --at 2 --port 25000\n"
+    "  mbk_misbehaving_robot relaxed_sinusoidal --breaks no-watchdog";
 
 validation::MisbehavingRobot* serving = nullptr;
 
+std::atomic<bool> over{false};
+
 void end(int) {
+  over = true;
   if (serving != nullptr) serving->end();
+}
+
+void end_by_signal(unsigned longest) {
+  std::signal(SIGINT, end);
+  std::signal(SIGTERM, end);
+  std::signal(SIGALRM, end);
+  alarm(longest);
+}
+
+void say_listening(const std::string& address, std::uint16_t port) {
+  fmt::print(R"({{"event":"listening","address":"{}","port":{}}})"
+             "\n",
+             address, port);
+  std::fflush(stdout);
 }
 
 void say(std::string_view event, const RobotTruth& t) {
@@ -51,10 +75,12 @@ void list() {
   for (const validation::UdpFaultKind& kind : validation::udp_fault_kinds()) {
     fmt::print("{:<26} {}\n", kind.name, kind.what);
   }
+  fmt::print("\n--breaks:\n");
+  for (const validation::RuleBreaker& one : validation::rule_breakers()) fmt::print("{:<26} {}\n", one.name, one.what);
 }
 
 struct Arguments {
-  std::string scenario, trial, fault, address = "127.0.0.1";
+  std::string scenario, trial, fault, breaks, address = "127.0.0.1";
   std::uint16_t port = 25000;
   std::uint16_t version = 0;
   double at = 1.0;
@@ -90,16 +116,34 @@ int run(const Arguments& arguments) {
   auto served = validation::MisbehavingRobot::create(**robot, std::move(fault), options, say);
   if (!served) return report(served.error());
   serving = served->get();
-  std::signal(SIGINT, end);
-  std::signal(SIGTERM, end);
-  std::signal(SIGALRM, end);
-  alarm(arguments.longest);
-  fmt::print(R"({{"event":"listening","address":"{}","port":{}}})"
-             "\n",
-             arguments.address, serving->local().port);
-  std::fflush(stdout);
+  end_by_signal(arguments.longest);
+  say_listening(arguments.address, serving->local().port);
   serving->serve();
   say("end", serving->truth());
+  return 0;
+}
+
+/// A robot whose program breaks a rule.
+int run_breaker(const Arguments& arguments) {
+  const validation::RuleBreaker* breaker = validation::find_rule_breaker(arguments.breaks);
+  if (breaker == nullptr) {
+    return report(
+        {ErrorKind::usage, "no program breaks a rule as '" + arguments.breaks + "'", "--list names them", ""});
+  }
+  const auto scenario = laboratory::find_scenario(arguments.scenario, arguments.trial);
+  if (!scenario) return report(scenario.error());
+  const auto robot = laboratory::SimulatedDevice::create(*scenario);
+  if (!robot) return report(robot.error());
+  const auto local = drivers::UdpAddress::find(arguments.address, arguments.port);
+  if (!local) return report(local.error());
+  validation::SpoiltLink link(breaker->make());
+  auto served = drivers::UdpRobot::create(**robot, *local, 1.0 / scenario->rate.value, &link);
+  if (!served) return report(served.error());
+  end_by_signal(arguments.longest);
+  say_listening(arguments.address, served->local().port);
+  (void)realtime::prepare_thread();  // where that is refused it is held up more often
+  const std::atomic<bool> no_button{false};
+  served->serve(over, no_button);
   return 0;
 }
 
@@ -110,7 +154,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::Option* const scenario = app.add_option("SCENARIO", arguments.scenario, "a .toml file, or a ready one's name");
   app.add_option("--trial", arguments.trial, "this [[trial]] of the file; the first without it");
-  app.add_option("--fault", arguments.fault, "what goes wrong; nothing without it");
+  CLI::Option* const fault = app.add_option("--fault", arguments.fault, "what goes wrong; nothing without it");
+  app.add_option("--breaks", arguments.breaks, "how its program breaks a rule of the link")->excludes(fault);
   app.add_option("--at", arguments.at, "seconds from when its motors first go on to the fault (1)");
   app.add_option("--seed", arguments.seed, "of the fault's sizes, of the noise and of the person (1)");
   app.add_option("--address", arguments.address, "of the network where it listens (127.0.0.1)");
@@ -128,5 +173,5 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "mbk_misbehaving_robot: SCENARIO is missing; --help says more\n");
     return 2;
   }
-  return run(arguments);
+  return arguments.breaks.empty() ? run(arguments) : run_breaker(arguments);
 }

@@ -5,7 +5,6 @@ import pathlib
 import re
 import signal
 import subprocess
-import sys
 
 from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, main, program, run
 
@@ -160,13 +159,6 @@ class Udp(Case):
         peer = self.peer()
         self.refused(WRONG_USAGE, "run", self.experiment("udp.toml", peer.port), "--fast", "--quiet", "--out",
                      self.folder / "fast.h5", says="keeps its own time")
-
-    def test_the_example_in_python_is_a_robot(self):
-        peer = Peer(self, sys.executable, EXAMPLES / "udp_robot" / "peer.py", "0")
-        experiment = self.experiment("udp.toml", peer.port, "has_force = false\nhas_acceleration = false")
-        ran = run("robot", "check", experiment, "--live", "1")
-        self.assertIn("UDP 127.0.0.1", ran.out, ran)
-        self.assertIn("joint 1             11.4592", ran.out, ran)
 
 
 class Check(Case):

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "mbk/experiment/drivers/bridge_check.h"
 #include "mbk/model/trial/arm_posture.h"
 #include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/frequency_response.h"
@@ -64,6 +65,8 @@ TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
   expect_words<reliability::Pairing>("study_summary", "/definitions/StudyDifference/properties/pairing");
   expect_words<statistics::Verdict>("study_summary", "/definitions/StudyDifference/properties/verdict");
   expect_words<statistics::ComparedBy>("study_summary", "/definitions/StudyComparison/properties/by");
+  expect_words<drivers::BridgeRule>("robot_check", "/definitions/BridgeRule");
+  expect_words<drivers::RuleVerdict>("robot_check", "/definitions/LinkCheck/properties/rules/items/properties/verdict");
   expect_words<Provenance>("reproduction", "/definitions/Provenance");
   expect_words<Agreement>("reproduction", "/definitions/Agreement");
   expect_words<Exhibit::Kind>("reproduction", "/definitions/Exhibit/properties/kind");

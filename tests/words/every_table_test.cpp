@@ -9,6 +9,7 @@
 #include "mbk/experiment/console/refusals.h"
 #include "mbk/experiment/control/sequencer.h"
 #include "mbk/experiment/device/wiring.h"
+#include "mbk/experiment/drivers/bridge_check.h"
 #include "mbk/experiment/drivers/datagram.h"
 #include "mbk/experiment/protocol/trial_sections.h"
 #include "mbk/experiment/safety/motors_off.h"
@@ -50,8 +51,9 @@ using Enumerations =
                    SensorWarningCode, StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict,
                    WarningCode, journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture,
                    teleop::Form, teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame,
-                   drivers::Refusal, safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action,
-                   console::Question, console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
+                   drivers::Refusal, drivers::BridgeRule, drivers::RuleVerdict, safety::Reason,
+                   safety::MotorsOff::State, protocol::Machine, console::Action, console::Question, console::Refusal,
+                   ElbowSide, validation::Force, validation::TrialKind>;
 TYPED_TEST_SUITE(WordsOf, Enumerations);
 
 TYPED_TEST(WordsOf, GoBothWays) {

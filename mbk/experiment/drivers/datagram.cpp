@@ -65,10 +65,6 @@ std::uint32_t checksum_of(std::span<const std::byte> bytes) noexcept {
       crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size() - kChecksumBytes)));
 }
 
-void seal(std::span<std::byte> bytes) noexcept {
-  Writing(bytes.last(kChecksumBytes)).put(checksum_of(bytes));
-}
-
 /// What can be said before a field is read. Wrong versions come before wrong checksums: another version may be longer.
 /// @param lengths  of version 1, 2, …
 Refusal check(std::span<const std::byte> bytes, std::span<const std::size_t> lengths, std::uint32_t magic) noexcept {
@@ -93,6 +89,10 @@ Reading body_of(std::span<const std::byte> bytes) noexcept {
 }
 
 }  // namespace
+
+void seal(std::span<std::byte> bytes) noexcept {
+  Writing(bytes.last(kChecksumBytes)).put(checksum_of(bytes));
+}
 
 StateBytes encode(const StateDatagram& d) noexcept {
   StateBytes bytes(kStateLengths[d.version >= kNewestStateVersion ? 1 : 0]);

@@ -15,6 +15,12 @@ namespace mbk::drivers {
 
 inline constexpr std::uint16_t kCommandVersion = 1;
 inline constexpr std::uint16_t kNewestStateVersion = 2;  ///< of a state; 1 is accepted too
+
+/// Of the last words of a program that crashes: beyond any sequence that a session reaches, exact as a double, and the
+/// highest where a robot keeps the low 31 or 32 bits alone and takes them for a signed number.
+inline constexpr std::uint64_t kLastSequence = (std::uint64_t{1} << 52U) + 0x7FFFFFFFU;
+inline constexpr int kGoodbyes = 5;  ///< how often "motors off" is said at the end: one may get lost
+
 inline constexpr std::size_t kStateBytes1 = 92, kStateBytes2 = 112, kCommandBytes = 44;
 
 /// From the robot: one sample. Version 2 adds what its drives measure and its own fault code.
@@ -77,6 +83,10 @@ class StateBytes {
 
 [[nodiscard]] StateBytes encode(const StateDatagram& datagram) noexcept;
 [[nodiscard]] std::array<std::byte, kCommandBytes> encode(const CommandDatagram& datagram) noexcept;
+
+/// Writes the checksum of what stands before it into the last four bytes.
+/// @param bytes  at least 4
+void seal(std::span<std::byte> bytes) noexcept;
 
 /// What stands in `into` is meant only where nothing is refused. A number need not be finite.
 [[nodiscard]] Refusal decode(std::span<const std::byte> bytes, StateDatagram& into) noexcept;

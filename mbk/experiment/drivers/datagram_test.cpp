@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -80,6 +83,125 @@ TEST(Datagram, BytesAreThoseOfTheGuide) {
   EXPECT_EQ(hex(encode(command)),
             "4d424b4301000100010000003200000002000000000000"
             "00000000000000e03f00000000000000c07bb74a78");
+}
+
+// ---- bridge/vectors.txt, to which the bridges in C, Python and MATLAB are held too
+
+std::uint64_t whole(std::istream& words) {
+  std::uint64_t value = 0;
+  words >> value;
+  return value;
+}
+
+/// Also nan and inf, which streams do not read.
+double number(std::istream& words) {
+  std::string word;
+  words >> word;
+  return std::strtod(word.c_str(), nullptr);
+}
+
+Eigen::Vector2d pair(std::istream& words) {
+  const double first = number(words);
+  return {first, number(words)};
+}
+
+CommandDatagram command_of(std::istream& words) {
+  CommandDatagram d;
+  const std::uint64_t flags = whole(words);
+  d.enabled = (flags & 1U) != 0;
+  d.greeting = (flags & 2U) != 0;
+  d.lock_step = (flags & 4U) != 0;
+  d.session = static_cast<std::uint32_t>(whole(words));
+  d.watchdog = static_cast<std::uint32_t>(whole(words));
+  d.sequence = whole(words);
+  d.command = pair(words);
+  return d;
+}
+
+StateDatagram state_of(std::istream& words) {
+  StateDatagram d;
+  d.version = static_cast<std::uint16_t>(whole(words));
+  const std::uint64_t flags = whole(words);
+  d.raw.stop = (flags & 1U) != 0;
+  d.enabled = (flags & 2U) != 0;
+  d.has_force = (flags & 4U) != 0;
+  d.has_acceleration = (flags & 8U) != 0;
+  d.watchdog_expired = (flags & 16U) != 0;
+  d.drives_measure = (flags & 32U) != 0;
+  d.session = static_cast<std::uint32_t>(whole(words));
+  d.rejected = static_cast<std::uint32_t>(whole(words));
+  d.raw.sequence = whole(words);
+  d.answered = whole(words);
+  d.raw.time = number(words);
+  d.raw.encoder = pair(words);
+  d.raw.force = pair(words);
+  d.raw.acceleration = pair(words);
+  d.measured = pair(words);
+  d.fault = static_cast<std::uint32_t>(whole(words));
+  return d;
+}
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+  std::vector<std::byte> bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    bytes.push_back(static_cast<std::byte>(std::stoul(text.substr(i, 2), nullptr, 16)));
+  }
+  return bytes;
+}
+
+/// Packed and unpacked.
+template <class Datagram>
+void expect_vector(const Datagram& made, std::istream& words) {
+  std::string bytes;
+  words >> bytes;
+  EXPECT_EQ(hex(encode(made)), bytes);
+  Datagram came;
+  ASSERT_EQ(decode(bytes_of(bytes), came), Refusal::none);
+  EXPECT_EQ(hex(encode(came)), bytes);
+}
+
+void expect_refusal(std::istream& words) {
+  const std::pair<const char*, Refusal> whys[] = {{"length", Refusal::length},
+                                                  {"magic", Refusal::magic},
+                                                  {"version", Refusal::version},
+                                                  {"checksum", Refusal::checksum}};
+  std::string kind, why, bytes;
+  words >> kind >> why >> bytes;
+  StateDatagram state;
+  CommandDatagram command;
+  const Refusal refusal = kind == "state" ? decode(bytes_of(bytes), state) : decode(bytes_of(bytes), command);
+  for (const auto& [word, expected] : whys) {
+    if (why == word) {
+      EXPECT_EQ(refusal, expected);
+      return;
+    }
+  }
+  ADD_FAILURE() << "no refusal is called " << why;
+}
+
+TEST(Datagram, VectorsOfTheBridgesHold) {
+  std::ifstream file(MBK_BRIDGE "/vectors.txt");
+  std::string line;
+  int commands = 0, states = 0, refusals = 0;
+  while (std::getline(file, line)) {
+    SCOPED_TRACE(line);
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    if (kind == "command") {
+      ++commands;
+      expect_vector(command_of(words), words);
+    } else if (kind == "state") {
+      ++states;
+      expect_vector(state_of(words), words);
+    } else if (kind == "refused") {
+      ++refusals;
+      expect_refusal(words);
+    }
+  }
+  EXPECT_GE(commands, 5);
+  EXPECT_GE(states, 5);
+  EXPECT_GE(refusals, 15);
 }
 
 TEST(Datagram, EveryFlippedBitIsSeen) {

@@ -17,11 +17,6 @@ using realtime::monotonic_ns;
 constexpr double kShortestWatchdog = 1e-3, kLongestWatchdog = 10.0;  // [s]
 constexpr double kAskAgain = 0.02;                                   // [s]
 constexpr int kMaxAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
-constexpr int kGoodbyes = 5;
-
-/// Of the last words: beyond any that a session reaches, exact as a double, and the highest where a robot keeps the low
-/// 31 or 32 bits alone and takes them for a signed number.
-constexpr std::uint64_t kLastSequence = (std::uint64_t{1} << 52U) + 0x7FFFFFFFU;
 
 std::int64_t after(double seconds) noexcept {
   return monotonic_ns() + std::llround(1e9 * seconds);

@@ -480,6 +480,18 @@ TEST(UdpRobot, SwitchesItsMotorsOffUntilTheNextGreetingWhereNoCommandComes) {
   EXPECT_TRUE(device->read(state));
 }
 
+/// The program that drove it was killed: nobody says goodbye.
+TEST(UdpRobot, TakesTheNextGreetingAfterItsWatchdogHasExpired) {
+  const Serving serving;
+  auto device = serving.device(false, 0.02);
+  ASSERT_TRUE(device->start());
+  device->write({0, {1.0, 0.0}, true});
+  ASSERT_TRUE(soon(*device, [](const StateDatagram& d) { return d.watchdog_expired && !d.enabled; }));
+  auto next = serving.device(false);
+  ASSERT_TRUE(next->start());
+  EXPECT_FALSE(next->newest().watchdog_expired || next->newest().enabled);
+}
+
 TEST(UdpRobot, ObeysNobodyElseWhileItsMotorsAreOn) {
   const Serving serving;
   auto device = serving.device(false), other = serving.device(false, 10.0, 0.3);

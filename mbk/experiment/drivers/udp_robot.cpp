@@ -87,7 +87,7 @@ void UdpRobot::take_all() noexcept {
 
 void UdpRobot::greet(const CommandDatagram& came, const UdpAddress& from) noexcept {
   const bool again = awake_ && from == master_ && came.session == obeyed_.session;
-  if (obeyed_.enabled && !again) {
+  if (obeyed_.enabled && !state_.watchdog_expired && !again) {
     ++state_.rejected;
     return;
   }
