@@ -401,7 +401,7 @@ class Package(unittest.TestCase):
         scenario = self.folder / "long.toml"
         scenario.write_text('[control]\nkind = "position"\n[perturbation]\nkind = "multisine"\npeak_deg = 2\n'
                             'duration_s = 1200\n[participant]\nkind = "arm"\n')
-        calls = {"a long simulation": lambda: mbk.simulate(scenario), "many": lambda: mbk.simulate("free_motion", seeds=9999),
+        calls = {"a long simulation": lambda: mbk.simulate(scenario), "two": lambda: mbk.simulate(scenario, seeds=2),
                  "validate": lambda: mbk.validate("coverage", runs=100_000)}
         for name, call in calls.items():
             with self.subTest(name):

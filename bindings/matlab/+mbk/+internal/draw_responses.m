@@ -7,11 +7,11 @@ function handles = draw_responses(document)
   if isfield(found, 'responses')
     responses = mbk.internal.items(found.responses);
     units = units_of(found);
-    titles = cellfun(@(one) {one.input, ['to ' one.output]}, responses, 'UniformOutput', false);
+    titles = cellfun(@(one) [one.input ' to ' one.output], responses, 'UniformOutput', false);
     ratios = cellfun(@(one) ratio(units.(one.output), units.(one.input)), responses, 'UniformOutput', false);
   else
     responses = {found};
-    titles = {{document.input.name, ['to ' document.output.name]}};
+    titles = {[document.input.name ' to ' document.output.name]};
     ratios = {ratio(document.output.unit, document.input.unit)};
   end
   across = numel(responses);
@@ -26,29 +26,27 @@ function handles = draw_responses(document)
       set(gca, 'YScale', 'log');
       ylim([lowest, max(one.magnitude) * 3]);
     end
-    names = titles{column};
-    names{2} = mbk.internal.with_unit(names{2}, ratios{column});
-    title(names, 'Interpreter', 'none', 'FontSize', 9);
-    label_first(column, 'magnitude');
+    label_where(column == 1 || ~strcmp(ratios{column}, ratios{1}), mbk.internal.with_unit('magnitude', ratios{column}));
+    title(titles{column}, 'Interpreter', 'none', 'FontSize', 8);
     handles(end + 1) = subplot(down, across, across + column);
     line_with_band(found.frequency_hz, one, 'phase_deg', 'phase_interval95_deg', -Inf);
-    label_first(column, 'phase (deg)');
+    label_where(column == 1, 'phase (deg)');
     if down == 3
       handles(end + 1) = subplot(down, across, 2 * across + column);
       semilogx(found.frequency_hz, one.partial_coherence, 'Color', mbk.internal.style('second'), 'LineWidth', 1.2);
       xlim([min(found.frequency_hz) max(found.frequency_hz)]);
       ylim([0 1.05]);
       grid on
-      label_first(column, 'partial coherence');
+      label_where(column == 1, 'partial coherence');
     end
     xlabel('frequency (Hz)');
   end
 end
 
-function label_first(column, text)
-% The others in the row have the same.
+function label_where(wanted, text)
+% Those in a row that have the same label as the first need none.
   set(gca, 'FontSize', 9);
-  if column == 1
+  if wanted
     mbk.internal.label('', text);
   end
 end
