@@ -11,11 +11,13 @@
 #include <span>
 #include <thread>
 
+#include "apps/mbk/caller.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/files/contents/sha256.h"
+#include "mbk/study/batch/job_events.h"
 #include "mbk/study/batch/merge.h"
 
 namespace mbk::app {
@@ -63,21 +65,24 @@ struct Measured {
   std::int64_t memory_mb = 0;
 };
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 Measured measured_cost(const Request& request) {
   constexpr std::size_t kUnits = 3;
   constexpr double kLongest = 10.0;  // [s]
   const auto begin = std::chrono::steady_clock::now();
-  const auto spent = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   double weight = 0.0;
   const std::size_t count = std::min(kUnits, request.keys.size());
-  for (std::size_t k = 0; k < count && spent() < kLongest; ++k) {
+  for (std::size_t k = 0; k < count && seconds_since(begin) < kLongest; ++k) {
     const std::size_t unit = count == 1 ? 0 : k * (request.keys.size() - 1) / (count - 1);
     // What fails here fails in its chunk, too, and is told there.
     std::ignore = request.compute(static_cast<std::int64_t>(unit), request.keys[unit]);
     weight += request.weights[unit];
   }
   Measured measured;
-  measured.s_per_weight = std::max(spent(), 1e-6) / weight;
+  measured.s_per_weight = std::max(seconds_since(begin), 1e-6) / weight;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   constexpr std::int64_t kKilobytes = 1024, kBeside = 256;  // half as much again, and [MB]
@@ -193,10 +198,13 @@ void add_engine_options(CLI::App& command, EngineArguments& arguments) {
           ->allow_extra_args(false));
   add(command.add_flag("--detach", arguments.detach,
                        "of Slurm: hand the tasks out and end; the same command later collects what they did"));
+  add(command.add_flag("--progress-json", arguments.progress_json,
+                       "progress as JSON lines on standard error: schema mbk.job_state/1"));
   add(command.add_flag("--keep-job", arguments.keep, "leave the job's folder where all is done"));
 }
 
 Result<std::vector<std::string>> results_of(const JobFolder& folder) {
+  const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> results;
   const auto merged = batch::merge(folder, [&](batch::MergedUnit unit) -> Result<void> {
     if (!unit.differing.empty()) {
@@ -210,7 +218,16 @@ Result<std::vector<std::string>> results_of(const JobFolder& folder) {
   });
   if (!merged) return tl::unexpected(merged.error());
   if (merged->missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
+  batch::note_merged(folder, seconds_since(begin));
   return results;
+}
+
+Result<void> remove_job(const JobFolder& folder, const EngineArguments& arguments) {
+  if (arguments.keep) return {};
+  if (auto ok = folder.remove(); !ok) return ok;
+  std::error_code ignored;
+  if (!arguments.folder) fs::remove(folder.folder().parent_path(), ignored);
+  return {};
 }
 
 fs::path job_folder_here(const std::string& kind, const std::string& specification) {
@@ -230,6 +247,9 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
   if (arguments.detach && arguments.kind != EngineKind::slurm) {
     return bad_usage("--detach belongs to --engine slurm", "leave it out");
   }
+  if (Caller::current() != nullptr) {
+    return bad_usage("--engine starts processes of the program mbk", "call it on the command line");
+  }
   const auto program = this_program();
   if (!program) return tl::unexpected(program.error());
   batch::EngineOptions options = engine_options(arguments, *program);
@@ -246,6 +266,7 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
 
   batch::RunOptions run_options;
   run_options.silence_s = arguments.silence_s;
+  run_options.engine = word_of(*arguments.kind);
   run_options.detach = arguments.detach;
   const NotedSignals signals;
   run_options.stop = [] {
@@ -254,7 +275,11 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
   };
   std::string said;
   run_options.progress = [&](const batch::JobState& state) {
-    if (!quiet) say("{}\n", batch::to_text(state));
+    if (arguments.progress_json) {
+      say("{}\n", batch::to_json(state));
+    } else if (!quiet) {
+      say("{}\n", batch::to_text(state));
+    }
   };
   const auto report = batch::run(*folder, **engine, run_options);
   if (!report) return tl::unexpected(report.error());

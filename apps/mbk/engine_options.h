@@ -24,7 +24,7 @@ struct EngineArguments {
   double silence_s = 300.0, settle_s = 10.0;
   std::string partition, account;
   std::vector<std::string> extra;
-  bool detach = false, keep = false;
+  bool detach = false, keep = false, progress_json = false;
 };
 
 /// Adds --engine and what belongs to it.
@@ -60,6 +60,10 @@ using UseUnits = std::function<Result<void>(const batch::UnitFunction& compute)>
 
 /// What each unit of a finished job gave.   @fails  data: a unit gave nothing, or different results.
 [[nodiscard]] Result<std::vector<std::string>> results_of(const batch::JobFolder& folder);
+
+/// Once the results of a job are taken: removes it, and the folder above it where nothing is left in that, unless it is
+/// to be kept.
+[[nodiscard]] Result<void> remove_job(const batch::JobFolder& folder, const EngineArguments& arguments);
 
 /// Below the current folder: "mbk-jobs/KIND-…", the same for the same work.
 [[nodiscard]] std::filesystem::path job_folder_here(const std::string& kind, const std::string& specification);

@@ -1,75 +1,64 @@
 #include "mbk/measure/measurement/explore.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <memory>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include "apps/mbk/commands.h"
+#include "apps/mbk/explore_options.h"
+#include "apps/mbk/explore_units.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output_options.h"
-#include "apps/mbk/preprocess_options.h"
-#include "apps/mbk/reading_options.h"
 #include "apps/mbk/report_file.h"
-#include "apps/mbk/signal_names.h"
-#include "apps/mbk/word_options.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/result/exploration_json.h"
 
 namespace mbk::app {
 namespace {
 
-struct ExploreArguments {
-  ReadingArguments reading;
-  SensorArguments sensor;
-  WindowArguments window;
-  std::optional<Protocol> protocol;
-  std::optional<double> resample_hz;
-  double force_delay_ms = 0.0;
-  std::optional<ExplorationPart> only;
-  std::optional<double> after_onset_ms;
-  std::string schedule, align, trigger;
-  explore::FrequencyResponseOptions response;
-  std::optional<double> plateau_from_ms, plateau_to_ms;
-  std::string input, output_signal, reference;
+struct ExploreArguments : ExploringArguments {
   OutputArguments output;
   ReportArguments report;
+  bool each = false;
+  unsigned threads = 0;
+  EngineArguments engine;
 };
 
-Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
-  const auto window = window_limits(a.window);
-  if (!window) return tl::unexpected(window.error());
-  measurement::ExploreOptions options;
-  options.preprocess.window = *window;
-  options.preprocess.protocol = a.protocol;
-  options.preprocess.axes = a.reading.axes;
-  if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
-  options.force_delay = a.force_delay_ms / kMilliseconds;
-  options.only = a.only;
-  options.frequency_response = a.response;
-  if (a.plateau_from_ms) options.plateau.from_s = *a.plateau_from_ms / kMilliseconds;
-  if (a.plateau_to_ms) options.plateau.to_s = *a.plateau_to_ms / kMilliseconds;
-  options.reaches.from_s = options.plateau.from_s;
-  options.reaches.to_s = options.plateau.to_s;
-  if (!a.trigger.empty()) options.reaches.trigger = a.trigger;
-  options.schedule = a.schedule;
-  if (!a.align.empty()) options.align = a.align;
-  if (a.after_onset_ms) options.after_onset_s = *a.after_onset_ms / kMilliseconds;
-  return options;
-}
-
-/// Other signals than motion and force, where they are named.
-Result<void> name_signals(ExploreArguments& a, measurement::ExploreOptions& options) {
-  if (a.input.empty() && a.output_signal.empty() && a.reference.empty()) return {};
-  if (a.input.empty() || a.output_signal.empty()) {
-    return bad_usage("a response needs --input and --output", "name both, or neither for that of force to motion");
+/// A result for each recording.
+int run_each(const CLI::App& command, const ExploreArguments& arguments) {
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
+    return report_error(ok.error());
   }
-  measurement::ExploredSignals& signals = options.signals.emplace();
-  const SignalName names[] = {{a.input, "input", signals.input, &signals.input_sign},
-                              {a.output_signal, "output", signals.output, &signals.output_sign},
-                              {a.reference, "drive", signals.reference, nullptr}};
-  signals.input_name = shown_name(a.input);
-  signals.output_name = shown_name(a.output_signal);
-  return place_signals(a.reading, names);
+  if (arguments.reading.parts) {
+    return report_error({ErrorKind::usage, "--parts joins recordings, and --each keeps them apart", "pass one", ""});
+  }
+  const ExploringEach each{arguments, exploring_words(command), arguments.output.json, arguments.output.quiet};
+  std::optional<int> code;
+  const auto explored =
+      arguments.engine.kind ? explored_elsewhere(each, arguments.engine, code) : explored_here(each, arguments.threads);
+  if (code) return *code;
+  if (!explored) return report_error(explored.error());
+  int worst = kFine;
+  bool all_usable = true;
+  std::vector<std::string> texts;
+  std::vector<Error> failed;
+  for (const ExploredRecord& one : *explored) {
+    if (one.failed) {
+      failed.push_back(one.error);
+      worst = std::max(worst, report_error(one.error));
+    } else {
+      texts.push_back(one.text);
+      all_usable = all_usable && one.usable;
+    }
+  }
+  if (texts.empty()) return worst;
+  const std::string text =
+      arguments.output.json ? result::to_json(texts, failed) : fmt::format("{}", fmt::join(texts, "\n"));
+  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  return worst != kFine ? worst : all_usable ? kFine : kNotUsable;
 }
 
 int run_explore(const ExploreArguments& given, const std::string& typed) {
@@ -77,9 +66,8 @@ int run_explore(const ExploreArguments& given, const std::string& typed) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
     return report_error(ok.error());
   }
-  auto options = options_of(arguments);
+  const auto options = exploring_options(arguments);
   if (!options) return report_error(options.error());
-  if (auto ok = name_signals(arguments, *options); !ok) return report_error(ok.error());
   const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
   const auto found = measurement::explore(*recordings, *options);
@@ -108,106 +96,29 @@ Action add_explore(CLI::App& app, const std::string& typed) {
       "      repetitions of one condition, averaged\n"
       "  mbk explore log.mat --report log.html\n"
       "      the same to be looked at: Bode plots with bands, coherence, Nyquist plots, impulse responses\n"
+      "  mbk explore --each trials/*.h5 --json --engine local\n"
+      "      a result for each file, by as many processes as there are cores; or by slurm, or mpi\n"
       "  mbk explore ankle.csv --channels x=2,F=3 --method welch --max-frequency 30\n"
       "  mbk explore arm.mat --input torque --output acceleration --rate 500\n\n"
       "FILEs are of one limb in one condition. Trials with other phases of a periodic perturbation are\n"
       "realisations: they tell nonlinear distortion from noise, and two axes from each other.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, arguments->reading);
-  command
-      ->add_option("--input", arguments->input,
-                   "another response than that of force to motion: from this channel, column, row or variable")
-      ->type_name("NAME")
-      ->check(not_empty());
-  command->add_option("--output", arguments->output_signal, "to this, likewise")->type_name("NAME")->check(not_empty());
-  command->add_option("--reference", arguments->reference, "what drives both, likewise")
-      ->type_name("NAME")
-      ->check(not_empty());
-  add_sensor_options(*command, arguments->sensor);
-  add_choice_or_auto(*command, "--protocol", arguments->protocol,
-                     "how the limb was perturbed; auto looks at the reference and says what it saw")
-      ->group("Analysed interval");
-  add_window_options(*command, arguments->window);
-  command
-      ->add_option("--resample", arguments->resample_hz,
-                   "put an uneven clock right first, by straight lines; never done unasked")
-      ->type_name("HZ")
-      ->check(positive());
-  command
-      ->add_option("--force-delay-ms", arguments->force_delay_ms,
-                   "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)")
-      ->type_name("MS")
-      ->check(number_within(1000.0));
-  add_choice(*command, "--only", arguments->only, "nothing but this part (all of them)");
-  const char* const group = "Frequency response";
-  add_choice_or_auto(
-      *command, "--method", arguments->response.method,
-      "robust: periods and realisations of a periodic perturbation, noise and nonlinear distortion "
-      "apart; fast: periods of one; local-polynomial: any perturbation, without leakage; welch: averaged "
-      "spectra; auto: the first of these that the data allow, and says why (auto)")
-      ->group(group);
-  command
-      ->add_option("--period", arguments->response.period_s,
-                   "of the perturbation, s; otherwise found in the reference or the motion")
-      ->type_name("S")
-      ->check(positive())
-      ->group(group);
-  command
-      ->add_option("--segment", arguments->response.segment_s,
-                   "length of the segments that welch averages; local polynomials reach over its inverse, s (2)")
-      ->type_name("S")
-      ->check(positive())
-      ->group(group);
-  command
-      ->add_option("--max-frequency", arguments->response.max_frequency_hz, "highest frequency that is shown, Hz (50)")
-      ->type_name("HZ")
-      ->check(positive())
-      ->group(group);
-  command
-      ->add_option("--plateau-from", arguments->plateau_from_ms,
-                   "begin of the window in which the force is averaged, ms after the onset (when the hand rests; 140 "
-                   "in a reach)")
-      ->type_name("MS")
-      ->check(not_negative())
-      ->group("Ramps and holds");
-  command->add_option("--plateau-to", arguments->plateau_to_ms, "its end, ms after the onset (300; 200 in a reach)")
-      ->type_name("MS")
-      ->check(positive())
-      ->group("Ramps and holds");
-  command
-      ->add_option("--trigger", arguments->trigger,
-                   "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
-                   "(trigger)")
-      ->type_name("EVENT")
-      ->check(not_empty())
-      ->group("Ramps and holds");
-  const char* const in_time = "Change over time";
-  command
-      ->add_option("--after-onset", arguments->after_onset_ms,
-                   "M, B and K from so long after each step or pulse of the reference, before the person can "
-                   "answer, ms; 100 to 150")
-      ->type_name("MS")
-      ->check(positive())
-      ->group(in_time);
-  CLI::Option* const schedule =
-      command
-          ->add_option("--schedule", arguments->schedule,
-                       "follow M, B and K over this channel, such as an angle or a co-contraction, not over time")
-          ->type_name("NAME")
-          ->check(not_empty())
-          ->group(in_time);
-  command
-      ->add_option("--align", arguments->align,
-                   "count time from this event, repetition by repetition, or from the onsets of the reference "
-                   "(reference)")
-      ->type_name("EVENT")
-      ->check(not_empty())
-      ->excludes(schedule)
-      ->group(in_time);
-  add_output_options(*command, arguments->output, "mbk.explore/1");
+  add_exploring_options(*command, *arguments);
+  CLI::Option* const each =
+      command->add_flag("--each", arguments->each, "a result for each recording, in place of one of all together");
+  command->add_option("--threads", arguments->threads, "with --each: recordings at a time (as many as there are cores)")
+      ->type_name("N")
+      ->check(whole_number(1, 1024))
+      ->needs(each);
+  add_output_options(*command, arguments->output, "mbk.explore/1, with --each mbk.explorations/1");
   add_report_options(*command, arguments->report);
-  return [arguments, typed] { return run_explore(*arguments, typed); };
+  add_engine_options(*command, arguments->engine);
+  command->get_option("--report")->excludes(each);
+  command->get_option("--engine")->needs(each);
+  return [command, arguments, typed] {
+    return arguments->each ? run_each(*command, *arguments) : run_explore(*arguments, typed);
+  };
 }
 
 }  // namespace mbk::app

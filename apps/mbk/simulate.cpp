@@ -216,11 +216,7 @@ int simulate_elsewhere(const SimulateArguments& arguments, const std::vector<Job
     for (const std::string& line : *lines) text += line;
     if (auto ok = Output().write(text); !ok) return report_error(ok.error());
   }
-  if (!arguments.engine.keep) {
-    if (auto ok = carried->folder->remove(); !ok) return report_error(ok.error());
-    std::error_code ignored;
-    if (!arguments.engine.folder) fs::remove(folder.parent_path(), ignored);  // where nothing else stands in it
-  }
+  if (auto ok = remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
   return kFine;
 }
 

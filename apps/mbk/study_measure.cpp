@@ -15,10 +15,12 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/progress.h"
 #include "apps/mbk/study_commands.h"
+#include "apps/mbk/study_jobs.h"
 #include "apps/mbk/study_options.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/files/contents/sha256.h"
+#include "mbk/study/batch/job_events.h"
 #include "mbk/study/batch/merge.h"
 
 namespace mbk::app {
@@ -215,12 +217,16 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
     if (!carried) return report_error(carried.error());
     if (!carried->folder) return *carried->code;
     ResultQueue queue(study, *measuring, arguments.study.role);
+    const auto begin = std::chrono::steady_clock::now();
     const auto collected = collect(*carried->folder, queue);
     tally += queue.tally;
     if (!collected) return report_error(collected.error());
+    batch::note_merged(*carried->folder,
+                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     count += *collected;
     if (carried->code) return said_of(tally, count, carried->code);
     if (!arguments.engine.keep) {
+      if (auto ok = keep_record(*carried->folder, study.folder()); !ok) return report_error(ok.error());
       if (auto ok = carried->folder->remove(); !ok) return report_error(ok.error());
     }
     // What could not be read is not tried again at once.

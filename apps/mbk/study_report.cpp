@@ -7,6 +7,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/report_file.h"
 #include "apps/mbk/study_commands.h"
+#include "apps/mbk/study_jobs.h"
 #include "apps/mbk/study_listing.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/html.h"
@@ -54,6 +55,11 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
   if (!report) return tl::unexpected(report.error());
   report->command = command;
   report->note = printable(arguments.note);
+  if (!arguments.participant) {
+    auto jobs = job_documents(study.folder());
+    if (!jobs) return tl::unexpected(jobs.error());
+    report->jobs = std::move(*jobs);
+  }
   return arguments.participant ? longitudinal::participant_report_json(*report, *arguments.participant)
                                : longitudinal::study_report_json(*report, summary);
 }
@@ -82,7 +88,7 @@ Action add_study_report(CLI::App& group) {
   command->footer(
       "Examples:\n"
       "  mbk study report --out study.html\n"
-      "      reliability, participants, sessions, ellipses, what does not count and why\n"
+      "      reliability, participants, sessions, ellipses, what does not count and why, jobs of --engine\n"
       "  mbk study report --participant 7 --out participant_7.html\n"
       "      what changed since the first session, and whether it is more than the minimal detectable change\n"
       "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"

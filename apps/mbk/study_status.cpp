@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,8 +8,9 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/study_commands.h"
+#include "apps/mbk/study_jobs.h"
 #include "apps/mbk/study_options.h"
-#include "mbk/study/batch/merge.h"
+#include "mbk/study/batch/job_efficiency.h"
 #include "mbk/study/batch/run.h"
 
 namespace mbk::app {
@@ -28,50 +28,25 @@ Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
   if (arguments.job) return std::vector{*arguments.job};
   const auto study = open_study(arguments.study);
   if (!study) return tl::unexpected(study.error());
-  std::vector<fs::path> jobs;
-  std::error_code error;
-  for (auto at = fs::directory_iterator(study->folder() / "jobs", error); !error && at != fs::directory_iterator();
-       at.increment(error)) {
-    if (batch::JobFolder::is_there(at->path())) jobs.push_back(at->path());
-  }
-  std::ranges::sort(jobs);
-  return jobs;
+  return job_folders(study->folder());
 }
 
-/// Wall and processor time of the finished tasks: how much of the time that they had they used.
-std::string efficiency_text(const batch::JobFolder& folder) {
-  const auto tasks = batch::finished_tasks(folder);
-  if (!tasks || tasks->empty()) return "";
-  double wall = 0.0, cpu = 0.0, expected = 0.0, slowest = 0.0;
-  for (const batch::FinishedTask& task : *tasks) {
-    wall += task.end.wall_s;
-    cpu += task.end.cpu_s;
-    expected += task.expected_s;
-    slowest = std::max(slowest, task.end.wall_s);
-  }
-  return fmt::format(
-      "  finished tasks: {}; {:.1f} s each, slowest {:.1f} s; processor busy {:.0f} % of the time; {:.2f} times the "
-      "expected cost\n",
-      tasks->size(), wall / static_cast<double>(tasks->size()), slowest, wall > 0.0 ? 100.0 * cpu / wall : 0.0,
-      expected > 0.0 ? wall / expected : 0.0);
-}
-
-nlohmann::ordered_json json_of(const batch::JobFolder& folder, const batch::JobState& state) {
+nlohmann::ordered_json json_of(const batch::JobFolder& folder, const batch::JobState& state,
+                               const batch::JobEfficiency& efficiency) {
   auto json = nlohmann::ordered_json::parse(batch::to_json(state));
   json["folder"] = folder.folder().string();
   json["title"] = folder.job().title;
   json["tasks"] = nlohmann::ordered_json::array();
-  const auto tasks = batch::finished_tasks(folder);
-  if (!tasks) return json;
-  for (const batch::FinishedTask& task : *tasks) {
-    json["tasks"].push_back({{"chunk", task.chunk},
-                             {"host", task.end.host},
-                             {"units", task.end.units},
-                             {"failed", task.end.failed},
-                             {"expected_s", task.expected_s},
-                             {"wall_s", task.end.wall_s},
-                             {"cpu_s", task.end.cpu_s}});
+  for (const batch::TaskEfficiency& one : efficiency.tasks) {
+    json["tasks"].push_back({{"chunk", one.task.chunk},
+                             {"host", one.task.end.host},
+                             {"units", one.task.end.units},
+                             {"failed", one.task.end.failed},
+                             {"expected_s", one.task.expected_s},
+                             {"wall_s", one.task.end.wall_s},
+                             {"cpu_s", one.task.end.cpu_s}});
   }
+  json["efficiency"] = nlohmann::ordered_json::parse(batch::to_json(efficiency));
   return json;
 }
 
@@ -85,9 +60,11 @@ int run(const StatusArguments& arguments) {
     if (!folder) return report_error(folder.error());
     const auto state = batch::state_of(*folder);
     if (!state) return report_error(state.error());
-    json["jobs"].push_back(json_of(*folder, *state));
+    const auto efficiency = batch::job_efficiency(*folder);
+    if (!efficiency) return report_error(efficiency.error());
+    json["jobs"].push_back(json_of(*folder, *state, *efficiency));
     text += fmt::format("{}\n  {}\n  {}\n{}", folder->job().title, folder->folder().string(), batch::to_text(*state),
-                        efficiency_text(*folder));
+                        batch::to_text(*efficiency));
   }
   if (arguments.json) text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (auto ok = Output().write(text); !ok) return report_error(ok.error());
@@ -103,7 +80,7 @@ Action add_study_status(CLI::App& group) {
       "Examples:\n"
       "  mbk study status\n"
       "  mbk study status --json\n"
-      "      with the time that each finished task took\n"
+      "      with the time that each finished task waited and worked, and why tasks were lost\n"
       "  mbk study status --job mbk-jobs/validate-recovery-0123456789ab/stage-0\n"
       "      a job of another command");
   add_study_option(*command, arguments->study);

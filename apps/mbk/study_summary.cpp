@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <memory>
 #include <string_view>
 
+#include "apps/mbk/bootstrap_units.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/study_commands.h"
@@ -20,6 +22,9 @@ namespace {
 struct SummaryArguments : AnalysisArguments {
   std::vector<std::string> outcomes;
   ComparingArguments comparing;
+  std::optional<int> draws;
+  std::uint64_t seed = 1;
+  EngineArguments engine;
 };
 
 /// "patients=1-10,12": a name and the numbers of its people.
@@ -98,10 +103,34 @@ std::string summary_text(const store::StudyList& list, const std::vector<store::
   if (!list.analysis) return text + "  nothing was measured: 'mbk study measure'\n";
   if (outcomes.empty()) return text + "  no result is usable: 'mbk study list' says why\n";
   return text + statistics::outcomes_text(outcomes) + statistics::reliability_text(found, details) +
-         statistics::comparison_text(found, details) + statistics::notes_text(found.notes);
+         statistics::comparison_text(found, details) + statistics::bootstrap_text(found) +
+         statistics::notes_text(found.notes);
+}
+
+/// Resamples people, in this process or as --engine says.
+/// @returns  what the command is to end with, where the draws are not all there
+Result<std::optional<int>> resample(const SummaryArguments& arguments, const store::Store& study,
+                                    statistics::StudyStatistics& found) {
+  const Bootstrap bootstrap{statistics::people_tables(found), arguments.seed, *arguments.draws};
+  std::optional<int> code;
+  const auto draws = arguments.engine.kind
+                         ? draws_elsewhere(bootstrap, arguments.engine, study.folder(), arguments.output.quiet, code)
+                         : draws_here(bootstrap, arguments.output.quiet);
+  if (code) return code;
+  if (!draws) return tl::unexpected(draws.error());
+  statistics::add_bootstrap(found, bootstrap.tables, *draws, arguments.seed);
+  return code;
+}
+
+Result<void> check_bootstrap(const SummaryArguments& arguments) {
+  if (arguments.engine.kind && !arguments.draws) {
+    return bad_usage("only resampling is done by --engine", "pass --bootstrap 2000, or leave out --engine");
+  }
+  return {};
 }
 
 int run_summary(const SummaryArguments& arguments) {
+  if (auto ok = check_bootstrap(arguments); !ok) return report_error(ok.error());
   auto options = statistics_options(arguments.comparing);
   if (!options) return report_error(options.error());
   options->outcomes = arguments.outcomes;
@@ -115,8 +144,13 @@ int run_summary(const SummaryArguments& arguments) {
     columns = std::move(*found);
   }
   statistics::add_matrix_numbers(columns);
-  const auto found = statistics::study_statistics(columns, *options);
+  auto found = statistics::study_statistics(columns, *options);
   if (!found) return report_error(found.error());
+  if (arguments.draws) {
+    const auto code = resample(arguments, *study, *found);
+    if (!code) return report_error(code.error());
+    if (*code) return **code;
+  }
   if (!options->outcomes.empty()) {
     std::erase_if(columns.outcomes, [&](const store::OutcomeColumn& column) {
       return std::ranges::find(options->outcomes, column.name) == options->outcomes.end();
@@ -144,6 +178,10 @@ Action add_study_summary(CLI::App& group) {
       "  mbk study summary --compare group --group patients=1-10 --group controls=11-20\n"
       "  mbk study summary --compare session 1 2 --outcome K_xx K_yy\n"
       "      p-values are adjusted for as many tests as there are: name the outcomes before you look\n"
+      "  mbk study summary --bootstrap 2000 --compare condition relaxed tensed\n"
+      "      intervals that suppose no distribution, by drawing the people again 2000 times\n"
+      "  mbk study summary --bootstrap 100000 --engine slurm\n"
+      "      on the cluster; the intervals are the same to the last bit\n"
       "  mbk study summary --json --out summary.json\n\n"
       "Only usable results of recordings that are not excluded count; how many do not is said.");
   add_study_option(*command, arguments->study);
@@ -151,7 +189,18 @@ Action add_study_summary(CLI::App& group) {
   command->add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
       ->type_name("NAME...");
   add_comparing_options(*command, arguments->comparing);
+  CLI::Option* const bootstrap =
+      command
+          ->add_option("--bootstrap", arguments->draws,
+                       "also intervals of reliability and differences by drawing people again, so many times")
+          ->type_name("N")
+          ->check(whole_number(1000, 100'000));
+  command->add_option("--seed", arguments->seed, "of these draws (1)")
+      ->type_name("N")
+      ->check(whole_number(0, std::numeric_limits<long>::max()))
+      ->needs(bootstrap);
   add_output_options(*command, arguments->output, "mbk.study_summary/1");
+  add_engine_options(*command, arguments->engine);
   return [arguments] { return run_summary(*arguments); };
 }
 

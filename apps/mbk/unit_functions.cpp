@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/mbk/bootstrap_units.h"
 #include "apps/mbk/engine_options.h"
+#include "apps/mbk/explore_units.h"
 #include "apps/mbk/job_kinds.h"
 #include "apps/mbk/measure_units.h"
 
@@ -17,6 +19,8 @@ Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use) {
   try {
     if (kind == kValidateKind) return with_validation_units(json, folder, use);
     if (kind == kMeasureKind) compute = measure_units(json);
+    if (kind == kBootstrapKind) compute = bootstrap_units(json);
+    if (kind == kExploreKind) compute = explore_units(json);
     if (kind == kSimulateKind) compute = simulate_units(json);
   } catch (const nlohmann::json::exception&) {
     return bad_data("the job's specification cannot be read", "begin the job again", folder.folder().string());

@@ -15,8 +15,10 @@ import unittest
 import command
 from command import BAD_DATA, FINE, WRONG_USAGE, program, run
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cluster"))
+TESTS = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / "cluster"), str(TESTS.parent / "bench")]
 import private_slurm  # noqa: E402
+import study as studies  # noqa: E402
 from processes import ended_by_kill, workers_of  # noqa: E402
 
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -42,6 +44,7 @@ def short_trials(folder, count):
 
 class JobCase(command.Case):
     trials = None
+    repeated = None
     environment = None
     engine = ()
 
@@ -63,6 +66,12 @@ class JobCase(command.Case):
         for number, trial in enumerate(self.trials):
             self.mbk("study", "add", trial, "--participant", number + 1, "--study", study)
         return study
+
+    def repeated_study(self):
+        """Of 20 people in two sessions, whose results were written into its database."""
+        if JobCase.repeated is None:
+            JobCase.repeated = studies.filled_study(program("MBK"), command.folder_of_logs(), 40)
+        return JobCase.repeated
 
     def exported(self, study):
         return self.mbk("study", "export", "--study", study).out
@@ -97,9 +106,20 @@ class Engines:
         ran = self.job("study", "measure", "--study", there, "--chunk-units", "1")
         self.assertIn("4 measured: 4 usable", ran.out)
         self.assertEqual(self.exported(there), self.exported(here))
-        self.assertEqual(list((there / "jobs").iterdir()), [], "a finished job leaves nothing")
+        left = list((there / "jobs").iterdir())
+        self.assertEqual([path.suffix for path in left], [".json"], "of a finished job its record stays alone")
+        record = json.loads(left[0].read_text(encoding="utf-8"))
+        command.schemas.check(record)
+        self.assertEqual((record["engine"], record["finished_units"], len(record["tasks"])), (self.engine[1], 4, 4))
         self.mbk("study", "check", "--study", there)
         self.assertIn("nothing new", self.job("study", "measure", "--study", there).out)
+
+    def test_resamples_people_to_the_same_bytes(self):
+        summary = ("study", "summary", "--study", self.repeated_study(), "--bootstrap", "1000", "--outcome", "K_xx",
+                   "--compare", "session", "--json")
+        here = self.mbk(*summary)
+        self.assertEqual(here.json["bootstrap"], {"draws": 1000, "seed": 1})
+        self.assertEqual(self.job(*summary, "--chunk-units", "400").out, here.out)
 
     def test_a_killed_process_costs_no_result(self):
         began = self.begin(*VALIDATE, *SHORT)
@@ -117,7 +137,7 @@ class Engines:
         self.assertEqual(out.decode(), self.table)
 
     def test_a_process_that_hangs_is_replaced(self):
-        began = self.begin(*VALIDATE, *SHORT, "--silence", "2")
+        began = self.begin(*VALIDATE, *SHORT, "--silence", "1")
         self.wait_for(lambda: self.shards() or began.poll() is not None)
         self.wait_for(lambda: workers_of(self.folder) or began.poll() is not None)
         for worker in workers_of(self.folder)[:1]:
@@ -156,6 +176,41 @@ class Local(Engines, JobCase):
         self.assertEqual(set(here), {f"trial_seed{seed}.h5" for seed in (5, 6, 7)})
         self.assertEqual(there, here)
 
+    def test_explores_each_of_many_files_to_the_same_bytes(self):
+        broken = self.folder / "broken.csv"
+        broken.write_text("time,x\n0,1\n", encoding="utf-8")
+        explore = ("explore", "--each", *self.trials[:2], "broken.csv", "gone.h5", "--only", "impulse-response")
+        for form in (("--json",), ()):
+            here = self.mbk(*explore, *form, code=BAD_DATA, folder=self.folder)
+            there = self.job(*explore, *form, "--chunk-units", "1", code=BAD_DATA)
+            self.assertEqual(there.out, here.out)
+            self.assertIn("gone.h5", there.err)
+        self.assertFalse((self.folder / "mbk-jobs").exists())
+        both = self.mbk(*explore, "--json", code=BAD_DATA, folder=self.folder).json
+        self.assertEqual((len(both["results"]), len(both["failed"])), (2, 2))
+        one = self.mbk("explore", self.trials[0], "--only", "impulse-response", "--json").json
+        self.assertEqual({**both["results"][0], "software": one["software"]}, one)
+
+    def test_a_file_that_changed_since_a_job_was_begun_is_not_explored_in_its_place(self):
+        shutil.copy(self.trials[0], self.folder / "one.csv")
+        explore = ("explore", "--each", "one.csv", "--only", "impulse-response", "--chunk-units", "1", "--keep-job")
+        self.job(*explore)
+        job = next((self.folder / "mbk-jobs").iterdir())
+        for shard in (job / "shards").iterdir():
+            shard.unlink()
+        shutil.copy(self.trials[1], self.folder / "one.csv")
+        self.mbk("work", job, "--chunk", 0, folder=self.folder)
+        self.assertIn("failed: 1 × ", status := self.mbk("study", "status", "--job", job).out)
+        self.assertIn("has changed since the job was begun", status)
+
+    def test_progress_as_json_lines(self):
+        ran = self.job(*VALIDATE, "--chunk-units", "12", "--progress-json", code=self.judged)
+        self.assertEqual(ran.out, self.table)
+        lines = [json.loads(line) for line in ran.err.splitlines()]
+        for line in lines:
+            command.schemas.check(line)
+        self.assertEqual(lines[-1]["finished_units"], 48)
+
     def test_the_same_table_by_any_chunks(self):
         for units in (7, 48):
             ran = self.job(*VALIDATE, "--chunk-units", units, code=self.judged)
@@ -180,6 +235,7 @@ class Local(Engines, JobCase):
         status = self.mbk("study", "status", "--study", study, "--json").json
         job = status["jobs"][0]
         self.assertEqual((job["finished"], job["finished_units"], len(job["tasks"])), (2, 4, 2))
+        self.assertEqual(sum(task["units"] for task in job["efficiency"]["tasks"]), 4)
         self.assertIn("2 of 2 chunks", self.mbk("work", job["folder"], "--status").out)
         lines = (pathlib.Path(job["folder"]) / "progress.jsonl").read_text(encoding="utf-8").splitlines()
         for line in lines:
@@ -199,11 +255,14 @@ class Local(Engines, JobCase):
         self.refused(WRONG_USAGE, "validate", "robot", "--runs", "2", *self.engine, folder=self.folder, says="--engine")
         self.refused(WRONG_USAGE, "validate", "reliability", *self.engine, "--detach", folder=self.folder, says="slurm")
         self.refused(WRONG_USAGE, "work", self.folder, "--status", says="no job")
+        self.refused(WRONG_USAGE, "study", "summary", "--study", self.repeated_study(), *self.engine,
+                     says="--bootstrap")
+        self.refused(WRONG_USAGE, "explore", self.trials[0], *self.engine, says="--each")
 
 
 @unittest.skipIf(private_slurm.missing(), f"not there: {', '.join(private_slurm.missing())}")
 class Slurm(Engines, JobCase):
-    engine = ("--engine", "slurm", "--settle", "2")
+    engine = ("--engine", "slurm", "--settle", "0.5")
 
     @classmethod
     def setUpClass(cls):
@@ -255,7 +314,7 @@ class Slurm(Engines, JobCase):
         began = self.begin(*VALIDATE, *SHORT)
         self.wait_for(lambda: self.shards())
         self.slurm.daemons["slurmctld"].send_signal(signal.SIGSTOP)
-        time.sleep(3)
+        time.sleep(1.5)
         self.slurm.daemons["slurmctld"].send_signal(signal.SIGCONT)
         out, err = began.communicate(timeout=150)
         self.assertEqual(began.returncode, self.judged, err)

@@ -61,6 +61,17 @@ std::string to_json(const Exploration& found) {
   return dumped(exploration::document(found));
 }
 
+std::string to_json(const std::vector<std::string>& explorations, const std::vector<Error>& failed) {
+  Json json = header("mbk.explorations/1");
+  json["results"] = Json::array();
+  for (const std::string& one : explorations) json["results"].push_back(Json::parse(one, nullptr, false));
+  if (!failed.empty()) json["failed"] = Json::array();
+  for (const Error& error : failed) {
+    json["failed"].push_back({{"file", error.where}, {"message", error.message}, {"try", error.remedy}});
+  }
+  return dumped(json);
+}
+
 std::string report_json(const Exploration& found, const std::string& command, const std::string& note) {
   Json json = header("mbk.explore_report/1");
   json["command"] = command;

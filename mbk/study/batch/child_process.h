@@ -11,7 +11,8 @@
 
 namespace mbk::batch {
 
-/// A program that runs beside this one; it is killed where it still runs when this goes.
+/// A program that runs beside this one; it is killed where it still runs when this goes, and asked to end (SIGTERM)
+/// where the thread that started it ends, whatever ends it.
 class ChildProcess {
  public:
   /// @param command  the program, in the folders of PATH where it names none, and its arguments

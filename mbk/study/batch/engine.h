@@ -45,7 +45,7 @@ class Engine {
   [[nodiscard]] virtual std::string why_ended(std::int64_t chunk) = 0;
   /// Whether a chunk that ended without a shard was begun at all; otherwise the next attempt is its first.
   [[nodiscard]] virtual bool was_begun(std::int64_t /*chunk*/) const { return true; }
-  /// Between two looks at it [s].
+  /// Between two looks at it, at most [s]; less in the first seconds.
   [[nodiscard]] virtual double interval_s() const = 0;
   /// So long after its end a shard may still come into sight on another machine's disk [s].
   [[nodiscard]] virtual double settle_s() const = 0;

@@ -138,7 +138,7 @@ Result<std::unique_ptr<Engine>> make_mpi_engine(const JobFolder& folder, const E
   const fs::path program = options.program.parent_path() / "mbk_mpi";
   if (!fs::exists(program, ignored)) {
     return bad_usage(fmt::format("{} is not there", program.string()),
-                     "build mbk where Open MPI's development files are installed (libopenmpi-dev)");
+                     "install the package mbk-mpi, or build mbk where libopenmpi-dev is installed");
   }
   return std::make_unique<MpiEngine>(folder, options);
 }

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <thread>
 
+#include "mbk/study/batch/job_events.h"
 #include "mbk/study/batch/merge.h"
 #include "mbk/study/batch/shard.h"
 #include "mbk/study/batch/work.h"
@@ -66,7 +67,7 @@ class Keeper {
 
 /// What is known of a chunk.
 struct Known {
-  bool finished = false, handed_out = false, given_up = false;
+  bool finished = false, handed_out = false, begun = false, given_up = false;
   int losses = 0;               ///< one after the other, without a unit done
   std::int64_t units_left = 0;  ///< done by processes that ended
   std::optional<Clock::time_point> gone_since;
@@ -77,12 +78,18 @@ struct Known {
 class Run {
  public:
   Run(const JobFolder& folder, Engine& engine, const RunOptions& options, std::vector<Chunk> chunks)
-      : folder_(folder), engine_(engine), options_(options), chunks_(std::move(chunks)), known_(chunks_.size()) {
+      : folder_(folder),
+        engine_(engine),
+        options_(options),
+        chunks_(std::move(chunks)),
+        known_(chunks_.size()),
+        events_(folder) {
     state_.chunks = folder.job().chunks;
     state_.units = folder.job().units;
   }
 
   Result<RunReport> to_end() {
+    events_.add(EventKind::taken_up, -1, options_.engine);
     if (auto ok = look(); !ok) return tl::unexpected(ok.error());
     finished_before_ = state_.finished_units;
     cost_before_ = finished_cost_;
@@ -97,12 +104,18 @@ class Run {
       if (state_.finished + state_.given_up == state_.chunks) return ended(RunEnd::incomplete);
       if (options_.detach && answered_) return ended(RunEnd::detached);
       say();
-      std::this_thread::sleep_for(std::chrono::duration<double>(engine_.interval_s()));
+      std::this_thread::sleep_for(std::chrono::duration<double>(pause_s()));
       if (auto ok = look(); !ok) return tl::unexpected(ok.error());
     }
   }
 
  private:
+  /// Until the next look: a short job is seen to end soon, a long one does not keep its controller busy.
+  double pause_s() const {
+    constexpr double kOfElapsed = 0.1, kShortest = 0.2;
+    return std::min(engine_.interval_s(), std::max(kShortest, kOfElapsed * seconds_since(begin_)));
+  }
+
   /// What the shards say.
   Result<void> look() {
     const auto files = list_shards(folder_);
@@ -121,6 +134,7 @@ class Run {
       const Chunk& chunk = chunks_[static_cast<std::size_t>(file.chunk)];
       const auto end = check_shard(folder_, chunk, file.path);
       if (!end) {
+        events_.add(EventKind::lost, chunk.number, end.error().message);
         fs::path aside = file.path;
         aside.replace_extension(kDamagedEnd);
         ++state_.losses[end.error().message];
@@ -128,6 +142,7 @@ class Run {
         continue;
       }
       known.finished = true;
+      events_.add(EventKind::finished, chunk.number);
       if (known.given_up) --state_.given_up;
       known.given_up = false;
       ++state_.finished;
@@ -137,7 +152,10 @@ class Run {
     }
     for (const auto& [chunk, bytes] : parts) {
       Known& known = known_[static_cast<std::size_t>(chunk)];
-      if (known.bytes != bytes) known.grew = Clock::now();
+      if (known.bytes != bytes) {
+        known.grew = Clock::now();
+        note_begun(known, chunk);
+      }
       known.bytes = bytes;
     }
     return {};
@@ -160,6 +178,7 @@ class Run {
         known.handed_out = true;
         known.gone_since.reset();
         ++(found->second.running ? state_.running : state_.waiting);
+        if (found->second.running) note_begun(known, number);
         if (!found->second.why.empty()) state_.trouble = "tasks wait: " + found->second.why;
         if (!found->second.running) {
           known.grew.reset();
@@ -180,7 +199,9 @@ class Run {
     }
     if (!silent.empty()) {
       engine_.cancel(silent);
-      state_.losses[fmt::format("no sign of life for {:g} s", options_.silence_s)] += std::ssize(silent);
+      for (const std::int64_t number : silent) {
+        note_loss(number, fmt::format("no sign of life for {:g} s", options_.silence_s));
+      }
     }
     if (too_many_losses()) {
       engine_.cancel_all();
@@ -193,9 +214,22 @@ class Run {
     for (const std::int64_t number : missing) {
       Known& known = known_[static_cast<std::size_t>(number)];
       known.handed_out = true;
+      known.begun = false;
       known.grew.reset();
+      events_.add(EventKind::handed_out, number);
     }
     return {};
+  }
+
+  void note_begun(Known& known, std::int64_t number) {
+    if (known.begun) return;
+    known.begun = true;
+    events_.add(EventKind::begun, number);
+  }
+
+  void note_loss(std::int64_t number, const std::string& why) {
+    ++state_.losses[why];
+    events_.add(EventKind::lost, number, why);
   }
 
   void lose(Known& known, std::int64_t number, std::vector<std::int64_t>& missing) {
@@ -209,10 +243,11 @@ class Run {
     known.units_left = left;
     something_done_ = something_done_ || left > 0;
     const std::string why = engine_.why_ended(number);
-    ++state_.losses[why.empty() ? "ended without a result" : why];
+    note_loss(number, why.empty() ? "ended without a result" : why);
     if (known.losses >= options_.attempts) {
       known.given_up = true;
       ++state_.given_up;
+      events_.add(EventKind::given_up, number);
     } else {
       missing.push_back(number);
     }
@@ -241,6 +276,7 @@ class Run {
   }
 
   void say() {
+    events_.flush();
     if (seconds_since(said_) < 1.0) return;
     said_ = Clock::now();
     write_down();
@@ -255,6 +291,8 @@ class Run {
   RunReport ended(RunEnd how) {
     state_.running = how == RunEnd::detached ? state_.running : 0;
     write_down();
+    events_.add(EventKind::left);
+    events_.flush();
     return {how, state_};
   }
 
@@ -263,6 +301,7 @@ class Run {
   const RunOptions& options_;
   std::vector<Chunk> chunks_;
   std::vector<Known> known_;
+  JobEventWriter events_;
   JobState state_;
   bool answered_ = false, something_done_ = false;
   std::int64_t losses_ = 0;

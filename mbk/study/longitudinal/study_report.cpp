@@ -145,6 +145,20 @@ Document recordings_json(const store::StudyList& list, std::optional<std::int64_
   return own;
 }
 
+/// Above so many tasks of a job a page holds what each machine did alone.
+constexpr std::size_t kMostTasks = 1'000;
+
+Document jobs_json(const std::vector<std::string>& jobs) {
+  Document all = Document::array();
+  for (const std::string& text : jobs) {
+    Document job = Document::parse(text, nullptr, false);
+    if (!job.is_object() || job.value("schema", std::string()) != "mbk.job_efficiency/1") continue;
+    if (job["tasks"].size() > kMostTasks) job.erase("tasks");
+    all.push_back(std::move(job));
+  }
+  return all;
+}
+
 Document begun(const char* schema, const StudyReport& report) {
   Document json = {{"schema", schema}, {"software", fmt::format("mbk {}", version())}, {"command", report.command}};
   if (!report.note.empty()) json["note"] = report.note;
@@ -192,6 +206,7 @@ std::string study_report_json(const StudyReport& report, const std::string& summ
   json["courses"] = courses_json(report.courses);
   json["matrices"] = matrices_json(report.columns, {});
   add_results(json, report.columns, {});
+  if (!report.jobs.empty()) json["jobs"] = jobs_json(report.jobs);
   return written(json);
 }
 

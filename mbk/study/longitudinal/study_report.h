@@ -17,7 +17,8 @@ struct StudyReport {
   store::StudyList list;
   store::OutcomeColumns columns;
   std::vector<OutcomeCourses> courses;
-  std::string primary;  ///< the outcome that is shown first
+  std::string primary;            ///< the outcome that is shown first
+  std::vector<std::string> jobs;  ///< documents of schema mbk.job_efficiency/1
 };
 
 /// The outcome that a page shows first unless it is asked for another: the area of the stiffness ellipse, or else a

@@ -251,6 +251,8 @@ void compare_one(const OutcomeRows& rows, const Levels& levels, int first, std::
   result.left_out = samples.left_out;
   if (samples.first.size() > 0) result.first_mean = samples.first.mean();
   if (samples.second.size() > 0) result.second_mean = samples.second.mean();
+  result.first_values = samples.first;
+  result.second_values = samples.second;
   // Finite numbers, and pairs: neither can fail.
   if (auto difference = reliability::difference(samples.first, samples.second, samples.pairing)) {
     result.difference = *difference;

@@ -75,6 +75,20 @@ struct Influence {
   double without = kNaN;  ///< the number without that person
 };
 
+/// What resampling people says of a number (people_bootstrap.h).
+struct BootstrapInterval {
+  double value = kNaN;
+  double standard_error = kNaN;          ///< standard deviation of the draws
+  Interval percentile95 = {kNaN, kNaN};  ///< NaN: none can be stated
+  Interval bca95 = {kNaN, kNaN};         ///< bias-corrected and accelerated
+  int undefined = 0;                     ///< draws that gave no number
+};
+
+struct ReliabilityBootstrap {
+  BootstrapInterval icc_agreement, icc_consistency;  ///< ICC(A,1), ICC(C,1)
+  BootstrapInterval sem_agreement;                   ///< [unit]; MDC is 1.96 √2 of it
+};
+
 /// Variances by restricted maximum likelihood from every trial, whoever lacks whichever session.
 struct MixedReliability {
   Support support = Support::too_few_people;
@@ -100,7 +114,8 @@ struct OutcomeReliability {
   std::int64_t session = 0;                 ///< the one that `within_session` is of; 0: none
   Repeated within_session;                  ///< of single trials, in their order
   MixedReliability mixed_model;
-  std::vector<std::string> notes;  ///< what must be known beside the numbers; sentences
+  std::optional<ReliabilityBootstrap> bootstrap;  ///< of `between_sessions`, where it was asked for
+  std::vector<std::string> notes;                 ///< what must be known beside the numbers; sentences
 };
 
 /// Quartiles of distances.
@@ -152,12 +167,14 @@ struct OutcomeComparison {
   bool axial = false;
   int left_out = 0;                              ///< paired: people who have only one of the two
   double first_mean = kNaN, second_mean = kNaN;  ///< of the people who count
+  Vector first_values, second_values;            ///< theirs; paired: entry i of both is one person
   reliability::Difference difference;
   reliability::Permutation permutation;
   std::optional<MixedDifference> mixed_model;
   /// Adjusted for all tests of the comparison; NaN where p is.
   double p_holm = kNaN, p_benjamini_hochberg = kNaN;
-  std::optional<Influence> influence;  ///< on p: the person without whom it is largest
+  std::optional<Influence> influence;          ///< on p: the person without whom it is largest
+  std::optional<BootstrapInterval> bootstrap;  ///< of the difference, where it was asked for
   Verdict verdict = Verdict::too_few_people;
   std::vector<std::string> notes;
 };
@@ -169,11 +186,18 @@ struct Comparison {
   std::vector<OutcomeComparison> outcomes;
 };
 
+/// How people were resampled.
+struct BootstrapDraws {
+  int draws = 0;
+  std::uint64_t seed = 1;
+};
+
 /// What a study says, by one analysis.
 struct StudyStatistics {
   std::vector<OutcomeReliability> reliability;  ///< by condition and outcome
   std::vector<MatrixSpread> matrices;
   std::optional<Comparison> comparison;
+  std::optional<BootstrapDraws> bootstrap;
   std::vector<std::string> notes;  ///< on the study as a whole; sentences
 };
 
@@ -193,8 +217,8 @@ void add_matrix_numbers(store::OutcomeColumns& columns);
 [[nodiscard]] Result<StudyStatistics> study_statistics(const store::OutcomeColumns& columns,
                                                        const StatisticsOptions& options = {});
 
-/// The members "reliability", "matrices", "comparison" (where there is one) and "notes" of mbk.study_summary/1, as a
-/// JSON object.
+/// The members "reliability", "matrices", "comparison", "bootstrap" (where there is one) and "notes" of
+/// mbk.study_summary/1, as a JSON object.
 [[nodiscard]] std::string to_json(const StudyStatistics& statistics);
 
 }  // namespace mbk::statistics

@@ -94,6 +94,14 @@ Document mixed_json(const MixedReliability& model) {
   return json;
 }
 
+Document bootstrap_json(const BootstrapInterval& one) {
+  return {{"value", number(one.value)},
+          {"standard_error", number(one.standard_error)},
+          {"percentile95", pair(one.percentile95)},
+          {"bca95", pair(one.bca95)},
+          {"undefined", one.undefined}};
+}
+
 Document reliability_json(const OutcomeReliability& one) {
   Document json = {{"condition", one.condition},
                    {"outcome", one.outcome},
@@ -109,6 +117,11 @@ Document reliability_json(const OutcomeReliability& one) {
   json["session"] = one.session > 0 ? Document(one.session) : Document();
   json["within_session"] = repeated_json(one.within_session, "trials");
   json["mixed_model"] = mixed_json(one.mixed_model);
+  if (one.bootstrap) {
+    json["bootstrap"] = {{"icc_agreement", bootstrap_json(one.bootstrap->icc_agreement)},
+                         {"icc_consistency", bootstrap_json(one.bootstrap->icc_consistency)},
+                         {"sem_agreement", bootstrap_json(one.bootstrap->sem_agreement)}};
+  }
   json["notes"] = one.notes;
   return json;
 }
@@ -181,6 +194,7 @@ Document comparison_json(const OutcomeComparison& one) {
                          {"arrangements", permutation.arrangements}};
   json["mixed_model"] = mixed_json(one.mixed_model);
   json["influence"] = influence_json(one.influence);
+  if (one.bootstrap) json["bootstrap"] = bootstrap_json(*one.bootstrap);
   json["notes"] = one.notes;
   return json;
 }
@@ -202,6 +216,9 @@ std::string to_json(const StudyStatistics& statistics) {
       comparison["outcomes"].push_back(comparison_json(one));
     }
     json["comparison"] = std::move(comparison);
+  }
+  if (statistics.bootstrap) {
+    json["bootstrap"] = {{"draws", statistics.bootstrap->draws}, {"seed", statistics.bootstrap->seed}};
   }
   json["notes"] = statistics.notes;
   return json.dump(-1, ' ', false, Document::error_handler_t::replace);

@@ -162,6 +162,34 @@ std::string repeated_details(const Repeated& repeated) {
   return text;
 }
 
+std::string sized(const BootstrapInterval& one) {
+  return fmt::format("{} ({})", digits(one.value), range(one.bca95));
+}
+
+std::string bootstrap_details(const ReliabilityBootstrap& one) {
+  return item("    by resampling people (BCa): ",
+              fmt::format("ICC(A,1) {} ({}); ICC(C,1) {} ({}); SEM {}", share(one.icc_agreement.value),
+                          shares(one.icc_agreement.bca95), share(one.icc_consistency.value),
+                          shares(one.icc_consistency.bca95), sized(one.sem_agreement)));
+}
+
+std::string bootstrap_table(const std::vector<OutcomeReliability>& all) {
+  std::string text;
+  const std::string* condition = nullptr;
+  for (const OutcomeReliability& one : all) {
+    if (!one.bootstrap) continue;
+    if (condition == nullptr || *condition != one.condition) {
+      condition = &one.condition;
+      text += fmt::format("\nthe same by resampling people, {}\n  {:<23}  {:>5}  {:>13} {:>8} {:>20}\n",
+                          condition_title(*condition), "outcome", "ICC", "95 %", "SEM", "95 %");
+    }
+    const auto& [agreement, consistency, sem] = *one.bootstrap;
+    text += fmt::format("  {:<23}  {:>5}  {:>13} {:>8} {:>20}\n", one.outcome, share(agreement.value),
+                        shares(agreement.bca95), digits(sem.value), range(sem.bca95));
+  }
+  return text;
+}
+
 std::string model_details(const MixedReliability& model) {
   if (model.support != Support::enough) {
     return item("  mixed model: ", why_not(model.support, model.participants));
@@ -195,6 +223,7 @@ std::string details_of(const OutcomeReliability& one) {
                              sessions.participants.size(),
                              sessions.left_out > 0 ? fmt::format(" ({} lack a session)", sessions.left_out) : ""));
     text += repeated_details(sessions);
+    if (one.bootstrap) text += bootstrap_details(*one.bootstrap);
   } else {
     text += item("  between sessions: ", why_not(sessions.support, people_of(one)));
   }
@@ -264,9 +293,11 @@ std::string comparison_line(const OutcomeComparison& one) {
                                                                      : "");
 }
 
-std::string comparison_details(const OutcomeComparison& one) {
+std::string comparison_details(const OutcomeComparison& one, bool details) {
   if (one.difference.support != Support::enough) return "";
   std::string text;
+  if (one.bootstrap) text += item("      ", "by resampling people (BCa): " + range(one.bootstrap->bca95));
+  if (!details) return text;
   text += item("      ", fmt::format("means {} and {}; g {} ({}), d {}", digits(one.first_mean, 4),
                                      digits(one.second_mean, 4), digits(one.difference.effect.g),
                                      range(one.difference.effect.interval95), digits(one.difference.effect.d)));
@@ -312,7 +343,8 @@ std::string reliability_text(const StudyStatistics& statistics, bool details) {
     for (const OutcomeReliability& one : statistics.reliability) text += details_of(one);
     return text;
   }
-  text = reliability_table(statistics.reliability) + matrices_text(statistics.matrices);
+  text = reliability_table(statistics.reliability) + bootstrap_table(statistics.reliability) +
+         matrices_text(statistics.matrices);
   const bool any = std::ranges::any_of(statistics.reliability, [](const OutcomeReliability& one) {
     return one.between_sessions.support == Support::enough;
   });
@@ -342,7 +374,7 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
     }
     before = &one;
     text += comparison_line(one);
-    if (details) text += comparison_details(one);
+    text += comparison_details(one, details);
     for (const std::string& note : one.notes) text += item("    ! ", note);
   }
   if (comparison.outcomes.empty()) return "\nnothing to compare: no outcome has results on both sides\n";
@@ -356,6 +388,19 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
       comparison.tests);
   if (few) text += "? too few people: whatever they did, no permutation of them could reach 0.05.\n";
   return text;
+}
+
+std::string bootstrap_text(const StudyStatistics& statistics) {
+  if (!statistics.bootstrap) return "";
+  constexpr std::size_t kEnough = 40;
+  const bool few = std::ranges::any_of(statistics.reliability, [](const OutcomeReliability& one) {
+    return one.bootstrap && one.between_sessions.participants.size() < kEnough;
+  });
+  return fmt::format("\nresampling people: {} draws, seed {}; bias-corrected and accelerated (BCa).\n{}",
+                     statistics.bootstrap->draws, statistics.bootstrap->seed,
+                     few ? "Intervals of so few people are too narrow: of normal numbers in two sessions they\n"
+                           "hold the true ICC of 8 people in 82 % of studies, of 20 in 91 %, of 40 in 92 %.\n"
+                         : "");
 }
 
 std::string notes_text(const std::vector<std::string>& notes) {

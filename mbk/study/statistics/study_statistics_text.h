@@ -18,6 +18,9 @@ namespace mbk::statistics {
 /// The comparison, where there is one; with `details` permutation test and mixed model too.
 [[nodiscard]] std::string comparison_text(const StudyStatistics& statistics, bool details);
 
+/// How people were resampled, where they were.
+[[nodiscard]] std::string bootstrap_text(const StudyStatistics& statistics);
+
 /// What must be known of the study as a whole.
 [[nodiscard]] std::string notes_text(const std::vector<std::string>& notes);
 
