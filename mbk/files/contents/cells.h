@@ -2,7 +2,9 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,54 +16,22 @@ namespace mbk::recording {
 /// The cell without the blanks and tabs around it, and then without the quotes around it.
 [[nodiscard]] std::string_view without_quotes(std::string_view cell);
 
-/// digits / 10^decimals to rounding, where both fit into 64 bits: the quotient to 63 bits or more, and whether anything
-/// is left of it, decide how it is rounded.
-[[nodiscard]] inline double quotient(std::uint64_t digits, std::size_t decimals) {
-  constexpr std::array<std::uint64_t, 20> kPowers = [] {
-    std::array<std::uint64_t, 20> powers{1};
-    for (std::size_t k = 1; k < powers.size(); ++k) powers[k] = 10 * powers[k - 1];
-    return powers;
-  }();
-  if (digits == 0) return 0.0;
-  __extension__ using Wide = unsigned __int128;
-  const int up = std::countl_zero(digits), down = std::countl_zero(kPowers[decimals]);
-  const Wide dividend = Wide{digits << static_cast<unsigned>(up)} << 63U;
-  const std::uint64_t divisor = kPowers[decimals] << static_cast<unsigned>(down);
-  const auto whole = static_cast<std::uint64_t>(dividend / divisor);
-  const bool rest = Wide{whole} * divisor != dividend;
-  const auto power_of_two = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + down - up - 63) << 52U);
-  return static_cast<double>(whole | static_cast<std::uint64_t>(rest)) * power_of_two;
-}
+/// A number at the front of a text.
+struct NumberAhead {
+  double value = 0.0;
+  std::size_t length = 0;  ///< characters that it takes; 0 where the text does not begin with such a number
+};
 
-/// Digits with at most a sign and a point, no more of them than 64 bits hold: what most programs write. Their value to
-/// rounding. Nothing where a cell holds anything else.
+/// The number of digits, with at most a sign and a point and no more of them than 64 bits hold, with which a text
+/// begins: what most programs write. Its value to rounding.
+/// @param end  of what can be read, which may reach beyond the text: eight characters are looked at together
+[[nodiscard]] inline NumberAhead plain_number_ahead(const char* begin, const char* end);
+
+/// Digits with at most a sign and a point, no more of them than 64 bits hold. Nothing where a cell holds anything else.
 [[nodiscard]] inline std::optional<double> plain_number(std::string_view cell) {
-  constexpr std::uint64_t kExact = std::uint64_t{1} << 53;
-  constexpr std::size_t kLongest = 20;  // a point and 19 digits
-  constexpr std::array kPowers = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7, 1e8,
-                                  1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16};
-  const bool negative = cell.starts_with('-');
-  if (negative) cell.remove_prefix(1);
-  if (cell.size() > kLongest) return std::nullopt;
-  std::uint64_t digits = 0;
-  std::size_t point = cell.size();
-  for (std::size_t k = 0; k < cell.size(); ++k) {
-    const auto digit = static_cast<unsigned>(cell[k] - '0');
-    if (digit <= 9) {
-      digits = 10 * digits + digit;
-    } else if (cell[k] == '.' && point == cell.size()) {
-      point = k;
-    } else {
-      return std::nullopt;
-    }
-  }
-  const std::size_t decimals = point == cell.size() ? 0 : cell.size() - point - 1;
-  const bool any = decimals > 0 || point > 0;
-  if (!any || (point == cell.size() && point == kLongest)) return std::nullopt;
-  // Where both are exact, one division rounds once (Clinger 1990).
-  const bool exact = digits <= kExact && decimals < kPowers.size();
-  const double value = exact ? static_cast<double>(digits) / kPowers[decimals] : quotient(digits, decimals);
-  return negative ? -value : value;
+  const NumberAhead ahead = plain_number_ahead(cell.data(), cell.data() + cell.size());
+  if (ahead.length == 0 || ahead.length != cell.size()) return std::nullopt;
+  return ahead.value;
 }
 
 /// Any number with a decimal point, in quotes or not; NaN where the cell is empty; nothing where it is not a number.
@@ -88,5 +58,109 @@ struct Instant {
   double seconds;                   ///< since midnight, of universal time where the cell says a time zone
 };
 [[nodiscard]] std::optional<Instant> instant(std::string_view cell);
+
+namespace decimal {
+
+inline constexpr std::size_t kDigits = 19;  ///< that 64 bits hold, whichever they are
+
+inline constexpr std::array<std::uint64_t, kDigits + 1> kPowers = [] {
+  std::array<std::uint64_t, kDigits + 1> powers{1};
+  for (std::size_t k = 1; k < powers.size(); ++k) powers[k] = 10 * powers[k - 1];
+  return powers;
+}();
+
+__extension__ using Wide = unsigned __int128;
+
+/// A power of ten with its first bit at the top, and 2^127 divided by that, rounded down.
+struct Divisor {
+  int down;
+  std::uint64_t value, reciprocal;
+};
+inline constexpr std::array<Divisor, kDigits + 1> kDivisors = [] {
+  std::array<Divisor, kDigits + 1> divisors{};
+  for (std::size_t k = 0; k < divisors.size(); ++k) {
+    const int down = std::countl_zero(kPowers[k]);
+    const std::uint64_t value = kPowers[k] << static_cast<unsigned>(down);
+    divisors[k] = {down, value, static_cast<std::uint64_t>(~Wide{0} / 2 / value)};
+  }
+  return divisors;
+}();
+
+/// digits / 10^decimals to rounding: 63 bits or more of the quotient, and whether anything is left of it, decide how it
+/// is rounded. What the reciprocal gives of them is right or one too small, which seldom matters.
+[[nodiscard]] inline double quotient(std::uint64_t digits, std::size_t decimals) {
+  if (digits == 0) return 0.0;
+  const Divisor& by = kDivisors[decimals];
+  const int up = std::countl_zero(digits);
+  const std::uint64_t dividend = digits << static_cast<unsigned>(up);
+  auto whole = static_cast<std::uint64_t>(Wide{dividend} * by.reciprocal >> 64U);
+  // The bits behind the 53 that stay: where they are a half or just below, the others decide.
+  const auto behind = static_cast<unsigned>(11 - std::countl_zero(whole));
+  const std::uint64_t half = std::uint64_t{1} << (behind - 1), rest = whole & (2 * half - 1);
+  if (rest == half || rest == half - 1) {
+    const Wide exact = Wide{dividend} << 63U;
+    whole = static_cast<std::uint64_t>(exact / by.value);
+    whole |= static_cast<std::uint64_t>(Wide{whole} * by.value != exact);
+  }
+  // A bit less is a signed number, and its last one says whether anything is left.
+  const auto rounded = static_cast<double>(static_cast<std::int64_t>(whole >> 1U | (whole & 1U)));
+  return rounded * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + by.down - up - 62) << 52U);
+}
+
+/// Eight characters as one number, the first lowest; beyond the end none is a digit.
+[[nodiscard]] inline std::uint64_t eight_at(const char* at, const char* end) {
+  std::uint64_t eight = 0;
+  if (end - at >= 8) {
+    std::memcpy(&eight, at, sizeof eight);
+    if constexpr (std::endian::native == std::endian::big) eight = __builtin_bswap64(eight);
+    return eight;
+  }
+  for (unsigned k = 0; at + k < end; ++k) eight |= std::uint64_t{static_cast<unsigned char>(at[k])} << 8 * k;
+  return eight;
+}
+
+/// Digits with which a text begins.
+struct Digits {
+  std::size_t count = 0;  ///< above kDigits where there are more
+  std::uint64_t value = 0;
+};
+
+[[nodiscard]] inline Digits digits_at(const char* at, const char* end) {
+  Digits all;
+  for (const bool last : {false, false, true}) {
+    std::uint64_t eight = eight_at(at + all.count, end) ^ 0x3030303030303030U;  // digits are 0 to 9
+    const std::uint64_t others = (((eight & 0x7F7F7F7F7F7F7F7FU) + 0x7676767676767676U) | eight) & 0x8080808080808080U;
+    const auto count = static_cast<unsigned>(std::countr_zero(others)) / 8;  // 8 where there is no other
+    all.count += count;
+    if (last && count == 8) break;
+    // Zeros before them; then pairs, fours and all eight as one number each.
+    eight = count == 8 ? eight : eight << (56 - 8 * count) << 8U;
+    eight = 10 * eight + (eight >> 8U);
+    eight = ((eight & 0x000000FF000000FFU) * 0x000F424000000064U +
+             ((eight >> 16U) & 0x000000FF000000FFU) * 0x0000271000000001U) >>
+            32U;
+    all.value = kPowers[count] * all.value + eight;
+    if (count < 8) break;
+  }
+  return all;
+}
+
+}  // namespace decimal
+
+inline NumberAhead plain_number_ahead(const char* begin, const char* end) {
+  const bool negative = begin != end && *begin == '-';
+  const char* at = begin + (negative ? 1 : 0);
+  const decimal::Digits whole = decimal::digits_at(at, end);
+  at += whole.count;
+  decimal::Digits part;
+  if (at != end && *at == '.') {
+    part = decimal::digits_at(at + 1, end);
+    at += 1 + part.count;
+  }
+  const std::size_t count = (whole.count == 1 && whole.value == 0 ? 0 : whole.count) + part.count;
+  if (whole.count + part.count == 0 || count > decimal::kDigits) return {};
+  const double value = decimal::quotient(decimal::kPowers[part.count] * whole.value + part.value, part.count);
+  return {negative ? -value : value, static_cast<std::size_t>(at - begin)};
+}
 
 }  // namespace mbk::recording

@@ -109,7 +109,7 @@ class Table {
       text.forget(static_cast<std::size_t>(line->text.data() - text.so_far().data()));
       next_ = lines.next();
       if (!text.status()) return text.status();
-      if (auto ok = add(*line, !next_); !ok) return ok;
+      if (auto ok = add(*line, !next_, text.so_far().data() + text.so_far().size()); !ok) return ok;
     }
     if (rows_ == 0) {
       return bad_data(fmt::format("the only line of numbers, line {}, is incomplete", last_line_),
@@ -154,10 +154,11 @@ class Table {
                     place(head_.header_line));
   }
 
-  Result<void> add(const CsvLine& line, bool last) {
+  /// @param end  of the text that is there
+  Result<void> add(const CsvLine& line, bool last, const char* end) {
     last_line_ = line.number;
     if (rows_ == numbers_.front().size()) make_rows(rows_ + rows_ / 4 + 1);
-    Row row = decimal_commas_ ? Row{0, true, false} : take_plain(line.text);
+    Row row = decimal_commas_ ? Row{0, true, false} : take_plain(line.text, end);
     if (row.odd || (row.count != columns_ && line.text.find('"') != line.text.npos)) row = part_odd(line.text);
     const bool trailing = trailing_ && row.count == columns_ + 1 && row.last_is_empty;
     const bool complete = row.count == columns_ || trailing;
@@ -199,18 +200,31 @@ class Table {
   };
 
   /// Takes a line as most are.
-  Row take_plain(std::string_view line) {
+  /// @param end  of the text that is there
+  Row take_plain(std::string_view line, const char* end) {
     Row row;
-    for_each_cell(line, head_.separator, [&](std::string_view cell) {
+    const auto take = [&](std::string_view cell, std::optional<double> value) {
       ++row.count;
-      const auto value = cell_number(cell);
       row.last_is_empty = value && std::isnan(*value) && without_quotes(cell).empty();
       if (row.count > columns_) return row.count <= columns_ + 64;
       row.odd = row.odd || !value;
       numbers_[row.count - 1][rows_] = value.value_or(kNone);
       return true;
-    });
-    return row;
+    };
+    if (head_.separator == kBlanks) {
+      for_each_cell(line, kBlanks, [&](std::string_view cell) { return take(cell, cell_number(cell)); });
+      return row;
+    }
+    for (;;) {
+      // A number ends before a line end, so that it may be looked for beyond the line.
+      const NumberAhead ahead = plain_number_ahead(line.data(), end);
+      std::size_t length = ahead.length;
+      const bool plain = length > 0 && (length == line.size() || line[length] == head_.separator);
+      if (!plain) length = std::min(line.find(head_.separator), line.size());
+      const std::string_view cell = line.substr(0, length);
+      if (!take(cell, plain ? ahead.value : general_number(cell)) || length == line.size()) return row;
+      line.remove_prefix(length + 1);
+    }
   }
 
   /// A cell of a line that is not as most are.

@@ -61,6 +61,7 @@ class CsvLines {
   /// The next that is neither empty nor a comment.
   std::optional<CsvLine> next() {
     while (auto line = next_of_all()) {
+      if (!line->text.empty() && line->text.front() > '%') return line;  // as digits and signs are
       const auto first = line->text.find_first_not_of(" \t");
       if (first != line->text.npos && line->text[first] != '#' && line->text[first] != '%') return line;
     }
