@@ -4,7 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "apps/mbk/chart_files.h"
 #include "apps/mbk/commands.h"
+#include "apps/mbk/named_files.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/preprocess_options.h"
@@ -13,6 +15,7 @@
 #include "apps/mbk/signal_names.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/present/report/exploration_text.h"
+#include "mbk/present/report/result_charts.h"
 #include "mbk/present/result/exploration_json.h"
 
 namespace mbk::app {
@@ -33,6 +36,7 @@ struct ExploreArguments {
   std::string input, output_signal, reference;
   OutputArguments output;
   ReportArguments report;
+  FilesBeside beside;
 };
 
 Result<measurement::ExploreOptions> options_of(const ExploreArguments& a) {
@@ -72,11 +76,26 @@ Result<void> name_signals(ExploreArguments& a, measurement::ExploreOptions& opti
   return place_signals(a.reading, names);
 }
 
+/// What can be said before the work begins.
+Result<void> check(const ExploreArguments& a) {
+  if (auto ok = check_files(a.reading.files, a.output.to, a.report); !ok || !a.beside.charts) return ok;
+  return ChartFiles::check(*a.beside.charts, a.output.to.overwrite, {a.reading.files.front()},
+                           {"response-magnitude", "impulse-response"});
+}
+
+Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
+  if (!arguments.beside.charts) return {};
+  auto files = ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite);
+  if (!files) return tl::unexpected(files.error());
+  return files->write(found.recordings.front().source, report::exploration_charts(found));
+}
+
 int run_explore(const ExploreArguments& given, const std::string& typed) {
   ExploreArguments arguments = given;
-  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
-    return report_error(ok.error());
-  }
+  auto files = named_files(given.reading.files);
+  if (!files) return report_error(files.error());
+  arguments.reading.files = std::move(*files);
+  if (auto ok = check(arguments); !ok) return report_error(ok.error());
   auto options = options_of(arguments);
   if (!options) return report_error(options.error());
   if (auto ok = name_signals(arguments, *options); !ok) return report_error(ok.error());
@@ -90,8 +109,9 @@ int run_explore(const ExploreArguments& given, const std::string& typed) {
       return report_error(ok.error());
     }
   }
+  if (auto ok = write_charts(arguments, *found); !ok) return report_error(ok.error());
   const std::string text = arguments.output.json ? result::to_json(*found) : report::exploration_text(*found);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 
@@ -207,6 +227,7 @@ Action add_explore(CLI::App& app, const std::string& typed) {
       ->group(in_time);
   add_output_options(*command, arguments->output, "mbk.explore/1");
   add_report_options(*command, arguments->report);
+  add_charts_option(*command, arguments->beside);
   return [arguments, typed] { return run_explore(*arguments, typed); };
 }
 

@@ -200,7 +200,8 @@ class Package(unittest.TestCase):
             options = {option["names"][-1][2:] for option in one["options"]}
             with self.subTest(one["path"]):
                 self.assertLessEqual(names, options)
-                self.assertLessEqual(options - names, {"help", "json", "quiet", "out", "overwrite", "version"})
+                self.assertLessEqual(options - names, {"help", "help-all", "json", "quiet", "out", "overwrite",
+                                                               "version"})
                 self.assertTrue(all(value.default in (None, False) for value in parameters.values()
                                     if value.kind == inspect.Parameter.KEYWORD_ONLY))
                 for option in one["options"]:
