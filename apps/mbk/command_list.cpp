@@ -25,6 +25,7 @@ Commands all_commands(const std::string& typed) {
       {"passivity", add_passivity},
       {"compare", add_compare},
       {"info", add_info},
+      {"new", add_new},
       {"convert", add_convert},
       {"simulate", add_simulate},
       {"run", add_run},

@@ -16,7 +16,7 @@ import sys
 import textwrap
 
 WIDTH = 100
-LEFT_OUT = {"run", "work", "completion", "manual"}  # need processes of their own, or are of shells
+LEFT_OUT = {"run", "new", "work", "completion", "manual"}  # need processes of their own, ask, or are of shells
 ONLY_COMMAND_LINE = {"--help", "--help-all", "--version", "--json", "--quiet"}
 NAMES = {"tf": "transfer_function", "import": "import_"}
 RESULTS = {  # the class of what a command gives; Document where it has no class of its own

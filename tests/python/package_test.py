@@ -190,7 +190,7 @@ class Package(unittest.TestCase):
         parents = {tuple(one["path"][:-1]) for one in table if len(one["path"]) > 1}
         checked = 0
         for one in table:
-            if one["path"][0] in ("run", "work", "completion", "manual") or tuple(one["path"]) in parents:
+            if one["path"][0] in ("run", "new", "work", "completion", "manual") or tuple(one["path"]) in parents:
                 continue
             module = mbk if len(one["path"]) == 1 else getattr(mbk, one["path"][0])
             function = getattr(module, {"import": "import_"}.get(one["path"][-1], one["path"][-1]))

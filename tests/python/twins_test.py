@@ -28,7 +28,7 @@ TWINS = [(line.replace("\\|", "|"), python) for line, python in re.findall(r"^\|
 WITH_DOCUMENT = {" ".join(one["path"]) for one in mbk._calling.json.loads(
     subprocess.run([MBK, "manual", "--json"], check=True, capture_output=True).stdout)["commands"]
     if "--json" in [option["names"][-1] for option in one["options"]]}
-NO_TWIN = {"run": "a script watches it: mbk.live", "work": "of jobs on other machines",
+NO_TWIN = {"run": "a script watches it: mbk.live", "new": "asks a person", "work": "of jobs on other machines",
            "recover": "there is no short journal", "completion": "of shells", "manual": "of man", "reproduce": "takes minutes"}
 
 
