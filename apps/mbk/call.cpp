@@ -28,9 +28,9 @@
 namespace mbk::app {
 namespace {
 
-/// They move a robot, are a process among others, speak to a shell or write pages of this project: nothing that a
-/// script calls.
-constexpr auto kNotCallable = std::to_array<std::string_view>({"run", "work", "completion", "manual"});
+/// They move a robot, ask a person, are a process among others, speak to a shell or write pages of this project:
+/// nothing that a script calls.
+constexpr auto kNotCallable = std::to_array<std::string_view>({"run", "new", "work", "completion", "manual"});
 
 constexpr std::size_t kMaxPrepared = 64;
 

@@ -6,23 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "mbk/present/report/text.h"
+#include "apps/mbk/help.h"
 
 namespace mbk::app {
 namespace {
-
-/// Descriptions of options, broken into lines that a terminal shows whole.
-class HelpFormatter : public CLI::Formatter {
- public:
-  HelpFormatter() { column_width(kNameColumns); }
-
-  std::string make_option_desc(const CLI::Option* option) const override {
-    return mbk::report::wrapped(CLI::Formatter::make_option_desc(option), mbk::report::kLineColumns - kNameColumns);
-  }
-
- private:
-  static constexpr std::size_t kNameColumns = 30;
-};
 
 using Commands = std::vector<std::pair<std::string_view, std::function<Action(CLI::App&)>>>;
 
@@ -38,6 +25,7 @@ Commands all_commands(const std::string& typed) {
       {"passivity", add_passivity},
       {"compare", add_compare},
       {"info", add_info},
+      {"new", add_new},
       {"convert", add_convert},
       {"simulate", add_simulate},
       {"run", add_run},
@@ -69,8 +57,9 @@ Actions add_commands(std::string_view first, CLI::App& app, const std::string& t
   return made;
 }
 
-void wrap_help(CLI::App& app) {
+void add_help(CLI::App& app) {
   app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_all_flag("--help-all", "print every option, in sections, with all there is to say");
 }
 
 }  // namespace mbk::app

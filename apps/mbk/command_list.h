@@ -14,7 +14,7 @@ namespace mbk::app {
 /// @param first  the first word on the command line    @param typed  all of it, which a report repeats
 [[nodiscard]] Actions add_commands(std::string_view first, CLI::App& app, const std::string& typed);
 
-/// Descriptions of options are broken into lines that a terminal shows whole, here and in commands that are added.
-void wrap_help(CLI::App& app);
+/// --help and --help-all as HelpFormatter writes them, here and in commands that are added from then on.
+void add_help(CLI::App& app);
 
 }  // namespace mbk::app

@@ -34,6 +34,7 @@ Action add_ellipse(CLI::App& app);
 Action add_passivity(CLI::App& app);
 Action add_compare(CLI::App& app);
 Action add_info(CLI::App& app);
+Action add_new(CLI::App& app);
 Action add_convert(CLI::App& app);
 Action add_simulate(CLI::App& app);
 Action add_run(CLI::App& app);

@@ -64,7 +64,7 @@ int run(const MeasureArguments& arguments) {
     shown = source_line(both[0], "first") + source_line(both[1], "second");
     shown += usable ? report::width_text(*widths) : "  no width is shown; --json holds the numbers\n";
   }
-  if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
   return widths->complete() && usable ? kFine : kNotUsable;
 }
 

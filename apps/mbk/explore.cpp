@@ -7,13 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "apps/mbk/chart_files.h"
 #include "apps/mbk/commands.h"
 #include "apps/mbk/explore_options.h"
 #include "apps/mbk/explore_units.h"
+#include "apps/mbk/named_files.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/report_file.h"
 #include "mbk/present/report/exploration_text.h"
+#include "mbk/present/report/result_charts.h"
 #include "mbk/present/result/exploration_json.h"
 
 namespace mbk::app {
@@ -22,6 +25,7 @@ namespace {
 struct ExploreArguments : ExploringArguments {
   OutputArguments output;
   ReportArguments report;
+  FilesBeside beside;
   bool each = false;
   unsigned threads = 0;
   EngineArguments engine;
@@ -61,11 +65,22 @@ int run_each(const CLI::App& command, const ExploreArguments& arguments) {
   return worst != kFine ? worst : all_usable ? kFine : kNotUsable;
 }
 
-int run_explore(const ExploreArguments& given, const std::string& typed) {
-  ExploreArguments arguments = given;
-  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
-    return report_error(ok.error());
-  }
+/// What can be said before the work begins.
+Result<void> check(const ExploreArguments& a) {
+  if (auto ok = check_files(a.reading.files, a.output.to, a.report); !ok || !a.beside.charts) return ok;
+  return ChartFiles::check(*a.beside.charts, a.output.to.overwrite, {a.reading.files.front()},
+                           {"response-magnitude", "impulse-response"});
+}
+
+Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
+  if (!arguments.beside.charts) return {};
+  auto files = ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite);
+  if (!files) return tl::unexpected(files.error());
+  return files->write(found.recordings.front().source, report::exploration_charts(found));
+}
+
+int run_explore(const ExploreArguments& arguments, const std::string& typed) {
+  if (auto ok = check(arguments); !ok) return report_error(ok.error());
   const auto options = exploring_options(arguments);
   if (!options) return report_error(options.error());
   const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
@@ -78,8 +93,9 @@ int run_explore(const ExploreArguments& given, const std::string& typed) {
       return report_error(ok.error());
     }
   }
+  if (auto ok = write_charts(arguments, *found); !ok) return report_error(ok.error());
   const std::string text = arguments.output.json ? result::to_json(*found) : report::exploration_text(*found);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 
@@ -113,11 +129,17 @@ Action add_explore(CLI::App& app, const std::string& typed) {
       ->needs(each);
   add_output_options(*command, arguments->output, "mbk.explore/1, with --each mbk.explorations/1");
   add_report_options(*command, arguments->report);
+  add_charts_option(*command, arguments->beside);
   add_engine_options(*command, arguments->engine);
   command->get_option("--report")->excludes(each);
+  command->get_option("--charts")->excludes(each);
   command->get_option("--engine")->needs(each);
   return [command, arguments, typed] {
-    return arguments->each ? run_each(*command, *arguments) : run_explore(*arguments, typed);
+    ExploreArguments named = *arguments;
+    auto files = named_files(named.reading.files);
+    if (!files) return report_error(files.error());
+    named.reading.files = std::move(*files);
+    return named.each ? run_each(*command, named) : run_explore(named, typed);
   };
 }
 

@@ -34,7 +34,7 @@ int list_unrecognised(const InfoArguments& arguments, const std::string& trial, 
   if (!contents) return report_error(error);
   const std::string text =
       arguments.output.json ? result::to_json(*contents, error) : before + report::contents_text(*contents, error);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -59,7 +59,7 @@ int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
   const auto first = reader.read(0);
   if (!first) return list_unrecognised(arguments, trials.front().name, first.error(), list);
   const std::string text = list + report::info_text(*first, recording::inspect(*first));
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -106,7 +106,7 @@ int run(const InfoArguments& arguments) {
       text += (i > 0 ? "\n" : "") + report::info_text(recordings[i], inspections[i]);
     }
   }
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return code;
 }
 

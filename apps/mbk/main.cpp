@@ -91,7 +91,7 @@ int run(int argc, char** argv) {
   app.name("mbk");
   app.set_version_flag("--version", fmt::format("mbk {}", mbk::version()));
   app.require_subcommand(1);
-  mbk::app::wrap_help(app);
+  mbk::app::add_help(app);
   app.failure_message(one_line);
 
   const std::string_view first = argc > 1 ? argv[1] : "";
@@ -103,7 +103,7 @@ int run(int argc, char** argv) {
     for (auto* stream : {&out, &wrong}) stream->exceptions(std::ios::badbit);  // where there is no memory
     const int code = app.exit(error, out, wrong);
     mbk::app::say_text(wrong.str());
-    if (auto ok = mbk::app::Output().write(out.str()); !ok) return mbk::app::report_error(ok.error());
+    if (auto ok = mbk::app::Output().show(out.str()); !ok) return mbk::app::report_error(ok.error());
     return code == 0 ? mbk::app::kFine : mbk::app::kWrongUsage;
   }
   return mbk::app::run_chosen(app, commands);

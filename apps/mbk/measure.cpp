@@ -2,13 +2,18 @@
 #include <memory>
 #include <tuple>
 
+#include "apps/mbk/chart_files.h"
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
+#include "apps/mbk/named_files.h"
 #include "apps/mbk/progress.h"
 #include "apps/mbk/report_file.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/files/recording/write_file.h"
 #include "mbk/measure/analyse/summarise.h"
+#include "mbk/present/report/result_charts.h"
 #include "mbk/present/report/text.h"
+#include "mbk/present/report/trials_table.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::app {
@@ -19,6 +24,10 @@ using measurement::Examined;
 struct MeasureCommandArguments : MeasureArguments {
   AnalyseArguments analyse;
   ReportArguments report;
+  FilesBeside beside;
+
+  /// Whether what shows how good a result is will be drawn.
+  [[nodiscard]] bool draws() const { return report.file || beside.charts; }
 };
 
 /// A result, with the diagnostics where a report will show them: those of one recording.
@@ -42,12 +51,12 @@ std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, con
                                               const MeasureCommandArguments& arguments) {
   const int count = reader.count();
   std::vector<Result<MeasuredOne>> results(static_cast<std::size_t>(count), bad_data("not measured"));
-  const bool with_report = arguments.report.file.has_value();
+  const bool with_report = arguments.report.file.has_value(), draws = arguments.draws();
   const auto measured = [&](int i) -> Result<MeasuredOne> {
     auto recording = reader.read_perturbation(i);
     if (!recording) return tl::unexpected(recording.error());
     add_arm(arguments.analyse, *recording);
-    auto one = measure_one({&*recording, 1}, options, with_report);
+    auto one = measure_one({&*recording, 1}, options, draws);
     if (!one) return tl::unexpected(one.error());
     result::RecordingFacts facts;
     if (with_report) facts = facts_of(*recording, one->measured.identification);
@@ -85,7 +94,7 @@ Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, 
   auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
   for (Recording& recording : *recordings) add_arm(arguments.analyse, recording);
-  auto pooled = measure_one(*recordings, options, arguments.report.file.has_value());
+  auto pooled = measure_one(*recordings, options, arguments.draws());
   if (!pooled) return tl::unexpected(pooled.error());
   MeasuredTrials found;
   for (std::size_t k = 0; arguments.report.file && k < recordings->size(); ++k) {
@@ -121,13 +130,43 @@ Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, c
   return found;
 }
 
+/// Table and charts.
+Result<void> write_beside(const MeasureCommandArguments& arguments, const MeasuredTrials& found) {
+  const bool overwrite = arguments.output.to.overwrite;
+  if (const auto& file = arguments.beside.summary) {
+    const std::string table = file->extension() == ".tex" ? report::trials_latex(found.measured, found.together)
+                                                          : report::trials_csv(found.measured, found.together);
+    if (auto ok = recording::write_file(*file, overwrite, table); !ok) return ok;
+  }
+  if (!arguments.beside.charts) return {};
+  auto files = ChartFiles::in(*arguments.beside.charts, overwrite);
+  if (!files) return tl::unexpected(files.error());
+  for (std::size_t k = 0; k < found.measured.size(); ++k) {
+    const auto charts = report::measurement_charts(found.measured[k], found.diagnostics[k]);
+    if (auto ok = files->write(found.measured[k].identification.sources.front(), charts); !ok) return ok;
+  }
+  return {};
+}
+
+/// What can be said before the work begins.
+Result<void> check(const MeasureCommandArguments& arguments) {
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report, arguments.beside); !ok)
+    return ok;
+  if (!arguments.beside.charts) return {};
+  return ChartFiles::check(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files,
+                           {"force", "force-x"});
+}
+
 /// The work of `measure` and `identify`, which leaves out ellipses, passivity and what they take to compute.
-int run(const MeasureCommandArguments& arguments, const std::string& typed, bool with_findings) {
+int run(const MeasureCommandArguments& given, const std::string& typed, bool with_findings) {
+  MeasureCommandArguments arguments = given;
+  auto files = named_files(given.reading.files);
+  if (!files) return report_error(files.error());
+  arguments.reading.files = std::move(*files);
   auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
   if (!options) return report_error(options.error());
   options->passivity = with_findings;
-  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok)
-    return report_error(ok.error());
+  if (auto ok = check(arguments); !ok) return report_error(ok.error());
   auto found = arguments.pool ? measure_pooled(arguments, *options) : measure_apart(arguments, *options);
   if (!found) return report_error(found.error());
   int code = kFine;
@@ -152,7 +191,8 @@ int run(const MeasureCommandArguments& arguments, const std::string& typed, bool
     if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document); !ok)
       return report_error(ok.error());
   }
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = write_beside(arguments, *found); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return code;
 }
 
@@ -165,6 +205,8 @@ Action add(CLI::App& app, const char* name, const char* summary, const std::stri
   add_analyse_options(*command, arguments->analyse);
   add_output_options(*command, arguments->output, "mbk.result/2");
   if (with_findings) add_report_options(*command, arguments->report);
+  add_summary_option(*command, arguments->beside);
+  add_charts_option(*command, arguments->beside);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }
 
@@ -181,6 +223,8 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              "      one joint from a CSV file, the first 40 s to identify, the rest held out\n"
              "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
              "      several trials: one result each, and the mean of the usable ones with its 95 % interval\n"
+             "  mbk measure trials --summary trials.csv --charts charts\n"
+             "      every recording in a folder, or in 'S0?/relaxed_*.mat'; one row each; charts as SVG files\n"
              "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
              "      at shoulder and elbow too; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
              "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"

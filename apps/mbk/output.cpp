@@ -1,6 +1,7 @@
 #include "apps/mbk/output.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include "apps/mbk/caller.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/terminal.h"
 #include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
@@ -21,7 +23,8 @@ int report_error(const Error& error) {
     caller->fail(error);
   } else {
     std::fflush(stdout);
-    say("mbk: {}\n", error.line());
+    const bool colour = terminal_at(STDERR_FILENO).colour;
+    say("{}mbk:{} {}\n", colour ? "\x1b[1;31m" : "", colour ? "\x1b[0m" : "", error.line());
   }
   switch (error.kind) {
     case ErrorKind::usage:
@@ -74,6 +77,11 @@ Result<void> Output::write(const std::string& text) const {
                                      : "see where it goes");
   }
   return {};
+}
+
+Result<void> Output::show(const std::string& text) const {
+  const bool printed = !file && Caller::current() == nullptr;
+  return write(printed ? for_people(text, terminal_at(STDOUT_FILENO)) : text);
 }
 
 Result<std::string> read_text(const std::filesystem::path& file) {

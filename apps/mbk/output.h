@@ -31,6 +31,9 @@ struct Output {
   [[nodiscard]] Result<void> check(const std::vector<std::filesystem::path>& inputs) const;
 
   [[nodiscard]] Result<void> write(const std::string& text) const;
+
+  /// The same of a text for people, which a terminal gets as wide as it is, with colour.
+  [[nodiscard]] Result<void> show(const std::string& text) const;
 };
 
 /// What can be said of a file that an option names, before the work begins.

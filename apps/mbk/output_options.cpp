@@ -1,11 +1,28 @@
 #include "apps/mbk/output_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/mbk/option_checks.h"
 #include "mbk/present/report/html.h"
 
 namespace mbk::app {
+namespace output_options {
+
+/// --overwrite speaks of every file that the command may write.
+void replaces_too(CLI::App& command) {
+  std::vector<std::string> names;
+  for (const char* const name : {"--out", "--report", "--summary", "--charts"}) {
+    if (command.get_option_no_throw(name) != nullptr) names.emplace_back(name);
+  }
+  CLI::Option* const overwrite = command.get_option("--overwrite");
+  overwrite->remove_needs(command.get_option("--out"));
+  overwrite->description(fmt::format("replace the files of {} where they are there", fmt::join(names, ", ")));
+}
+
+}  // namespace output_options
+
+using output_options::replaces_too;
 
 void add_output_options(CLI::App& command, OutputArguments& arguments, const std::string& schema) {
   command.add_flag("--json", arguments.json, fmt::format("for machines: schema {}, SI units, every digit", schema));
@@ -28,17 +45,40 @@ void add_report_options(CLI::App& command, ReportArguments& arguments) {
       ->type_name("TEXT")
       ->check(not_empty())
       ->needs(report);
-  CLI::Option* const overwrite = command.get_option("--overwrite");
-  overwrite->remove_needs(command.get_option("--out"));
-  overwrite->description("replace the files of --out and --report where they are there");
+  replaces_too(command);
+}
+
+void add_summary_option(CLI::App& command, FilesBeside& beside) {
+  command
+      .add_option(
+          "--summary", beside.summary,
+          "also write a table with one row a trial and units in its header, as FILE.csv or, for LaTeX, FILE.tex")
+      ->type_name("FILE")
+      ->check([](const std::string& file) {
+        return file.ends_with(".csv") || file.ends_with(".tex")
+                   ? ""
+                   : fmt::format("{} ends in neither .csv nor .tex", quoted(file));
+      });
+  replaces_too(command);
+}
+
+void add_charts_option(CLI::App& command, FilesBeside& beside) {
+  command.add_option("--charts", beside.charts, "also write the charts as SVG files into this folder")
+      ->type_name("FOLDER")
+      ->check(not_empty());
+  replaces_too(command);
 }
 
 Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output,
-                         const ReportArguments& report) {
-  if (output.overwrite && !output.file && !report.file) {
-    return bad_usage("--overwrite requires --out or --report", "name a file to write");
+                         const ReportArguments& report, const FilesBeside& beside) {
+  if (output.overwrite && !output.file && !report.file && !beside.summary && !beside.charts) {
+    return bad_usage("--overwrite requires --out, --report, --summary or --charts", "name a file to write");
   }
-  if (auto ok = output.check(inputs); !ok || !report.file) return ok;
+  if (auto ok = output.check(inputs); !ok) return ok;
+  if (beside.summary) {
+    if (auto ok = check_new_file(*beside.summary, "--summary", output.overwrite, inputs); !ok) return ok;
+  }
+  if (!report.file) return {};
   if (auto page = mbk::report::page(""); !page) return tl::unexpected(page.error());
   std::error_code error;
   if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==

@@ -14,6 +14,9 @@ namespace mbk::app {
 struct OutputArguments {
   bool json = false, quiet = false;
   Output to;
+
+  /// A document, or a text for people.
+  [[nodiscard]] Result<void> write(const std::string& text) const { return json ? to.write(text) : to.show(text); }
 };
 
 /// The HTML report beside it.
@@ -22,14 +25,25 @@ struct ReportArguments {
   std::string note;
 };
 
+/// A table and drawings beside it.
+struct FilesBeside {
+  std::optional<std::filesystem::path> summary, charts;  ///< a file; a folder
+};
+
 /// Adds --json, --out, --overwrite, --quiet.
 void add_output_options(CLI::App& command, OutputArguments& arguments, const std::string& schema);
 
 /// Adds --report and --report-note; --overwrite then speaks of the report too.
 void add_report_options(CLI::App& command, ReportArguments& arguments);
 
-/// What can be said of --out, --report and --overwrite before the work begins.
+/// Adds --summary; --overwrite then speaks of it too.
+void add_summary_option(CLI::App& command, FilesBeside& beside);
+
+/// Adds --charts; --overwrite then speaks of them too.
+void add_charts_option(CLI::App& command, FilesBeside& beside);
+
+/// What can be said of --out, --report, --summary and --overwrite before the work begins; of --charts see ChartFiles.
 [[nodiscard]] Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output,
-                                       const ReportArguments& report = {});
+                                       const ReportArguments& report = {}, const FilesBeside& beside = {});
 
 }  // namespace mbk::app

@@ -188,7 +188,7 @@ int run(const PassivityArguments& arguments) {
   } else {
     for (const Answer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }
-  if (auto ok = arguments.output.to.write(shown); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
   return code;
 }
 

@@ -190,7 +190,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   }
   const std::string text =
       arguments.output.json ? result::to_json(constants) : report::spring_constants_text(constants);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

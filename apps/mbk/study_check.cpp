@@ -135,7 +135,7 @@ int run_check(const CheckArguments& arguments) {
     if (auto ok = repeater.repeat_all(); !ok) return report_error(ok.error());
   }
   const std::string text = arguments.output.json ? store::to_json(*report) : check_text(*report, arguments.quick);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return report->problems.empty() ? kFine : kBadData;
 }
 
@@ -171,7 +171,7 @@ int run_log(const CheckArguments& arguments) {
     for (const store::LogLine& line : *lines) text += line_text(line);
     text += fmt::format("head {}\n", lines->empty() ? "" : lines->back().hash);
   }
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return verdict && !verdict->problems.empty() ? kBadData : kFine;
 }
 

@@ -75,7 +75,7 @@ int run_plan(const PlanArguments& arguments) {
   if (!plans) return report_error(plans.error());
   const std::string text =
       arguments.output.json ? statistics::to_json(*pilot, goal, *plans) : statistics::plan_text(*pilot, goal, *plans);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

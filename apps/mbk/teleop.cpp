@@ -90,6 +90,7 @@ Result<TeleoperationFinding> find(const TeleopArguments& arguments) {
   const auto design = teleop::read_design(arguments.design);
   if (!design) return tl::unexpected(design.error());
   Progress progress(arguments.quiet, "teleop: ");
+  question.sweep_progress = [&](double share) { progress.reached(share); };
   question.progress = [&](int done, int of) { progress.count(done, of); };
   auto finding = teleop::judge(*design, question);
   if (!finding || !arguments.simulate) return finding;
@@ -115,8 +116,8 @@ int run(const TeleopArguments& arguments) {
     const Output file{chart_file(arguments, names[i]), arguments.output.overwrite};
     if (auto ok = file.write(report::chart_svg(charts[i])); !ok) return report_error(ok.error());
   }
-  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
-  return kFine;
+  const auto written = arguments.json ? arguments.output.write(shown) : arguments.output.show(shown);
+  return written ? kFine : report_error(written.error());
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ int run(const TfArguments& given, const std::string& typed) {
   std::string text =
       arguments.output.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
   if (!arguments.output.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 

@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "apps/mbk/caller.h"
+#include "apps/mbk/chart_files.h"
 #include "apps/mbk/commands.h"
 #include "apps/mbk/job_kinds.h"
 #include "apps/mbk/option_checks.h"
@@ -50,6 +52,7 @@ struct ValidateArguments {
   std::vector<std::string> faults, conditions;
   EngineArguments engine;
   bool json = false, quiet = false, overwrite = false, page = false;
+  bool all = false;  ///< one of all studies: it may draw no chart
 };
 
 std::vector<std::string> fault_names() {
@@ -94,12 +97,10 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
   if (table.charts.empty()) {
     return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "omit --charts");
   }
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be made", folder.string());
+  const auto files = ChartFiles::in(folder, overwrite);
+  if (!files) return tl::unexpected(files.error());
   for (std::size_t k = 0; k < table.charts.size(); ++k) {
-    const auto file = folder / fmt::format("{}-{}.svg", table.study, k + 1);
-    if (auto ok = recording::write_file(file, overwrite, report::chart_svg(table.charts[k])); !ok) return ok;
+    if (auto ok = files->write(fmt::format("{}-{}", table.study, k + 1), table.charts[k]); !ok) return ok;
   }
   return {};
 }
@@ -181,7 +182,7 @@ class RunsElsewhere {
   std::filesystem::path folder_;
 };
 
-int run(const ValidateArguments& arguments) {
+int run_one(const ValidateArguments& arguments) {
   const validation::Study& study = *find_study(arguments.study);
   if (arguments.page) {
     if (study.name != "faults") return report_error({ErrorKind::usage, "--page belongs to 'faults'", "", ""});
@@ -209,12 +210,56 @@ int run(const ValidateArguments& arguments) {
   if (elsewhere && elsewhere->code) return *elsewhere->code;
   if (!table) return report_error(table.error());
   if (elsewhere) elsewhere->clear();
-  const std::string text = arguments.json ? result::to_json(*table) : report::validation_text(*table);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
-  if (arguments.charts) {
+  const auto written =
+      arguments.json ? Output().write(result::to_json(*table)) : Output().show(report::validation_text(*table));
+  if (!written) return report_error(written.error());
+  if (arguments.charts && !(arguments.all && table->charts.empty())) {
     if (auto ok = write_charts(*table, *arguments.charts, arguments.overwrite); !ok) return report_error(ok.error());
   }
   return exit_code(table->verdict());
+}
+
+/// What stands in the place of STUDY for all of them.
+constexpr const char* kAll = "all";
+
+/// The worst that came of any of them: what could not be done, then what falls short, then what is not shown.
+int worse(int a, int b) {
+  const auto rank = [](int code) {
+    return code == kNotShown ? 1 : code == kFallsShort ? 2 : code == kFine ? 0 : 2 + code;
+  };
+  return rank(a) < rank(b) ? b : a;
+}
+
+/// Every study in turn, in the order of the list.
+int run_all(ValidateArguments arguments) {
+  if (arguments.json || arguments.page || arguments.engine.folder) {
+    return report_error({ErrorKind::usage, "a document, a page and a job are of one study each",
+                         "name the study; 'mbk validate' lists them", ""});
+  }
+  arguments.all = true;
+  int code = kFine;
+  for (const std::string& name : study_names()) {
+    arguments.study = name;
+    code = worse(code, run_one(arguments));
+    if (code != kFine && code != kNotShown && code != kFallsShort) return code;
+    if (auto ok = Output().write("\n"); !ok) return report_error(ok.error());
+  }
+  return code;
+}
+
+std::string list_text() {
+  return "Studies, each a method against known truth:\n" + study_lines() +
+         "\n  mbk validate coverage            one of them, by as many runs as its rows need\n"
+         "  mbk validate coverage --runs 20  a look at it; what so few runs do not show is said\n"
+         "  mbk validate all                 every one in turn, which takes long\n";
+}
+
+int run(const ValidateArguments& arguments, bool bare) {
+  if (bare) {
+    const auto shown = Output().show(list_text());
+    return shown ? kFine : report_error(shown.error());
+  }
+  return arguments.study == kAll ? run_all(arguments) : run_one(arguments);
 }
 
 }  // namespace
@@ -269,11 +314,18 @@ Action add_validate(CLI::App& app) {
            "6 not shown by this many runs.";
   });
   const std::string names = fmt::format("{}", fmt::join(study_names(), ", "));
-  command->add_option("STUDY", arguments->study, names)
+  std::vector<std::string> words = study_names();
+  words.emplace_back(kAll);
+  command
+      ->add_option("STUDY", arguments->study,
+                   fmt::format("one of {}; or all; with nothing at all they are listed, with options alone it is {}",
+                               names, arguments->study))
       ->check([names](const std::string& study) {
-        return find_study(study) != nullptr ? "" : fmt::format("'{}' is no study; there are: {}", study, names);
+        return study == kAll || find_study(study) != nullptr
+                   ? ""
+                   : fmt::format("'{}' is no study; there are: {}", study, names);
       })
-      ->check(suggests(study_names()));
+      ->check(suggests(words));
   command->add_option("--runs", arguments->runs, "how many seeds (as many as the study needs)")
       ->type_name("N")
       ->check(whole_number(1, 1'000'000));
@@ -302,7 +354,10 @@ Action add_validate(CLI::App& app) {
   command->add_flag("--overwrite", arguments->overwrite, "replace those files where they are there")->needs(charts);
   command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
   add_engine_options(*command, arguments->engine);
-  return [arguments] { return run(*arguments); };
+  return [arguments, command] {
+    const bool bare = command->count_all() <= 1;  // the command itself
+    return run(*arguments, bare && Caller::current() == nullptr);
+  };
 }
 
 }  // namespace mbk::app

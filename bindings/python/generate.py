@@ -16,7 +16,7 @@ import sys
 import textwrap
 
 WIDTH = 100
-ONLY_COMMAND_LINE = {"--help", "--version", "--json", "--quiet"}
+ONLY_COMMAND_LINE = {"--help", "--help-all", "--version", "--json", "--quiet"}
 NAMES = {"tf": "transfer_function", "import": "import_"}
 RESULTS = {  # the class of what a command gives; Document where it has no class of its own
     ("measure",): "Results | Result", ("identify",): "Results | Result", ("passivity",): "Passivity",
@@ -70,7 +70,7 @@ def type_of(option):
 
 def is_read(option):
     """Whether it names a file that is read, so that what is in memory may stand there."""
-    return option["value"] in ("FILE", "FILE.json", "RESULT.json") and option["names"][-1] not in ("--out", "--report")
+    return option["value"] in ("FILE", "FILE.json", "RESULT.json") and option["names"][-1] not in ("--out", "--report", "--summary")
 
 
 def is_for_text(option):
@@ -123,7 +123,7 @@ class Command:
         # A document is saved by its own method; --overwrite then speaks of what else is written.
         if name == "--out":
             return not is_for_text(option)
-        others = [one for one in self.all_options if one["names"][-1] in ("--report", "--charts", "--out")]
+        others = [one for one in self.all_options if one["names"][-1] in ("--report", "--summary", "--charts", "--out")]
         return name != "--overwrite" or not all(map(is_for_text, others))
 
     @property

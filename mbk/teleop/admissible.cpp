@@ -47,6 +47,25 @@ ParametricPolynomial without_roots_at_zero(const ParametricPolynomial& p) {
   return ParametricPolynomial(std::vector<Polynomial>(first, p.coefficients().end()));
 }
 
+/// How far the work is, of parts whose costs are known beforehand.
+class Work {
+ public:
+  explicit Work(const std::function<void(double)>& progress) : progress_(progress) {}
+
+  void expect(double cost) { total_ += cost; }
+
+  /// To be told how much of a part of that cost is done.
+  [[nodiscard]] std::function<void(double)> part(double cost) const {
+    if (!progress_) return {};
+    return [this, cost](double share) { progress_((done_ + share * cost) / total_); };
+  }
+  void finish(double cost) { done_ += cost; }
+
+ private:
+  const std::function<void(double)>& progress_;
+  double total_ = 0.0, done_ = 0.0;
+};
+
 /// The k at which an answer can change, as roots of polynomials without common or multiple roots.
 class CriticalValues {
  public:
@@ -76,16 +95,18 @@ class CriticalValues {
   }
 
   /// Where the number and kind of the roots of f in X > 0 can change.
-  void add_condition(const ParametricPolynomial& f) {
+  void add_condition(const ParametricPolynomial& f, const std::function<void(double)>& progress) {
     if (f.is_zero()) return;
     const auto [content, part] = split_content(without_roots_at_zero(f));
     add(content, false);
     if (part.degree() < 1) return;
-    const ParametricPolynomial repeated = eliminate(part, part.derivative()).common;
-    const ParametricPolynomial once = repeated.degree() > 0 ? quotient(part, repeated) : part;
+    Elimination multiple = eliminate(part, part.derivative(), progress);
+    const bool repeated = multiple.common.degree() > 0;
+    const ParametricPolynomial once = repeated ? quotient(part, multiple.common) : part;
     add(once.leading(), false);
     add(once.coefficients().front(), false);
-    if (once.degree() > 1) add(eliminate(once, once.derivative()).resultant, false);
+    if (repeated) multiple = eliminate(once, once.derivative());
+    if (once.degree() > 1) add(multiple.resultant, false);
   }
 
   [[nodiscard]] const std::vector<Factor>& factors() const { return factors_; }
@@ -123,15 +144,25 @@ Result<void> add_poles(const Ratio& ratio, CriticalValues& critical) {
   return {};
 }
 
-Result<CriticalValues> critical_values(const ParametricTwoPort& two_port) {
+Result<CriticalValues> critical_values(const ParametricTwoPort& two_port, const std::function<void(double)>& progress) {
   CriticalValues critical;
-  for (const ParametricPolynomial& f : conditions_of(two_port)) critical.add_condition(f);
+  const auto conditions = conditions_of(two_port);
   const auto& n = two_port.numerator;
   const ParametricPolynomial& d = two_port.denominator;
+  const auto cost_of = [](const ParametricPolynomial& f) { return elimination_cost(f, f.derivative()); };
+  const double cost_of_entry = 2.0 * elimination_cost(d, d);
+  Work work(progress);
+  for (const ParametricPolynomial& f : conditions) work.expect(cost_of(f));
+  work.expect(4.0 * cost_of_entry);
+  for (const ParametricPolynomial& f : conditions) {
+    critical.add_condition(f, work.part(cost_of(f)));
+    work.finish(cost_of(f));
+  }
   critical.add_coefficients(d);
   for (const auto& row : n) {
     for (const ParametricPolynomial& entry : row) {
       if (auto ok = add_poles(reduced(entry, d), critical); !ok) return tl::unexpected(ok.error());
+      work.finish(cost_of_entry);
     }
   }
   const Ratio determinant = reduced(n[0][0] * n[1][1] - n[0][1] * n[1][0], d * d);
@@ -221,11 +252,12 @@ double value_of(const Boundary& boundary) {
 
 }  // namespace
 
-Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Rational& low, const Rational& high) {
+Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Rational& low, const Rational& high,
+                                     const std::function<void(double)>& progress) {
   if (low > high) return bad_usage("the range of the parameter ends before it begins", "write LOW:HIGH");
   const auto two_port = immittance(equations);
   if (!two_port) return tl::unexpected(two_port.error());
-  const auto critical = critical_values(*two_port);
+  const auto critical = critical_values(*two_port, progress);
   if (!critical) return tl::unexpected(critical.error());
   const std::vector<Boundary> ends = boundaries(*critical, low, high);
   const Search search(equations, *two_port);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "mbk/base/core/result.h"
 #include "mbk/base/lti/real_roots.h"
 #include "mbk/model/trial/teleoperation.h"
@@ -18,7 +20,9 @@ namespace mbk::teleop {
 /// Values are rounded to double on output.
 /// @fails  not usable: the network has no immittance; it has undamped poles other than 0 and ∞ for every k, whose
 /// residues this does not follow. usage: low > high.
+/// @param progress  is told how much of the work is done, about, from 0 to 1
 [[nodiscard]] Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Rational& low,
-                                                   const Rational& high);
+                                                   const Rational& high,
+                                                   const std::function<void(double)>& progress = {});
 
 }  // namespace mbk::teleop

@@ -71,14 +71,14 @@ std::vector<Chart> charts(const Immittance& immittance, const std::vector<RadPer
   for (const RadPerSec frequency : omega) {
     const ConditionValues values = condition_values(immittance(frequency));
     for (const auto& [series, value] : {std::pair{&r11, values.r11}, {&r22, values.r22}, {&third, values.third}}) {
-      series->x.push_back(std::log10(frequency.value));
+      series->x.push_back(frequency.value);
       series->y.push_back(value);
     }
   }
   const auto chart = [&](std::string title, ChartAxis y, ChartSeries series) {
     Chart result;
     result.title = std::move(title);
-    result.x = {"log10 of the frequency in rad/s", ""};
+    result.x = {"frequency", "rad/s", true};
     result.y = std::move(y);
     result.series = {std::move(series)};
     result.horizontal = {{0.0, "0"}};
@@ -159,14 +159,15 @@ Result<std::string> unit_of(const Design& design, const std::string& name) {
                    fmt::format("it has {}", fmt::join(names, ", ")));
 }
 
-Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, const Rational& a) {
+Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, const Rational& a,
+                            const std::function<void(double)>& progress = {}) {
   auto unit = unit_of(design, asked.parameter);
   if (!unit) return tl::unexpected(unit.error());
   if (design.exact_delay) {
     return bad_usage("--parameter: with an exact delay there are no polynomials to solve", "use pade in [delay]");
   }
   const PortEquations equations = design.equations(asked.parameter).with_shortage(design.operator_port, Polynomial{a});
-  auto set = admissible_set(equations, asked.low, asked.high);
+  auto set = admissible_set(equations, asked.low, asked.high, progress);
   if (set) {
     set->parameter = asked.parameter;
     set->unit = std::move(*unit);
@@ -311,7 +312,7 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
     finding.largest_shortages.push_back(*largest);
   }
   if (question.sweep) {
-    auto set = sweep(design, *question.sweep, a);
+    auto set = sweep(design, *question.sweep, a, question.sweep_progress);
     if (!set) return tl::unexpected(set.error());
     finding.admissible = std::move(*set);
   }

@@ -25,7 +25,8 @@ struct Question {
     int steps = 11;  ///< ≥ 2
   };
   std::optional<Excess> excess;
-  std::function<void(int done, int of)> progress = {};  ///< of the excesses
+  std::function<void(double share)> sweep_progress = {};  ///< of the sweep: how much of it is done, about, 0 to 1
+  std::function<void(int done, int of)> progress = {};    ///< of the excesses
 };
 
 /// "slave.k=50:500"

@@ -1,6 +1,7 @@
 #include "mbk/teleop/parametric.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace mbk::teleop {
@@ -116,7 +117,30 @@ ContentAndPart split_content(const ParametricPolynomial& p) {
   return {content, scaled(rest, Polynomial{Rational(denominators, numerators)})};
 }
 
-Elimination eliminate(const ParametricPolynomial& first, const ParametricPolynomial& second) {
+namespace {
+
+constexpr double kGrowth = 3.5;  // of a step's cost with its number: degree squared, and digits
+
+/// What the first `steps` of an elimination of n steps cost, up to a factor.
+double cost_of_steps(int steps, int n) {
+  double cost = 0.0;
+  for (int i = 1; i <= steps; ++i) cost += (n - i + 1) * std::pow(i, kGrowth);
+  return cost;
+}
+
+}  // namespace
+
+double elimination_cost(const ParametricPolynomial& a, const ParametricPolynomial& b) {
+  const int n = std::min(a.degree(), b.degree());
+  int largest = 1;
+  for (const ParametricPolynomial* const p : {&a, &b}) {
+    for (const Polynomial& c : p->coefficients()) largest = std::max(largest, c.degree());
+  }
+  return cost_of_steps(n, n) * std::pow(largest, kGrowth);
+}
+
+Elimination eliminate(const ParametricPolynomial& first, const ParametricPolynomial& second,
+                      const std::function<void(double)>& progress) {
   const bool swap = first.degree() < second.degree();
   const auto [content_a, part_a] = split_content(swap ? second : first);
   const auto [content_b, part_b] = split_content(swap ? first : second);
@@ -124,6 +148,7 @@ Elimination eliminate(const ParametricPolynomial& first, const ParametricPolynom
   // the resultant of a product with a content is the content to the other's degree
   const Polynomial contents = power(content_a, b.degree()) * power(content_b, a.degree());
   Polynomial g{1}, h{1};
+  const int steps = b.degree();
   while (b.degree() > 0) {
     const int step = a.degree() - b.degree();
     const ParametricPolynomial remainder = pseudo_remainder(a, b);
@@ -132,6 +157,7 @@ Elimination eliminate(const ParametricPolynomial& first, const ParametricPolynom
     g = a.leading();
     if (step > 0) h = lti::divide(power(g, step), power(h, step - 1)).quotient;
     if (b.is_zero()) return {part(a), {}};
+    if (progress) progress(cost_of_steps(steps - b.degree(), steps) / cost_of_steps(steps, steps));
   }
   const Polynomial resultant =
       a.degree() == 0 ? Polynomial{1} : lti::divide(power(b.leading(), a.degree()), power(h, a.degree() - 1)).quotient;

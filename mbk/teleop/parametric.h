@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "mbk/base/lti/polynomial.h"
@@ -50,7 +51,13 @@ struct Elimination {
   ParametricPolynomial common;  ///< their greatest common divisor over the fractions of k, without content
   Polynomial resultant;         ///< of k; zero if and only if `common` depends on x. Up to its sign
 };
-[[nodiscard]] Elimination eliminate(const ParametricPolynomial& a, const ParametricPolynomial& b);
+/// @param progress  is told how much of the work is done, from 0 to 1, as it grows with degrees and digits
+[[nodiscard]] Elimination eliminate(const ParametricPolynomial& a, const ParametricPolynomial& b,
+                                    const std::function<void(double)>& progress = {});
+
+/// What an elimination of two polynomials of these sizes costs, beside another: the number of steps n and the degree D
+/// of the coefficients make n steps of n − i coefficients of degree i D and with i D digits.
+[[nodiscard]] double elimination_cost(const ParametricPolynomial& a, const ParametricPolynomial& b);
 
 /// a/b. b must divide a over the fractions of k and have no content; then the quotient has no fractions (Gauss's
 /// lemma).

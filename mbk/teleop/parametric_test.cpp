@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::teleop {
@@ -35,6 +39,18 @@ TEST(Eliminate, ResultantIsZeroExactlyWhereARootIsShared) {
     const int k = static_cast<int>(random.below(50)) + 100;
     EXPECT_EQ(e.resultant(k).is_zero(), lti::gcd(a.at(k), b.at(k)).degree() > 0) << trial;
   }
+}
+
+TEST(Eliminate, SaysHowFarItIs) {
+  numeric::Random random(7);
+  const ParametricPolynomial p = random_parametric(random, 6);
+  std::vector<double> shares;
+  std::ignore = eliminate(p, p.derivative(), [&](double share) { shares.push_back(share); });
+  ASSERT_EQ(shares.size(), 5u);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GT(shares.front(), 0.0);
+  EXPECT_LT(shares.front(), 0.1);  // the last steps cost most
+  EXPECT_EQ(shares.back(), 1.0);
 }
 
 TEST(Eliminate, FindsTheCommonFactor) {

@@ -11,7 +11,7 @@ class Help:
 
     def __init__(self, path):
         self.path = path
-        self.text = run(*path, "--help").out
+        self.text = run(*path, "--help-all").out
         heading = None
         self.commands, self.options, self.positionals = [], {}, []
         for line in self.text.splitlines():

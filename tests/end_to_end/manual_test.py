@@ -79,7 +79,7 @@ class Manual(Case):
 
     def test_the_words_of_the_help_are_those_of_the_page(self):
         page = squeezed(plain(self.fine("manual", "measure").out))
-        text = squeezed(self.fine("measure", "--help").out)
+        text = squeezed(self.fine("measure", "--help-all").out)
         for words in ("the published procedure, sample for sample", "one joint from a CSV file, the first 40 s",
                       "x=2:mm converts, Fx=-10 flips"):
             self.assertIn(words, text)

@@ -176,10 +176,11 @@ class Effects(Case):
         return self.measured(*options, **more)["preparation"][0]
 
     def test_each_option_of_the_help_is_known_to_these_tests(self):
-        options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
-        elsewhere = {"--help", "--channels", "--variable", "--parts", "--trial", "--clock",
+        options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help-all").out))
+        elsewhere = {"--help", "--help-all", "--channels", "--variable", "--parts", "--trial", "--clock",
                      "--json", "--out", "--overwrite", "--quiet",
                      "--pool", "--decimate-check", "--report", "--report-note",
+                     "--summary", "--charts",  # tables_and_charts_test.py
                      "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
                      "--robot",  # robot_force_test.py
                      "--ranges", "--ignore-range",  # mistakes_test.py
@@ -379,7 +380,7 @@ class Help(Case):
                     self.assert_lines_fit(self.fine(command, below, "--help").out)
 
     def test_options_with_a_value_name_it_or_its_unit(self):
-        text = run("measure", "--help").out
+        text = run("measure", "--help-all").out
         for line in ("--rate HZ", "--resample HZ", "--cutoff HZ|none", "--from S", "--split S", "--to S", "--hac-lag S",
                      "--handle-mass KG", "--sg-window W", "--sg-order N", "--padding N", "--threads N", "--axes N",
                      "--channels MAP", "--variable NAME", "--out FILE",
@@ -388,7 +389,7 @@ class Help(Case):
 
     def test_the_exit_codes_are_explained(self):
         self.assertIn("0 fine, 2 wrong usage, 3 bad or unreadable data, 4 computed but not usable",
-                      run("measure", "--help").out)
+                      run("measure", "--help-all").out)
 
     def test_info_names_its_own_schema(self):
         self.assertIn("mbk.info/1", run("info", "--help").out)
@@ -429,7 +430,7 @@ class Validate(Case):
         self.assertNotRegex(ran.out, r"(?m) met$")
 
     def test_the_help_says_how_many_runs_a_study_needs(self):
-        text = self.fine("validate", "--help").out
+        text = self.fine("validate", "--help-all").out
         self.assertRegex(text, r"(?m)^  coverage +2000, at least 226$")
         self.assertIn("6 not shown by this many runs", text)
 

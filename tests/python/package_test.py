@@ -191,7 +191,7 @@ class Package(unittest.TestCase):
         parents = {tuple(one["path"][:-1]) for one in table if len(one["path"]) > 1}
         checked = 0
         for one in table:
-            if one["path"][0] in ("run", "work", "completion", "manual") or tuple(one["path"]) in parents:
+            if one["path"][0] in ("run", "new", "work", "completion", "manual") or tuple(one["path"]) in parents:
                 continue
             module = mbk if len(one["path"]) == 1 else getattr(mbk, one["path"][0])
             function = getattr(module, {"import": "import_"}.get(one["path"][-1], one["path"][-1]))
@@ -201,7 +201,8 @@ class Package(unittest.TestCase):
             options = {option["names"][-1][2:] for option in one["options"]}
             with self.subTest(one["path"]):
                 self.assertLessEqual(names, options)
-                self.assertLessEqual(options - names, {"help", "json", "quiet", "out", "overwrite", "version"})
+                self.assertLessEqual(options - names, {"help", "help-all", "json", "quiet", "out", "overwrite",
+                                                               "version"})
                 self.assertTrue(all(value.default in (None, False) for value in parameters.values()
                                     if value.kind == inspect.Parameter.KEYWORD_ONLY))
                 for option in one["options"]:

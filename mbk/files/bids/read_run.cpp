@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "mbk/base/core/natural_order.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/files/bids/bids_words.h"
 #include "mbk/files/contents/cells.h"
@@ -236,30 +237,6 @@ class Run {
   Contents contents_;
 };
 
-/// Names by their letters, and numbers in them by their value.
-bool is_before(std::string_view a, std::string_view b) {
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  while (!a.empty() && !b.empty()) {
-    if (digit(a.front()) && digit(b.front())) {
-      const auto number = [&](std::string_view& text) {
-        text.remove_prefix(std::min(text.find_first_not_of('0'), text.size()));
-        const std::size_t end = static_cast<std::size_t>(std::ranges::find_if_not(text, digit) - text.begin());
-        const std::string_view found = text.substr(0, end);
-        text.remove_prefix(end);
-        return found;
-      };
-      const std::string_view one = number(a), other = number(b);
-      if (one.size() != other.size()) return one.size() < other.size();
-      if (one != other) return one < other;
-      continue;
-    }
-    if (a.front() != b.front()) return a.front() < b.front();
-    a.remove_prefix(1);
-    b.remove_prefix(1);
-  }
-  return a.size() < b.size();
-}
-
 std::string stem_of(const fs::path& motion) {
   const std::string name = motion.filename().string();
   return name.substr(0, name.size() - kMotion.size());
@@ -346,7 +323,7 @@ Result<std::vector<BidsRun>> find_bids_runs(const fs::path& path) {
     }
   }
   if (code) return bad_data(fmt::format("the folder cannot be read: {}", code.message()), "check its permissions");
-  std::ranges::sort(runs, is_before, [](const BidsRun& run) { return std::string_view(run.name.name); });
+  std::ranges::sort(runs, in_natural_order, [](const BidsRun& run) { return std::string_view(run.name.name); });
   std::set<std::string> shorter;
   bool alike = false;
   for (const BidsRun& run : runs) alike = !shorter.insert(without_tracking_system(run.name.name)).second || alike;

@@ -30,10 +30,16 @@ std::string schedule_text(const perturbation::Schedule& schedule) {
                       unit, facts.peak_time, peak[0], peak[1]);
   text += fmt::format("  rms           {:.4g} {}; first axis {:.4g}, second {:.4g}\n", factor * facts.rms, unit, rms[0],
                       rms[1]);
-  text += fmt::format("  speed         {:.4g} {}/s at most, at {:.2f} s\n", factor * facts.peak_speed, unit,
-                      facts.peak_speed_time);
-  text += fmt::format("  acceleration  {:.4g} {}/s² at most, at {:.2f} s\n", factor * facts.peak_acceleration, unit,
-                      facts.peak_acceleration_time);
+  const bool force = schedule.quantity() == perturbation::Quantity::force;
+  text += fmt::format("  {:<12}  {:.4g} {}/s at most, at {:.2f} s\n",
+                      !force                                           ? "speed"
+                      : schedule.space() == perturbation::Space::joint ? "torque rate"
+                                                                       : "force rate",
+                      factor * facts.peak_speed, unit, facts.peak_speed_time);
+  if (!force) {
+    text += fmt::format("  acceleration  {:.4g} {}/s² at most, at {:.2f} s\n", factor * facts.peak_acceleration, unit,
+                        facts.peak_acceleration_time);
+  }
   text += fmt::format("  crest factor  {:.3g} and {:.3g}, pauses and moving in counted\n", facts.crest_factor[0],
                       facts.crest_factor[1]);
   text +=

@@ -24,6 +24,19 @@ TEST(ScheduleText, SpeaksTheUnitThatPeopleThinkIn) {
   EXPECT_THAT(text_of(Quantity::force, Space::hand), testing::HasSubstr("first axis 0.01, second 0.02"));
 }
 
+TEST(ScheduleText, AForceHasARateAndNoSpeed) {
+  const std::string force = text_of(Quantity::force, Space::hand), torque = text_of(Quantity::force, Space::joint);
+  EXPECT_THAT(force, testing::ContainsRegex("force rate    [0-9.]+ N/s at most"));
+  EXPECT_THAT(torque, testing::ContainsRegex("torque rate   [0-9.]+ N·m/s at most"));
+  for (const std::string& text : {force, torque}) {
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("speed")));
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("acceleration")));
+  }
+  const std::string position = text_of(Quantity::position, Space::hand);
+  EXPECT_THAT(position, testing::ContainsRegex("speed         [0-9.]+ mm/s at most"));
+  EXPECT_THAT(position, testing::HasSubstr(" mm/s² at most"));
+}
+
 TEST(ScheduleText, NamesTheBand) {
   EXPECT_THAT(text_of(Quantity::force, Space::hand), testing::HasSubstr("2 to 3 Hz"));
 }

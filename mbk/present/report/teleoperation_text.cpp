@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mbk/present/report/layout.h"
 
@@ -13,9 +14,30 @@ namespace {
 
 constexpr std::size_t kMaxPlaces = 5;  // bands or frequencies that are named in one cell
 
+constexpr int kDigits = 4;  // of limits
+
 std::string value_text(double value) {
   if (std::isinf(value)) return value > 0.0 ? "infinity" : "minus infinity";
-  return fmt::format("{:.7g}", value);
+  return fmt::format("{:.{}g}", value, kDigits);
+}
+
+enum class Side { up, down };
+
+/// A limit of what is stable with four digits, rounded to the stable side.
+double rounded_limit(double value, Side side) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  constexpr double kExact = 1e-9;  // of a decimal fraction that is stored in binary
+  const double scale = std::pow(10.0, kDigits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
+  const double scaled = value * scale, nearest = std::round(scaled);
+  if (std::abs(scaled - nearest) < kExact * std::abs(scaled)) return nearest / scale;
+  return (side == Side::up ? std::ceil(scaled) : std::floor(scaled)) / scale;
+}
+
+/// The ends of an interval; with more digits where four would leave nothing of it.
+std::pair<std::string, std::string> limit_texts(const AdmissibleInterval& interval) {
+  const double low = rounded_limit(interval.low.value, Side::up), high = rounded_limit(interval.high.value, Side::down);
+  if (low < high) return {value_text(low), value_text(high)};
+  return {fmt::format("{:.10g}", interval.low.value), fmt::format("{:.10g}", interval.high.value)};
 }
 
 std::string in_hz(RadPerSec omega) {
@@ -82,19 +104,15 @@ std::string meaning(const AbsoluteStability& stability) {
   return words;
 }
 
-std::string end_text(const AdmissibleEnd& end) {
-  return fmt::format("{:.10g}", end.value);
-}
-
 std::string interval_text(const AdmissibleInterval& interval) {
-  if (interval.low.value == interval.high.value) return "only " + end_text(interval.low);
+  if (interval.low.value == interval.high.value) return fmt::format("only {:.10g}", interval.low.value);
+  const auto [low, high] = limit_texts(interval);
   const auto side = [](const AdmissibleEnd& end) {
     if (end.limit_of_search) return " (the range ends there)";
     if (!end.included) return " (itself not decided)";
     return *end.included ? "" : " (not itself)";
   };
-  return fmt::format("{}{} to {}{}", end_text(interval.low), side(interval.low), end_text(interval.high),
-                     side(interval.high));
+  return fmt::format("{}{} to {}{}", low, side(interval.low), high, side(interval.high));
 }
 
 std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
@@ -113,13 +131,14 @@ std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
     result += paragraph("  ", fmt::format("not decided at the single values {}", fmt::join(values, ", ")));
   }
   return result + paragraph("  ",
-                            "all boundaries are roots of polynomials; between two of them every value has the same "
-                            "answer");
+                            "all boundaries are roots of polynomials, rounded to the stable side; between two of them "
+                            "every value has the same answer");
 }
 
 std::string shortage_text(const LargestShortage& largest, bool on_grid) {
   if (!largest.exists) return fmt::format("port {}: none; no excess of passivity would be enough", largest.port);
-  return fmt::format("port {}: a ≤ {:.12g} N·s/m{}", largest.port, largest.value(), on_grid ? ", on the grid" : "");
+  return fmt::format("port {}: a ≤ {} N·s/m{}", largest.port, value_text(rounded_limit(largest.value(), Side::down)),
+                     on_grid ? ", on the grid" : "");
 }
 
 std::string run_text(const TeleoperationRun& run) {
@@ -176,10 +195,11 @@ std::string excess_text(const ExcessSweep& sweep) {
   for (const ExcessStep& step : sweep.steps) {
     std::vector<std::string> intervals;
     for (const AdmissibleInterval& interval : step.set.intervals) {
-      intervals.push_back(interval.low.value == interval.high.value
-                              ? fmt::format("{:.6g}", interval.low.value)
-                              : fmt::format("{:.6g} to {:.6g}{}", interval.low.value, interval.high.value,
-                                            interval.high.limit_of_search ? " (end of range)" : ""));
+      const auto [low, high] = limit_texts(interval);
+      intervals.push_back(
+          interval.low.value == interval.high.value
+              ? fmt::format("{:.6g}", interval.low.value)
+              : fmt::format("{} to {}{}", low, high, interval.high.limit_of_search ? " (end of range)" : ""));
     }
     rows.push_back({fmt::format("{:g}", step.excess),
                     intervals.empty() ? "none" : fmt::format("{}", fmt::join(intervals, "; ")),

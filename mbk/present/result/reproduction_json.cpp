@@ -1,5 +1,6 @@
 #include "mbk/present/result/reproduction_json.h"
 
+#include "mbk/base/core/table_text.h"
 #include "mbk/present/result/json_parts.h"
 
 namespace mbk::result {
@@ -85,14 +86,6 @@ Json chart_json(const Chart& chart) {
   return json;
 }
 
-/// Quoted where it has to be (RFC 4180).
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 /// With every digit; empty where there is none.
 std::string field(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{}", *value) : "";
@@ -144,9 +137,9 @@ std::string to_csv(const ReproducedTable& table) {
       const ReproducedCell& cell = row.cells[k];
       const auto low = cell.range ? std::optional(cell.range->first) : std::nullopt;
       const auto high = cell.range ? std::optional(cell.range->second) : std::nullopt;
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", field(row.name), field(table.columns[k].name),
-                         field(table.columns[k].unit), field(cell.printed),
-                         cell.words.empty() ? field(cell.ours) : field(cell.words), field(cell.difference()),
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.name), csv_field(table.columns[k].name),
+                         csv_field(table.columns[k].unit), csv_field(cell.printed),
+                         cell.words.empty() ? field(cell.ours) : csv_field(cell.words), field(cell.difference()),
                          field(cell.spread), field(low), field(high), word_of(cell.agreement));
     }
   }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 
+#include "mbk/base/core/table_text.h"
 #include "mbk/base/core/version.h"
 #include "mbk/study/store/study_list.h"
 
@@ -67,26 +67,6 @@ Document counts_json(const StudyList& list) {
     json[key] = list.count(state);
   }
   return json;
-}
-
-/// A field of CSV: between quotes where it has to be.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string latex(const std::string& text) {
-  static const std::map<char, const char*> kWritten = {
-      {'&', "\\&"}, {'%', "\\%"}, {'$', "\\$"},   {'#', "\\#"},   {'_', "\\_"},
-      {'{', "\\{"}, {'}', "\\}"}, {'~', "\\~{}"}, {'^', "\\^{}"}, {'\\', "\\textbackslash{}"}};
-  std::string made;
-  for (const char c : text) {
-    const auto found = kWritten.find(c);
-    made += found == kWritten.end() ? std::string(1, c) : std::string(found->second);
-  }
-  return made;
 }
 
 /// Three digits of the standard deviation decide how many the mean has.
@@ -203,16 +183,16 @@ Result<std::string> export_csv(const Store& study, const StudyList& list) {
   for (const ListedRecording& one : list.recordings) {
     const StoredRecording& r = one.recording;
     const std::string begin =
-        fmt::format("{},{},{},{},{},{},{},{},{},{}", r.participant, r.session, field(r.condition), r.trial, r.number,
-                    r.sha256, list.analysis ? fmt::format("{}", list.analysis->number) : "",
-                    list.analysis ? list.analysis->version : "", word_of(one.state), field(one.reason));
+        fmt::format("{},{},{},{},{},{},{},{},{},{}", r.participant, r.session, csv_field(r.condition), r.trial,
+                    r.number, r.sha256, list.analysis ? fmt::format("{}", list.analysis->number) : "",
+                    list.analysis ? list.analysis->version : "", word_of(one.state), csv_field(one.reason));
     const auto outcomes = study.outcomes(one.result);
     if (!outcomes) return tl::unexpected(outcomes.error());
     if (outcomes->empty()) text += begin + ",,,,\n";
     for (const Outcome& outcome : *outcomes) {
-      text +=
-          fmt::format("{},{},{},{},{}\n", begin, outcome.name, outcome.value,
-                      outcome.standard_error ? fmt::format("{}", *outcome.standard_error) : "", field(outcome.unit));
+      text += fmt::format("{},{},{},{},{}\n", begin, outcome.name, outcome.value,
+                          outcome.standard_error ? fmt::format("{}", *outcome.standard_error) : "",
+                          csv_field(outcome.unit));
     }
   }
   return text;
@@ -241,16 +221,16 @@ std::string export_latex(const StudyList& list, const std::vector<OutcomeSummary
   for (const OutcomeSummary& one : outcomes) {
     if (std::ranges::find(conditions, one.condition) == conditions.end()) conditions.push_back(one.condition);
   }
-  std::string text = "% Needs \\usepackage{booktabs}.\n\\begin{table}\n\\caption{" + latex(caption(list)) + "}\n";
+  std::string text = "% Needs \\usepackage{booktabs}.\n\\begin{table}\n\\caption{" + latex_text(caption(list)) + "}\n";
   text += "\\begin{tabular}{ll" + std::string(conditions.size(), 'r') + "}\n\\toprule\nOutcome & Unit";
-  for (const std::string& condition : conditions) text += " & " + latex(condition.empty() ? "all" : condition);
+  for (const std::string& condition : conditions) text += " & " + latex_text(condition.empty() ? "all" : condition);
   text += " \\\\\n\\midrule\n";
   std::vector<std::string> names;
   for (const OutcomeSummary& one : outcomes) {
     if (std::ranges::find(names, one.outcome) == names.end()) names.push_back(one.outcome);
   }
   for (const std::string& name : names) {
-    std::string row = latex(name), unit;
+    std::string row = latex_text(name), unit;
     for (const std::string& condition : conditions) {
       const auto found = std::ranges::find_if(
           outcomes, [&](const OutcomeSummary& one) { return one.outcome == name && one.condition == condition; });
@@ -258,7 +238,7 @@ std::string export_latex(const StudyList& list, const std::vector<OutcomeSummary
              (found == outcomes.end() ? "--" : mean_and_deviation(*found) + fmt::format(" ({})", found->participants));
       if (found != outcomes.end()) unit = found->unit;
     }
-    row.insert(latex(name).size(), " & " + latex(unit));
+    row.insert(latex_text(name).size(), " & " + latex_text(unit));
     text += row + " \\\\\n";
   }
   return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";

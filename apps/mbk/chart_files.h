@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/recording.h"
+#include "mbk/present/report/result_charts.h"
+
+namespace mbk::app {
+
+/// The charts of one command as files of one folder, "FOLDER/NAME.svg".
+class ChartFiles {
+ public:
+  /// What can be said before the work begins.   @param names  of charts that there will be of each of `inputs`
+  /// @fails  usage: FOLDER is something else; it holds such a chart, which may not be overwritten.
+  [[nodiscard]] static Result<void> check(const std::filesystem::path& folder, bool overwrite,
+                                          const std::vector<std::filesystem::path>& inputs,
+                                          std::initializer_list<const char*> names);
+
+  /// Makes the folder.
+  /// @fails  usage: it cannot be made.
+  [[nodiscard]] static Result<ChartFiles> in(const std::filesystem::path& folder, bool overwrite);
+
+  /// "trial_3-force.svg" of a result of "data/trial_3.mat"; where an earlier result has that name,
+  /// "trial_3-2-force.svg".
+  /// @fails  as recording::write_file
+  [[nodiscard]] Result<void> write(const SourceFile& source, const std::vector<report::NamedChart>& charts);
+
+  /// @fails  as recording::write_file
+  [[nodiscard]] Result<void> write(const std::string& name, const Chart& chart) const;
+
+ private:
+  std::filesystem::path folder_;
+  bool overwrite_ = false;
+  std::vector<std::string> begun_;
+};
+
+}  // namespace mbk::app

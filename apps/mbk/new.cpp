@@ -1,0 +1,22 @@
+#include "apps/mbk/commands.h"
+#include "apps/mbk/new_commands.h"
+
+namespace mbk::app {
+
+Action add_new(CLI::App& app) {
+  CLI::App* group = add_command(app, "new", "write the channels of a file, an experiment or a robot, step by step");
+  group->require_subcommand(1);
+  group->footer(
+      "Examples:\n"
+      "  mbk new channels log.csv\n"
+      "      which column is what: guesses, shows the first seconds, and prints the option for 'mbk measure'\n"
+      "  mbk new experiment --out mine.toml\n"
+      "  mbk new robot --out robot.toml\n\n"
+      "Each proposes an answer in brackets; Enter takes it, --yes takes them all, a pipe answers line by line.");
+  const Actions actions = {{"channels", add_new_channels(*group)},
+                           {"experiment", add_new_experiment(*group)},
+                           {"robot", add_new_robot(*group)}};
+  return [group, actions] { return run_chosen(*group, actions); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,289 @@
+#include "mbk/files/recording/guess_channels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "mbk/files/recording/si_units.h"
+
+namespace mbk::recording {
+namespace guess {
+
+enum class Quantity { time, position, force, torque, reference, acceleration, other };
+
+/// What a name speaks of.
+struct Meaning {
+  Quantity quantity = Quantity::other;
+  char axis = ' ';   ///< 'x', 'y', 'z', or ' ' where none is named
+  std::string unit;  ///< as a map writes it; "" where none is named
+};
+
+/// Words in small letters: "PosX_mm" is pos x mm, "Force-Y (N)" is force y n.
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words;
+  bool begins = true;
+  char before = ' ';
+  for (const char c : name) {
+    const bool upper = c >= 'A' && c <= 'Z', letter = upper || (c >= 'a' && c <= 'z');
+    const bool digit = c >= '0' && c <= '9';
+    if (!letter && !digit) {
+      begins = true;
+    } else {
+      const bool camel = upper && before >= 'a' && before <= 'z';
+      if (begins || camel) words.emplace_back();
+      words.back() += upper ? static_cast<char>(c - 'A' + 'a') : c;
+      begins = false;
+    }
+    before = c;
+  }
+  return words;
+}
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+bool begins_with_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::ranges::any_of(words, [&](std::string_view one) { return word.starts_with(one); });
+}
+
+Quantity quantity_of(std::string_view word) {
+  if (is_one_of(word, {"t"}) || begins_with_one_of(word, {"time", "zeit", "clock", "seconds"})) return Quantity::time;
+  if (begins_with_one_of(word, {"ref", "cmd", "command", "desired", "target", "setpoint", "xr", "yr", "soll"})) {
+    return Quantity::reference;
+  }
+  if (is_one_of(word, {"f", "fx", "fy", "fz"}) || begins_with_one_of(word, {"force", "kraft", "load", "reaction"})) {
+    return Quantity::force;
+  }
+  if (begins_with_one_of(word, {"torque", "moment", "tau", "drehmoment"})) return Quantity::torque;
+  if (is_one_of(word, {"ax", "ay", "az", "a"}) || begins_with_one_of(word, {"acc", "beschl"})) {
+    return Quantity::acceleration;
+  }
+  if (begins_with_one_of(word, {"pos", "hand", "disp", "angle", "theta", "winkel", "weg", "encoder"}) ||
+      is_one_of(word, {"x", "y", "px", "py"})) {
+    return Quantity::position;
+  }
+  return Quantity::other;
+}
+
+/// "mm", "N", "ms" … as the last word of a name, or in its brackets.
+std::string unit_in(std::string_view name) {
+  const std::size_t open = name.find_last_of("([");
+  const std::size_t begin = open != std::string_view::npos ? open + 1 : name.find_last_of("_ ") + 1;
+  if (begin == 0 || begin >= name.size()) return "";
+  std::string_view unit = name.substr(begin);
+  while (!unit.empty() && (unit.back() == ')' || unit.back() == ']' || unit.back() == ' ')) unit.remove_suffix(1);
+  const Unit* const known = find_unit(unit);
+  return known == nullptr ? "" : std::string(known->name);
+}
+
+Meaning meaning_of(const std::string& name) {
+  Meaning meaning;
+  meaning.unit = unit_in(name);
+  // The strongest word decides: "hand_force_x" is a force, "ref_pos_x" a reference.
+  constexpr auto kStrongest = std::to_array({Quantity::reference, Quantity::acceleration, Quantity::torque,
+                                             Quantity::force, Quantity::time, Quantity::position});
+  const std::vector<std::string> words = words_of(name);
+  for (const Quantity quantity : kStrongest) {
+    if (!std::ranges::any_of(words, [&](const std::string& word) { return quantity_of(word) == quantity; })) continue;
+    meaning.quantity = quantity;
+    break;
+  }
+  if (std::ranges::any_of(words, [](const std::string& word) { return begins_with_one_of(word, {"vel", "speed"}); })) {
+    meaning.quantity = Quantity::other;
+  }
+  for (const std::string& word : words) {
+    const bool short_word =
+        word.size() == 1 || is_one_of(word, {"fx", "fy", "fz", "px", "py", "ax", "ay", "az", "xr", "yr"});
+    if (!short_word) continue;
+    for (const char c : word) {
+      if (c == 'x' || c == 'y' || c == 'z') meaning.axis = c;
+    }
+  }
+  return meaning;
+}
+
+/// Rises from sample to sample, and by steps that are alike.
+std::optional<double> even_step(const Vector& values) {
+  if (values.size() < 3) return std::nullopt;
+  const Vector steps = values.tail(values.size() - 1) - values.head(values.size() - 1);
+  const double mean = steps.mean();
+  constexpr double kAlike = 0.5;
+  if (!(mean > 0.0) || !(steps.minCoeff() > 0.0)) return std::nullopt;
+  return (steps.array() - mean).abs().maxCoeff() < kAlike * mean ? std::optional(mean) : std::nullopt;
+}
+
+/// One channel that was found.
+struct Entry {
+  std::string channel;
+  const FileSignal* signal;
+  Meaning meaning;
+  std::string why;
+};
+
+class Guesser {
+ public:
+  explicit Guesser(const std::vector<FileSignal>& signals) : signals_(signals) {
+    for (const FileSignal& signal : signals) meanings_.push_back(meaning_of(signal.name));
+  }
+
+  ChannelGuess guess() {
+    find_time();
+    const bool two = has(Quantity::position, 'y') || count(Quantity::position) == 2;
+    two ? find_two_axes() : find_one_axis();
+    return finished();
+  }
+
+ private:
+  [[nodiscard]] bool has(Quantity quantity, char axis) const {
+    return std::ranges::any_of(meanings_, [&](const Meaning& m) { return m.quantity == quantity && m.axis == axis; });
+  }
+  [[nodiscard]] std::ptrdiff_t count(Quantity quantity) const {
+    return std::ranges::count(meanings_, quantity, &Meaning::quantity);
+  }
+
+  void add(const std::string& channel, std::size_t k, std::string why) {
+    entries_.push_back({channel, &signals_[k], meanings_[k], std::move(why)});
+  }
+
+  void find_time() {
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      if (meanings_[k].quantity == Quantity::time) return add("time", k, called(k));
+    }
+    std::optional<std::size_t> rises;
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      if (!even_step(signals_[k].values)) continue;
+      if (rises) return;  // two that could be
+      rises = k;
+    }
+    if (rises) add("time", *rises, "the only one that rises by even steps");
+  }
+
+  [[nodiscard]] std::string called(std::size_t k) const { return fmt::format("called '{}'", signals_[k].name); }
+
+  /// The k-th signal of that quantity and axis; of those without an axis the one at that place.
+  [[nodiscard]] std::optional<std::size_t> find(Quantity quantity, char axis, int place) const {
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      if (meanings_[k].quantity == quantity && meanings_[k].axis == axis) return k;
+    }
+    int seen = 0;
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      const bool fits = meanings_[k].quantity == quantity && meanings_[k].axis == ' ';
+      if (fits && seen++ == place) return k;
+    }
+    return std::nullopt;
+  }
+
+  void find_two_axes() {
+    for (const auto& [quantity, names] :
+         {std::pair(Quantity::position, std::array{"x", "y"}), std::pair(Quantity::force, std::array{"Fx", "Fy"}),
+          std::pair(Quantity::reference, std::array{"xr", "yr"}),
+          std::pair(Quantity::acceleration, std::array{"ax", "ay"})}) {
+      for (int axis = 0; axis < 2; ++axis) {
+        const char* const name = names[static_cast<std::size_t>(axis)];
+        if (const auto k = find(quantity, axis == 0 ? 'x' : 'y', axis)) {
+          add(name, *k, called(*k));
+        } else if (quantity == Quantity::position || quantity == Quantity::force) {
+          missing_.emplace_back(name);
+        }
+      }
+    }
+  }
+
+  void find_one_axis() {
+    const auto first = [&](std::initializer_list<Quantity> quantities) -> std::optional<std::size_t> {
+      for (const Quantity quantity : quantities) {
+        for (std::size_t k = 0; k < signals_.size(); ++k) {
+          if (meanings_[k].quantity == quantity) return k;
+        }
+      }
+      return std::nullopt;
+    };
+    for (const auto& [name, k] :
+         {std::pair("x", first({Quantity::position})), std::pair("F", first({Quantity::force, Quantity::torque})),
+          std::pair("xr", first({Quantity::reference})), std::pair("a", first({Quantity::acceleration}))}) {
+      if (k) {
+        add(name, *k, called(*k));
+      } else if (name == std::string_view("x") || name == std::string_view("F")) {
+        missing_.emplace_back(name);
+      }
+    }
+  }
+
+  /// By the name, or by the size of the numbers.
+  static std::pair<std::string, std::string> unit_of(const Entry& entry) {
+    if (!entry.meaning.unit.empty()) return {entry.meaning.unit, ""};
+    constexpr double kSlow = 0.2, kFar = 3.0;
+    if (entry.channel == "time") {
+      const auto step = even_step(entry.signal->values);
+      if (step && *step > kSlow) return {"ms", fmt::format("steps of {:.3g} are taken for ms", *step)};
+      return {};
+    }
+    if (entry.channel != "x" && entry.channel != "y") return {};
+    const Vector& values = entry.signal->values;
+    if (values.size() == 0 || !((values.array() - values.mean()).abs().maxCoeff() > kFar)) return {};
+    return {"mm", "so large that it is taken for mm"};
+  }
+
+  [[nodiscard]] ChannelGuess finished() const {
+    ChannelGuess guess;
+    guess.missing = missing_;
+    for (const Entry& entry : entries_) {
+      auto [unit, why] = unit_of(entry);
+      guess.map += fmt::format("{}{}={}{}{}", guess.map.empty() ? "" : ",", entry.channel, entry.signal->source,
+                               unit.empty() ? "" : ":", unit);
+      guess.reasons.push_back(
+          fmt::format("{} = {}: {}{}{}", entry.channel, entry.signal->source, entry.why, why.empty() ? "" : "; ", why));
+    }
+    return guess;
+  }
+
+  const std::vector<FileSignal>& signals_;
+  std::vector<Meaning> meanings_;
+  std::vector<Entry> entries_;
+  std::vector<std::string> missing_;
+};
+
+/// A name that a map can hold as it is.
+bool is_plain(std::string_view name) {
+  return !name.empty() && name.find_first_of(",=:*+-@[]'\"\\ ") == std::string_view::npos &&
+         name.find_first_not_of("0123456789") != std::string_view::npos;
+}
+
+}  // namespace guess
+
+std::vector<FileSignal> signals_of(const Contents& contents) {
+  std::vector<FileSignal> signals;
+  for (std::size_t k = 0; k < contents.arrays.size(); ++k) {
+    const Array& array = contents.arrays[k];
+    if (array.obstacle || array.values.size() == 0) continue;
+    const std::string name =
+        array.unit.empty() || array.name.empty() ? array.name : array.name + " (" + array.unit + ")";
+    const Index rows = array.values.rows(), columns = array.values.cols();
+    if (contents.table) {
+      signals.push_back({std::to_string(k + 1), name, array.values.reshaped()});
+    } else if (!guess::is_plain(array.name)) {
+      continue;
+    } else if (rows == 1 || columns == 1) {
+      if (array.values.size() > 1) signals.push_back({array.name, name, array.values.reshaped()});
+    } else {
+      const bool tall = rows > columns;
+      for (Index i = 0; i < std::min(rows, columns); ++i) {
+        const Vector values = tall ? Vector(array.values.col(i)) : Vector(array.values.row(i).transpose());
+        signals.push_back({fmt::format("{}[{}]", array.name, i + 1), "", values});
+      }
+    }
+  }
+  return signals;
+}
+
+ChannelGuess guess_channels(const std::vector<FileSignal>& signals) {
+  return guess::Guesser(signals).guess();
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,122 @@
+#include "mbk/files/recording/guess_channels.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "mbk/files/recording/channel_map.h"
+
+namespace mbk::recording {
+namespace guess_channels_test {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr Index kSamples = 50;
+
+Vector rising(double step) {
+  return Vector::LinSpaced(kSamples, 0.0, step * static_cast<double>(kSamples - 1));
+}
+
+/// Goes up and down, as far as `size` from its mean.
+Vector moving(double size) {
+  return size * Eigen::sin(rising(0.7).array()).matrix();
+}
+
+std::vector<FileSignal> columns(const std::vector<std::pair<std::string, Vector>>& named) {
+  std::vector<FileSignal> signals;
+  for (const auto& [name, values] : named) signals.push_back({std::to_string(signals.size() + 1), name, values});
+  return signals;
+}
+
+ChannelGuess guessed(const std::vector<std::pair<std::string, Vector>>& named) {
+  return guess_channels(columns(named));
+}
+
+TEST(GuessChannels, GoesByTheWordsInTheNames) {
+  const ChannelGuess guess = guessed({{"Time (s)", rising(0.001)},
+                                      {"PosX_mm", moving(5)},
+                                      {"PosY_mm", moving(5)},
+                                      {"VelX", moving(1)},
+                                      {"Hand force X [N]", moving(2)},
+                                      {"Hand force Y [N]", moving(2)},
+                                      {"Hand force Z [N]", moving(2)},
+                                      {"ref pos x", moving(0.01)},
+                                      {"ref pos y", moving(0.01)}});
+  EXPECT_EQ(guess.map, "time=1:s,x=2:mm,y=3:mm,Fx=5:N,Fy=6:N,xr=8,yr=9");
+  EXPECT_THAT(guess.missing, IsEmpty());
+  EXPECT_EQ(guess.reasons.size(), 7u);
+  EXPECT_TRUE(parse_channel_map(guess.map));
+}
+
+TEST(GuessChannels, OneAxisHasAForceOrATorque) {
+  EXPECT_EQ(guessed({{"t", rising(0.01)}, {"Ankle angle (deg)", moving(5)}, {"Torque (N.m)", moving(2)}}).map,
+            "time=1,x=2:deg,F=3:N.m");
+}
+
+TEST(GuessChannels, TimeIsWhatRisesByEvenSteps) {
+  const ChannelGuess guess =
+      guessed({{"a1", moving(1)}, {"count", rising(1.0)}, {"position", moving(0.1)}, {"force", moving(1)}});
+  EXPECT_EQ(guess.map, "time=2:ms,x=3,F=4");
+  EXPECT_THAT(guess.reasons[0], HasSubstr("rises by even steps"));
+  const ChannelGuess two =
+      guessed({{"n", rising(1.0)}, {"m", rising(2.0)}, {"position", moving(0.1)}, {"force", moving(1)}});
+  EXPECT_EQ(two.map, "x=3,F=4");
+}
+
+TEST(GuessChannels, LargePositionsAreInMillimetres) {
+  const auto map = [](double size) {
+    return guessed(
+               {{"t", rising(0.001)}, {"x", moving(size)}, {"y", moving(size)}, {"fx", moving(1)}, {"fy", moving(1)}})
+        .map;
+  };
+  EXPECT_EQ(map(0.05), "time=1,x=2,y=3,Fx=4,Fy=5");
+  EXPECT_EQ(map(12.0), "time=1,x=2:mm,y=3:mm,Fx=4,Fy=5");
+}
+
+TEST(GuessChannels, WithoutAxesTheOrderOfTheFileCounts) {
+  EXPECT_EQ(guessed({{"t", rising(0.001)},
+                     {"pos1", moving(0.1)},
+                     {"pos2", moving(0.1)},
+                     {"force1", moving(1)},
+                     {"force2", moving(1)}})
+                .map,
+            "time=1,x=2,y=3,Fx=4,Fy=5");
+}
+
+TEST(GuessChannels, WhatNobodyNamesIsMissing) {
+  const ChannelGuess guess = guessed({{"", rising(0.001)}, {"", moving(1)}, {"", moving(1)}});
+  EXPECT_EQ(guess.map, "time=1");
+  EXPECT_THAT(guess.missing, ElementsAre("x", "F"));
+}
+
+TEST(SignalsOf, CountsColumnsOfTablesAndNamesThoseOfMatrices) {
+  Contents table;
+  table.table = true;
+  table.arrays.push_back({"time", SharedMatrix(Matrix(rising(1)))});
+  table.arrays.push_back({"x", SharedMatrix(Matrix(moving(1))), "mm"});
+  const auto counted = signals_of(table);
+  ASSERT_EQ(counted.size(), 2u);
+  EXPECT_EQ(counted[1].source, "2");
+  EXPECT_EQ(counted[1].name, "x (mm)");
+
+  Contents matrices;
+  Matrix wide(2, kSamples);
+  wide << rising(1).transpose(), moving(1).transpose();
+  matrices.arrays.push_back({"pos", SharedMatrix(wide)});
+  matrices.arrays.push_back({"force", SharedMatrix(Matrix(moving(2)))});
+  matrices.arrays.push_back({"a b", SharedMatrix(Matrix(moving(2)))});  // cannot stand in a map
+  matrices.arrays.push_back({"rate", SharedMatrix(Matrix(Matrix::Ones(1, 1)))});
+  const auto named = signals_of(matrices);
+  ASSERT_EQ(named.size(), 3u);
+  EXPECT_EQ(named[0].source, "pos[1]");
+  EXPECT_EQ(named[1].source, "pos[2]");
+  EXPECT_EQ(named[1].values, moving(1));
+  EXPECT_EQ(named[2].source, "force");
+}
+
+}  // namespace guess_channels_test
+}  // namespace mbk::recording

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mbk/model/trial/chart.h"
+#include "mbk/model/trial/diagnostics.h"
+#include "mbk/model/trial/exploration.h"
+#include "mbk/model/trial/measurement.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::report {
+
+/// A chart with the word that its file is called by: "stiffness-ellipse".
+struct NamedChart {
+  std::string name;
+  Chart chart;
+};
+
+/// What a measurement can be drawn as: the ellipses where the result is usable and has findings; from the diagnostics
+/// measured and predicted force, the residual's autocorrelation, coherence and power spectra of the force.
+[[nodiscard]] std::vector<NamedChart> measurement_charts(const Measurement& measured,
+                                                         const std::optional<Diagnostics>& diagnostics);
+
+/// Magnitude, phase and coherence of the frequency response, the impulse response, and the stiffness over time where it
+/// changes; those that the exploration has, with 95 % intervals.
+[[nodiscard]] std::vector<NamedChart> exploration_charts(const Exploration& found);
+
+/// The first seconds of a recording, channel by channel, each with its mean removed; one chart for each quantity.
+/// @param seconds  > 0
+[[nodiscard]] std::vector<Chart> first_seconds(const Recording& recording, double seconds);
+
+}  // namespace mbk::report

@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""mbk new: what a wizard writes is read back by the command that uses it; nothing is lost; answers come from a pipe."""
+
+import pathlib
+import re
+import subprocess
+
+import command
+from command import BAD_DATA, FINE, WRONG_USAGE, Case, main, make_log, program, table_of, write_csv
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+
+
+class Asked(Case):
+    def answer(self, *arguments, answers="", code=FINE):
+        """mbk with these lines on standard input."""
+        process = subprocess.run([program("MBK"), *map(str, arguments)], input=answers.encode(), cwd=self.folder,
+                                 capture_output=True, timeout=60, check=False)
+        ran = command.Ran(process, "mbk " + " ".join(map(str, arguments)))
+        self.assertEqual(ran.code, code, ran)
+        return ran
+
+
+class Channels(Asked):
+    NAMES = ("Time (ms)", "PosX_mm", "PosY_mm", "Hand force X [N]", "Hand force Y [N]", "ref pos x", "ref pos y")
+    MAP = "time=1:ms,x=2:mm,y=3:mm,Fx=4:N,Fy=5:N,xr=6,yr=7"
+
+    def log(self, names=NAMES):
+        time, x, y, *others = table_of(make_log())
+        return write_csv(self.folder / "log.csv", [[1e3 * t for t in time], [1e3 * v for v in x], [1e3 * v for v in y],
+                                                   *others], names)
+
+    def test_the_option_that_it_prints_measures_the_file(self):
+        ran = self.answer("new", "channels", self.log(), "--yes")
+        self.assertEqual(ran.out, f"--channels {self.MAP}\n")
+        measured = self.fine("measure", "--json", self.folder / "log.csv", *ran.out.split()).json
+        self.assert_relative(measured["model"]["K"], make_log().truth["K"], 0.1)
+
+    def test_the_first_seconds_are_drawn(self):
+        ran = self.answer("new", "channels", self.log(), "--yes")
+        self.assertGreater(len(re.findall("[\u2801-\u28ff]", ran.err)), 100)
+        for words in ("The first 3 s", "hand_x", "force_y", "[m]", "[N]", "mbk measure"):
+            self.assertIn(words, ran.err)
+
+    def test_a_person_may_answer_otherwise(self):
+        other = self.MAP.replace("Fx=4", "Fx=-4")
+        self.assertEqual(self.answer("new", "channels", self.log(), answers=other + "\n").out, f"--channels {other}\n")
+        self.assertEqual(self.answer("new", "channels", self.log(), answers="\n").out, f"--channels {self.MAP}\n")
+
+    def test_it_writes_a_file_and_overwrites_none(self):
+        log = self.log()
+        self.answer("new", "channels", log, "--yes", "--out", "channels.txt")
+        self.assertEqual((self.folder / "channels.txt").read_text(encoding="utf-8"), f"--channels {self.MAP}\n")
+        self.answer("new", "channels", log, "--yes", "--out", "channels.txt", code=WRONG_USAGE)
+
+    def test_without_names_it_asks(self):
+        log = self.log(names=())
+        ran = self.answer("new", "channels", log, "--yes", code=WRONG_USAGE)
+        self.assertEqual(ran.out, "")
+        self.assertIn("--yes", ran.err)
+        self.assertIn("not found by name: x, F", ran.err)
+        self.assertEqual(self.answer("new", "channels", log, answers=self.MAP + "\n").out, f"--channels {self.MAP}\n")
+        for answers, says in (("", "the answers end"), ("x=77\n", "77"), ("x\n", "channels")):
+            ran = self.answer("new", "channels", log, answers=answers, code=WRONG_USAGE)
+            self.assertEqual(ran.out, "")
+            self.assertIn(says, ran.err)
+
+    def test_a_file_that_is_none(self):
+        self.answer("new", "channels", "none.csv", "--yes", code=BAD_DATA)
+
+
+class Experiments(Asked):
+    def planned(self, name):
+        return self.fine("run", self.folder / name, "--dry-run").out
+
+    def test_what_is_proposed_can_be_run(self):
+        self.answer("new", "experiment", "--yes")
+        text = self.planned("experiment.toml")
+        self.assertEqual(len(re.findall(r"trial_\d", text)), 3, text)
+        self.assertRegex(text, r"speed +[\d.]+ ")
+
+    def test_answers_come_from_a_pipe(self):
+        self.answer("new", "experiment", "--out", "force.toml", answers="simulated\nforce\n\n30\nrigid grasp\n1\n")
+        text = self.planned("force.toml")
+        self.assertIn("rigid grasp", text)
+        self.assertRegex(text, r"force rate +[\d.]+ N/s at most")
+        self.assertNotIn("acceleration  ", text)
+        self.answer("new", "experiment", "--out", "udp.toml", answers="udp\n192.168.1.10\n25001\npulses\n10\n\n2\n")
+        text = (self.folder / "udp.toml").read_text(encoding="utf-8")
+        self.assertIn('address = "192.168.1.10"\nport = 25001\n', text)
+        self.assertIn("amplitude_mm = 10", text)
+        self.fine("robot", "check", self.folder / "udp.toml")
+
+    def test_nothing_is_written_where_an_answer_is_wrong_or_missing(self):
+        for answers, says in (("simulated\nwaves\n", "waves"), ("simulated\nsines\n-2\n", "-2"), ("simulated\n", "end")):
+            self.assertIn(says, self.answer("new", "experiment", answers=answers, code=WRONG_USAGE).err)
+        self.assertIn("workspace", self.answer("new", "experiment", answers="simulated\nsines\n500\n\n\n\n",
+                                               code=WRONG_USAGE).err)
+        self.assertEqual(self.names(), [])
+
+    def test_a_file_that_is_there_stays(self):
+        mine = self.file("experiment.toml", "mine\n")
+        self.answer("new", "experiment", "--yes", code=WRONG_USAGE)
+        self.assertEqual(mine.read_text(encoding="utf-8"), "mine\n")
+        self.answer("new", "experiment", "--yes", "--overwrite")
+        self.planned("experiment.toml")
+
+
+class Robots(Asked):
+    def described(self, name):
+        return self.fine("robot", "describe", self.folder / name, "--json").json
+
+    def test_a_planar_robot(self):
+        self.answer("new", "robot", "--yes")
+        self.described("robot.toml")
+        self.answer("new", "robot", "--out", "longer.toml", answers="planar\n300\n\n-50,80\n\n\n")
+        text = self.fine("robot", "describe", self.folder / "longer.toml").out
+        self.assertIn("300", text)
+        self.answer("new", "robot", "--yes", code=WRONG_USAGE)
+
+    def test_one_axis(self):
+        self.answer("new", "robot", answers="one_axis\nslide\n-200,200\n12.5\n")
+        self.described("robot.toml")
+        self.assertIn("mass_kg = 12.5", (self.folder / "robot.toml").read_text(encoding="utf-8"))
+        self.answer("new", "robot", "--out", "b.toml", answers="one_axis\nturn\n60,-60\n0.1\n", code=BAD_DATA)
+
+    def test_a_urdf_is_looked_at(self):
+        (self.folder / "made").mkdir()
+        self.answer("new", "robot", EXAMPLES / "robots/double_pendulum.urdf", "--out", "made/arm.toml",
+                    answers="x,z\n0,0,-9.81\n")
+        self.assertEqual(len(self.described("made/arm.toml")["joints"]), 2)
+        self.answer("new", "robot", self.file("bad.urdf", "<robot>"), "--out", "bad.toml", "--yes", code=BAD_DATA)
+
+
+if __name__ == "__main__":
+    main()

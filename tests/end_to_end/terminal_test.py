@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""What a person at a terminal sees: help that fits a screen, lines as wide as the window, colour, and in a pipe none of
+it; few lines of progress."""
+
+import fcntl
+import os
+import pty
+import re
+import struct
+import subprocess
+import termios
+
+from command import WRONG_USAGE, Case, main, make_log, program, run
+from help_tree import every_command
+
+SCREEN = 40  # lines
+ESCAPE = re.compile(r"\x1b\[[0-9;]*m")
+
+
+def at_terminal(*arguments, columns=80, environment=None):
+    """Exit code and what mbk shows at a terminal of so many columns."""
+    ours, its = pty.openpty()
+    fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
+    process = subprocess.Popen([program("MBK"), *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=its, stderr=its,
+                               env={**os.environ, "TERM": "xterm", "NO_COLOR": "", **(environment or {})})
+    os.close(its)
+    text = b""
+    while True:
+        try:
+            more = os.read(ours, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not more:
+            break
+        text += more
+    os.close(ours)
+    return process.wait(timeout=60), text.decode("utf-8").replace("\r\n", "\n")
+
+
+class Help(Case):
+    def test_every_command_fits_a_screen_and_names_where_the_rest_is(self):
+        for command in every_command():
+            short, whole = (run(*command.path, option).out for option in ("--help", "--help-all"))
+            with self.subTest(command=command.name):
+                self.assertLessEqual(short.count("\n"), SCREEN)
+                self.assert_lines_fit(short)
+                self.assert_lines_fit("\n".join(line for line in whole.splitlines() if " " in line.strip()))
+                if short != whole:
+                    self.assertIn("--help-all", short.splitlines()[-1] if not command.commands else short)
+
+    def test_what_is_short_keeps_usage_arguments_and_an_example(self):
+        text = self.fine("measure", "--help").out
+        for words in ("Usage: mbk measure", "FILE", "--json", "--summary", "mbk measure log.mat", "Model"):
+            self.assertIn(words, text)
+        self.assertNotIn("--hac-lag", text)
+        self.assertGreaterEqual(text.count("\n"), 24)
+        self.assertIn("--hac-lag", self.fine("measure", "--help-all").out)
+
+    def test_it_is_as_wide_as_the_terminal(self):
+        for columns in (60, 72, 80, 120):
+            for command in ("measure", "teleop", "validate"):
+                for option in ("--help", "--help-all"):
+                    code, text = at_terminal(command, option, columns=columns)
+                    self.assertEqual(code, 0)
+                    self.assert_lines_fit(ESCAPE.sub("", text), columns)
+            self.assert_lines_fit(ESCAPE.sub("", at_terminal("--help", columns=columns)[1]), columns)
+
+
+class Width(Case):
+    def test_paragraphs_of_a_result_fit_and_lose_no_word(self):
+        log = make_log().path
+        plain = self.fine("measure", "--quiet", log).out
+        for columns in (60, 80):
+            _, text = at_terminal("measure", "--quiet", log, columns=columns)
+            text = ESCAPE.sub("", text)
+            self.assertEqual(text.split(), plain.split())
+            prose = [line for line in text.splitlines() if not re.search("[\u2500-\u28ff]", line)]
+            self.assert_lines_fit("\n".join(prose), columns)
+
+    def test_a_document_stays_as_it_is(self):
+        log = make_log().path
+        self.assertEqual(at_terminal("info", log, "--json", columns=60)[1], self.fine("info", log, "--json").out)
+
+
+class Colour(Case):
+    def test_is_shown_at_a_terminal_alone(self):
+        self.assertIn("\x1b[1mOptions:\x1b[0m", at_terminal("measure", "--help")[1])
+        self.assertNotIn("\x1b", run("measure", "--help").out)
+        self.assertIn("\x1b[", at_terminal("info", "none.mat")[1])
+        self.assertNotIn("\x1b", run("info", "none.mat").err)
+
+    def test_no_color_is_respected(self):
+        for environment in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+            for arguments in (("measure", "--help"), ("info", "none.mat")):
+                self.assertNotIn("\x1b", at_terminal(*arguments, environment=environment)[1])
+
+
+class Progress(Case):
+    def test_a_pipe_gets_a_line_for_each_tenth_at_most(self):
+        ran = run("validate", "coverage", "--runs", 30, "--threads", 1)
+        lines = re.findall(r"(?m)^coverage: (\d+) of 30", ran.err)
+        self.assertTrue(1 <= len(lines) <= 10, ran.err)
+        self.assertTrue(all(int(b) - int(a) >= 3 for a, b in zip(["0", *lines], lines)), ran.err)
+
+
+class Studies(Case):
+    def test_validate_alone_lists_them(self):
+        text = self.fine("validate").out
+        for study in ("coverage", "springs", "faults", "mbk validate all"):
+            self.assertIn(study, text)
+        self.assert_lines_fit(text)
+
+    def test_all_of_them_have_no_common_document(self):
+        self.refused(WRONG_USAGE, "validate", "all", "--json", says="one study each")
+
+
+if __name__ == "__main__":
+    main()
