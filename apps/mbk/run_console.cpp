@@ -42,13 +42,13 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const con
   if (!arguments.texts.empty() && arguments.wanted == false) {
     return bad_usage("--texts are those of the console, which --no-console omits", "omit one of the two");
   }
-  const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
-  if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
-  if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
   std::vector<std::string> names;
   for (const session::Plan& plan : experiment.plans) names.push_back(plan.trial.name);
   const auto texts = console::find_texts(arguments.texts.empty() ? "en" : arguments.texts, names);
   if (!texts) return tl::unexpected(texts.error());
+  const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
+  if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
+  if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
   auto opened = console::Console::open(arguments.port, experiment.plans, flags,
                                        [](const std::string& line) { say("mbk: console: {}\n", line); });
   if (!opened) return tl::unexpected(opened.error());

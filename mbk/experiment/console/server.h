@@ -41,7 +41,7 @@ class Server {
   };
 
   /// For so long control is kept for a page that has gone.
-  static constexpr std::chrono::milliseconds kControlKept{10'000};
+  static constexpr std::chrono::milliseconds kControlKept = std::chrono::seconds(10);
 
   /// @param port  0: any that is free
   /// @fails  usage: the port is taken.
