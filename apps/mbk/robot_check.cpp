@@ -133,11 +133,9 @@ Action add_robot_check(CLI::App& group) {
       "      whether the robot's program keeps every rule of the link: a bridge of your own\n"
       "  mbk robot check --rt 60\n"
       "      how punctually this machine wakes a session's loop, and what holds it up\n\n"
-      "Do all of it before anyone sits down at a new robot. The keys of [device] and the rules of the link stand in\n"
-      "docs/guide/devices.md, a bridge to begin with in docs/guide/your_own_robot.md.\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable, or the robot does not answer, 4 something is wrong, 6 not "
-      "every "
-      "rule of the link was tested.");
+      "Do all of it before anyone sits down at a new robot. The keys of [device] and the rules of the\n"
+      "link stand in docs/guide/devices.md, a bridge to begin with in docs/guide/your_own_robot.md.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not all tested.");
   CLI::Option* const file =
       command
           ->add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")

@@ -13,7 +13,8 @@ from command import NOT_USABLE, WRONG_USAGE, Case, main, program, run
 
 BRIDGE = pathlib.Path(__file__).resolve().parents[2] / "bridge"
 NOT_ALL_TESTED = 6
-TIMED = {"silence", "rate", "clock", "acknowledges", "motors-on", "motors-off", "watchdog"}  # a busy machine holds robots up
+TIMED = {"silence", "rate", "clock", "acknowledges", "motors-on", "motors-off", "watchdog",
+         "numbering"}  # a busy machine holds robots up, and the simulated one numbers what it did not send
 EXPERIMENT = """
 [recording]
 condition = "relaxed"
@@ -62,6 +63,7 @@ duration_s = {seconds}
 moving_in_s = 1
 [safety]
 link_silence_ms = 500
+max_saturation_time_ms = 5000
 answer_lag_ms = 0
 state_age_ms = 0
 torque_error_Nm = 0

@@ -1,6 +1,7 @@
 #include "mbk/base/realtime/machine.h"
 
 #include <sched.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
@@ -138,6 +139,7 @@ Lateness measure_lateness(double period, double duration, int priority) {
     found.duration = clock.now();
     found.missed = clock.missed();
   }).join();
+  if (found.setup.locked_memory) munlockall();  // who called may need more of it than may be locked
   return found;
 }
 

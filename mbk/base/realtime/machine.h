@@ -47,7 +47,8 @@ struct Lateness {
   void add(double late) noexcept;
 };
 
-/// As cyclictest does: a thread of its own sleeps until absolute times, one period apart.
+/// As cyclictest does: a thread of its own sleeps until absolute times, one period apart. At the end no memory of the
+/// process is locked.
 /// @param period  [s] > 0   @param duration  [s] > 0   @param priority  1–99, as a session's loop asks for
 [[nodiscard]] Lateness measure_lateness(double period, double duration, int priority = 80);
 

@@ -158,8 +158,9 @@ std::string lateness_text(const Machine& machine, const Lateness& lateness) {
   for (std::size_t i = 0; i < last; ++i) {
     const bool open = i == Lateness::kEdges.size();
     const auto bar = static_cast<std::size_t>(std::ceil(kBar * static_cast<double>(counts[i]) / highest));
-    text += fmt::format("  {} {:>7} {:>9}  {}\n", open ? "> " : "to", time_text(Lateness::kEdges[open ? i - 1 : i]),
-                        counts[i], std::string(bar, '#'));
+    const std::string upper = time_text(Lateness::kEdges[open ? i - 1 : i]);
+    text += fmt::format("  {} {:>7} {:>9}{}{}\n", open ? "> " : "to", upper, counts[i], bar > 0 ? "  " : "",
+                        std::string(bar, '#'));
   }
   if (!machine.kernel.empty()) text += fmt::format("  kernel     {}\n", machine.kernel);
   return text;

@@ -284,12 +284,12 @@ std::vector<RuleBreaker> motors() {
 }  // namespace
 
 std::span<const RuleBreaker> rule_breakers() {
-  static const std::vector<RuleBreaker> all = [] {
+  static const std::vector<RuleBreaker> kAll = [] {
     std::vector<RuleBreaker> made = states();
     for (std::vector<RuleBreaker> part : {belief(), motors()}) std::ranges::move(part, std::back_inserter(made));
     return made;
   }();
-  return all;
+  return kAll;
 }
 
 const RuleBreaker* find_rule_breaker(std::string_view name) {

@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""What people sit down to do, done by whoever knows nothing but `mbk --help`: every command and option that is used has
+been read in a help text before, and the steps (help texts read, commands run) are counted.
+
+  MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/tasks_test.py    prints the counts
+"""
+
+import json
+import re
+import unittest
+
+from command import FINE, NOT_USABLE, Case, main, make_log, run, table_of, write_csv
+
+ALL_HELP = "--help-all"  # where a command has one: what --help leaves for it
+
+
+class Newcomer:
+    """Someone at a terminal. `help` and `do` are steps; `do` fails where a word was never read."""
+
+    def __init__(self, case):
+        self.case, self.steps, self.texts = case, [], {}
+        self.help()
+
+    def help(self, *command):
+        """Reads the help of a command that stands in what was read before."""
+        for depth, word in enumerate(command):
+            self.read(command[:depth], word)
+        text = self.ran(*command, "--help").out
+        if ALL_HELP in text:
+            text += self.ran(*command, ALL_HELP).out
+        self.texts[command] = text
+
+    def read(self, command, word):
+        """`word` stands in the help of `command`, which was read."""
+        self.case.assertIn(command, self.texts, f"nobody has read 'mbk {' '.join(command)} --help'")
+        self.case.assertRegex(self.texts[command], rf"(?m)(^|[\s,'\[]){re.escape(word)}\b", (command, word))
+
+    def do(self, *words, code=FINE):
+        """Runs a command line."""
+        command = tuple(word for word in words if isinstance(word, str) and (word,) in self.texts)[:1]
+        command = words[:2] if words[:2] in self.texts else command
+        self.case.assertTrue(command, f"nobody has read the help of {words}")
+        for word in words[len(command):]:
+            if isinstance(word, str) and word.startswith("--"):
+                self.read(command, word.split("=")[0])
+        ran = self.ran(*words)
+        self.case.assertEqual(ran.code, code, ran)
+        return ran
+
+    def ran(self, *words):
+        self.steps.append(" ".join(map(str, words)))
+        return run(*words, folder=self.case.folder)
+
+
+class Tasks(Case):
+    counted = {}
+
+    @classmethod
+    def tearDownClass(cls):
+        for name, steps in cls.counted.items():
+            print(f"{steps:3} steps  {name}")
+
+    def setUp(self):
+        super().setUp()
+        self.newcomer = Newcomer(self)
+
+    def in_steps(self, most):
+        """The task is done."""
+        name = self.id().rsplit(".test_", 1)[1].replace("_", " ")
+        self.counted[name] = len(self.newcomer.steps)
+        self.assertLessEqual(len(self.newcomer.steps), most, self.newcomer.steps)
+
+    def csv(self):
+        """A recording as a spreadsheet has it: its own names, mm, semicolons."""
+        columns = table_of(make_log())
+        time, x, y, *rest = columns
+        return write_csv(self.folder / "mine.csv", [time, [1e3 * one for one in x], [1e3 * one for one in y], *rest],
+                         ("t_s", "px", "py", "fx", "fy", "rx", "ry"), ";")
+
+    def results(self, *names):
+        """Results of a relaxed and of another simulated trial, as somebody left them."""
+        for name, protocol in zip(names, ("sinusoidal", "underdamped")):
+            self.mbk("measure", make_log(protocol).path, "--json", "--out", self.folder / name)
+
+    def test_see_what_is_in_a_file(self):
+        self.newcomer.help("info")
+        said = self.newcomer.do("info", make_log().path).out
+        self.assertIn("1000", said)
+        self.in_steps(3)
+
+    def test_measure_my_own_spreadsheet(self):
+        self.csv()
+        self.newcomer.help("measure")
+        ran = self.newcomer.do("measure", "mine.csv", "--channels",
+                               "time=t_s,x=px:mm,y=py:mm,Fx=fx,Fy=fy,xr=rx,yr=ry", "--json", "--out", "mine.json")
+        self.assertEqual(ran.out, "")
+        found = json.loads((self.folder / "mine.json").read_text())["model"]
+        self.assert_relative(found["K"], make_log().truth["K"], 0.05)
+        self.in_steps(3)
+
+    def test_find_why_a_measurement_is_poor(self):
+        columns = table_of(make_log())
+        still = [[0.3] * len(columns[0]), [-0.05] * len(columns[0])]
+        write_csv(self.folder / "poor.csv", [columns[0], *still, *columns[3:]])
+        self.newcomer.help("measure")
+        ran = run("measure", "poor.csv", folder=self.folder)
+        self.newcomer.steps.append("measure poor.csv")
+        self.assertIn(ran.code, (NOT_USABLE, 3), ran)  # it says so, and does not show a number as a good one
+        self.assertRegex(ran.out + ran.err, r"moves|still|constant|excit", ran)
+        self.in_steps(3)
+
+    def test_write_a_page_to_hand_on(self):
+        self.newcomer.help("measure")
+        self.newcomer.do("measure", make_log().path, "--report", "page.html", "--report-note", "bench, 4 May")
+        self.assertIn("bench, 4 May", (self.folder / "page.html").read_text(encoding="utf-8"))
+        self.in_steps(3)
+
+    def test_convert_for_a_colleague(self):
+        self.newcomer.help("convert")
+        self.newcomer.do("convert", make_log().path, "colleague.csv")
+        self.assertIn("force", (self.folder / "colleague.csv").read_text(encoding="utf-8")[:4000].lower())
+        self.in_steps(3)
+
+    def test_compare_two_conditions(self):
+        self.results("relaxed.json", "tensed.json")
+        self.newcomer.help("compare")
+        self.assertIn("stiffness", self.newcomer.do("compare", "relaxed.json", "tensed.json").out)
+        self.in_steps(3)
+
+    def test_plan_an_experiment_and_try_it(self):
+        self.newcomer.help("simulate")
+        text = self.newcomer.do("simulate", "--show", "relaxed_sinusoidal").out
+        (self.folder / "mine.toml").write_text(text, encoding="utf-8")
+        self.newcomer.help("run")
+        self.assertIn("N", self.newcomer.do("run", "mine.toml", "--dry-run").out)
+        self.newcomer.do("run", "mine.toml", "--fast", "--no-measure", "--quiet", "--out", "try.h5")
+        self.assertTrue((self.folder / "try.h5").exists())
+        self.in_steps(6)
+
+    def test_ask_whether_the_limb_was_passive(self):
+        self.newcomer.help("passivity")
+        self.assertIn("passive", self.newcomer.do("passivity", make_log().path).out)
+        self.in_steps(3)
+
+    def test_keep_the_trials_of_several_people(self):
+        for command in ((), ("init",), ("add",), ("measure",), ("list",)):
+            self.newcomer.help("study", *command)
+        self.newcomer.do("study", "init", "arms", "--title", "Stiffness at rest")
+        self.newcomer.do("study", "add", make_log().path, "--study", "arms", "--participant", "7", "--condition",
+                         "relaxed")
+        self.newcomer.do("study", "measure", "--study", "arms", "--quiet")
+        self.assertIn("relaxed", self.newcomer.do("study", "list", "--study", "arms").out)
+        self.in_steps(10)
+
+    def test_check_a_robot_of_my_own(self):
+        self.newcomer.help("robot")
+        self.newcomer.help("robot", "check")
+        self.assertIn("links", self.newcomer.do("robot", "check", "relaxed_sinusoidal").out)
+        self.in_steps(4)
+
+
+class TheNewcomer(unittest.TestCase):
+    """The rule itself: what was not read cannot be used."""
+
+    def test_knows_nothing_unread(self):
+        case = Tasks("test_see_what_is_in_a_file")
+        case.setUp()
+        self.addCleanup(case.doCleanups)
+        with self.assertRaises(AssertionError):
+            case.newcomer.do("info", "x.mat")
+        case.newcomer.help("info")
+        with self.assertRaises(AssertionError):
+            case.newcomer.do("info", "x.mat", "--no-such-option")
+        with self.assertRaises(AssertionError):
+            case.newcomer.help("no-such-command")
+
+
+if __name__ == "__main__":
+    main()
