@@ -357,8 +357,9 @@ class Fitter {
                           const Courses& from_here, Use&& use) const;
   /// Whether there are so many strides that what each row is made of costs less than the rows.
   [[nodiscard]] bool strides_pay(std::size_t experiment, const Layout& layout) const {
+    constexpr Index kStridesForEach = 4;  // column of what a row is made of, by counts of instructions
     return experiment < strided_.size() &&
-           strided_[experiment].signals.strides() >= StrideLayout(layout, n_, layout.free).size;
+           strided_[experiment].signals.strides() >= kStridesForEach * StrideLayout(layout, n_, layout.free).size;
   }
   /// Products of rows, without the rows: moves on by all whole strides, and returns what they add.
   [[nodiscard]] Matrix products_of_strides(std::size_t experiment, const Iterate& at, const Layout& layout,

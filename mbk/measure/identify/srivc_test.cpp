@@ -120,7 +120,7 @@ TEST(Srivc, TakesAnUnevenClockAsItIs) {
 TEST(Srivc, IsTheSameByStridesOfAnEvenClockAndSampleBySample) {
   constexpr double kStep = 1.0 / 128.0;  // whose multiples have no rounding
   for (const std::optional<double> held : {std::optional<double>(), std::optional<double>(0.6)}) {
-    SignalPair even = experiment(7, kStep);
+    SignalPair even = experiment(31, kStep);  // long enough for strides to pay
     even.held = held;
     even.output = simulate_continuous(RaoGarnier().a, RaoGarnier().b, even);
     numeric::Random random(5);
