@@ -59,35 +59,36 @@ template <class Lanes, int N>
   }
 }
 
-/// Rows [first, first + Count) of to = A [x; u], 16 columns; A is rows×(states + inputs), row by row.
+/// `Count` rows of to = A [x; u], 16 columns; A is rows×(states + inputs), row by row.
+/// @param stride  from one row of x and of `to` to the next
 template <class Lanes, int Count>
 [[gnu::always_inline]] inline void advance_rows(const double* A, Index states, Index inputs, const double* x,
-                                                const double* u, double* to) {
+                                                const double* u, double* to, Index stride) {
   using V = typename Lanes::V;
   constexpr Index kParts = kSegments / Lanes::kWidth;
   const Index across = states + inputs;
   V sum[Count][kParts] = {};
   for (Index k = 0; k < across; ++k) {
-    const double* const from = k < states ? x + kSegments * k : u + kSegments * (k - states);
+    const double* const from = k < states ? x + stride * k : u + kSegments * (k - states);
     for (Index w = 0; w < kParts; ++w) {
       const V value = Lanes::at(from + w * Lanes::kWidth);
       for (int r = 0; r < Count; ++r) sum[r][w] += A[r * across + k] * value;
     }
   }
   for (int r = 0; r < Count; ++r) {
-    for (Index w = 0; w < kParts; ++w) Lanes::at(to + kSegments * r + w * Lanes::kWidth) = sum[r][w];
+    for (Index w = 0; w < kParts; ++w) Lanes::at(to + stride * r + w * Lanes::kWidth) = sum[r][w];
   }
 }
 template <class Lanes>
 [[gnu::always_inline]] inline void advance_body(const double* A, Index states, Index inputs, const double* x,
-                                                const double* u, double* to) {
+                                                const double* u, double* to, Index stride) {
   constexpr int kRows = Lanes::kWidth == 8 ? 4 : 2;
   const Index across = states + inputs;
   Index r = 0;
   for (; r + kRows <= states; r += kRows) {
-    advance_rows<Lanes, kRows>(A + r * across, states, inputs, x, u, to + kSegments * r);
+    advance_rows<Lanes, kRows>(A + r * across, states, inputs, x, u, to + stride * r, stride);
   }
-  for (; r < states; ++r) advance_rows<Lanes, 1>(A + r * across, states, inputs, x, u, to + kSegments * r);
+  for (; r < states; ++r) advance_rows<Lanes, 1>(A + r * across, states, inputs, x, u, to + stride * r, stride);
 }
 
 template <class Lanes>
@@ -203,7 +204,7 @@ constexpr int kMaxFixed = 8;
 
 struct Loops {
   std::array<Filter, kMaxFixed + 1> filter;  ///< by the number of states; the first: of any number
-  void (*advance)(const double*, Index, Index, const double*, const double*, double*);
+  void (*advance)(const double*, Index, Index, const double*, const double*, double*, Index);
   void (*combine)(const double*, Index, const double*, Index, const double*, Index, double*);
   void (*products)(Rows, Index, Rows, Index, Index, double*);
   void (*squares)(Rows, Index, Index, double*);
@@ -217,8 +218,8 @@ struct Loops {
       filter_body<LANES, N>(coefficients, n, state, input, count, to, stride);                                      \
     }                                                                                                               \
     TARGET static void advance(const double* A, Index states, Index inputs, const double* x, const double* u,       \
-                               double* to) {                                                                        \
-      advance_body<LANES>(A, states, inputs, x, u, to);                                                             \
+                               double* to, Index stride) {                                                          \
+      advance_body<LANES>(A, states, inputs, x, u, to, stride);                                                     \
     }                                                                                                               \
     TARGET static void combine(const double* weights, Index count, const double* from, Index stride,                \
                                const double* plus, Index columns, double* to) {                                     \
@@ -311,7 +312,7 @@ Matrix states_at_starts(const HeldStep& system, const Segments& signals, Index i
   for (Index i = 0; i < length; std::swap(x, next)) {
     const bool whole = i + kAtOnce <= length;
     const Index count = whole ? kAtOnce : 1;
-    advance((whole ? chunk : one).data(), n, count + 1, values(x), signals.row(input, i), values(next));
+    advance((whole ? chunk : one).data(), n, count + 1, values(x), signals.row(input, i), values(next), kSegments);
     i += count;
   }
   const Matrix over_segment = power_of(over_chunk, chunks) * power_of(system.transition, length % kAtOnce);
@@ -366,6 +367,60 @@ void SegmentFilter::run(const double* input, Index count, Rows states) {
   const Filter filter = loops().filter[n_ <= kMaxFixed ? static_cast<std::size_t>(n_) : 0];
   filter(coefficients_.data(), n_, values(state_), input + kSegments * i, count - i, states.data + kSegments * i,
          states.stride);
+}
+
+StridedSignals::StridedSignals(const Segments& signals, Index count, Index samples) {
+  const Index length = signals.length(), missing = kSegments * length - samples;  // all of them in the last segment
+  strides_ = std::max<Index>(0, length - missing) / kStride;
+  stride_ = kSegments * (strides_ + 1);  // not a power of two, for the cache's sake
+  rows_ = std::make_unique_for_overwrite<Abreast[]>(static_cast<std::size_t>(count * kStride * (strides_ + 1)));
+  for (Index row = 0; row < count * kStride; ++row) {
+    double* to = from(0).row(row);
+    for (Index k = 0; k < strides_; ++k, to += kSegments) {
+      std::copy_n(signals.row(row / kStride, kStride * k + row % kStride), kSegments, to);
+    }
+  }
+}
+
+namespace {
+
+/// n×16, where it is held row by row.
+std::vector<Abreast> rows_of(const Matrix& states) {
+  std::vector<Abreast> rows(static_cast<std::size_t>(states.rows()));
+  Eigen::Map<Matrix>(values(rows), kSegments, states.rows()) = states.transpose();
+  return rows;
+}
+
+}  // namespace
+
+StridedFilter::StridedFilter(const HeldStep& filter, const Matrix& starts)
+    : coefficients_(over_several(filter, power_of(filter.transition, kStride), kStride)),
+      state_(rows_of(starts)),
+      n_(starts.rows()),
+      inputs_(kStride + 1) {}
+
+StridedFilter::StridedFilter(const Matrix& transition, const Matrix& starts)
+    : state_(rows_of(starts)), n_(starts.rows()), inputs_(0) {
+  const Matrix by_row = power_of(transition, kStride).transpose();
+  coefficients_.assign(by_row.data(), by_row.data() + by_row.size());
+}
+
+void StridedFilter::run(const double* input, Index count, Rows states) {
+  const auto advance = loops().advance;
+  const Index last = kSegments * count;
+  for (Index r = 0; r < n_; ++r) std::ranges::copy(state_[static_cast<std::size_t>(r)].values, states.row(r));
+  for (Index c = 0; c < last; c += kSegments) {
+    double* const now = states.data + c;
+    advance(coefficients_.data(), n_, inputs_, now, input, now + kSegments, states.stride);
+    if (inputs_ > 0) input += kStride * kSegments;
+  }
+  for (Index r = 0; r < n_; ++r) {
+    std::copy_n(states.row(r) + last, kSegments, state_[static_cast<std::size_t>(r)].values.data());
+  }
+}
+
+Matrix StridedFilter::state() const {
+  return Eigen::Map<const Matrix>(state_.front().values.data(), kSegments, n_).transpose();
 }
 
 void combine(const Vector& weights, Rows from, const double* plus, Index columns, double* to) {

@@ -73,6 +73,43 @@ class SegmentFilter {
   bool begun_ = false;
 };
 
+inline constexpr Index kStride = 8;
+
+/// Every eighth sample of segments by itself: column 16·k + l of row 8·s + j is sample 8·k + j of segment l of signal
+/// s.
+class StridedSignals {
+ public:
+  StridedSignals() = default;
+  /// @param count  of the signals    @param samples  of each; strides are taken as far as all segments have samples
+  StridedSignals(const Segments& signals, Index count, Index samples);
+  [[nodiscard]] Index strides() const { return strides_; }
+  /// All rows, from a stride on.
+  [[nodiscard]] Rows from(Index stride) const { return {rows_[0].values.data() + kSegments * stride, stride_}; }
+
+ private:
+  Index strides_ = 0, stride_ = 0;
+  std::unique_ptr<Abreast[]> rows_;
+};
+
+/// The states of a filter over all segments at once, at every eighth sample only.
+class StridedFilter {
+ public:
+  /// @param starts  states at the first sample of each segment, n×16
+  StridedFilter(const HeldStep& filter, const Matrix& starts);
+  /// Without an input.
+  StridedFilter(const Matrix& transition, const Matrix& starts);
+
+  /// @param input  rows of 16, the next 8·count + 1 of them; not needed without one
+  /// @param states  n rows, 16·(count + 1) columns: where it stands, and after each stride; it then stands at the last
+  void run(const double* input, Index count, Rows states);
+  [[nodiscard]] Matrix state() const;  ///< where it stands, n×16
+
+ private:
+  std::vector<double> coefficients_;  // [Φ⁸, what each of 9 samples adds], row by row
+  std::vector<Abreast> state_;
+  Index n_, inputs_;
+};
+
 /// to = plus + Σ_k weights_k · from(k), column by column.   @param columns a multiple of 16
 void combine(const Vector& weights, Rows from, const double* plus, Index columns, double* to);
 

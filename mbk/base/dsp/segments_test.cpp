@@ -116,6 +116,62 @@ TEST(Segments, HoldEachSampleAndZeroAfterTheLast) {
   EXPECT_EQ(signals.row(0, 2)[11], 0.0);
 }
 
+/// Largest difference of the states at every eighth sample to `expected`, three strides at a time.
+double difference(StridedFilter filter, const double* input, Index strides, Index length, const Matrix& expected) {
+  constexpr Index kAtOnce = 3, kColumns = (kAtOnce + 1) * kSegments;
+  std::vector<Abreast> table(static_cast<std::size_t>(expected.rows() * (kAtOnce + 1)));
+  const Rows rows{table.data()->values.data(), kColumns};
+  double most = 0.0;
+  for (Index k = 0; k < strides; k += kAtOnce) {
+    const Index count = std::min(kAtOnce, strides - k);
+    filter.run(input == nullptr ? nullptr : input + kSegments * kStride * k, count, rows);
+    const Matrix behind = filter.state();
+    for (Index c = 0; c < kSegments * (count + 1); ++c) {
+      const Index sample = c % kSegments * length + kStride * (k + c / kSegments);
+      for (Index r = 0; r < expected.rows() && sample < expected.cols(); ++r) {
+        most = std::max(most, std::abs(rows.row(r)[c] - expected(r, sample)));
+        if (c >= kSegments * count) most = std::max(most, std::abs(behind(r, c % kSegments) - expected(r, sample)));
+      }
+    }
+  }
+  return most;
+}
+
+TEST(StridedFilter, StandsWhereTheFilterIsAtEveryEighthSample) {
+  for (const Index samples : {5, 140, 999, 1600}) {
+    for (const Index n : {1, 2, 4, 5, 8, 11}) {
+      const Vector a = denominator(n), u = wave(samples, 0.3);
+      const Matrix expected = one_after_the_other(a, kStep, u, Vector::Zero(n));
+      const HeldStep filter = held_step(a, kStep);
+      const Segments signals({&u});
+      const Index strides = StridedSignals(signals, 1, samples).strides();
+      EXPECT_EQ(strides, samples < 16 ? 0 : (samples - 15 * signals.length()) / kStride);
+      const StridedFilter strided(filter, states_at_starts(filter, signals, 0));
+      EXPECT_LT(difference(strided, signals.row(0, 0), strides, signals.length(), expected),
+                1e-12 * std::max(1.0, expected.cwiseAbs().maxCoeff()))
+          << samples << " samples, n = " << n;
+    }
+  }
+}
+
+TEST(StridedFilter, CarriesAFreeMotionOn) {
+  const Vector a = denominator(4), none = Vector::Zero(700), start{{0.3, -1.0, 2.0, 0.7}};
+  const Matrix transition = held_step(a, kStep).transition;
+  const Index length = Segments({&none}).length();
+  const StridedFilter strided(transition, free_at_starts(transition, start, length));
+  EXPECT_LT(difference(strided, nullptr, 5, length, one_after_the_other(a, kStep, none, start)), 1e-12);
+}
+
+TEST(StridedSignals, AreTheSamplesThatAreEightApart) {
+  const Vector u = Vector::LinSpaced(395, 1.0, 395.0), y = -u;  // 25 of each segment but the last
+  const StridedSignals strided(Segments({&u, &y}), 2, u.size());
+  ASSERT_EQ(strided.strides(), 2);
+  EXPECT_EQ(strided.from(0).row(3)[0], 4.0);
+  EXPECT_EQ(strided.from(1).row(3)[0], 12.0);
+  EXPECT_EQ(strided.from(0).row(3)[kSegments + 2], 62.0);
+  EXPECT_EQ(strided.from(0).row(kStride + 7)[15], -383.0);
+}
+
 TEST(Segments, ProductsAndCombinationsAreThoseOfMatrices) {
   constexpr Index kColumns = 48;
   for (const Index left : {1, 2, 3, 4, 5, 6, 7, 9}) {

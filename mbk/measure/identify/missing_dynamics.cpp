@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "mbk/base/dsp/autoregression.h"
+#include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 
@@ -203,10 +204,11 @@ class Tester {
     for (const RowRange& piece : pieces_) {
       const Index size = piece.size() - order;
       if (size <= 0) continue;
-      auto block = result.middleRows(row, size);
-      block = columns.middleRows(piece.begin + order, size);
-      for (Index lag = 1; lag <= order; ++lag) {
-        block += filter[lag] * columns.middleRows(piece.begin + order - lag, size);
+      for (Index j = 0; j < columns.cols(); ++j) {
+        const auto before = [&](Index lag) { return columns.col(j).segment(piece.begin + order - lag, size); };
+        std::vector<numeric::MatrixPart> past;
+        for (Index lag = 1; lag <= order; ++lag) past.emplace_back(before(lag));
+        result.col(j).segment(row, size) = numeric::residuals_of(past, before(0), -filter.tail(order));
       }
       row += size;
     }

@@ -192,6 +192,26 @@ struct Block {
 /// Which signal of a record's segments is which.
 constexpr Index kInput = 0, kOutput = 1, kCleanInput = 2;
 
+/// What runs through the segments of a record, with the states at one step of each segment.
+struct Courses {
+  dsp::HeldStep filter, of_input;
+  dsp::HeldStep to_x;  ///< of x̂'s source and, below it, what −x̂_f has of that
+  Matrix free_to_x;    ///< the same of the free motion
+  Matrix source, input, output, free;
+  Index step = 0;
+
+  [[nodiscard]] bool free_is_known() const { return free.rows() > filter.transition.rows(); }
+  /// −x̂_f.
+  [[nodiscard]] Matrix of_x() const {
+    const Index n = filter.transition.rows();
+    return free_is_known() ? Matrix(source.bottomRows(n) + free.bottomRows(n)) : Matrix(source.bottomRows(n));
+  }
+};
+
+dsp::HeldStep negative(const dsp::HeldStep& step) {
+  return {step.transition, -step.from_last, -step.from_next};
+}
+
 /// One experiment's rows with the free motion projected out.
 struct Reduced {
   Matrix M, S;                  ///< ZᵀX (0 without the output), ZᵀZ (a step of the search needs its diagonal only)
@@ -256,6 +276,39 @@ Matrix free_motion(const Iterate& at, const SignalPair& pair) {
   return free;
 }
 
+/// Input and output at every eighth sample by itself, and the products of all these rows.
+struct Strided {
+  dsp::StridedSignals signals;
+  Matrix products;
+
+  Strided(const dsp::Segments& segments, Index samples)
+      : signals(segments, 2, samples), products(2 * dsp::kStride, 2 * dsp::kStride) {
+    dsp::Products all(products.rows(), products.cols());
+    all.add(signals.from(0), signals.from(0), dsp::kSegments * signals.strides());
+    products = all.total();
+  }
+};
+
+/// What the rows at a sample of a stride are made of, and where it stands: states at the stride's first sample, and its
+/// samples.
+struct StrideLayout {
+  Index u, x;                  ///< u_f; −x̂_f without what the free motion adds
+  Index free, free_in_x, one;  ///< the free motion, what it adds to −x̂_f where that is known, and 1
+  Index y;                     ///< −y_f, the last of the states
+  Index input, output, size;   ///< samples
+
+  StrideLayout(const Layout& layout, Index n, bool known)
+      : u(0),
+        x(n),
+        free(layout.instruments ? 2 * n : n),
+        free_in_x(free + n),
+        one(free + (layout.free ? n : 0) + (known ? n : 0)),
+        y(one + (layout.free ? 1 : 0)),
+        input(y + n),
+        output(input + dsp::kStride),
+        size(output + dsp::kStride) {}
+};
+
 class Fitter {
  public:
   Fitter(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options)
@@ -297,9 +350,24 @@ class Fitter {
   /// Calls use(block) for the blocks of one experiment.
   template <class Use>
   void blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise, Use&& use) const;
+  /// States of the filters at the first sample of each segment.
+  [[nodiscard]] Courses courses(std::size_t experiment, const Iterate& at, const Layout& layout) const;
   template <class Use>
   void blocks_of_segments(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
-                          Use&& use) const;
+                          const Courses& from_here, Use&& use) const;
+  /// Whether there are so many strides that what each row is made of costs less than the rows.
+  [[nodiscard]] bool strides_pay(std::size_t experiment, const Layout& layout) const {
+    constexpr Index kStridesForEach = 4;  // column of what a row is made of, by counts of instructions
+    return experiment < strided_.size() &&
+           strided_[experiment].signals.strides() >= kStridesForEach * StrideLayout(layout, n_, layout.free).size;
+  }
+  /// Products of rows, without the rows: moves on by all whole strides, and returns what they add.
+  [[nodiscard]] Matrix products_of_strides(std::size_t experiment, const Iterate& at, const Layout& layout,
+                                           Courses& from_here) const;
+  /// The same from the products of states at the first sample of each stride and of samples.
+  /// @param products  of all that StrideLayout has
+  [[nodiscard]] Matrix over_stride(const Iterate& at, const Layout& layout, const Vector* free_weights,
+                                   const Courses& steps, const Matrix& products) const;
   template <class Use>
   void blocks_of_uneven(std::size_t experiment, const Iterate& at, const Layout& layout, Use&& use) const;
   [[nodiscard]] static const Vector* free_weights(const Iterate& at, const Layout& layout, std::size_t experiment) {
@@ -334,7 +402,8 @@ class Fitter {
   const ContinuousFitOptions& options_;
   Index n_, q_;
   std::vector<dsp::Segments> stretched_;
-  double output_squares_ = 0;  ///< Σ(y − ȳ)²
+  std::vector<Strided> strided_;  ///< up to the first uneven clock; none with instruments from the reference
+  double output_squares_ = 0;     ///< Σ(y − ȳ)²
   Index samples_ = 0;
 };
 
@@ -366,47 +435,50 @@ void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Ind
   filters.x->run(clean.data(), count, now);
 }
 
-template <class Use>
-void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
-                                Use&& use) const {
+Courses Fitter::courses(std::size_t experiment, const Iterate& at, const Layout& layout) const {
   const SignalPair& pair = experiments_[experiment];
   const dsp::Segments& signals = stretched_[experiment];
   const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
-  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kSegments;
-  const dsp::HeldStep filter = dsp::held_step(at.a, at.scale * *pair.step);
-  const dsp::HeldStep of_input = pair.held ? dsp::held_step(at.a, at.scale * *pair.step, pair.held) : filter;
-  const dsp::HeldStep negative{filter.transition, -filter.from_last, -filter.from_next};
-  const auto from_rest = [&](const dsp::HeldStep& step, Index signal) {
-    return dsp::SegmentFilter(step, dsp::states_at_starts(step, signals, signal));
-  };
-  const Index source = layout.reference ? kCleanInput : layout.input;  // of x̂
-  // States at the starts: of the source and, below them, what x̂ has of it; the same of the free motion.
-  dsp::HeldStep to_x = of_input, free_to_x = filter;
+  Courses all;
+  all.filter = dsp::held_step(at.a, at.scale * *pair.step);
+  all.of_input = pair.held ? dsp::held_step(at.a, at.scale * *pair.step, pair.held) : all.filter;
+  all.to_x = all.of_input;
+  all.free_to_x = all.filter.transition;
   if (layout.instruments) {
     const double through = q_ > n_ ? at.b[n_] : 0.0;
     Vector weights = -through * at.a;
     weights.head(std::min(q_, n_)) += at.b.head(std::min(q_, n_));
-    to_x = dsp::cascaded(of_input, filter, weights, through);
-    if (c != nullptr) free_to_x = dsp::cascaded(filter, filter, c->head(n_), 0.0);
+    all.to_x = dsp::cascaded(all.of_input, all.filter, -weights, -through);
+    if (c != nullptr) all.free_to_x = dsp::cascaded(all.filter, all.filter, -c->head(n_), 0.0).transition;
   }
-  const Matrix of_source = dsp::states_at_starts(to_x, signals, source);
-  Matrix of_free;
+  all.source = dsp::states_at_starts(all.to_x, signals, layout.reference ? kCleanInput : layout.input);
+  if (layout.reference) all.input = dsp::states_at_starts(all.of_input, signals, kInput);
+  if (layout.output) all.output = dsp::states_at_starts(negative(all.filter), signals, kOutput);
   if (layout.free) {
-    of_free = dsp::free_at_starts(free_to_x.transition, Vector::Unit(free_to_x.transition.rows(), n_ - 1), length);
+    all.free = dsp::free_at_starts(all.free_to_x, Vector::Unit(all.free_to_x.rows(), n_ - 1), signals.length());
   }
-  const dsp::SegmentFilter source_filter(of_input, of_source.topRows(n_));
-  Filters<dsp::SegmentFilter> filters{layout.reference ? from_rest(of_input, kInput) : source_filter, {}, {}, {}, {}};
-  if (layout.output) filters.y = from_rest(negative, kOutput);
-  if (layout.reference) filters.clean_u = source_filter;
-  if (layout.free) filters.free.emplace(filter, of_free.topRows(n_));
-  if (layout.instruments) {
-    Matrix starts = -of_source.bottomRows(n_);
-    if (c != nullptr) starts -= of_free.bottomRows(n_);
-    filters.x.emplace(negative, starts);
+  return all;
+}
+
+template <class Use>
+void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
+                                const Courses& from_here, Use&& use) const {
+  const SignalPair& pair = experiments_[experiment];
+  const dsp::Segments& signals = stretched_[experiment];
+  const Vector* const c = layout.reference ? nullptr : free_weights(at, layout, experiment);
+  const Index order = noise.size() - 1, length = signals.length(), past = order * dsp::kSegments;
+  const dsp::SegmentFilter source(from_here.of_input, from_here.source.topRows(n_));
+  Filters<dsp::SegmentFilter> filters{source, {}, {}, {}, {}};
+  if (layout.output) filters.y.emplace(negative(from_here.filter), from_here.output);
+  if (layout.reference) {
+    filters.u = dsp::SegmentFilter(from_here.of_input, from_here.input);
+    filters.clean_u = source;
   }
+  if (layout.free) filters.free.emplace(from_here.filter, from_here.free.topRows(n_));
+  if (layout.instruments) filters.x.emplace(negative(from_here.filter), from_here.of_x());
   Table table(layout.written(), past + kBlock), filtered(layout.rows(), kBlock);
   const dsp::Rows now = table.from(past);
-  for (Index begin = 0; begin < length + order; begin += kSteps) {
+  for (Index begin = from_here.step; begin < length + order; begin += kSteps) {
     const Index steps = std::min(kSteps, length + order - begin), columns = steps * dsp::kSegments;
     const Inputs from{signals.row(layout.input, begin), signals.row(kOutput, begin),
                       layout.reference ? signals.row(kCleanInput, begin) : nullptr};
@@ -426,6 +498,108 @@ void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const
     block.clear_beyond(layout.rows());
     use(block);
   }
+}
+
+/// Each row at sample j of a stride is linear in the states at its first sample and in the samples up to j. So its
+/// products follow from those of these states and samples, which are there once for eight samples.
+Matrix Fitter::products_of_strides(std::size_t experiment, const Iterate& at, const Layout& layout,
+                                   Courses& from_here) const {
+  constexpr Index kAtOnce = 8;
+  const dsp::Segments& signals = stretched_[experiment];
+  const Strided& strided = strided_[experiment];
+  const StrideLayout base(layout, n_, from_here.free_is_known());
+  dsp::StridedFilter source(from_here.to_x, from_here.source), output(negative(from_here.filter), from_here.output);
+  std::optional<dsp::StridedFilter> free;
+  if (layout.free) free.emplace(from_here.free_to_x, from_here.free);
+
+  Table table(base.input, (kAtOnce + 1) * dsp::kSegments);
+  const dsp::Rows states = table.from(0), y = rows_from(states, base.y);
+  if (layout.free) std::fill_n(states.row(base.one), kAtOnce * dsp::kSegments, 1.0);
+  // Products of −y_f and y are needed where there are no instruments.
+  const Index left = layout.instruments ? base.y : base.input;
+  dsp::Products among(left, base.input), with_samples(left, 2 * dsp::kStride), y_with_input(n_, dsp::kStride);
+  const Index all = strided.signals.strides();
+  for (Index k = 0; k < all; k += kAtOnce) {
+    const Index count = std::min(kAtOnce, all - k), columns = count * dsp::kSegments;
+    source.run(signals.row(kInput, k * dsp::kStride), count, states);
+    output.run(signals.row(kOutput, k * dsp::kStride), count, y);
+    if (free) free->run(nullptr, count, rows_from(states, base.free));
+    const dsp::Rows samples = strided.signals.from(k);
+    among.add(states, states, columns);
+    with_samples.add(states, samples, columns);
+    if (layout.instruments) y_with_input.add(y, samples, columns);
+  }
+  from_here.step = all * dsp::kStride;
+  from_here.source = source.state();
+  from_here.output = output.state();
+  if (free) from_here.free = free->state();
+
+  Matrix products = Matrix::Zero(base.size, base.size);
+  products.block(base.y, base.input, n_, dsp::kStride) = y_with_input.total();
+  products.topLeftCorner(left, base.input) = among.total();
+  products.topRightCorner(left, 2 * dsp::kStride) = with_samples.total();
+  products.bottomRightCorner(2 * dsp::kStride, 2 * dsp::kStride) = strided.products;
+  products.triangularView<Eigen::StrictlyLower>() = products.transpose();
+  return over_stride(at, layout, free_weights(at, layout, experiment), from_here, products);
+}
+
+Matrix Fitter::over_stride(const Iterate& at, const Layout& layout, const Vector* free_weights, const Courses& steps,
+                           const Matrix& products) const {
+  const StrideLayout base(layout, n_, steps.free_is_known());
+  const dsp::HeldStep of_output = negative(steps.filter);
+  Matrix x = Matrix::Zero(n_, base.size), u = x, free = x, y = x, next = x;
+  u.middleCols(base.u, n_).setIdentity();
+  y.middleCols(base.y, n_).setIdentity();
+  if (layout.instruments) x.middleCols(base.x, n_).setIdentity();
+  if (layout.free) free.middleCols(base.free, n_).setIdentity();
+  if (steps.free_is_known()) x.middleCols(base.free_in_x, n_).setIdentity();
+  const auto step = [&](const Matrix& transition, Matrix& states) {
+    next.noalias() = transition.lazyProduct(states);
+    states.swap(next);
+  };
+  const auto step_with = [&](const dsp::HeldStep& by, Index samples, Matrix& states) {
+    step(by.transition, states);
+    states.col(samples - 1) += by.from_last;
+    states.col(samples) += by.from_next;
+  };
+  const Index left = layout.instruments ? layout.y() : layout.rows();
+  Matrix rows = Matrix::Zero(layout.rows(), base.size), gram = Matrix::Zero(layout.rows(), layout.rows());
+  Eigen::RowVectorXd modelled = Eigen::RowVectorXd::Zero(base.size), clean, last;  // B/A u; x̂
+  for (Index j = 0; j < dsp::kStride; ++j) {
+    if (j > 0) {
+      step_with(steps.of_input, base.input + j, u);
+      step_with(of_output, base.output + j, y);
+      if (layout.free) step(steps.filter.transition, free);
+    }
+    auto input = rows.middleRows(layout.u(), q_);
+    input.topRows(std::min(q_, n_)) = u.topRows(std::min(q_, n_));
+    if (q_ > n_) {
+      input.row(n_) = -at.a.transpose() * u;
+      input(n_, base.input + j) += 1.0;
+    }
+    if (at.b.size() > 0) modelled = at.b.transpose() * input;
+    rows.row(layout.e()) = -modelled;
+    rows(layout.e(), base.output + j) += 1.0;
+    rows.middleRows(layout.y(), n_) = y;
+    if (layout.free) {
+      rows.middleRows(layout.free_at(), n_) = free;
+      rows(layout.free_at() + n_, base.one) = 1.0;
+    }
+    if (layout.instruments) {
+      last.swap(clean);
+      clean = modelled;
+      if (free_weights != nullptr) clean += free_weights->head(n_).transpose() * free;
+      if (j > 0) {
+        step(of_output.transition, x);
+        x += of_output.from_last * last + of_output.from_next * clean;
+      }
+      rows.topRows(n_) = x;
+    }
+    gram.topRows(left).noalias() += (rows.topRows(left) * products).eval() * rows.transpose();
+  }
+  if (layout.instruments) gram.block(layout.e(), layout.y(), 1, n_).setZero();  // not all of it was added up
+  gram.bottomLeftCorner(layout.rows() - left, left) = gram.topRightCorner(left, layout.rows() - left).transpose();
+  return gram;
 }
 
 template <class Use>
@@ -456,7 +630,7 @@ template <class Use>
 void Fitter::blocks(std::size_t experiment, const Iterate& at, const Layout& layout, const Vector& noise,
                     Use&& use) const {
   if (experiments_[experiment].step) {
-    blocks_of_segments(experiment, at, layout, noise, use);
+    blocks_of_segments(experiment, at, layout, noise, courses(experiment, at, layout), use);
   } else {
     blocks_of_uneven(experiment, at, layout, use);
   }
@@ -474,14 +648,22 @@ Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, 
     dsp::Products across(left, rows - u), within(diagonal ? 0 : own_size, own_size);
     dsp::Squares of_e(1), of_own(diagonal ? own_size : 0);
     Vector e(residuals == nullptr ? 0 : experiments_[k].time.size());
-    blocks(k, at, layout, noise, [&](const Block& block) {
+    Matrix gram = Matrix::Zero(rows, rows);
+    const auto add = [&](const Block& block) {
       across.add(block.rows, rows_from(block.rows, u), block.columns);
       of_e.add(rows_from(block.rows, layout.e()), block.columns);
       within.add(rows_from(block.rows, own), rows_from(block.rows, own), block.columns);
       of_own.add(rows_from(block.rows, own), block.columns);
       if (residuals != nullptr) block.scatter(layout.e(), e);
-    });
-    Matrix gram = Matrix::Zero(rows, rows);
+    };
+    Matrix strides = Matrix::Zero(rows, rows);
+    if (use == For::step && noise.size() == 1 && residuals == nullptr && strides_pay(k, layout)) {
+      Courses from_here = courses(k, at, layout);
+      strides = products_of_strides(k, at, layout, from_here);
+      blocks_of_segments(k, at, layout, noise, from_here, add);
+    } else {
+      blocks(k, at, layout, noise, add);
+    }
     gram.block(0, u, left, rows - u) = across.total();
     gram.block(u, 0, rows - u, left) = across.total().transpose();
     gram(layout.e(), layout.e()) = of_e.total()[0];
@@ -490,6 +672,7 @@ Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, 
     } else {
       gram.block(own, own, own_size, own_size) = within.total();
     }
+    gram += strides;
     Reduced one = reduce(gram, layout);
     if (residuals != nullptr) {
       if (layout.free) e -= free_motion(at, experiments_[k]).transpose() * one.free_of_e;
@@ -759,6 +942,9 @@ Result<ContinuousFit> Fitter::run() {
       signals.push_back(&clean);
     }
     stretched_.emplace_back(signals, options_.max_noise_order);
+    if (!options_.reference_instruments && strided_.size() + 1 == stretched_.size()) {
+      strided_.emplace_back(stretched_.back(), pair.time.size());
+    }
   }
   if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
   if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");

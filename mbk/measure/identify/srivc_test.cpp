@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "mbk/base/numeric/random.h"
 
@@ -114,6 +115,35 @@ TEST(Srivc, TakesAnUnevenClockAsItIs) {
   const auto fit = fit_continuous({pair}, order_4_1());
   ASSERT_TRUE(fit.has_value() && fit->converged);
   EXPECT_LT(((both(*fit) - truth.theta).array() / truth.theta.array()).abs().maxCoeff(), 1e-8);
+}
+
+TEST(Srivc, IsTheSameByStridesOfAnEvenClockAndSampleBySample) {
+  constexpr double kStep = 1.0 / 128.0;  // whose multiples have no rounding
+  for (const std::optional<double> held : {std::optional<double>(), std::optional<double>(0.6)}) {
+    SignalPair even = experiment(31, kStep);  // long enough for strides to pay
+    even.held = held;
+    even.output = simulate_continuous(RaoGarnier().a, RaoGarnier().b, even);
+    numeric::Random random(5);
+    for (double& y : even.output) y += 2.0 + 0.3 * random.normal();
+    SignalPair uneven = even;
+    uneven.step.reset();
+    for (const Index zeros : {0, 1, 4}) {
+      for (const bool free_start : {false, true}) {
+        ContinuousFitOptions options = order_4_1();
+        options.zeros = zeros;
+        options.free_start = free_start;
+        options.start_poles = {20.0};
+        options.only_given_starts = true;
+        options.max_iterations = 4;  // one zero less than there is leads nowhere, but everywhere alike
+        const auto by_strides = fit_continuous({even}, options), by_samples = fit_continuous({uneven}, options);
+        ASSERT_TRUE(by_strides.has_value() && by_samples.has_value());
+        EXPECT_EQ(by_strides->converged, by_samples->converged);
+        const Vector theta = both(*by_samples);
+        EXPECT_LT((both(*by_strides) - theta).cwiseQuotient(theta).lpNorm<Eigen::Infinity>(), 1e-8)
+            << zeros << " zeros" << (free_start ? ", free start" : "") << (held ? ", held" : "");
+      }
+    }
+  }
 }
 
 TEST(Srivc, RefusesAModelThatIsUnstable) {
