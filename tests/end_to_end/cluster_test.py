@@ -22,7 +22,8 @@ import study as studies  # noqa: E402
 from processes import ended_by_kill, workers_of  # noqa: E402
 
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-VALIDATE = ("validate", "reliability", "--runs", "48", "--json", "--quiet")
+RUNS = 32  # of 40 ms
+VALIDATE = ("validate", "reliability", "--runs", str(RUNS), "--json", "--quiet")
 SHORT = ("--chunk-units", "3")
 
 
@@ -209,10 +210,10 @@ class Local(Engines, JobCase):
         lines = [json.loads(line) for line in ran.err.splitlines()]
         for line in lines:
             command.schemas.check(line)
-        self.assertEqual(lines[-1]["finished_units"], 48)
+        self.assertEqual(lines[-1]["finished_units"], RUNS)
 
     def test_the_same_table_by_any_chunks(self):
-        for units in (7, 48):
+        for units in (7, RUNS):
             ran = self.job(*VALIDATE, "--chunk-units", units, code=self.judged)
             self.assertEqual(ran.out, self.table)
         self.assertFalse((self.folder / "mbk-jobs").exists())

@@ -44,7 +44,13 @@ class Keeper {
     }
     Keeper keeper(descriptor);
     std::array<char, 256> text{};
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    // A program that a killed process was about to start holds its lock for a moment longer.
+    bool taken = false;
+    for (const auto begin = Clock::now(); !taken && seconds_since(begin) < 1.0;) {
+      taken = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+      if (!taken) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    if (!taken) {
       const ssize_t got = ::read(descriptor, text.data(), text.size() - 1);
       return bad_data(fmt::format("another mbk looks after this job{}{}", got > 0 ? ": " : "", text.data()),
                       "wait for it, or end it; what runs goes on", folder.folder().string());
