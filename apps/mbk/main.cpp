@@ -84,10 +84,9 @@ int run(int argc, char** argv) {
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
       "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n\n"
-      "  mbk measure log.mat                 the main job: recording → M, B, K, x0, ellipses, warnings\n"
-      "  mbk passivity log.mat               what energy the limb absorbed, and what its model predicts\n"
-      "  mbk info log.mat                    what is in a recording, and what is wrong with it\n"
-      "  mbk measure --help                  every command explains itself\n"};
+      "  mbk measure log.mat    the main job: recording → M, B, K, x0, ellipses\n"
+      "  mbk info log.mat       what is in a recording, and what is wrong with it\n"
+      "  mbk measure --help     every command explains itself; --help-all says everything\n"};
   app.name("mbk");
   app.set_version_flag("--version", fmt::format("mbk {}", mbk::version()));
   app.require_subcommand(1);

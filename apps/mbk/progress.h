@@ -58,10 +58,10 @@ class Progress {
     return true;
   }
 
-  /// As long as what is left takes at the pace so far, where that is more than a moment.
+  /// As long as what is left takes at the pace so far, where that is more than a moment and enough was done to tell.
   [[nodiscard]] std::string left(double fraction) const {
-    constexpr double kMoment = 5.0, kMinute = 60.0, kMinutes = 2.0 * kMinute;
-    if (!(fraction > 0.0)) return "";
+    constexpr double kEnough = 0.05, kMoment = 5.0, kMinute = 60.0, kMinutes = 2.0 * kMinute;
+    if (fraction < kEnough) return "";
     const double seconds = Seconds(Clock::now() - begun_).count() * (1.0 - fraction) / fraction;
     if (seconds < kMoment) return "";
     return seconds < kMinutes ? fmt::format(", about {:.0f} s left", seconds)

@@ -47,6 +47,14 @@ std::size_t text_begin(std::string_view line, std::size_t columns) {
   return 2 * begin > columns ? indent : begin;
 }
 
+/// Whether a line belongs to the one before it, of which `rest` did not fit: it stands as deep, and that one has not
+/// come to an end.
+bool goes_on(std::string_view rest, std::size_t hanging, std::string_view line) {
+  constexpr std::string_view kEnds = ".:)";
+  return !rest.empty() && kEnds.find(rest.back()) == std::string_view::npos && indent_of(line) == hanging &&
+         hanging < line.size() && line.find("  ", hanging) == std::string_view::npos && !line.ends_with(':');
+}
+
 bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> words) {
   return std::ranges::any_of(words, [&](std::string_view word) { return text.starts_with(word); });
 }
@@ -90,38 +98,37 @@ Terminal terminal_at(int descriptor) {
 std::string fitted(std::string_view text, std::size_t columns) {
   using namespace terminal;
   std::string out, rest;  // of a line that was broken
-  std::size_t rest_begin = 0;
+  std::size_t hanging = 0;
+  const auto put = [&](std::string line) {
+    while (line.ends_with(' ')) line.pop_back();
+    out += line + "\n";
+  };
   const auto finish = [&] {
-    if (!rest.empty()) out += std::string(rest_begin, ' ') + rest + "\n";
+    if (!rest.empty()) put(std::string(hanging, ' ') + rest);
     rest.clear();
   };
   for (const std::string_view given : lines_of(text)) {
     std::string line(given);
-    const std::size_t indent = indent_of(given);
-    const bool goes_on = !rest.empty() && indent == rest_begin && indent < given.size() &&
-                         given.find("  ", indent) == std::string_view::npos && !given.ends_with(':');
-    if (goes_on) {
-      line = std::string(rest_begin, ' ') + rest + " " + std::string(given.substr(indent));
+    if (goes_on(rest, hanging, given)) {
+      line = std::string(hanging, ' ') + rest + " " + std::string(given.substr(hanging));
       rest.clear();
     } else {
       finish();
+      hanging = 0;
     }
-    if (report::columns(line) <= columns || is_drawing(line)) {
-      out += line + "\n";
+    const std::size_t begin = hanging > 0 ? hanging : text_begin(line, columns);
+    if (report::columns(line) <= columns || is_drawing(line) || line.find(' ', begin) == std::string::npos) {
+      put(line);
       continue;
     }
-    const std::size_t begin = goes_on ? rest_begin : text_begin(line, columns);
-    if (line.find(' ', begin) == std::string::npos) {  // a word that nothing can break
-      out += line + "\n";
-      continue;
-    }
-    std::string broken = report::wrapped(line.substr(begin), columns - report::columns(line.substr(0, begin)));
-    out += line.substr(0, begin);
-    rest_begin = report::columns(line.substr(0, begin));
+    constexpr std::size_t kDeeper = 4;
+    hanging = report::columns(std::string_view(line).substr(0, begin)) + (line.starts_with("  mbk ") ? kDeeper : 0);
+    std::string broken = report::wrapped(std::string_view(line).substr(begin), columns - hanging);
+    std::string before = line.substr(0, begin);
     for (std::size_t end = broken.find('\n'); end != std::string::npos; end = broken.find('\n')) {
-      out += broken.substr(0, end) + "\n";
+      put(before + broken.substr(0, end));
       broken.erase(0, end + 1);
-      if (broken.find('\n') != std::string::npos) out += std::string(rest_begin, ' ');
+      before = std::string(hanging, ' ');
     }
     rest = broken;
   }

@@ -64,6 +64,8 @@ class Help(Case):
                     self.assertEqual(code, 0)
                     self.assert_lines_fit(ESCAPE.sub("", text), columns)
             self.assert_lines_fit(ESCAPE.sub("", at_terminal("--help", columns=columns)[1]), columns)
+        for command in ((), ("measure",), ("teleop",), ("study",)):
+            self.assertLessEqual(at_terminal(*command, "--help", columns=80)[1].count("\n"), SCREEN, command)
 
 
 class Width(Case):
