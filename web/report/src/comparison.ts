@@ -2,7 +2,7 @@
 import type { Comparison, ComparisonReport, Interval, Value, Width } from "@mbk/shared/documents";
 import { h, heading, table } from "@mbk/shared/dom";
 import { data, fixed, significant } from "@mbk/shared/format";
-import { matrices } from "@mbk/shared/result";
+import { matrices, methodNames, type Trial } from "@mbk/shared/result";
 import { csvOf } from "@mbk/shared/sheet";
 import type { Report } from "./data";
 import { nameOf } from "./overview";
@@ -16,7 +16,7 @@ const between = (value: Value, [low, high]: Interval, name: string): HTMLElement
 function times(width: Width, k: number, name: string): (Node | string)[] {
   const one = width.second_to_first[k];
   if (!one) return [];
-  return ["× ", between(one.ratio, one.interval95, name), one.direction_deg === undefined ? "" : ` at ${fixed(one.direction_deg, 0)}°`];
+  return ["×\u00a0", between(one.ratio, one.interval95, name), one.direction_deg === undefined ? "" : ` at ${fixed(one.direction_deg, 0)}°`];
 }
 
 function row(name: string, matrix: string, comparison: Comparison, of: keyof Comparison["width"]): (Node | string)[] {
@@ -56,15 +56,16 @@ function ratiosDrawing(report: Report, comparisons: Comparison[]): HTMLElement |
 
 export function comparisonSection(report: Report, { comparisons }: ComparisonReport): HTMLElement {
   const [first] = report.trials;
+  const named = (trial: Trial) => `${nameOf(trial, report.trials)}, by ${methodNames[trial.result.method]}`;
   const shown = comparisons.flatMap((comparison, k) => {
     const other = report.trials[k + 1];
     if (!first?.result.usable || !other?.result.usable) return [];
-    return matrices.map(({ symbol, name, title }) => row(nameOf(other, report.trials), `${title} ${symbol}`, comparison, name));
+    return matrices.map(({ symbol, name, title }) => row(named(other), `${title} ${symbol}`, comparison, name));
   });
   const left = report.trials.filter(({ result }) => !result.usable);
   return h("section", { id: "comparison" },
     heading(2, "How far apart"),
-    first ? h("p", {}, "Each is compared with the first: ", h("strong", {}, nameOf(first, report.trials)), ".") : "",
+    first ? h("p", {}, "Each is compared with the first: ", h("strong", {}, named(first)), ".") : "",
     shown.length > 0 ? table("Width, and how many times the first; brackets are 95 % intervals", ["result", "", "width", "least", "most", ""], shown, "numbers widths") : "",
     ...left.map((trial) => h("p", { "data-name": "not-compared" }, h("strong", {}, "Not compared: "), `${nameOf(trial, report.trials)} is not usable${trial === first ? ", so that nothing can be compared with it" : ""}.`)),
     shown.length > 0 && left.length === 0 ? ratiosDrawing(report, comparisons) : "",
