@@ -23,7 +23,7 @@ Commands all_commands(const std::string& typed) {
       {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
       {"ellipse", add_ellipse},
       {"passivity", add_passivity},
-      {"compare", add_compare},
+      {"compare", [typed](CLI::App& app) { return add_compare(app, typed); }},
       {"info", add_info},
       {"new", add_new},
       {"convert", add_convert},

@@ -32,7 +32,7 @@ Action add_movement(CLI::App& app);
 Action add_tf(CLI::App& app, const std::string& typed);
 Action add_ellipse(CLI::App& app);
 Action add_passivity(CLI::App& app);
-Action add_compare(CLI::App& app);
+Action add_compare(CLI::App& app, const std::string& typed);
 Action add_info(CLI::App& app);
 Action add_new(CLI::App& app);
 Action add_convert(CLI::App& app);

@@ -12,8 +12,8 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
+#include "apps/mbk/stored_result.h"
 #include "mbk/base/numeric/parallel.h"
-#include "mbk/measure/analyse/judge_passivity.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/passivity_text.h"
@@ -27,10 +27,8 @@ struct PassivityArguments : MeasureArguments {
   std::string band;
 };
 
-using Asked = std::optional<std::pair<Hertz, Hertz>>;
-
 /// LOW:HIGH in Hz.
-Result<Asked> band_of(const std::string& text) {
+Result<AskedBand> band_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   double low = 0.0, high = 0.0;
   const char* end = text.data() + text.size();
@@ -60,7 +58,7 @@ struct PassivityAnswers {
   std::vector<Error> failed;
 };
 
-Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const Asked& band) {
+Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const AskedBand& band) {
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
@@ -99,50 +97,21 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   return answers;
 }
 
-/// Both statements from what a result holds: its models, and the energy that it was written with.
-Result<Answer> from_result(const result::StoredResult& stored, const Asked& asked) {
-  const Identification& main = stored.identification;
-  Answer answer{main.sources, {}, {}, std::nullopt, main.motion};
-  Passivity& passivity = answer.passivity;
-  passivity.band = stored.passivity.band;
-  if (stored.passivity.energy) {
-    passivity.trial = analyse::trial_passivity(main, *stored.passivity.energy, stored.passivity.lines);
-  }
-  if (!asked && !stored.passivity.judged) {
-    if (!stored.passivity.energy) {
-      return bad_usage("it does not say in which band its model can be judged", "add --band LOW:HIGH in Hz");
-    }
-    passivity.prediction = analyse::predict_passivity({}, main.usable, std::nullopt);
-    return answer;
-  }
-  const PassivityBand band =
-      asked ? analyse::asked_band(asked->first, asked->second, passivity.band) : *stored.passivity.judged;
-  const Identification* first = &main;
-  const Identification* other = stored.alternative ? &*stored.alternative : nullptr;
-  if (other != nullptr && stored.passivity.predicts == other->method) std::swap(first, other);
-  auto models = analyse::model_passivities({first, other}, band);
-  if (!models) return tl::unexpected(models.error());
-  passivity.models = std::move(*models);
-  passivity.prediction = analyse::predict_passivity(passivity.models, main.usable, passivity.band);
-  return answer;
-}
-
 /// All results of a file.
-Result<std::vector<Answer>> from_file(const std::filesystem::path& file, const Asked& band) {
-  const auto text = read_text(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto results = result::results_from_json(*text);
-  if (!results) return tl::unexpected(results.error().in(file.string()));
+Result<std::vector<Answer>> from_file(const std::filesystem::path& file, const AskedBand& band) {
+  const auto results = stored_results(file);
+  if (!results) return tl::unexpected(results.error());
   std::vector<Answer> answers;
   for (const result::StoredResult& stored : *results) {
-    auto answer = from_result(stored, band);
-    if (!answer) return tl::unexpected(answer.error().in(file.string()));
-    answers.push_back(std::move(*answer));
+    auto passivity = passivity_of(stored, band);
+    if (!passivity) return tl::unexpected(passivity.error().in(file.string()));
+    const Identification& id = stored.identification;
+    answers.push_back({id.sources, std::move(*passivity), {}, std::nullopt, id.motion});
   }
   return answers;
 }
 
-PassivityAnswers from_results(const PassivityArguments& arguments, const Asked& band) {
+PassivityAnswers from_results(const PassivityArguments& arguments, const AskedBand& band) {
   PassivityAnswers answers;
   for (const std::filesystem::path& file : arguments.reading.files) {
     auto found = from_file(file, band);

@@ -3,7 +3,9 @@
 
 import json
 import math
+import re
 
+import schemas
 from command import NOT_USABLE, WRONG_USAGE, Case, main, make_log, run
 
 MATRICES = ("inertia", "damping", "stiffness")
@@ -74,12 +76,67 @@ class Width(Case):
         one = self.folder / "one.json"
         self.fine("measure", make_log("sinusoidal", "--one-axis").path, "--json", "--quiet", "--out", one)
         self.refused(3, "compare", self.stored(), one, says="axis")
-        self.refused(WRONG_USAGE, "compare", self.stored(), says="FILE")
-        self.refused(WRONG_USAGE, "compare", self.stored(), self.stored("b.json"), self.stored("c.json"))
+        self.refused(WRONG_USAGE, "compare", says="FILE")
+        self.refused(WRONG_USAGE, "compare", self.stored(), says=["one result", "a folder of results"])
+        self.refused(3, "compare", self.stored(), self.stored("b.json"), one, says=["axis", "one.json"])
         self.bad_data(self.folder / "nothing.json", self.stored(), command="compare", says="no such file")
+        (self.folder / "empty").mkdir()
+        self.refused(3, "compare", self.folder / "empty", says=["no result in this folder", "mbk measure FILE --json --out"])
+
+    def test_of_more_than_two_each_is_compared_with_the_first(self):
+        first, second, third = self.stored(), self.stored("b.json", K=[[200.0, 0.0], [0.0, 200.0]]), self.stored("c.json")
+        found = self.fine("compare", first, second, third, "--json").json
+        self.assertEqual(found["schema"], "mbk.comparisons/1")
+        pairs = [self.fine("compare", first, other, "--json").json["width"] for other in (second, third)]
+        self.assertEqual([one["width"] for one in found["results"]], pairs)
         several = self.folder / "several.json"
         self.fine("measure", make_log().path, make_log().path, "--json", "--quiet", "--out", several)
-        self.bad_data(several, self.stored(), command="compare", says="2 results")
+        self.assertEqual(len(self.fine("compare", several, first, "--json").json["results"]), 2)
+        text = self.fine("compare", first, second, third).out
+        for name in ("b.json", "c.json"):
+            self.assertIn(f"{self.folder / name}\n", text)
+
+    def report(self, name):
+        """The document in a page, which fits its schema."""
+        page = (self.folder / name).read_text(encoding="utf-8")
+        document = json.loads(re.search(r'id="report-data">(.*?)</script>', page, re.S).group(1))
+        schemas.check(document)
+        return document
+
+    def test_a_page_holds_the_results_and_how_far_they_are_apart(self):
+        first, second = self.stored(), self.stored("rigid.json", K=[[600.0, 0.0], [0.0, 900.0]])
+        ran = self.fine("compare", first, second, "--json", "--report", self.folder / "page.html", "--report-note", "May")
+        document = self.report("page.html")
+        self.assertEqual(document["names"], [str(first), str(second)])
+        self.assertEqual([one["width"] for one in document["comparisons"]], [ran.json["width"]])
+        self.assertEqual(document["note"], "May")
+        for stored, shown in zip((first, second), document["result"]["results"], strict=True):
+            written = json.loads(stored.read_text(encoding="utf-8"))
+            for field in ("model", "standard_error", "fit", "covariance", "usable", "units"):
+                self.assertEqual(shown[field], written[field], field)
+        self.refused(WRONG_USAGE, "compare", first, second, "--report", self.folder / "page.html", says="--overwrite")
+
+    def test_a_folder_is_every_result_in_it_and_says_what_it_leaves_out(self):
+        folder = self.folder / "results"
+        folder.mkdir()
+        for name in ("a.json", "b.json", "c.json"):
+            (folder / name).write_bytes(self.stored().read_bytes())
+        (folder / "notes.json").write_text('{"schema": "mine/1"}', encoding="utf-8")
+        (folder / "readme.txt").write_text("no result", encoding="utf-8")
+        ran = self.mbk("compare", folder, "--report", self.folder / "all.html", code=0)
+        self.assertRegex(ran.err, "left out: .*notes.json")
+        self.assertNotIn("readme", ran.err)
+        document = self.report("all.html")
+        self.assertEqual(document["names"], [str(folder / name) for name in ("a.json", "b.json", "c.json")])
+        self.assertIn("notes.json", document["result"]["failed"][0]["file"])
+        self.assertEqual(len(document["comparisons"]), 2)
+
+    def test_recordings_bring_who_was_measured_into_the_page(self):
+        logs = [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2)]
+        self.fine("compare", *logs, "--report", self.folder / "logs.html")
+        document = self.report("logs.html")
+        self.assertEqual([len(one["recordings"]) for one in document["trials"]], [1, 1])
+        self.assertIn("passivity", document["result"]["results"][0])
 
 
 if __name__ == "__main__":

@@ -158,7 +158,6 @@ class Commands(Case):
     def test_the_number_of_words_is_said_as_a_person_would(self):
         log = make_log().path
         self.refused(WRONG_USAGE, "simulate", "relaxed", "rigid", says="'rigid' is one word too many for 'mbk simulate'")
-        self.refused(WRONG_USAGE, "compare", log, log, log, says="FILE takes at most 2, and 3 were given")
         self.refused(WRONG_USAGE, "study", says="no command; there are init, defaults, add, import")
         self.refused(WRONG_USAGE, "measure", log, "--cutoff", says="--cutoff needs a value, HZ|none")
 

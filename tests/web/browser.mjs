@@ -235,6 +235,17 @@ export async function violationsInBoth(page) {
   return found;
 }
 
+/** What is wider than its place, and text of drawings that reaches out of them. */
+export const clipped = (page) => page.evaluate(() => {
+  const shown = (element) => element.checkVisibility() && element.getClientRects().length > 0;
+  const wide = [...document.querySelectorAll("body *")].filter((one) => !one.closest("svg, pre") && shown(one) && one.clientWidth > 0 && one.scrollWidth > one.clientWidth + 1);
+  const out = [...document.querySelectorAll("svg text")].filter((text) => {
+    const [inner, outer] = [text.getBoundingClientRect(), text.ownerSVGElement.getBoundingClientRect()];
+    return shown(text) && inner.width > 0 && (inner.left < outer.left - 1 || inner.right > outer.right + 1 || inner.top < outer.top - 2 || inner.bottom > outer.bottom + 2);
+  });
+  return [...wide, ...out].map((one) => `${one.tagName} ${one.className.baseVal ?? one.className}: ${one.textContent.slice(0, 60)}`);
+});
+
 /** Screenshot at 1440 px and an A4 PDF, to be looked at. */
 export async function picture(page, name) {
   await scrollThrough(page);

@@ -1,8 +1,9 @@
 // The HTML report in a browser: its numbers are those of --json, it is quiet, offline, accessible and printable.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, scrollThrough, simulate, violations } from "./browser.mjs";
+import { join } from "node:path";
+import { assertShown, changed, clipped, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, scrollThrough, simulate, violations, violationsInBoth } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
@@ -240,7 +241,7 @@ test("several recordings stand side by side at one scale, and a link opens each"
   assert.equal(several.json.summary, undefined);
   assert.ok((await page.textContent("main")).includes(several.json.no_summary), several.json.no_summary);
 
-  const scales = await page.$$eval(".comparison:last-of-type .ellipse-drawing", (all) => all.map((svg) => ({
+  const scales = await page.$$eval(".comparison:nth-of-type(3) .ellipse-drawing", (all) => all.map((svg) => ({
     rx: Number(svg.querySelector(".ellipse").getAttribute("rx")),
     circle: svg.querySelector(".reference").getAttribute("r"),
   })));
@@ -274,6 +275,145 @@ test("on paper everything is open, every chart is drawn and none is wider than t
   assert.equal(await page.locator("details.trial[open]").count(), 0, "closed again");
   assert.deepEqual(said, []);
   await done();
+});
+
+test("nothing is cut off from 900 to 1920 px, and every chart is there without scrolling to it", async () => {
+  for (const file of [onePage, withPlots(several, "several-plots"), withPlots(oneAxis, "joint-plots")]) {
+    await onPage(file, async (page) => {
+      await eventually(async () => assert.equal(await page.locator(".chart > div > svg").count(), await page.locator(".chart").count()));
+      await page.$$eval("details.trial, details.metadata", (all) => all.forEach((one) => (one.open = true)));
+      for (const width of [900, 1280, 1920]) {
+        await page.setViewportSize({ width, height: 900 });
+        await eventually(async () => assert.deepEqual(await clipped(page), [], `${width} px`));
+      }
+    });
+  }
+});
+
+const savedBy = async (page, button) => {
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  return { name: download.suggestedFilename(), text: readFileSync(await download.path(), "utf8") };
+};
+
+test("a drawing is saved as on paper, whatever the screen looks like, and printed alone", async () => {
+  const saved = [];
+  for (const colorScheme of ["light", "dark"]) {
+    await onPage(onePage, async (page) => {
+      for (const [name, words] of [["Ellipses", ["Inertia M", "N/m"]], ["Measured and predicted", ["predicted by the model", "Force along y [N]", "time [s]"]]]) {
+        const { name: file, text } = await savedBy(page, page.getByRole("button", { name: new RegExp(`^Save SVG: ${name}`) }));
+        assert.match(file, /^trial-1-\w+\.svg$/);
+        for (const word of words) assert.ok(text.includes(word), `${word} in ${file}`);
+        assert.doesNotMatch(text, /var\(|class=|color\(/, "it needs no style sheet");
+        const read = await page.evaluate((svg) => new DOMParser().parseFromString(svg, "image/svg+xml").documentElement.nodeName, text);
+        assert.equal(read, "svg");
+        saved.push(text);
+      }
+      await page.getByRole("button", { name: /^Print, save PDF: Ellipses/ }).click();
+      await eventually(async () => assert.equal(await page.frames().at(-1).locator("svg .none, svg svg").count(), 4, "three ellipses and the legend"));
+    }, { colorScheme });
+  }
+  assert.deepEqual(saved.slice(0, 2), saved.slice(2));
+});
+
+test("numbers of the ellipses are saved as they are in --json", () => onPage(one.file, async (page) => {
+  const { text } = await savedBy(page, page.getByRole("button", { name: "Save CSV: Ellipses" }));
+  const [, small, large] = /"K","N\/m",([^,]*),([^,]*),/.exec(text);
+  assert.deepEqual([Number(small), Number(large)], one.json.ellipses.stiffness.eigenvalues);
+}));
+
+test("a table is copied for a spreadsheet", () => onPage(one.file, async (page) => {
+  await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.getByRole("button", { name: /^Copy table: Inertia, damping, stiffness and equilibrium/ }).click();
+  const lines = await eventually(async () => {
+    const text = await page.evaluate(() => navigator.clipboard.readText());
+    assert.match(text, /^\txx\txy\tyx\tyy\tunit\n/);
+    return text.split("\n");
+  });
+  const shown = await numbers(page, "#trial-1-model");
+  assert.equal(lines[3].split("\t")[1], `${shown.K00.shown} ± ${shown["K00-half"].shown}`.replaceAll("−", "-"));
+}));
+
+test("the cards are of the model on which the prediction of passivity rests", async () => {
+  const eigenvalues = ([[a, b], [c, d]]) => (a + d) / 2 + Math.hypot((a - d) / 2, (b + c) / 2);
+  const { method, alternatives: [other] } = one.json;
+  assert.ok(other.usable && method !== other.method);
+  for (const first of [method, other.method]) {
+    const file = changed(one.file, `cards-${first}`, ({ result }) => result.passivity.models.sort((a, b) => Number(b.method === first) - Number(a.method === first)));
+    await onPage(file, async (page) => {
+      const cards = await numbers(page, "#trial-1-summary .cards");
+      const { model } = first === method ? one.json : other;
+      for (const symbol of ["M", "B", "K"]) close(cards[`card-${symbol}-large`].value, eigenvalues(model[symbol]), symbol);
+      assert.equal(await page.getAttribute("#trial-1-summary .model-of", "data-method"), first);
+      assert.equal(await page.locator("#trial-1-summary [data-other]").count(), 1);
+    });
+  }
+});
+
+test("values from the literature stand beside K, B and M with their source, and only of hands in a plane", async () => {
+  await onPage(one.file, async (page) => {
+    const table = page.locator("#trial-1-model .literature");
+    // √(A R/π) of Dyck (2013), table 3.3: P6 and P5
+    const [low, high] = [[4892.9, 6.5], [17693.1, 5.2]].map(([area, shape]) => Math.sqrt((area * shape) / Math.PI).toFixed(0));
+    assert.ok((await table.locator("tr", { hasText: "stiffness K, maximum" }).textContent()).includes(`${low} to ${high}`));
+    assert.match(await table.textContent(), /University of Alberta, 2013, table 3\.3\. Conditions: arm relaxed;/);
+    assert.equal(await page.locator(".card .beside").count(), 3);
+  });
+  await onPage(oneAxis.file, async (page) => assert.equal(await page.locator(".literature, .beside").count(), 0));
+});
+
+test("a logarithmic axis has ticks at 1, 2 and 5, and others where one looks closer", () => onPage(one.file, async (page) => {
+  const figure = page.locator("figure.chart-figure", { has: page.locator("#trial-1-index") });
+  const ticks = async () => (await figure.locator(".chart svg text").allTextContents()).map(Number);
+  const [from, to] = one.json.passivity.models[0].band_hz;
+  const within = [0.1, 0.2, 0.5, 1, 2, 5].filter((f) => f > from * 1.1 && f < to / 1.1);
+  assert.ok(within.length > 0);
+  const shown = await ticks();
+  for (const f of within) assert.ok(shown.includes(f), `${f} in ${shown}`);
+  for (let k = 0; k < 3; ++k) await figure.getByRole("button", { name: /^Zoom in/ }).click();
+  await eventually(async () => assert.notDeepEqual(await ticks(), shown));
+  assert.ok((await ticks()).filter((f) => f > from && f < to).length >= 2, `${await ticks()}`);
+}));
+
+test("recordings are called by participant, condition and file, in the file's own case", async () => {
+  const apart = changed(several.file, "apart", ({ result, trials }) => {
+    result.results.forEach((one, k) => (one.inputs[0].file = `/data/${["a", "b", "b"][k]}/${["lOG.mat", "lOG.mat", "Other.mat"][k]}`));
+    trials.forEach((trial, k) => (trial.recordings[0].metadata = k < 2 ? { participant: "p7", condition: "relaxed" } : {}));
+  });
+  await onPage(apart, async (page) => {
+    const names = await page.$$eval("details.trial > summary h3", (all) => all.map((one) => one.textContent));
+    assert.deepEqual(names.sort(), ["Other.mat", "p7, relaxed (a/lOG.mat)", "p7, relaxed (b/lOG.mat)"]);
+    const transforms = await page.$$eval("h1, h3", (all) => all.map((one) => getComputedStyle(one, "::first-letter").textTransform));
+    assert.deepEqual(new Set(transforms), new Set(["none"]));
+  });
+});
+
+test("light or dark, axe finds nothing wrong", async () => {
+  for (const file of [onePage, unusable.file]) await onPage(file, async (page) => assert.deepEqual(await violationsInBoth(page), []));
+});
+
+test("a comparison has the widths of --json, the results by the names of their files, and what was left out", async () => {
+  for (const [name, { json }] of [["Relaxed", measure("compared1", relaxed)], ["rigid", one]]) writeFileSync(join(folder, `${name}.json`), JSON.stringify(json));
+  mkdirSync(join(folder, "results"));
+  for (const name of ["Relaxed", "rigid"]) copyFileSync(join(folder, `${name}.json`), join(folder, "results", `${name}.json`));
+  writeFileSync(join(folder, "results", "notes.json"), "{}");
+  const ran = mbk("compare", "results", "--json", "--report", "compared.html");
+  assert.equal(ran.code, 0, ran.err);
+  await onPage(join(folder, "compared.html"), async (page) => {
+    const { width } = JSON.parse(ran.out);
+    const read = await numbers(page, "#comparison");
+    for (const name of ["inertia", "damping", "stiffness"]) {
+      close(read[`width-${name}`].value, width[name].distance, name);
+      close(read[`least-${name}`].value, width[name].second_to_first[0].ratio, name);
+      close(read[`most-${name}`].value, width[name].second_to_first.at(-1).ratio, name);
+    }
+    assert.deepEqual(await page.$$eval("table.overview:first-of-type tbody a", (all) => all.map((one) => one.textContent)), ["Relaxed.json", "rigid.json"]);
+    assert.match(await page.textContent("[data-name=failed]"), /Left out: .*notes\.json/);
+    assert.deepEqual(await violationsInBoth(page), []);
+    for (const width of [900, 1920]) {
+      await page.setViewportSize({ width, height: 900 });
+      await eventually(async () => assert.deepEqual(await clipped(page), []));
+    }
+  });
 });
 
 test("trials of one condition have a mean", async () => {
@@ -340,7 +480,7 @@ test("pictures of each kind of report, to be looked at", async () => {
     await onPage(file, async (page) => {
       const pdf = await picture(page, name);
       const pages = pdf.toString("latin1").match(/\/Type \/Page\b/g).length;
-      assert.ok(pages >= 4 && pages <= (name === "several" ? 40 : 14), `${name}: ${pages} pages`);
+      assert.ok(pages >= 4 && pages <= (name === "several" ? 40 : 15), `${name}: ${pages} pages`);
     });
   }
 });

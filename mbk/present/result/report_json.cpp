@@ -2,6 +2,7 @@
 
 #include "mbk/present/result/json_parts.h"
 #include "mbk/present/result/passivity_json.h"
+#include "mbk/present/result/width_json.h"
 
 namespace mbk::result {
 namespace {
@@ -74,9 +75,8 @@ Json facts_json(const RecordingFacts& facts) {
   return json;
 }
 
-}  // namespace
-
-std::string to_json(const Report& report) {
+/// @param more  fields beside those of all reports
+std::string report_json(const char* schema, const Report& report, const Json& more) {
   std::vector<Measurement> measured;
   Json trials = Json::array();
   for (const ReportedResult& one : report.results) {
@@ -87,14 +87,32 @@ std::string to_json(const Report& report) {
     if (one.diagnostics) trial["diagnostics"] = diagnostics_json(*one.diagnostics);
     trials.push_back(std::move(trial));
   }
-  Json json = header("mbk.report/1");
+  Json json = header(schema);
   json["command"] = report.command;
   if (!report.note.empty()) json["note"] = report.note;
+  json.update(more);
   json["trials"] = std::move(trials);
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.pop_back();  // the closing brace: the result follows as it stands in a file of its own
   return text + ",\"result\":" + (report.together ? to_json(measured, *report.together) : to_json(measured.front())) +
          "}\n";
+}
+
+}  // namespace
+
+std::string to_json(const Report& report) {
+  return report_json("mbk.report/1", report, Json::object());
+}
+
+std::string to_json(const ComparisonReport& report) {
+  const auto& results = report.compared.results;
+  Json more = {{"names", report.names}, {"comparisons", Json::array()}};
+  for (std::size_t k = 0; k < report.widths.size(); ++k) {
+    more["comparisons"].push_back(
+        Json::parse(width_to_json(results.front().measured.identification.sources,
+                                  results[k + 1].measured.identification.sources, report.widths[k])));
+  }
+  return report_json("mbk.compare_report/1", report.compared, more);
 }
 
 }  // namespace mbk::result

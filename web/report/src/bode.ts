@@ -42,7 +42,7 @@ export interface BodeWords {
   beside?: { name: string; magnitude: Value[]; phase_deg: Value[] };
 }
 
-const intervalColor = "rgba(213,94,0,0.28)"; // unlike the excited band's
+const intervalShade = { color: "var(--second)", opacity: 0.28 }; // unlike the excited band's
 
 /** The phase with lines at whole parts of a turn. */
 function phasePanel(response: Curve): Pick<Panel, "range" | "interval"> {
@@ -76,7 +76,7 @@ export function bode(response: Curve, words: BodeWords): Chart {
   const band = words.band ? { from: Math.max(words.band.from, from), to: Math.min(words.band.to, to), name: words.band.name } : undefined;
   const name = words.name ?? "model";
   const lines = (y: Value[], [low, high]: Ends, beside?: Value[]): Series[] => [
-    { name, x, y, style: styles.first, between: { low, high, name: "95 % interval", color: intervalColor } },
+    { name, x, y, style: styles.first, between: { low, high, name: "95 % interval", shade: intervalShade } },
     ...(words.beside && beside ? [{ name: words.beside.name, x, y: beside, style: styles.second }] : []),
   ];
   const range = decades(response);

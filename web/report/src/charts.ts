@@ -9,28 +9,30 @@ import {
 } from "echarts/components";
 import { type ECharts, init, use } from "echarts/core";
 import { SVGRenderer } from "echarts/renderers";
-import { type Chart, dashes, type Panel, type Series, type Style, symbols } from "@mbk/shared/chart_data";
+import { type Chart, dashes, type Panel, type Series, type Shade, type Style, symbols } from "@mbk/shared/chart_data";
 import type { Value } from "@mbk/shared/documents";
 import { h, svg } from "@mbk/shared/dom";
 import { plain, significant, superscript } from "@mbk/shared/format";
-import { csv, dataTable, download } from "@mbk/shared/sheet";
+import { csv, dataTable } from "@mbk/shared/sheet";
+import { savingButtons } from "./picture";
 
 export type { Chart, Panel, Series, Style } from "@mbk/shared/chart_data";
 
 use([LineChart, GridComponent, TooltipComponent, DataZoomComponent, MarkAreaComponent, MarkLineComponent, SVGRenderer]);
 
-// Okabe & Ito (2008); every line has a dash of its own besides, so that nothing hangs on colour.
+// Colours are those of the page, light or dark (shared/tokens.css); every line has a dash of its own besides, so
+// that nothing hangs on colour.
 export const styles = {
-  measured: { color: "#000000", dash: "solid", width: 1.4 },
-  predicted: { color: "#d55e00", dash: "dashed", width: 1.8 },
-  residual: { color: "#0072b2", dash: "solid", width: 1.1 },
-  first: { color: "#0072b2", dash: "solid", width: 1.6 },
-  second: { color: "#d55e00", dash: "dashed", width: 1.6 },
-  third: { color: "#009e73", dash: "dotted", width: 2 },
-  ideal: { color: "#595959", dash: "dashed", width: 1 },
+  measured: { color: "var(--ink)", dash: "solid", width: 1.4 },
+  predicted: { color: "var(--second)", dash: "dashed", width: 1.8 },
+  residual: { color: "var(--first)", dash: "solid", width: 1.1 },
+  first: { color: "var(--first)", dash: "solid", width: 1.6 },
+  second: { color: "var(--second)", dash: "dashed", width: 1.6 },
+  third: { color: "var(--third)", dash: "dotted", width: 2 },
+  ideal: { color: "var(--soft)", dash: "dashed", width: 1 },
 } as const;
 
-const colors = ["#0072b2", "#d55e00", "#009e73", "#000000", "#cc79a7"];
+const colors = ["var(--first)", "var(--second)", "var(--third)", "var(--ink)", "var(--fourth)"];
 const pick = <T>(all: T[], k: number): T => all[k % all.length] as T;
 
 /** For the k-th of several recordings: a line, and a mark, unlike those of its neighbours without colour too. */
@@ -46,6 +48,23 @@ const powerOfTen = (value: number): string => {
   const exponent = Math.round(Math.log10(value));
   return Math.abs(exponent) < 3 ? plain(value) : `10${superscript(String(exponent))}`;
 };
+
+/** Where a logarithmic axis has ticks: 0.1, 0.2, 0.5, 1 … ; only the powers of ten of many decades, round numbers of a small part of one. */
+export function logarithmicTicks(low: number, high: number): number[] {
+  const decades = low > 0 ? Math.log10(high / low) : 0;
+  if (!(decades > 0 && decades < 300)) return [];
+  if (decades < 0.6) {
+    const rough = (high - low) / 5;
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const step = power * ([1, 2, 5, 10].find((factor) => factor * power >= rough) ?? 10);
+    const first = Math.ceil(low / step - 1e-9);
+    return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
+  }
+  const first = Math.floor(Math.log10(low));
+  const factors = decades <= 4 ? [1, 2, 5] : [1];
+  return Array.from({ length: Math.ceil(decades) + 2 }, (_, k) => factors.map((factor) => Number((factor * 10 ** (first + k)).toPrecision(12)))).flat()
+    .filter((at) => at >= low * (1 - 1e-9) && at <= high * (1 + 1e-9));
+}
 
 const number = (value: Value): number | "-" => (value === null ? "-" : value);
 
@@ -112,15 +131,16 @@ function shaded(one: Series, k: number): object[] {
     animation: false,
     silent: true,
     lineStyle: { opacity: 0 },
-    ...(part === 1 ? { areaStyle: { color: one.between?.color ?? shadeColors.between } } : {}),
+    ...(part === 1 ? { areaStyle: one.between?.shade ?? shadesOf.between } : {}),
   }));
 }
 
 function options(chart: Chart, printed: boolean): Record<string, unknown> {
   const each = panelHeight(chart, printed);
-  const text = { fontFamily: font, color: "#333333", fontSize: 12 };
-  const rule = { lineStyle: { color: "#8a8a8a" } };
+  const text = { fontFamily: font, color: "var(--label)", fontSize: 12 };
+  const rule = { lineStyle: { color: "var(--axis)" } };
   const [low, high] = extent(chart);
+  const ticks = logarithmicTicks(low, high);
   const label = (value: number): string => plain(value, 4);
   const series = chart.panels.flatMap((panel, k) =>
     panel.series.flatMap((one, index) => [...shaded(one, k), line(one, panel, k, index === 0, text)]));
@@ -137,9 +157,9 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       nameLocation: "middle",
       nameGap: 26,
       nameTextStyle: text,
-      axisLabel: { ...text, formatter: chart.x.log ? powerOfTen : label, hideOverlap: true, showMinLabel: !chart.x.log && !chart.x.range, showMaxLabel: false },
+      axisLabel: { ...text, formatter: label, hideOverlap: true, ...(chart.x.log ? { customValues: ticks } : { showMinLabel: !chart.x.range, showMaxLabel: false }) },
       axisLine: { ...rule, onZero: false },
-      axisTick: rule,
+      axisTick: { ...rule, ...(chart.x.log ? { customValues: ticks } : {}) },
       splitLine: { show: false },
     })),
     yAxis: chart.panels.map((panel, k) => ({
@@ -159,13 +179,15 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       },
       splitNumber: panel.log ? 6 : 4,
       ...(panel.interval ? { interval: panel.interval } : {}),
-      splitLine: { lineStyle: { color: "#ececec" } },
+      splitLine: { lineStyle: { color: "var(--grid)" } },
     })),
     tooltip: {
       trigger: "axis",
       confine: true,
       renderMode: "html",
       transitionDuration: 0,
+      backgroundColor: "var(--paper)",
+      borderColor: "var(--axis)",
       textStyle: { ...text, fontSize: 12 },
       formatter: (points: { seriesName: string; value: [number, number]; seriesIndex: number }[]) => {
         const first = points[0];
@@ -174,7 +196,7 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
         return h("div", {}, h("strong", {}, `${chart.x.name} ${significant(first.value[0], 5)} ${chart.x.unit}`), ...lines);
       },
     },
-    axisPointer: { link: [{ xAxisIndex: "all" }], lineStyle: { color: "#8a8a8a" } },
+    axisPointer: { link: [{ xAxisIndex: "all" }], lineStyle: { color: "var(--axis)" } },
     dataZoom: [
       { type: "inside", xAxisIndex: chart.panels.map((_, k) => k), zoomOnMouseWheel: "ctrl", moveOnMouseWheel: false, filterMode: "none" },
       {
@@ -189,9 +211,9 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
         brushSelect: false,
         showDataShadow: false,
         filterMode: "none",
-        borderColor: "#b9b9b9",
-        fillerColor: "rgba(0,114,178,0.14)",
-        handleStyle: { color: "#ffffff", borderColor: "#0072b2" },
+        borderColor: "var(--axis)",
+        fillerColor: "var(--blue-wash)",
+        handleStyle: { color: "var(--paper)", borderColor: "var(--first)" },
         moveHandleSize: 0,
       },
     ],
@@ -199,15 +221,15 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
   };
 }
 
-const shadeColors = { band: "rgba(86,180,233,0.2)", level: "rgba(110,110,110,0.2)", between: "rgba(0,114,178,0.16)" };
+const shadesOf: Record<"band" | "level" | "between", Shade> = { band: { color: "var(--sky)", opacity: 0.2 }, level: { color: "var(--axis)", opacity: 0.25 }, between: { color: "var(--first)", opacity: 0.18 } };
 
 function shades(panel: Panel): object {
   const areas: object[] = [];
-  if (panel.band) areas.push([{ xAxis: panel.band.from, itemStyle: { color: shadeColors.band } }, { xAxis: panel.band.to }]);
-  if (panel.level) areas.push([{ yAxis: panel.level.from, itemStyle: { color: shadeColors.level } }, { yAxis: panel.level.to }]);
+  if (panel.band) areas.push([{ xAxis: panel.band.from, itemStyle: shadesOf.band }, { xAxis: panel.band.to }]);
+  if (panel.level) areas.push([{ yAxis: panel.level.from, itemStyle: shadesOf.level }, { yAxis: panel.level.to }]);
   return {
     ...(areas.length ? { markArea: { silent: true, animation: false, label: { show: false }, data: areas } } : {}),
-    ...(panel.zero ? { markLine: { silent: true, animation: false, symbol: "none", label: { show: false }, lineStyle: { color: "#1c1c1c", width: 1, type: "solid" }, data: [{ yAxis: 0 }] } } : {}),
+    ...(panel.zero ? { markLine: { silent: true, animation: false, symbol: "none", label: { show: false }, lineStyle: { color: "var(--ink)", width: 1, type: "solid" }, data: [{ yAxis: 0 }] } } : {}),
   };
 }
 
@@ -217,10 +239,10 @@ function legend(chart: Chart): HTMLElement {
   const seen = new Map(series.map((one) => [one.name, one]));
   const shaded = new Map([
     ...chart.panels.flatMap((panel) => [
-      ...(panel.band ? [[panel.band.name, shadeColors.band] as const] : []),
-      ...(panel.level ? [[panel.level.name, shadeColors.level] as const] : []),
+      ...(panel.band ? [[panel.band.name, shadesOf.band] as const] : []),
+      ...(panel.level ? [[panel.level.name, shadesOf.level] as const] : []),
     ]),
-    ...series.flatMap((one) => (one.between ? [[one.between.name, one.between.color ?? shadeColors.between] as const] : [])),
+    ...series.flatMap((one) => (one.between ? [[one.between.name, one.between.shade ?? shadesOf.between] as const] : [])),
   ]);
   return h(
     "ul",
@@ -239,11 +261,11 @@ function legend(chart: Chart): HTMLElement {
         name,
       ),
     ),
-    ...[...shaded].map(([name, color]) =>
+    ...[...shaded].map(([name, { color, opacity }]) =>
       h(
         "li",
         {},
-        svg("svg", { width: 22, height: 12, "aria-hidden": "true" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11, fill: color, stroke: "#8a8a8a", "stroke-width": 0.6 })),
+        svg("svg", { width: 22, height: 12, "aria-hidden": "true" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11, fill: color, "fill-opacity": opacity, stroke: "var(--axis)", "stroke-width": 0.6 })),
         name,
       ),
     ),
@@ -265,10 +287,21 @@ class Drawn {
     this.place.style.height = `${height(this.chart, false)}px`;
     this.shown = init(this.place, null, { renderer: "svg", width, height: height(this.chart, false) });
     this.shown.setOption(options(this.chart, false));
+    if (this.chart.x.log) this.shown.on("datazoom", () => this.placeTicks());
+    new ResizeObserver(() => this.resize()).observe(this.place);
   }
 
-  resize(): void {
-    if (this.shown && !this.printed && this.place.clientWidth > 0) this.shown.resize({ width: this.place.clientWidth });
+  private resize(): void {
+    if (!this.printed && this.place.clientWidth > 0 && this.place.clientWidth !== this.shown?.getWidth()) this.shown?.resize({ width: this.place.clientWidth });
+  }
+
+  /** Those of a logarithmic axis are of what is shown of it. */
+  private placeTicks(): void {
+    const [low, high] = extent(this.chart);
+    const { start, end } = this.window();
+    const at = (share: number): number => low * (high / low) ** (share / 100);
+    const customValues = logarithmicTicks(at(start), at(end));
+    this.shown?.setOption({ xAxis: this.chart.panels.map(() => ({ axisLabel: { customValues }, axisTick: { customValues } })) });
   }
 
   print(printed: boolean): void {
@@ -279,7 +312,17 @@ class Drawn {
     this.shown?.resize({ width: printed ? printWidth : this.place.clientWidth || printWidth, height: tall });
     const { start, end } = this.window();
     this.shown?.setOption(options(this.chart, printed));
-    this.zoomTo(start, end);
+    this.zoomTo(start, end); // which places the ticks
+  }
+
+  /** Does it while the chart is as on paper. */
+  onPaper<T>(act: () => T): T {
+    this.print(true);
+    try {
+      return act();
+    } finally {
+      this.print(false);
+    }
   }
 
   /** What of the x axis is shown [%]. */
@@ -300,9 +343,24 @@ class Drawn {
 
 const all: Drawn[] = [];
 
-/** Draws what is on the screen now and whatever comes into view; opens and draws everything before it is printed. */
+const atOnce = 3000; // for charts before the page counts as loaded, at most [ms]
+
+/** Draws every chart, so that a picture of the page and a search in it find all: most before the page counts as loaded, the rest while nothing else is to do. */
+function drawAll(): void {
+  const until = performance.now() + atOnce;
+  const left = [...all];
+  while (left.length > 0 && performance.now() < until) left.shift()?.draw();
+  const idle = globalThis.requestIdleCallback ?? ((act: () => void) => setTimeout(act, 50));
+  const next = () => {
+    left.shift()?.draw();
+    if (left.length > 0) idle(next, { timeout: 500 });
+  };
+  if (left.length > 0) idle(next, { timeout: 500 });
+}
+
+/** Draws the charts; opens what is printed, and puts it back. */
 export function followPageAndPrinter(): void {
-  addEventListener("resize", () => all.forEach((drawn) => drawn.resize()));
+  drawAll();
   const opened: HTMLDetailsElement[] = [];
   addEventListener("beforeprint", () => {
     for (const details of document.querySelectorAll<HTMLDetailsElement>("details[data-print]:not([open])")) {
@@ -324,7 +382,7 @@ export function figure(chart: Chart): HTMLElement {
   all.push(drawn);
   new IntersectionObserver((entries, observer) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
-    drawn.draw();
+    drawn.draw(); // before its turn
     observer.disconnect();
   }, { rootMargin: "800px" }).observe(place);
   place.style.height = `${height(chart, false)}px`;
@@ -359,7 +417,7 @@ export function figure(chart: Chart): HTMLElement {
       tool("→", "Later, or higher", view((s, e) => [s + (e - s) / 2, e + (e - s) / 2])),
       tool("Show all", "Show all", view(() => [0, 100])),
       zoom,
-      tool("Save CSV", "Save CSV", () => download(`${chart.id}.csv`, csv(chart))),
+      ...savingButtons({ name: chart.id, title: chart.title, csv: () => csv(chart), around: (act) => drawn.onPaper(act) }),
     ),
     table,
     h("figcaption", {}, h("strong", {}, "How to read this. "), chart.howToRead),

@@ -1,5 +1,5 @@
 // The document of schema mbk.report/1 that stands in the page.
-import type { Failure, Method, Model, Report as ReportDocument, Summary } from "@mbk/shared/documents";
+import type { ComparisonReport, Failure, Method, Model, Report as ReportDocument, Summary } from "@mbk/shared/documents";
 import type { Trial } from "@mbk/shared/result";
 
 /** The document as the page goes through it. */
@@ -29,6 +29,12 @@ export function readReport(json: ReportDocument): Report {
     failed: (several ? result.failed : undefined) ?? [],
     trials: (several ? result.results : [result]).map((one, k) => ({ ...(json.trials[k] ?? { recordings: [] }), result: one })),
   };
+}
+
+/** The results of a comparison as a report has them, each with the name of its file. */
+export function readComparison({ names, comparisons: _, ...document }: ComparisonReport): Report {
+  const report = readReport({ ...document, schema: "mbk.report/1" });
+  return { ...report, trials: report.trials.map((trial, k) => ({ ...trial, name: names[k] ?? "" })) };
 }
 
 export const basename = (path: string): string => path.split(/[\\/]/).at(-1) ?? path;

@@ -5,11 +5,13 @@ import type {
 } from "@mbk/shared/documents";
 import { facts, h, heading, svg, table } from "@mbk/shared/dom";
 import { data, fixed, listed, plain, significant } from "@mbk/shared/format";
+import { csvOf } from "@mbk/shared/sheet";
 import { bode, type Curve, ratioUnit } from "./bode";
 import { type Chart, figure, type Panel, type Series, styleOf, styles } from "./charts";
 import { basename } from "./data";
 import { courseSection, margin, onsetSection, plateauSection, reachSection } from "./exploration_protocols";
 import { nyquist } from "./nyquist";
+import { saveable } from "./picture";
 import { verdict, warningsSection } from "./summary";
 
 const methods: Record<FrequencyResponseEstimate["method"], string> = {
@@ -307,7 +309,8 @@ function partsDrawing(parts: { name: string; value: number; low: number; high: n
   const [width, left, row] = [660, 190, 26];
   const at = (share: number): number => left + ((width - left - 60) * Math.min(Math.max(share, 0), 100)) / 100;
   const height = parts.length * row + 24;
-  return h("figure", { class: "parts-figure", "aria-label": title },
+  const numbers = () => csvOf(["part", "share [%]", "low", "high"], parts.map(({ name, value, low, high }) => [name, value, low, high]));
+  return saveable(h("figure", { class: "parts-figure", "aria-label": title },
     svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "parts", role: "img", "aria-label": `${title}: ${listed(parts.map((part) => `${part.name} ${fixed(part.value, 1)} per cent`))}` },
       ...[0, 25, 50, 75, 100].flatMap((share) => [
         svg("line", { x1: at(share), x2: at(share), y1: 0, y2: height - 20, class: "grid" }),
@@ -322,7 +325,7 @@ function partsDrawing(parts: { name: string; value: number; low: number; high: n
           svg("text", { x: at(Math.max(part.high, part.value)) + 6, y: y + 12 }, `${fixed(part.value, 1)} %`),
         ];
       })),
-    h("figcaption", {}, h("strong", {}, "How to read this. "), "Bars are shares of the force's variance, lines their 95 % intervals. The two paths move together and overlap: their shares need not add up."));
+    h("figcaption", {}, h("strong", {}, "How to read this. "), "Bars are shares of the force's variance, lines their 95 % intervals. The two paths move together and overlap: their shares need not add up.")), { name: title.split(",")[0]?.toLowerCase().replaceAll(" ", "-") ?? "shares", title, csv: numbers });
 }
 
 const directionName = (direction: Value[] | null): string => {

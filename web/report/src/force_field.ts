@@ -2,6 +2,8 @@
 import { h, heading, type HeadingLevel, svg, table } from "@mbk/shared/dom";
 import { data, plain, significant } from "@mbk/shared/format";
 import { type Trial, unitsOf } from "@mbk/shared/result";
+import { csvOf } from "@mbk/shared/sheet";
+import { saveable } from "./picture";
 
 type Pair = [number, number];
 type Square = [Pair, Pair];
@@ -49,6 +51,15 @@ function drawing(name: string, matrix: Square, perNewton: number, words: string)
     svg("circle", { r: 3.2, class: "hand" }));
 }
 
+/** Every arrow. */
+function fieldCsv(parts: { name: string; matrix: Square }[], { x0, force: unit }: { x0: string; force: string }): string {
+  return csvOf(["part of K", `x − x0 [${x0}]`, `y − y0 [${x0}]`, `force x [${unit}]`, `force y [${unit}]`],
+    parts.flatMap(({ name, matrix }) => steps.flatMap((y) => steps.map((x) => {
+      const at: Pair = [x * reach, y * reach];
+      return [name, ...at, ...force(matrix, at)];
+    }))));
+}
+
 export function forceFieldSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const K = trial.result.model.K;
   if (!trial.result.usable || trial.result.axes !== 2 || K.flat().length !== 4 || K.flat().some((value) => value === null)) return undefined;
@@ -67,13 +78,13 @@ export function forceFieldSection(trial: Trial, id: string, level: HeadingLevel)
   ]);
   return h("section", { id: `${id}-force-field` },
     heading(level, "Force field of the stiffness"),
-    h("figure", { class: "force-fields" },
+    saveable(h("figure", { class: "force-fields" },
       h("div", { class: "panels" }, ...parts.map(({ name, matrix, meaning }) => {
         const [fx, fy] = along.map(({ at }) => force(matrix, at)) as [Pair, Pair];
         const words = `${distance} along x the force is ${significant(fx[0])} and ${significant(fx[1])} ${units.force}, ${distance} along y ${significant(fy[0])} and ${significant(fy[1])} ${units.force}`;
         return h("div", { class: "panel" }, h("p", { class: "panel-title" }, name), drawing(name, matrix, longest / largest, words), h("p", { class: "panel-name" }, meaning));
       })),
       h("figcaption", {}, h("strong", {}, "How to read this. "),
-        `Each arrow is the force −K (x − x₀) of the limb where the arrow begins, on a grid that reaches ${distance} from the equilibrium in the middle. All three have one scale; the longest arrow is `, data(largest, significant(largest), "largest-force"), ` ${units.force}. Around a closed path the left and the right field can do work, the middle one cannot.`)),
+        `Each arrow is the force −K (x − x₀) of the limb where the arrow begins, on a grid that reaches ${distance} from the equilibrium in the middle. All three have one scale; the longest arrow is `, data(largest, significant(largest), "largest-force"), ` ${units.force}. Around a closed path the left and the right field can do work, the middle one cannot.`)), { name: `${id}-force-field`, title: "Force field of the stiffness", csv: () => fieldCsv(parts, units) }),
     table(`Force of the limb ${distance} from the equilibrium [${units.force}]`, ["", "along x: force x", "force y", "along y: force x", "force y"], rows, "numbers"));
 }

@@ -4,11 +4,12 @@ import apacheNotice from "echarts/NOTICE?raw";
 import d3 from "echarts/licenses/LICENSE-d3?raw";
 import tslib from "tslib/CopyrightNotice.txt?raw";
 import zrender from "zrender/LICENSE?raw";
-import type { ExplorationReport, ParticipantReport, StudyReport, TransferFunctionReport } from "@mbk/shared/documents";
+import type { ComparisonReport, ExplorationReport, ParticipantReport, StudyReport, TransferFunctionReport } from "@mbk/shared/documents";
 import { facts, h, heading, type HeadingLevel } from "@mbk/shared/dom";
 import type { Trial } from "@mbk/shared/result";
 import { followPageAndPrinter } from "./charts";
-import { conditionOf, fileOf, participantOf, readReport, type Report } from "./data";
+import { comparisonSection } from "./comparison";
+import { conditionOf, fileOf, participantOf, readComparison, readReport, type Report } from "./data";
 import { diagnosticElements } from "./diagnostics";
 import { energySection } from "./energy";
 import { explorationHead, explorationSections } from "./exploration";
@@ -76,11 +77,11 @@ function openTargets(): void {
   open();
 }
 
-function head(report: Report): HTMLElement {
+function head(report: Report, named?: string): HTMLElement {
   const first = report.trials[0] as Trial;
   const several = report.trials.length > 1;
   const said = [participantOf(first), conditionOf(first)].filter(Boolean).join(" · ");
-  const title = several ? `${report.trials.length} recordings` : said || fileOf(first);
+  const title = named ?? (several ? `${report.trials.length} recordings` : said || fileOf(first));
   document.title = `${title} – mechanical impedance`;
   return h("header", { class: "page-head" },
     h("p", { class: "kicker" }, first.result.axes === 1 ? "Mechanical impedance of a limb" : "Mechanical impedance of the arm"),
@@ -134,6 +135,14 @@ function drawParticipant(report: ParticipantReport): void {
   show(participantHead(report), "", sections, "of-study");
 }
 
+function drawComparison(document_: ComparisonReport): void {
+  const report = readComparison(document_);
+  const sections = [comparisonSection(report, document_), overviewSection(report), recordingsSection(report),
+    reproduceSection(report.command, report.software), glossarySection(glossary)];
+  const top = head(report, `${report.trials.length} results compared`);
+  show(top, contents(sections, report.trials), sections);
+}
+
 function draw(report: Report): void {
   const several = report.trials.length > 1 || report.failed.length > 0;
   const sections = several
@@ -152,8 +161,10 @@ try {
   else if (json.schema === "mbk.explore_report/1") drawExploration(json);
   else if (json.schema === "mbk.study_report/1") drawStudy(json);
   else if (json.schema === "mbk.participant_report/1") drawParticipant(json);
+  else if (json.schema === "mbk.compare_report/1") drawComparison(json);
   else draw(readReport(json));
 } catch (error) {
+  console.error(error);
   document.getElementById("report")?.replaceWith(
     h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The numbers in this file cannot be read: ${String(error)}`)));
 }

@@ -2,6 +2,8 @@
 import type { Value } from "@mbk/shared/documents";
 import { h, svg } from "@mbk/shared/dom";
 import { plain, significant } from "@mbk/shared/format";
+import { csvOf } from "@mbk/shared/sheet";
+import { saveable } from "./picture";
 
 /** A response, and the ellipse around it that holds it with 95 %, at each frequency. */
 export interface Region {
@@ -126,12 +128,15 @@ export function nyquist(response: Region, band: { from: number; to: number; name
   );
   const key = (name: string, mark: SVGElement): HTMLElement => h("li", {}, mark, name);
   const stroke = (kind: string): SVGElement => svg("svg", { width: 34, height: 10, "aria-hidden": "true", class: "nyquist" }, svg("path", { d: "M1 5H33", class: kind }));
-  return h("figure", { class: "nyquist-figure", "aria-label": title },
+  const ofUnit = unit ? ` [${unit}]` : "";
+  const numbers = () => csvOf(["frequency [Hz]", `real part${ofUnit}`, `imaginary part${ofUnit}`, `95 % region, longer half axis${ofUnit}`, `shorter half axis${ofUnit}`, "its angle [°]"],
+    all.map(({ f, re, im, a, b, angle }) => [f, re, im, a, b, angle]));
+  return saveable(h("figure", { class: "nyquist-figure", "aria-label": title },
     h("ul", { class: "legend" },
       key(band ? `${name}, in the excited band` : name, stroke("curve")),
       band ? key(`${name}, beyond it`, stroke("beyond")) : "",
       key("95 % region", svg("svg", { width: 22, height: 12, "aria-hidden": "true", class: "nyquist" }, svg("g", { class: "region" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11 }))))),
     drawing,
-    h("figcaption", {}, h("strong", {}, "How to read this. "), "Each point is one frequency: its distance from the origin is the magnitude, its direction the phase. The shaded region holds the true curve at each frequency with 95 %."));
+    h("figcaption", {}, h("strong", {}, "How to read this. "), "Each point is one frequency: its distance from the origin is the magnitude, its direction the phase. The shaded region holds the true curve at each frequency with 95 %.")), { name: id, title, csv: numbers });
 }
 

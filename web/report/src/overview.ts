@@ -7,19 +7,40 @@ import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { conditionOf, fileOf, participantOf, type Report } from "./data";
 import { energySideBySide } from "./energy";
 import { verdictBadge } from "./passivity";
+import { saveable } from "./picture";
+import { ellipsesCsv } from "./sections";
 import { verdict } from "./summary";
 import { methodNames } from "./words";
 
-/** "P1, relaxed", or the name of the file where nothing else distinguishes it. */
+/** "P1, relaxed (log_3.mat)": participant and condition, and the file. */
 export function nameOf(trial: Trial, all: Trial[]): string {
-  const said = (one: Trial) => [participantOf(one), conditionOf(one)].filter(Boolean).join(", ");
-  const name = said(trial);
-  return name && all.filter((one) => said(one) === name).length === 1 ? name : fileOf(trial);
+  const said = [participantOf(trial), conditionOf(trial)].filter(Boolean).join(", ");
+  const file = filesOf(all).get(trial) ?? fileOf(trial);
+  return said ? `${said} (${file})` : file;
 }
 
-/** The rows in the order of participant, then condition, then file. */
+const known = new WeakMap<Trial[], Map<Trial, string>>();
+
+/** The file of each, with as many of its folders as set it apart from the others. */
+function filesOf(all: Trial[]): Map<Trial, string> {
+  const found = known.get(all);
+  if (found) return found;
+  const names = new Map<Trial, string>();
+  known.set(all, names);
+  const folders = 8; // beyond these it is the same file
+  const end = (trial: Trial, parts: number) => (trial.name ? [trial.name] : trial.result.inputs.map(({ file }) => file)).map((file) => file.split(/[\\/]/).slice(-parts).join("/")).join(", ");
+  for (let parts = 1; parts <= folders && names.size < all.length; ++parts) {
+    const left = all.filter((trial) => !names.has(trial));
+    const count = new Map<string, number>();
+    for (const trial of left) count.set(end(trial, parts), (count.get(end(trial, parts)) ?? 0) + 1);
+    for (const trial of left) if (parts === folders || count.get(end(trial, parts)) === 1) names.set(trial, end(trial, parts === folders ? 1 : parts));
+  }
+  return names;
+}
+
+/** In the order of participant, then condition, then file; those of a comparison as they were given. */
 export function inOrder(trials: Trial[]): { trial: Trial; id: string }[] {
-  const key = (trial: Trial) => [participantOf(trial) ?? "", conditionOf(trial) ?? "", fileOf(trial)];
+  const key = (trial: Trial) => trial.name ? [] : [participantOf(trial) ?? "", conditionOf(trial) ?? "", fileOf(trial)];
   const compare = new Intl.Collator("en", { numeric: true }).compare;
   return trials
     .map((trial, k) => ({ trial, id: `trial-${k + 1}` }))
@@ -67,7 +88,7 @@ export function overviewSection(report: Report): HTMLElement {
     const { result } = trial;
     const said = verdict(trial);
     return [
-      h("a", { href: `#${id}` }, fileOf(trial)),
+      h("a", { href: `#${id}` }, filesOf(trials).get(trial) ?? fileOf(trial)),
       ...told.map(({ of }) => of(trial) ?? "–"),
       h("div", { class: "badges" },
         h("span", { class: `badge ${said.kind}` }, `${said.sign} ${result.usable ? (said.kind === "care" ? "with care" : "usable") : "not usable"}`),
@@ -103,9 +124,11 @@ export function overviewSection(report: Report): HTMLElement {
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval: of a recording, from within it; of the mean, from how the recordings differ.${order}`),
     noSummary ? h("p", { "data-name": "no-summary" }, h("strong", {}, "There is no mean: "), `${noSummary}.`) : "",
     ...(summary?.omitted ?? []).map(({ file, why }) => h("p", { "data-name": "omitted" }, h("strong", {}, "Not in the mean: "), `${file}: ${why}.`)),
-    ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, "Not measured: "), `${file}: ${message}; ${what}.`)),
+    ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, first.name ? "Left out: " : "Not measured: "), `${file}: ${message}; ${what}.`)),
     two ? table("Ellipses: area in the square of the matrix's unit, shape, orientation in degrees with its 95 % interval", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} area`, `${symbol} shape`, `${symbol} angle`])], ellipseRows, "numbers overview") : "",
     energySideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
-    ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
+    saveable(ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)), {
+      name: "ellipses-side-by-side", title: "Ellipses side by side", csv: () => ellipsesCsv(rows.map(({ trial }) => ({ name: nameOf(trial, trials), trial }))),
+    }),
   );
 }

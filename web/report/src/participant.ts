@@ -4,8 +4,9 @@ import type { OutcomeCourses, ParticipantReport, SessionChange } from "@mbk/shar
 import { facts, h, heading, table } from "@mbk/shared/dom";
 import { data } from "@mbk/shared/format";
 import { among, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
+import { saveable } from "./picture";
 import { commonRange, courseLegend, coursePanel } from "./study_drawings";
-import { analysisText, conditionsOf, counted, downloads, ellipseFigure, leftOutTable, ofCondition, sessionsOf, titleOf, verdictWords } from "./study_parts";
+import { analysisText, conditionsOf, counted, coursesCsv, downloads, ellipseFigure, leftOutTable, ofCondition, sessionsOf, titleOf, verdictWords } from "./study_parts";
 
 export function participantHead(report: ParticipantReport): HTMLElement {
   document.title = `Participant ${report.participant} – ${titleOf(report.title)}`;
@@ -71,14 +72,14 @@ function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
 
 function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLElement {
   const all = sessionsOf(primary.flatMap(({ participants }) => participants));
-  return h("figure", { class: "courses" },
+  return saveable(h("figure", { class: "courses" },
     courseLegend(primary),
     h("div", { class: "large-panels" }, ...primary.map((one) => {
       const course = one.participants[0];
       if (!course) return "";
       return h("div", {}, h("p", { class: "panel-title" }, [ofCondition(one.condition, conditions), one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome)].filter(Boolean).join(": ")),
         coursePanel(one, course, commonRange([course]), all, "large"));
-    })));
+    }))), { name: "sessions_first_outcome", title: "What changed since the first session", csv: () => coursesCsv(primary) });
 }
 
 function changesTable(courses: OutcomeCourses[], condition: string, conditions: string[]): HTMLElement | undefined {

@@ -111,9 +111,6 @@ const span = (values: Value[]): [number, number] => {
 
 const isKnown = (values: Value[]): boolean => values.some((value) => value !== null);
 
-/** More than a decade: less than that shows hardly a tick on a logarithmic axis. */
-const isWide = ([low, high]: [number, number] = [1, 1]): boolean => high > 10 * low;
-
 function indexChart(models: ModelPassivity[], unit: string, id: string): Chart | undefined {
   const drawn = models.filter((model) => isKnown(model.index.value));
   if (drawn.length === 0) return undefined;
@@ -126,7 +123,7 @@ function indexChart(models: ModelPassivity[], unit: string, id: string): Chart |
     title: "Passivity index over the band",
     howToRead: "Above zero the model absorbs energy at that frequency, whatever the direction of the motion; below it, it can generate some. Where the shaded band crosses zero the data leave it open. Each panel has a scale of its own.",
     description: `Half the smallest eigenvalue of Z + Zᴴ; passive where it is positive. ${words.join("; ")}.`,
-    x: { name: "frequency", unit: "Hz", log: isWide(drawn[0]?.band_hz) },
+    x: { name: "frequency", unit: "Hz", log: true },
     panels: drawn.map(({ method, index }) => ({
       title: `Index, ${methodNames[method]}`,
       unit,

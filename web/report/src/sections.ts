@@ -2,9 +2,12 @@
 import type { Value } from "@mbk/shared/documents";
 import { facts, h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
 import { ellipsesOf } from "@mbk/shared/ellipses";
+import { csvOf } from "@mbk/shared/sheet";
 import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withInterval } from "@mbk/shared/format";
 import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { conditionOf, fileOf, isSimulated, metadataOf, participantOf } from "./data";
+import { literatureTable } from "./literature";
+import { saveable } from "./picture";
 import { methodNames } from "./words";
 
 const percent = (share: Value): Value => (share === null ? null : 100 * share);
@@ -71,7 +74,19 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
       ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x that comes from motion along y.")
       : "",
     table("How well the model explains the force", ["", "value"], fitRows, "numbers narrow"),
+    literatureTable(trial),
   );
+}
+
+/** Half axes, orientation and intervals of the ellipses of each. */
+export function ellipsesCsv(all: { name: string; trial: Trial }[]): string {
+  return csvOf(["recording", "matrix", "unit", "smaller half axis", "larger half axis", "orientation [°]", "orientation, low", "orientation, high", "area", "area, low", "area, high", "shape", "shape, low", "shape, high"],
+    all.flatMap(({ name: recording, trial }) => matrices.flatMap(({ symbol, name }) => {
+      const e = trial.result.ellipses?.[name];
+      if (!e) return [];
+      const { area, shape, orientation_deg: orientation } = e.interval95;
+      return [[recording, symbol, unitsOf(trial.result)[symbol], e.eigenvalues[0], e.eigenvalues[1], e.orientation_deg, ...orientation, e.area, ...area, e.shape, ...shape]];
+    })));
 }
 
 export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
@@ -96,7 +111,7 @@ export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): 
     "section",
     { id: `${id}-ellipses` },
     heading(level, "Ellipses"),
-    ellipsesOf(trial),
+    saveable(ellipsesOf(trial), { name: `${id}-ellipses`, title: "Ellipses", csv: () => ellipsesCsv([{ name: fileOf(trial), trial }]) }),
     table("Ellipses in numbers; brackets are 95 % intervals", ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows, "numbers"),
   );
 }

@@ -4,8 +4,9 @@ import { facts, h, heading, table } from "@mbk/shared/dom";
 import { data, fixed } from "@mbk/shared/format";
 import { jobsSection } from "./jobs";
 import { among, conditionName, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
+import { saveable } from "./picture";
 import { commonRange, courseLegend, coursePanel, forest, type ForestRow } from "./study_drawings";
-import { analysisText, chooser, conditionsOf, counted, downloads, ellipseFigure, leftOutTable, ofCondition, recordingsTable, sessionsOf, titleOf } from "./study_parts";
+import { analysisText, chooser, conditionsOf, counted, coursesCsv, csvOf, downloads, ellipseFigure, leftOutTable, meansCsv, ofCondition, recordingsTable, sessionsOf, titleOf } from "./study_parts";
 
 type Summary = StudyReport["summary"];
 type Reliability = Summary["reliability"][number];
@@ -142,8 +143,8 @@ function peopleForest(one: OutcomeCourses, conditions: string[]): HTMLElement {
 
 function participantsSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement {
   return h("section", { id: "participants" }, heading(2, "Participants"),
-    h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, ...chosen.map((one) => peopleForest(one, conditions)))),
-      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval that the variances of the study give: between sessions and between trials, taken to be alike in all people. The diamond is the mean of all people with its 95 % interval.")));
+    saveable(h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, ...chosen.map((one) => peopleForest(one, conditions)))),
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval that the variances of the study give: between sessions and between trials, taken to be alike in all people. The diamond is the mean of all people with its 95 % interval.")), { name: "participants", title: "Participants", csv: () => meansCsv(courses) }));
 }
 
 function coursesSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement | undefined {
@@ -166,8 +167,8 @@ function coursesSection({ courses, primary }: StudyReport, conditions: string[])
       one.why_unknown ? h("p", { class: "reading", "data-name": "mdc-unknown" }, `The minimal detectable change is not known: ${one.why_unknown}. No difference here can be told from measurement error.`) : "");
   };
   return h("section", { id: "sessions" }, heading(2, "Each participant over the sessions"),
-    h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen), ...chosen.map(drawn))),
-      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is the minimal detectable change around the first session: what a person who did not change stays within (95 %), by the variances of the mixed model and this person’s own numbers of trials; of whoever stands out, by the variances of all others. Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")));
+    saveable(h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen), ...chosen.map(drawn))),
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is the minimal detectable change around the first session: what a person who did not change stays within (95 %), by the variances of the mixed model and this person’s own numbers of trials; of whoever stands out, by the variances of all others. Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")), { name: "sessions", title: "Each participant over the sessions", csv: () => coursesCsv(courses) }));
 }
 
 function ellipsesSection({ matrices }: StudyReport, conditions: string[]): HTMLElement | undefined {
@@ -203,9 +204,13 @@ function comparisonSection({ summary }: StudyReport): HTMLElement | undefined {
     const ordered = inOutcomeOrder(all, ({ outcome }) => outcome);
     const drawn = ordered.filter(({ effect, outcome }) => effect && isMain(outcome));
     return h("div", {}, h("p", { class: "panel-title" }, name),
-      drawn.length > 0 ? forest(`Effect sizes of ${name}: ${drawn.map((one) => `${outcomeName(one.outcome)} ${fixed(one.effect?.g ?? null, 2)}`).join("; ")}`, "standardised difference g (Hedges)",
+      drawn.length > 0 ? saveable(h("figure", { "aria-label": name }, forest(`Effect sizes of ${name}: ${drawn.map((one) => `${outcomeName(one.outcome)} ${fixed(one.effect?.g ?? null, 2)}`).join("; ")}`, "standardised difference g (Hedges)",
         drawn.map((one) => ({ name: shortName(one.outcome), value: one.effect?.g ?? null, low: one.effect?.interval95[0] ?? null, high: one.effect?.interval95[1] ?? null,
-          text: `${fixed(one.effect?.g ?? null, 2)}${range(one.effect?.interval95[0] ?? null, one.effect?.interval95[1] ?? null, 2)}` })), 0) : "",
+          text: `${fixed(one.effect?.g ?? null, 2)}${range(one.effect?.interval95[0] ?? null, one.effect?.interval95[1] ?? null, 2)}` })), 0)), {
+        name: "differences",
+        title: `Standardised differences, ${name}`,
+        csv: () => csvOf(["outcome", "first", "second", "g", "low95", "high95"], drawn.map((one) => [one.outcome, one.first, one.second, one.effect?.g, one.effect?.interval95[0], one.effect?.interval95[1]])),
+      }) : "",
       differencesTable(name, comparison.tests, ordered.filter(({ outcome }) => isMain(outcome))),
       ordered.some(({ outcome }) => !isMain(outcome))
         ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), differencesTable(name, comparison.tests, ordered.filter(({ outcome }) => !isMain(outcome)))) : "");

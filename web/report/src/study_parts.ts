@@ -5,6 +5,7 @@ import { niceBelow } from "@mbk/shared/ellipses";
 import { listed, plain } from "@mbk/shared/format";
 import { download } from "@mbk/shared/sheet";
 import { conditionName, inOutcomeOrder, isMain, outcomeName, withUnit } from "./outcomes";
+import { saveable } from "./picture";
 import { ellipseLegend, ellipsePanel, largestOf } from "./study_drawings";
 
 export const counted = (n: number, one: string, more: string): string => `${n} ${n === 1 ? one : more}`;
@@ -69,7 +70,7 @@ function resultsCsv({ recordings, outcomes = [], results = [] }: StudyReport | P
     }));
 }
 
-function coursesCsv(courses: OutcomeCourses[]): string {
+export function coursesCsv(courses: OutcomeCourses[]): string {
   return csvOf(["participant", "condition", "outcome", "unit", "session", "results", "mean", "difference_from_first", "mdc95", "mdc95_low", "mdc95_high", "verdict"],
     courses.flatMap(({ condition, outcome, unit, participants }) => participants.flatMap(({ participant, sessions, changes }) => sessions.map(({ session, results, mean }) => {
       const change = changes.find(({ last_session }) => last_session === session);
@@ -125,7 +126,7 @@ export function ellipseFigure(matrices: SessionMatrix[], matrix: keyof typeof ma
     const key = JSON.stringify([one.participant, one.condition]);
     panels.set(key, [...(panels.get(key) ?? []), one]);
   }
-  return h("figure", { class: "people-ellipses" },
+  return saveable(h("figure", { class: "people-ellipses" },
     h("p", { class: "panel-title" }, matrixNames[matrix]),
     ellipseLegend(Math.max(...[...panels.values()].map(({ length }) => length)), `the same everywhere, ${withUnit(plain(reference), first.unit)}`),
     h("div", { class: "small-panels" }, ...[...panels.values()].map((sessions) => {
@@ -133,7 +134,21 @@ export function ellipseFigure(matrices: SessionMatrix[], matrix: keyof typeof ma
       const name = nameOf(participant, condition);
       return h("div", { class: "small-panel" }, ellipsePanel(`${name}: ${matrixNames[matrix]}`, sessions, largest, reference),
         h("p", { class: "panel-name" }, name), h("p", { class: "panel-note" }, `session${sessions.length === 1 ? "" : "s"} ${listed(sessions.map(({ session }) => String(session)))}`));
-    })));
+    }))), {
+    name: `ellipses_${matrix}`,
+    title: `Ellipses of ${matrixNames[matrix]}`,
+    csv: () => csvOf(["participant", "condition", "session", "results", "matrix", "unit", "xx", "xy", "yy"],
+      all.map(({ participant, condition, session, results, unit, symmetric }) => [participant, condition, session, results, matrix, unit, ...symmetric])),
+  });
+}
+
+/** Means with their intervals, of each person and of all. */
+export function meansCsv(courses: OutcomeCourses[]): string {
+  return csvOf(["condition", "outcome", "unit", "participant", "mean", "low95", "high95"],
+    courses.flatMap(({ condition, outcome, unit, participants, mean, interval95 }) => [
+      ...participants.map((one) => [condition, outcome, unit, one.participant, one.mean, one.interval95[0], one.interval95[1]]),
+      [condition, outcome, unit, "all", mean, interval95[0], interval95[1]],
+    ]));
 }
 
 export const titleOf = (title: string): string => title || "A study";

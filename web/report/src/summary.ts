@@ -1,12 +1,13 @@
 // The measurement in plain words.
 import { angleBetween, direction } from "@mbk/shared/directions";
-import type { Value, Warning, WarningCode } from "@mbk/shared/documents";
+import type { Method, Model, Value, Warning, WarningCode } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
 import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
-import { matrices, type Trial, unitsOf } from "@mbk/shared/result";
+import { type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
 import { fileOf } from "./data";
-import { meanings } from "./words";
+import { literatureLine } from "./literature";
+import { meanings, methodNames } from "./words";
 
 /** What was found, with warnings: a measurement or a transfer function. */
 export interface Judged {
@@ -61,20 +62,52 @@ const arrow = (degrees: number): SVGElement =>
     svg("line", { x1: -9, y1: 0, x2: 9, y2: 0, transform: `rotate(${-degrees})` }),
   );
 
-function card(trial: Trial, symbol: "M" | "B" | "K", name: "inertia" | "damping" | "stiffness", title: string): HTMLElement {
-  const { result } = trial;
-  const unit = unitsOf(result)[symbol];
-  const parts: (Node | string)[] = [];
-  const ellipse = result.ellipses?.[name];
-  if (result.axes === 1) {
-    const value = result.model[symbol][0]?.[0] ?? null;
-    const error = result.standard_error[symbol][0]?.[0] ?? null;
-    parts.push(h("p", { class: "headline" }, withHalfWidth(value, error, `card-${symbol}`), ` ${unit}`));
+/** A model as the cards show it. */
+interface Shown {
+  method: Method;
+  model: Model;
+  standard_error: Model;
+  usable: boolean;
+}
+
+/** Usable models: first the one on which the prediction of passivity rests, else that of the result. */
+function shownModels({ result }: Trial): Shown[] {
+  const all: Shown[] = [result, ...(result.alternatives ?? [])].filter(({ usable }) => usable);
+  const rests = result.passivity?.models?.[0]?.method;
+  return [...all.filter(({ method }) => method === rests), ...all.filter(({ method }) => method !== rests)];
+}
+
+/** Eigenvalues and orientation of the symmetric part of two axes. */
+function principalAxes(matrix: Value[][]): { small: number; large: number; angle: number } | undefined {
+  const [[xx, xy] = [], [yx, yy] = []] = matrix;
+  if (typeof xx !== "number" || typeof xy !== "number" || typeof yx !== "number" || typeof yy !== "number") return undefined;
+  const [middle, half, s] = [(xx + yy) / 2, (xx - yy) / 2, (xy + yx) / 2];
+  const radius = Math.hypot(half, s);
+  return { small: middle - radius, large: middle + radius, angle: ((Math.atan2(s, half) * 90) / Math.PI + 180) % 180 };
+}
+
+/** In its directions: as the result says, with the interval, or of the other model. */
+function axesOf(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness"): { small: number; large: number; angle: number; interval: [Value, Value] } | undefined {
+  if (shown.method !== trial.result.method) {
+    const axes = principalAxes(shown.model[symbol]);
+    return axes && { ...axes, interval: [null, null] };
+  }
+  const ellipse = trial.result.ellipses?.[name];
+  const [small, large] = ellipse?.eigenvalues ?? [];
+  if (!ellipse || typeof small !== "number" || typeof large !== "number") return undefined;
+  return { small, large, angle: ellipse.orientation_deg ?? 0, interval: ellipse.interval95.orientation_deg };
+}
+
+function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness", title: string): HTMLElement {
+  const unit = unitsOf(trial.result)[symbol];
+  const parts: (Node | string | undefined)[] = [];
+  const axes = trial.result.axes === 1 ? undefined : axesOf(trial, shown, symbol, name);
+  if (trial.result.axes === 1) {
+    const value = shown.model[symbol][0]?.[0] ?? null;
+    parts.push(h("p", { class: "headline" }, withHalfWidth(value, shown.standard_error[symbol][0]?.[0] ?? null, `card-${symbol}`), ` ${unit}`));
     if (value !== null) parts.push(h("p", {}, everyday(symbol, value, unit)));
-  } else if (ellipse && ellipse.eigenvalues[0] !== null && ellipse.eigenvalues[1] !== null) {
-    const [small, large] = ellipse.eigenvalues as [number, number];
-    const angle = ellipse.orientation_deg ?? 0;
-    const [low, high] = ellipse.interval95.orientation_deg;
+  } else if (axes) {
+    const { small, large, angle, interval: [low, high] } = axes;
     parts.push(
       h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, h("span", { class: "half" }, " maximum (major axis)")),
       h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
@@ -85,7 +118,29 @@ function card(trial: Trial, symbol: "M" | "B" | "K", name: "inertia" | "damping"
   } else {
     parts.push(h("p", { class: "headline" }, "undefined"));
   }
-  return h("div", { class: "card" }, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts);
+  return h("div", { class: "card" }, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts, literatureLine(trial, symbol));
+}
+
+/** "K 224 N/m, B 17.3 N·s/m, M 2.31 kg": along the major axis where there are two axes. */
+function inOneLine(trial: Trial, shown: Shown): string {
+  return [...matrices].reverse().map(({ symbol, name }) => {
+    const value = trial.result.axes === 1 ? shown.model[symbol][0]?.[0] : axesOf(trial, shown, symbol, name)?.large;
+    return `${symbol} ${significant(value, 3)} ${unitsOf(trial.result)[symbol]}`;
+  }).join(", ");
+}
+
+/** The cards of the model on which the verdict rests, whose it is, and what the other method found. */
+function cards(trial: Trial): (Node | string)[] {
+  if (!trial.result.usable) return [];
+  const [first, ...others] = shownModels(trial);
+  if (!first) return [];
+  const rests = trial.result.passivity?.models?.[0]?.method === first.method;
+  const other = first.method !== trial.result.method ? ` The tables and ellipses below are of ${methodNames[trial.result.method]}, the method of this result.` : "";
+  return [
+    h("p", { class: "model-of", "data-method": first.method }, "The model by ", h("strong", {}, methodNames[first.method]), rests ? `, on which the prediction of passivity rests.${other}` : `.${other}`),
+    h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, first, symbol, name, title))),
+    ...others.map((one) => h("p", { class: "reading", "data-other": one.method }, `By ${methodNames[one.method]}${trial.result.axes === 1 ? "" : ", maximum"}: ${inOneLine(trial, one)}.`)),
+  ];
 }
 
 /** Where the stiffest direction points, as seen from the shoulder. */
@@ -114,7 +169,7 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
     h("p", {}, `${fileOf(trial)} holds ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
-    result.usable ? h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, symbol, name, title))) : "",
+    ...cards(trial),
     fitSentence(trial),
   );
 }

@@ -10,6 +10,11 @@ export interface Style {
   width: number;
 }
 
+export interface Shade {
+  color: string;
+  opacity: number;
+}
+
 export interface Series {
   name: string;
   x: Value[];
@@ -20,7 +25,7 @@ export interface Series {
   /** What is written beside each value. */
   labels?: string[];
   /** What is shaded around the line. */
-  between?: { low: Value[]; high: Value[]; name: string; color?: string };
+  between?: { low: Value[]; high: Value[]; name: string; shade?: Shade };
 }
 
 export interface Panel {

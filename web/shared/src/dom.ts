@@ -47,14 +47,37 @@ export function scrolling(name: string, content: HTMLElement): HTMLElement {
   return room;
 }
 
+/** What the cells of a table show, with minus signs that a spreadsheet reads. */
+const cellsOf = (table: HTMLTableElement): string[][] =>
+  [...table.rows].map((row) => [...row.cells].map((cell) => cell.innerText.replace(/\s+/g, " ").trim().replaceAll("−", "-")));
+
+/** To the clipboard, for a spreadsheet and for a text. */
+async function copied(table: HTMLTableElement): Promise<void> {
+  const cells = cellsOf(table);
+  const plain = cells.map((row) => row.join("\t")).join("\n");
+  const rich = h("table", {}, ...cells.map((row) => h("tr", {}, ...row.map((cell) => h("td", {}, cell))))).outerHTML;
+  await navigator.clipboard.write([new ClipboardItem({ "text/plain": new Blob([plain], { type: "text/plain" }), "text/html": new Blob([rich], { type: "text/html" }) })]);
+}
+
+/** A caption with a button that copies its table. */
+export function captionOf(text: string): HTMLElement {
+  const button = h("button", { type: "button", class: "copy-table", "aria-label": `Copy table: ${text}` }, "Copy table");
+  button.addEventListener("click", async () => {
+    const table = button.closest("table") as HTMLTableElement;
+    button.textContent = await copied(table).then(() => "Copied", () => "The browser does not allow it");
+    setTimeout(() => (button.textContent = "Copy table"), 2000);
+  });
+  return h("caption", {}, text, " ", button);
+}
+
 /** A table with a header row; the first cell of each row is its header. */
 export function table(caption: string, head: Child[], rows: Child[][], className = ""): HTMLElement {
   return scrolling(
     caption,
     h(
       "table",
-      { class: className },
-      h("caption", {}, caption),
+      { class: className, "aria-label": caption },
+      captionOf(caption),
       h("thead", {}, h("tr", {}, ...head.map((cell) => (cell === "" ? h("td") : h("th", { scope: "col" }, cell))))),
       h(
         "tbody",

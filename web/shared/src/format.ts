@@ -56,6 +56,7 @@ export function withHalfWidth(value: Value, standardError: Value, name: string, 
     "span",
     { class: "number" },
     data(scaled, fixed(scaled, decimals), name),
+    h("wbr"),
     h("span", { class: "half" }, " ± ", data(half, fixed(half, decimals), `${name}-half`)),
   );
 }
@@ -67,6 +68,7 @@ export function withInterval(value: Value, interval: [Value, Value], name: strin
     "span",
     { class: "number" },
     data(value, fixed(value, decimals), name),
+    low === null || high === null ? "" : h("wbr"),
     low === null || high === null
       ? ""
       : h(

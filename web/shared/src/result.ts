@@ -4,6 +4,8 @@ import type { Method, ReportedTrial, Result, Units } from "./documents";
 /** One result with what is drawn for it. */
 export interface Trial extends ReportedTrial {
   result: Result;
+  /** Of the result's own file, where it came from one. */
+  name?: string;
 }
 
 export const methodNames: Record<Method, string> = { ls: "least squares", iv: "instrumental variables" };

@@ -1,7 +1,7 @@
 // The numbers of a chart as a table and as a CSV file.
 import type { Chart } from "./chart_data";
 import type { Value } from "./documents";
-import { h, scrolling } from "./dom";
+import { captionOf, h, scrolling } from "./dom";
 import { significant } from "./format";
 
 interface Sheet {
@@ -34,10 +34,18 @@ function sheet(chart: Chart): Sheet {
   return { head, rows: rows.filter((row) => row.some((value) => value !== null)) };
 }
 
+/** What a spreadsheet would take for a formula begins with an apostrophe. */
+const quoted = (text: string): string => `"${(/^[=+\-@\t\r]/.test(text) ? `'${text}` : text).replaceAll('"', '""')}"`;
+
+/** Words are quoted, numbers are not, and what is undefined is empty. */
+export function csvOf(head: string[], rows: (Value | string | undefined)[][]): string {
+  const lines = [head.map(quoted), ...rows.map((row) => row.map((value) => (typeof value === "string" ? quoted(value) : (value ?? ""))))];
+  return `${lines.map((line) => line.join(",")).join("\n")}\n`;
+}
+
 export function csv(chart: Chart): string {
   const { head, rows } = sheet(chart);
-  const lines = [head.map((name) => `"${name.replaceAll('"', '""')}"`), ...rows.map((row) => row.map((v) => v ?? ""))];
-  return `${lines.map((line) => line.join(",")).join("\n")}\n`;
+  return csvOf(head, rows);
 }
 
 const longestTable = 60;
@@ -53,15 +61,15 @@ export function dataTable(chart: Chart): HTMLElement {
     h(
       "table",
       { class: "values" },
-      h("caption", {}, caption),
+      captionOf(caption),
       h("thead", {}, h("tr", {}, ...head.map((name) => h("th", { scope: "col" }, name)))),
       h("tbody", {}, ...shown.map((row) => h("tr", {}, ...cells(row)))),
     ),
   );
 }
 
-export function download(name: string, text: string): void {
-  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+export function download(name: string, text: string, type = "text/csv"): void {
+  const address = URL.createObjectURL(new Blob([text], { type }));
   h("a", { href: address, download: name }).click();
   URL.revokeObjectURL(address);
 }
