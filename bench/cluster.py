@@ -25,6 +25,7 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -279,6 +280,8 @@ def main():
     parser.add_argument("--folder", type=pathlib.Path, help="where files are written (a temporary folder)")
     parser.add_argument("--seed", type=int, default=1, help="of the kills")
     options = parser.parse_args()
+    for one in (signal.SIGINT, signal.SIGTERM):  # daemons and folders go, whichever ends it
+        signal.signal(one, lambda *_: sys.exit("cluster.py: interrupted; what was measured stands in --state"))
     with tempfile.TemporaryDirectory(prefix="mbk-cluster-", dir=options.folder) as name:
         with private_slurm.PrivateSlurm() as slurm:
             campaign = Campaign(options, pathlib.Path(name), slurm)
