@@ -4,7 +4,7 @@
   bytes     100,000 draws of people (well below 10 ms each) and 2,000 simulated trials that are measured, by each engine
             with three lengths of chunks, 20 tasks killed at random in each: held against one process
   cores     one task and two, in pairs, on warm files
-  overhead  10,000 units of 0.1 s by Slurm and by local processes, and an array of as many tasks that do nothing
+  overhead  10,000 units of 0.1 to 0.2 s by Slurm and by local processes, and an array of as many tasks that do nothing
   rate      trials of 62.1 s a second and core, by an engine and by threads of one process
   merge     10⁶ results of 200 bytes
   resume    kill -9 of the process that waits: finished chunks that were done again
@@ -25,6 +25,7 @@ import os
 import pathlib
 import random
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -183,7 +184,7 @@ class Campaign:
 
     def overhead(self):
         units, chunk = self.size["units"], self.size["unit_chunk"]
-        arguments = ("validate", "live-estimate" if self.options.slow_units else "reliability", "--runs", units, "--json",
+        arguments = ("validate", "coverage", "--runs", units, "--json",
                      "--quiet", "--chunk-units", chunk)
         script = self.folder / "nothing.sh"
         script.write_text("#!/bin/bash\ntrue\n", encoding="utf-8")
@@ -279,6 +280,8 @@ def main():
     parser.add_argument("--folder", type=pathlib.Path, help="where files are written (a temporary folder)")
     parser.add_argument("--seed", type=int, default=1, help="of the kills")
     options = parser.parse_args()
+    for one in (signal.SIGINT, signal.SIGTERM):  # daemons and folders go, whichever ends it
+        signal.signal(one, lambda *_: sys.exit("cluster.py: interrupted; what was measured stands in --state"))
     with tempfile.TemporaryDirectory(prefix="mbk-cluster-", dir=options.folder) as name:
         with private_slurm.PrivateSlurm() as slurm:
             campaign = Campaign(options, pathlib.Path(name), slurm)
