@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/mbk/chart_files.h"
@@ -79,7 +80,7 @@ Result<void> write_charts(const ExploreArguments& arguments, const Exploration& 
   return files->write(found.recordings.front().source, report::exploration_charts(found));
 }
 
-int run_explore(const ExploreArguments& arguments, const std::string& typed) {
+int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (auto ok = check(arguments); !ok) return report_error(ok.error());
   const auto options = exploring_options(arguments);
   if (!options) return report_error(options.error());
@@ -139,7 +140,7 @@ Action add_explore(CLI::App& app, const std::string& typed) {
     auto files = named_files(named.reading.files);
     if (!files) return report_error(files.error());
     named.reading.files = std::move(*files);
-    return named.each ? run_each(*command, named) : run_explore(named, typed);
+    return named.each ? run_each(*command, named) : run_explore(std::move(named), typed);
   };
 }
 
