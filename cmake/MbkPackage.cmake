@@ -59,8 +59,9 @@ set(CPACK_DEBIAN_MPI_PACKAGE_NAME mbk-mpi)
 set(CPACK_DEBIAN_MPI_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_MPI_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "mbk (= ${version}), openmpi-bin")
-set(CPACK_COMPONENT_MPI_DESCRIPTION "What mbk starts for --engine mpi: a small program that hands the chunks of a job out
-to the ranks of a run of Open MPI, each of which does its chunks by mbk.")
+set(CPACK_COMPONENT_MPI_DESCRIPTION "What mbk starts for --engine mpi: a small program that hands the chunks
+of a job out to the ranks of a run of Open MPI, each of which does its chunks
+by mbk.")
 
 # The packages that hold what the libraries link, asked of dpkg.
 find_program(MBK_DPKG_QUERY dpkg-query)
