@@ -315,6 +315,7 @@ bool can_be_called(std::string_view command) {
 std::string describe_commands() {
   CLI::App app;
   app.name("mbk");
+  add_help(app);
   const Actions unused = add_commands("", app, "");
   return commands_json(describe(app), std::string(version()));
 }

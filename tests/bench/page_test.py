@@ -12,8 +12,9 @@ sys.path.insert(0, str(BENCH))
 import page
 
 TEXT = page.PAGE.read_text(encoding="utf-8")
-#: What times nothing by itself, and `mbk reproduce`, of which docs/guide/reproduce.md speaks.
-NO_TABLE = {"reproduce.py", "against.py", "callgrind.py", "commands.py", "instructions.py", "joblib_pipeline.py", "numpy_measure.py",
+#: What times nothing by itself; `mbk reproduce`, of which docs/guide/reproduce.md speaks; and the campaign of the engines,
+#: which takes hours (docs/guide/cluster.md).
+NO_TABLE = {"cluster.py", "reproduce.py", "against.py", "callgrind.py", "commands.py", "instructions.py", "joblib_pipeline.py", "numpy_measure.py",
             "numpy_pipeline.py",
             "plain_closed_loop.py", "pipeline.cpp", "transfer_function.cpp", "floor.cpp", "plant.cpp"}
 

@@ -935,7 +935,11 @@ Result<ContinuousFit> Fitter::run() {
       stretched_.emplace_back();
       continue;
     }
-    std::vector<const Vector*> signals = {&pair.input, &pair.output};
+    // Constants in them are a free motion and an offset; without them, sums of products keep more digits.
+    const double apart = options_.free_start ? 1.0 : 0.0;
+    const Vector input = pair.input.array() - apart * pair.input.mean(),
+                 output = pair.output.array() - apart * pair.output.mean();
+    std::vector<const Vector*> signals = {&input, &output};
     Vector clean;  // û
     if (options_.reference_instruments) {
       clean = explained_by_past(pair.reference, pair.input);
