@@ -328,11 +328,22 @@ class Fitter {
     std::vector<Vector> residuals;  ///< y − x̂ of each experiment
   };
 
+  /// What a step of the search needs, or a covariance: the whole of ZᵀZ. On the way sums may lose some digits, as those
+  /// over strides do where signals stand far from zero.
+  enum class For { step_on_the_way, step, covariance };
+
   [[nodiscard]] Result<void> check() const;
   [[nodiscard]] std::vector<double> start_poles() const;
   [[nodiscard]] Search search(double pole) const;
   void iterate(Search& found) const;
-  bool step(Search& found, double& change) const;
+  bool step(Search& found, double& change, For use) const;
+  /// Whether a step on the way is any cheaper.
+  [[nodiscard]] bool goes_by_strides(const Search& found) const {
+    for (std::size_t k = 0; k < strided_.size() && found.noise.size() == 1; ++k) {
+      if (strides_pay(k, layout(true))) return true;
+    }
+    return false;
+  }
 
   template <class Filter>
   struct Filters {
@@ -373,8 +384,6 @@ class Fitter {
   [[nodiscard]] static const Vector* free_weights(const Iterate& at, const Layout& layout, std::size_t experiment) {
     return layout.free && experiment < at.free.size() ? &at.free[experiment] : nullptr;
   }
-  /// What a step of the search needs, or a covariance: the whole of ZᵀZ.
-  enum class For { step, covariance };
   /// @param residuals  y − x̂ of each experiment, where it is not nullptr; without a noise model only
   [[nodiscard]] Sums sums(const Iterate& at, const Layout& layout, const Vector& noise, For use,
                           std::vector<Vector>* residuals = nullptr) const;
@@ -643,7 +652,7 @@ Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, 
   Sums all{Matrix::Zero(p, p), Matrix::Zero(p, p), Vector::Zero(p), 0.0, 0, {}};
   for (std::size_t k = 0; k < experiments_.size(); ++k) {
     // [Z u e free]ᵀ[u e free −y], and ZᵀZ of what is not in u. Of e beside instruments the square is enough.
-    const bool diagonal = layout.instruments && use == For::step;
+    const bool diagonal = layout.instruments && use != For::covariance;
     const Index left = layout.instruments && !layout.free ? layout.e() : y;
     dsp::Products across(left, rows - u), within(diagonal ? 0 : own_size, own_size);
     dsp::Squares of_e(1), of_own(diagonal ? own_size : 0);
@@ -657,7 +666,7 @@ Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, 
       if (residuals != nullptr) block.scatter(layout.e(), e);
     };
     Matrix strides = Matrix::Zero(rows, rows);
-    if (use == For::step && noise.size() == 1 && residuals == nullptr && strides_pay(k, layout)) {
+    if (use == For::step_on_the_way && noise.size() == 1 && strides_pay(k, layout)) {
       Courses from_here = courses(k, at, layout);
       strides = products_of_strides(k, at, layout, from_here);
       blocks_of_segments(k, at, layout, noise, from_here, add);
@@ -713,10 +722,10 @@ bool stabilise(Vector& a, double min_damping) {
   return stable;
 }
 
-bool Fitter::step(Search& found, double& change) const {
+bool Fitter::step(Search& found, double& change, For use) const {
   const bool first = found.at.b.size() == 0;
   const Layout rows = found.from_clean_input ? layout_of_clean_input(!first) : layout(!first);
-  const Sums now = sums(found.at, rows, found.noise, For::step);
+  const Sums now = sums(found.at, rows, found.noise, use);
   const Vector delta = solved(now);
   if (!delta.allFinite()) return false;
   const Vector old = first ? Vector(Vector::Zero(n_ + q_)) : found.at.theta();
@@ -746,16 +755,22 @@ bool Fitter::step(Search& found, double& change) const {
 /// Until the coefficients stand still.
 void Fitter::iterate(Search& found) const {
   constexpr double kRounding = 1e-11;
-  double change = std::numeric_limits<double>::infinity(), least = change;
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  double change = kFar, least = kFar;
   bool settled = false;
+  For use = goes_by_strides(found) ? For::step_on_the_way : For::step;
   found.start.converged = false;
   for (int pass = 0; pass < options_.max_iterations; ++pass) {
     ++found.start.iterations;
-    if (!step(found, change)) return;
-    if (settled && change >= 0.5 * least && change < options_.tolerance) break;
+    if (!step(found, change, use)) return;
+    const bool rests = settled && change >= 0.5 * least && change < options_.tolerance;
     settled = settled || (change < options_.tolerance && found.start.stable);
     least = std::min(least, change);
-    if (settled && (!options_.refine || change < kRounding)) break;
+    if (!rests && !(settled && (!options_.refine || change < kRounding))) continue;
+    if (use == For::step) break;
+    use = For::step;
+    least = kFar;
+    settled = false;
   }
   found.start.converged = settled && found.start.stable && change < options_.tolerance;
 }
@@ -771,7 +786,7 @@ Fitter::Search Fitter::search(double pole) const {
     found.at = {std::ldexp(pole, k), numeric::monic_from_roots(Eigen::VectorXcd::Constant(n_, -1.0)), {}, {}};
     double change = 0.0;
     ++found.start.iterations;
-    begun = step(found, change);
+    begun = step(found, change, For::step_on_the_way);
   }
   if (!begun) return found;
   // In a closed loop first with û for u (two stages, Van den Hof & Schrama 1993): that is a fit without any loop, whose
@@ -935,11 +950,7 @@ Result<ContinuousFit> Fitter::run() {
       stretched_.emplace_back();
       continue;
     }
-    // Constants in them are a free motion and an offset; without them, sums of products keep more digits.
-    const double apart = options_.free_start ? 1.0 : 0.0;
-    const Vector input = pair.input.array() - apart * pair.input.mean(),
-                 output = pair.output.array() - apart * pair.output.mean();
-    std::vector<const Vector*> signals = {&input, &output};
+    std::vector<const Vector*> signals = {&pair.input, &pair.output};
     Vector clean;  // û
     if (options_.reference_instruments) {
       clean = explained_by_past(pair.reference, pair.input);
