@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "apps/mbk/engine_options.h"
 #include "apps/mbk/measure_units.h"
@@ -74,16 +76,10 @@ class ResultQueue {
     store_in_time();
   }
 
-  void store() {
-    last_ = std::chrono::steady_clock::now();
-    if (waiting_units_.empty() || error) return;
-    const auto saved = study_.save(measuring_.key, std::string(version()), waiting_units_, waiting_results_, role_);
-    if (!saved) {
-      error = saved.error();
-      stopped = true;
-    }
-    waiting_units_.clear();
-    waiting_results_.clear();
+  /// Everything that came is stored, or there is an error.
+  void finish() {
+    store();
+    await();
   }
 
   std::optional<Error> error;         ///< results could not be stored
@@ -92,6 +88,26 @@ class ResultQueue {
 
  private:
   static constexpr std::ptrdiff_t kMany = 64;
+
+  /// Beside whoever measures, who need not wait for the disk.
+  void store() {
+    await();
+    last_ = std::chrono::steady_clock::now();
+    if (waiting_units_.empty() || error) return;
+    being_stored_ = std::async(std::launch::async, [this, units = std::exchange(waiting_units_, {}),
+                                                    results = std::exchange(waiting_results_, {})] {
+      return study_.save(measuring_.key, std::string(version()), units, results, role_);
+    });
+  }
+
+  /// What is being stored is stored, or there is an error.
+  void await() {
+    if (!being_stored_.valid()) return;
+    if (const auto saved = being_stored_.get(); !saved) {
+      error = saved.error();
+      stopped = true;
+    }
+  }
 
   void store_in_time() {
     const auto now = std::chrono::steady_clock::now();
@@ -120,6 +136,7 @@ class ResultQueue {
   std::vector<store::Unit> waiting_units_;
   std::vector<store::UnitResult> waiting_results_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::future<Result<int>> being_stored_;
 };
 
 /// Measures within this process, on several threads.
@@ -139,7 +156,7 @@ void measure_here(const Measuring& measuring, const std::filesystem::path& folde
         queue.done(k);
         progress.count(++done, count);
       });
-  queue.store();
+  queue.finish();
 }
 
 int said_of(const Tally& tally, std::size_t count, std::optional<int> code = {}) {
@@ -182,7 +199,7 @@ Result<std::size_t> collect(const batch::JobFolder& folder, ResultQueue& queue) 
     if (queue.error) return tl::unexpected(*queue.error);
     return {};
   });
-  queue.store();
+  queue.finish();
   if (queue.error) return tl::unexpected(*queue.error);
   if (!merged) return tl::unexpected(merged.error());
   return static_cast<std::size_t>(merged->results + merged->failed + merged->conflicts);

@@ -99,9 +99,8 @@ class Shortages {
   }
 
   /// As largest_shortage.
-  [[nodiscard]] double largest(const std::vector<std::size_t>& order) const {
-    double end = 0.0;
-    for (const std::size_t k : order) end += blocks_[k].total.squared_velocity;
+  /// @param end  S of all that are in the order
+  [[nodiscard]] double largest(const std::vector<std::size_t>& order, double end) const {
     if (!(end > 0.0)) return kNaN;
     const double first = first_share_ * end;
     double largest = kNaN;
@@ -159,7 +158,7 @@ Totals totals_of(const std::vector<EnergyBlock>& blocks, const std::vector<std::
     totals.squared_velocity += blocks[k].total.squared_velocity;
     totals.absorbed += blocks[k].total.absorbed;
   }
-  totals.shortage_largest = shortages.largest(order);
+  totals.shortage_largest = shortages.largest(order, totals.squared_velocity);
   return totals;
 }
 
@@ -258,7 +257,9 @@ EnergyBlock outline(EnergyBlock block, std::function<std::vector<EnergySums>()> 
 
 double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
                         double first_share) {
-  return Shortages(blocks, first_share).largest(order);
+  double end = 0.0;
+  for (const std::size_t k : order) end += blocks[k].total.squared_velocity;
+  return Shortages(blocks, first_share).largest(order, end);
 }
 
 EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbations, double first_share, int replicates,
