@@ -223,8 +223,8 @@ Server::Implementation::Rights Server::Implementation::admit(const Request& requ
 }
 
 std::pair<http::status, Page> Server::Implementation::page_for(const Request& request, Rights rights, bool placed) {
-  static const Page wrong = sentence_page("This address is not right. Open the one that mbk run printed.");
-  if (rights == Rights::none) return {http::status::forbidden, wrong};
+  static const Page kWrong = sentence_page("This address is not right. Open the one that mbk run printed.");
+  if (rights == Rights::none) return {http::status::forbidden, kWrong};
   if (!placed) {
     refuse(Refusal::crowd, fmt::format("a page behind {} with the same token", capacity_.holders));
     return {http::status::service_unavailable,
