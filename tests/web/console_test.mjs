@@ -95,7 +95,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await screenshot(page, "console-running");
 
   await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
-  assert.match(await page.textContent(".estimate h2"), /whole perturbation, 14 s/);
+  await page.locator(".estimate h2", { hasText: /whole perturbation, 14 s/ }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".verdict"), /Completed and good.*The model explains [\d.]+ % in x, [\d.]+ % in y/);
   assert.match(await page.getByRole("button", { name: "Begin the next: rigid" }).getAttribute("class"), /main/);
   await page.getByRole("button", { name: "1 relaxed" }).click();
