@@ -113,3 +113,17 @@ function(mbk_test_each_simd test filter)
     set_tests_properties(${test}/simd_${simd} PROPERTIES ENVIRONMENT MBK_SIMD=${simd} TIMEOUT 300)
   endforeach()
 endfunction()
+
+# mbk_ready_files(NAME FOLDER TYPE): the files FOLDER/*.toml become part of the program: NAME.cpp.in, where it says
+# @MBK_READY_FILES@, gets a TYPE{"name", "text"} of each, and is written to the build folder as NAME.cpp.
+function(mbk_ready_files name folder type)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.toml)
+  set(MBK_READY_FILES "")
+  foreach(file IN LISTS files)
+    get_filename_component(file_name ${file} NAME_WE)
+    file(READ ${file} text)
+    string(APPEND MBK_READY_FILES "    ${type}{\"${file_name}\", R\"toml(${text})toml\"},\n")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  endforeach()
+  configure_file(${name}.cpp.in ${name}.cpp @ONLY)
+endfunction()

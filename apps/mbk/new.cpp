@@ -1,7 +1,18 @@
+#include <fmt/format.h>
+
 #include "apps/mbk/commands.h"
 #include "apps/mbk/new_commands.h"
+#include "apps/mbk/option_checks.h"
 
 namespace mbk::app {
+
+void add_new_file_options(CLI::App& command, NewFileArguments& arguments) {
+  command.add_option("--out", arguments.out, fmt::format("the file to write ({})", arguments.out.string()))
+      ->type_name("FILE.toml")
+      ->check(not_empty());
+  command.add_flag("--overwrite", arguments.overwrite, "replace that file where it is there");
+  command.add_flag("--yes", arguments.yes, "ask nothing: take what is proposed");
+}
 
 Action add_new(CLI::App& app) {
   CLI::App* group = add_command(app, "new", "write the channels of a file, an experiment or a robot, step by step");

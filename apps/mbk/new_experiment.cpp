@@ -18,11 +18,6 @@
 namespace mbk::app {
 namespace {
 
-struct NewExperimentArguments {
-  std::filesystem::path out = "experiment.toml";
-  bool yes = false, overwrite = false;
-};
-
 /// A perturbation that is offered, with its words for the file.
 struct OfferedPerturbation {
   const char *word, *control, *kind, *peak_key, *peak_unit, *peak, *remark;
@@ -102,7 +97,7 @@ Result<std::string> experiment_text(const Questions& questions) {
   return text;
 }
 
-int run(const NewExperimentArguments& arguments) {
+int run(const NewFileArguments& arguments) {
   if (auto ok = check_new_file(arguments.out, "--out", arguments.overwrite, {}); !ok) return report_error(ok.error());
   const auto text = experiment_text(Questions(arguments.yes));
   if (!text) return report_error(text.error());
@@ -120,7 +115,8 @@ int run(const NewExperimentArguments& arguments) {
 }  // namespace
 
 Action add_new_experiment(CLI::App& group) {
-  auto arguments = std::make_shared<NewExperimentArguments>();
+  auto arguments = std::make_shared<NewFileArguments>();
+  arguments->out = "experiment.toml";
   CLI::App* command = add_command(group, "experiment", "an experiment for 'mbk run', from a few answers");
   command->footer(
       "Examples:\n"
@@ -129,11 +125,7 @@ Action add_new_experiment(CLI::App& group) {
       "  mbk new experiment --yes && mbk run experiment.toml --dry-run\n"
       "  printf 'udp\\n192.168.1.10\\n25000\\npulses\\n10\\nrigid\\n5\\n' | mbk new experiment --out rigid.toml\n\n"
       "The file is written only after it was read as 'mbk run' reads it, and has comments.");
-  command->add_option("--out", arguments->out, "the file to write (experiment.toml)")
-      ->type_name("FILE.toml")
-      ->check(not_empty());
-  command->add_flag("--overwrite", arguments->overwrite, "replace that file where it is there");
-  command->add_flag("--yes", arguments->yes, "ask nothing: take what is proposed");
+  add_new_file_options(*command, *arguments);
   return [arguments] { return run(*arguments); };
 }
 

@@ -6,7 +6,6 @@
 
 #include "apps/mbk/messages.h"
 #include "apps/mbk/new_commands.h"
-#include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/questions.h"
 #include "apps/mbk/report_file.h"
@@ -16,10 +15,9 @@
 namespace mbk::app {
 namespace {
 
-struct NewRobotArguments {
+struct NewRobotArguments : NewFileArguments {
+  NewRobotArguments() { out = "robot.toml"; }
   std::filesystem::path urdf;
-  std::filesystem::path out = "robot.toml";
-  bool yes = false, overwrite = false;
 };
 
 constexpr const char* kHead =
@@ -123,11 +121,7 @@ Action add_new_robot(CLI::App& group) {
       "  mbk new robot --yes && mbk robot describe robot.toml\n\n"
       "The file is written only after it was read as 'mbk robot describe' reads it.");
   command->add_option("ARM.urdf", arguments->urdf, "a robot's URDF, where there is one");
-  command->add_option("--out", arguments->out, "the file to write (robot.toml)")
-      ->type_name("FILE.toml")
-      ->check(not_empty());
-  command->add_flag("--overwrite", arguments->overwrite, "replace that file where it is there");
-  command->add_flag("--yes", arguments->yes, "ask nothing: take what is proposed");
+  add_new_file_options(*command, *arguments);
   return [arguments] { return run(*arguments); };
 }
 
