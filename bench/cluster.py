@@ -43,7 +43,7 @@ ENGINES = ("local", "slurm", "mpi")
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 JUDGED = (0, 1, 4, 6)  # exit codes of commands that did what they were asked
 FULL = {"draws": 100_000, "draw_chunks": (1000, 3000, 10_000), "runs": 1000, "run_chunks": (10, 25, 60), "kills": 20,
-        "pairs": 5, "trials": 200, "units": 10_000, "unit_chunk": 100, "merge": 1_000_000, "resumes": 5}
+        "pairs": 3, "trials": 1000, "units": 10_000, "unit_chunk": 100, "merge": 1_000_000, "resumes": 5}
 SHORT = {"draws": 3000, "draw_chunks": (200, 500, 1000), "runs": 10, "run_chunks": (1, 2, 5), "kills": 3, "pairs": 1,
          "trials": 20, "units": 100, "unit_chunk": 10, "merge": 50_000, "resumes": 1}
 

@@ -92,12 +92,10 @@ Measured measured_cost(const Request& request) {
 
 double target_of(const EngineArguments& arguments, double total_s) {
   if (arguments.chunk_s) return *arguments.chunk_s;
-  // Many chunks for each core even out what they cost; none is so short that its beginning matters.
-  constexpr double kChunksPerTask = 16.0, kShortest = 2.0, kShortestOfSlurm = 30.0, kLongest = 300.0;
-  constexpr int kTasksOfCluster = 100;
   const bool slurm = arguments.kind == EngineKind::slurm;
-  const int tasks = arguments.tasks > 0 ? arguments.tasks : slurm ? kTasksOfCluster : cores();
-  return std::clamp(total_s / (kChunksPerTask * tasks), slurm ? kShortestOfSlurm : kShortest, kLongest);
+  // A task of Slurm begins after seconds, a process of this machine after hundredths.
+  const batch::ChunkLengths lengths = slurm ? batch::ChunkLengths{30.0, 2.0} : batch::ChunkLengths{2.0, 0.2};
+  return batch::chunk_length(total_s, arguments.tasks > 0 || slurm ? arguments.tasks : cores(), lengths);
 }
 
 batch::EngineOptions engine_options(const EngineArguments& arguments, const fs::path& program) {

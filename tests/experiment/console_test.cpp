@@ -74,11 +74,15 @@ class ConsoleOfASession : public testing::Test {
     fs::remove_all(folder_);
   }
 
-  void open_console() {
-    console_ = Console::open(0, plans_, session_.flags(), [&](const std::string& line) {
-                 const std::scoped_lock lock(mutex_);
-                 log_.push_back(line);
-               }).value();
+  void open_console(ServerTimes times = {}) {
+    console_ = Console::open(
+                   0, plans_, session_.flags(),
+                   [&](const std::string& line) {
+                     const std::scoped_lock lock(mutex_);
+                     log_.push_back(line);
+                   },
+                   times)
+                   .value();
     const std::string address = console_->address();
     port_ = address.substr(17, address.find('/', 17) - 17);
     token_ = address.substr(address.find("token=") + 6);
@@ -475,12 +479,13 @@ TEST_F(ConsoleOfASession, AStopFromThePageTripsTheGateAndIsSaidWithItsReason) {
 }
 
 TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
+  console_.reset();
+  open_console({.beat = 24h});
   const session::Plan& plan = plans_.front();
   auto robot = laboratory::simulated_robot(plan.trial).value();
   console_->begin(0, session::header_of(plan, robot->facts()), folder_ / "trial.h5", 1.0);
   auto page = open(viewing_token_);
   constexpr int kTrips = 400;
-  const auto begin = std::chrono::steady_clock::now();
   journal::Tick tick;
   for (int k = 0; k < kTrips; ++k) {
     tick.number = static_cast<std::uint64_t>(k);
@@ -489,8 +494,6 @@ TEST_F(ConsoleOfASession, ATripIsSaidBeforeTheNextBeat) {
     ASSERT_TRUE(page->read_until([&](Page& one) { return one.state != Json() && one.state.at("ticks") == k + 1; }));
     ASSERT_EQ(page->state.at("safety").at("tripped"), k % 2 == 0);
   }
-  // one for each beat would take 400/120 s
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, 1s);
 }
 
 TEST_F(ConsoleOfASession, AStuckViewerCostsABoundedRoomAndHoldsNobodyUp) {

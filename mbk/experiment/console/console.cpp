@@ -139,12 +139,15 @@ Console::~Console() {
 }
 
 Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::vector<session::Plan>& plans,
-                                               session::LoopFlags& flags, std::function<void(const std::string&)> log) {
+                                               session::LoopFlags& flags, std::function<void(const std::string&)> log,
+                                               ServerTimes times) {
   std::unique_ptr<Console> console(new Console(plans, flags));
   Console& self = *console;
-  auto server = Server::listen(port, {[&self](std::string_view path) { return self.page(path); },
-                                      [&self](const Command& command) { return self.command(command); },
-                                      [&self] { self.beat(); }, std::move(log)});
+  auto server = Server::listen(
+      port,
+      {[&self](std::string_view path) { return self.page(path); },
+       [&self](const Command& command) { return self.command(command); }, [&self] { self.beat(); }, std::move(log)},
+      times);
   if (!server) return tl::unexpected(server.error());
   const std::scoped_lock lock(self.mutex_);
   self.server_ = std::move(*server);

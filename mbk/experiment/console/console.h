@@ -100,7 +100,8 @@ class Console {
   [[nodiscard]] static Result<std::unique_ptr<Console>> open(std::uint16_t port,
                                                              const std::vector<session::Plan>& plans,
                                                              session::LoopFlags& flags,
-                                                             std::function<void(const std::string&)> log);
+                                                             std::function<void(const std::string&)> log,
+                                                             ServerTimes times = {});
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
   ~Console();

@@ -14,8 +14,6 @@
 namespace mbk::console {
 namespace {
 
-// twice as often as screens are drawn, so that there is something new for every picture
-constexpr auto kBeat = std::chrono::nanoseconds(1'000'000'000 / 120);
 constexpr auto kNoDescriptor = 100ms;  // until it is tried again
 
 Capacity capacity() {
@@ -40,11 +38,8 @@ std::string random_token() {
 
 }  // namespace
 
-Server::Implementation::Implementation(Handlers handlers, std::chrono::milliseconds control_kept)
-    : handlers_(std::move(handlers)),
-      control_kept_(control_kept),
-      token_(random_token()),
-      viewing_token_(random_token()) {}
+Server::Implementation::Implementation(Handlers handlers, ServerTimes times)
+    : handlers_(std::move(handlers)), times_(times), token_(random_token()), viewing_token_(random_token()) {}
 
 Server::Implementation::~Implementation() {
   stop();
@@ -124,7 +119,7 @@ void Server::Implementation::accept() {
 }
 
 void Server::Implementation::wait_for_beat() {
-  next_beat_ = std::max(next_beat_ + kBeat, std::chrono::steady_clock::now());
+  next_beat_ = std::max(next_beat_ + times_.beat, std::chrono::steady_clock::now());
   timer_.expires_at(next_beat_);
   timer_.async_wait([this](error_code error) {
     if (error) return;
@@ -136,9 +131,8 @@ void Server::Implementation::wait_for_beat() {
 Server::Server(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
 Server::~Server() = default;
 
-Result<std::unique_ptr<Server>> Server::listen(std::uint16_t port, Handlers handlers,
-                                               std::chrono::milliseconds control_kept) {
-  auto implementation = std::make_unique<Implementation>(std::move(handlers), control_kept);
+Result<std::unique_ptr<Server>> Server::listen(std::uint16_t port, Handlers handlers, ServerTimes times) {
+  auto implementation = std::make_unique<Implementation>(std::move(handlers), times);
   if (auto ok = implementation->open(port); !ok) return tl::unexpected(ok.error());
   return std::unique_ptr<Server>(new Server(std::move(implementation)));
 }

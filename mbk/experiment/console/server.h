@@ -15,6 +15,12 @@
 
 namespace mbk::console {
 
+struct ServerTimes {
+  std::chrono::milliseconds control_kept = std::chrono::seconds(10);  ///< for a page that has gone
+  /// From one beat to the next: half of what screens need for a picture, so that there is something new for each.
+  std::chrono::nanoseconds beat{1'000'000'000 / 120};
+};
+
 /// Pages and a stream of messages over HTTP and WebSocket, for browsers on this machine: it listens on 127.0.0.1 and
 /// nowhere else. Whoever wants anything shows one of two tokens, which are made anew for each server: the operator's,
 /// or that of viewers who only watch. The first page with the operator's token controls, until another one that has the
@@ -36,17 +42,13 @@ class Server {
   struct Handlers {
     std::function<Page(std::string_view path)> page;
     std::function<Result<void>(const Command&)> command;  ///< from a page that may give it
-    std::function<void()> beat;                           ///< 120 times a second
+    std::function<void()> beat;                           ///< 120 times a second, or as ServerTimes says
     std::function<void(const std::string&)> log;          ///< one line about what was refused
   };
 
-  /// For so long control is kept for a page that has gone.
-  static constexpr std::chrono::milliseconds kControlKept = std::chrono::seconds(10);
-
   /// @param port  0: any that is free
   /// @fails  usage: the port is taken.
-  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(std::uint16_t port, Handlers handlers,
-                                                              std::chrono::milliseconds control_kept = kControlKept);
+  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(std::uint16_t port, Handlers handlers, ServerTimes times = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   ~Server();

@@ -69,7 +69,7 @@ struct Capacity {
 
 class Server::Implementation {
  public:
-  Implementation(Handlers handlers, std::chrono::milliseconds control_kept);
+  Implementation(Handlers handlers, ServerTimes times);
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
   ~Implementation();
@@ -149,7 +149,7 @@ class Server::Implementation {
   void receive(Viewer& viewer, std::string_view text, bool is_text);
 
   Handlers handlers_;
-  std::chrono::milliseconds control_kept_;
+  ServerTimes times_;
   std::string token_, viewing_token_;
   // outlive the connections, which end with the context
   Capacity capacity_;

@@ -51,7 +51,7 @@ class FloodedServer : public testing::Test {
     server_.reset();
   }
 
-  void open(std::chrono::milliseconds control_kept = Server::kControlKept) {
+  void open(ServerTimes times = {}) {
     Server::Handlers handlers;
     handlers.page = [this](std::string_view path) {
       if (throws_) throw std::runtime_error("no page today");
@@ -70,7 +70,7 @@ class FloodedServer : public testing::Test {
       const std::scoped_lock lock(mutex_);
       log_.push_back(line);
     };
-    server_ = Server::listen(0, std::move(handlers), control_kept).value();
+    server_ = Server::listen(0, std::move(handlers), times).value();
   }
 
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
@@ -229,7 +229,7 @@ TEST_F(FloodedServer, HugeHeadersAndGarbageAreCutOff) {
 }
 
 TEST_F(FloodedServer, ControlIsKeptForAWhileAndGoesToTheNextPageThen) {
-  open(200ms);
+  open({.control_kept = 200ms});
   auto first = stream(server_->token() + "&page=1");
   ASSERT_TRUE(soon([&] { return server_->status().controlled; }));
   first.reset();

@@ -194,7 +194,7 @@ void Server::Implementation::add(const std::shared_ptr<Viewer>& viewer) {
 void Server::Implementation::remove(Viewer& viewer) {
   if (controller_ == &viewer) {
     controller_ = nullptr;
-    kept_until_ = std::chrono::steady_clock::now() + control_kept_;
+    kept_until_ = std::chrono::steady_clock::now() + times_.control_kept;
   }
   std::erase_if(viewers_, [&](const auto& other) { return other.get() == &viewer; });
   viewer_count_ = static_cast<int>(viewers_.size());

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -123,6 +124,16 @@ std::string program_identity() {
     return fmt::format("{} {}", version(), build.empty() ? "without a build's identity" : build);
   }();
   return kIdentity;
+}
+
+double chunk_length(double total_s, int tasks, const ChunkLengths& lengths) {
+  constexpr double kChunksPerTask = 16.0, kLongest_s = 300.0;
+  constexpr int kTasksOfCluster = 100;
+  const double even_s = total_s / (kChunksPerTask * (tasks > 0 ? tasks : kTasksOfCluster));
+  const double length_s = std::clamp(even_s, lengths.shortest_s, kLongest_s);
+  if (tasks == 0) return length_s;
+  const double rounds = std::max(std::ceil(total_s / (length_s * tasks)), 1.0);
+  return std::max(total_s / (rounds * tasks), lengths.least_s);
 }
 
 std::vector<std::int64_t> cut_into_chunks(std::span<const double> costs, double target_s, std::int64_t max_chunks) {

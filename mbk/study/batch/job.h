@@ -32,6 +32,17 @@ struct Chunk {
 /// This program, and which build of it: "0.1.0 4f1c…".
 [[nodiscard]] std::string program_identity();
 
+/// What it takes until it is worth while to begin a task.
+struct ChunkLengths {
+  double shortest_s = 2.0;  ///< below it a task's beginning shows in the whole
+  double least_s = 0.2;     ///< below it no other task is begun, even if there is one with nothing to do
+};
+
+/// How much work a chunk holds [s]: a sixteenth of what each task does, so that uneven costs even out, but neither less
+/// than `shortest_s` nor more than five minutes; where that makes few chunks, as many for each task as for the others.
+/// @param total_s  of all units    @param tasks  that work at a time; 0: as many as a cluster may have
+[[nodiscard]] double chunk_length(double total_s, int tasks, const ChunkLengths& lengths);
+
 /// The ends of chunks, each of about so much cost, at most `max_chunks`.
 /// @param costs  of each unit [s], > 0    @param target_s  of a chunk
 /// @returns  for each chunk the number of the unit after its last; the last is the number of units

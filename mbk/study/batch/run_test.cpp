@@ -179,5 +179,26 @@ TEST(Chunks, AreOfOneCostAndNoMoreThanAllowed) {
   EXPECT_TRUE(cut_into_chunks({}, 1.0, 5).empty());
 }
 
+TEST(Chunks, OfALittleWorkAreAsManyForEachTask) {
+  constexpr ChunkLengths kLengths{2.0, 0.2};
+  // three of 2 s would leave one of two tasks without work for a third of the time
+  EXPECT_DOUBLE_EQ(chunk_length(6.0, 2, kLengths), 1.5);
+  EXPECT_DOUBLE_EQ(chunk_length(3.0, 2, kLengths), 1.5);
+  for (const double total_s : {0.9, 5.0, 6.0, 41.0}) {
+    const std::vector<double> costs(10'000, total_s / 10'000);
+    for (const int tasks : {1, 2, 3, 7}) {
+      const double length_s = chunk_length(total_s, tasks, kLengths);
+      EXPECT_LE(length_s, 300.0);
+      if (length_s > 0.2) {
+        EXPECT_EQ(cut_into_chunks(costs, length_s, 1'000'000).size() % static_cast<std::size_t>(tasks), 0U)
+            << total_s << " s, " << tasks << " tasks";
+      }
+    }
+  }
+  EXPECT_DOUBLE_EQ(chunk_length(0.05, 8, kLengths), 0.2);
+  EXPECT_DOUBLE_EQ(chunk_length(1e4, 0, {30.0, 2.0}), 30.0);
+  EXPECT_DOUBLE_EQ(chunk_length(1e7, 0, {30.0, 2.0}), 300.0);
+}
+
 }  // namespace
 }  // namespace mbk::batch
