@@ -71,24 +71,6 @@ GivenOptions canonical(GivenOptions given) {
   return given;
 }
 
-/// JSON without the blanks between its parts; every digit stays.
-std::string compact(const std::string& json) {
-  std::string text;
-  text.reserve(json.size());
-  bool within = false;
-  for (std::size_t k = 0; k < json.size(); ++k) {
-    const char c = json[k];
-    if (within && c == '\\') {
-      text += c;
-      text += json[++k];
-      continue;
-    }
-    if (c == '"') within = !within;
-    if (within || (c != ' ' && c != '\n')) text += c;
-  }
-  return text;
-}
-
 /// "inertia-not-positive, fit-poor"
 std::string codes_of(const std::vector<Warning>& warnings) {
   std::vector<std::string_view> codes;
@@ -261,7 +243,7 @@ Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::fi
   const auto found = measured(measuring, *recording, unit);
   if (!found) return store::UnitResult{"", false, found.error().message};
   const Identification& identification = found->identification;
-  return store::UnitResult{compact(result::to_json(*found)), identification.usable,
+  return store::UnitResult{result::to_compact_json(*found), identification.usable,
                            identification.usable ? "" : codes_of(identification.warnings)};
 }
 

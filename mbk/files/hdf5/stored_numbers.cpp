@@ -112,7 +112,9 @@ Chunks pack(const std::string& bytes, const std::vector<std::uint64_t>& shape, s
   std::size_t cut = 0;                      // the dimension of which it is a part
   for (; cut < shape.size(); ++cut) {
     const std::uint64_t rest = run / shape[cut];
-    chunks.shape[cut] = std::clamp<std::uint64_t>(kChunkBytes / (rest * size), 1, shape[cut]);
+    const auto most = std::clamp<std::uint64_t>(kChunkBytes / (rest * size), 1, shape[cut]);
+    const std::uint64_t count = (shape[cut] + most - 1) / most;
+    chunks.shape[cut] = (shape[cut] + count - 1) / count;  // equal ones: the last is padded by as little as can be
     run = rest * chunks.shape[cut];
     if (chunks.shape[cut] > 1) break;
   }
@@ -133,7 +135,7 @@ Chunks pack(const std::string& bytes, const std::vector<std::uint64_t>& shape, s
   const auto packed = numeric::parallel_for(static_cast<int>(chunks.pieces.size()), kThreads, [&](int i) {
     std::string& piece = chunks.pieces[static_cast<std::size_t>(i)].packed;
     piece.resize(run * size, '\0');
-    piece = deflated(shuffled(piece, size));
+    piece = deflated_planes(shuffled(piece, size), run);
     return Result<void>();
   });
   static_cast<void>(packed);  // no piece fails but for want of memory, which is thrown

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -48,23 +49,10 @@ std::vector<EnergySums> hull_from(const EnergyBlock& block, std::size_t vertex) 
   return hull;
 }
 
-/// Whether S reaches `first` inside a block before which the sums are those.
-bool is_cut(const EnergyBlock& block, const EnergySums& before, double first) {
-  return before.squared_velocity + block.total.squared_velocity >= first &&
-         before.squared_velocity + block.hull.front().squared_velocity < first;
-}
-
-/// No λ in a block is above it, with S from `first` on.
-double highest_possible(const EnergyBlock& block, const EnergySums& before, double first) {
-  const double missing = -(before.absorbed + block.least_absorbed);
-  const double least = std::max(first, before.squared_velocity + block.hull.front().squared_velocity);
-  return missing / (missing > 0.0 ? least : before.squared_velocity + block.total.squared_velocity);
-}
-
-/// Raises the largest λ, or NaN, to that in a block with S from `first` on.
-void look_into(const EnergyBlock& block, const EnergySums& before, double first, double& largest) {
-  const auto too_early = [&](const EnergySums& sum) { return before.squared_velocity + sum.squared_velocity < first; };
-  if (too_early(block.total)) return;
+/// Raises the largest λ, or NaN, to that in a block with S from `first` on, which it reaches in it. The sums before the
+/// block are those.
+/// @param cut  whether the block holds samples at which S has not reached `first`
+void look_into(const EnergyBlock& block, const EnergySums& before, double first, bool cut, double& largest) {
   // Along the hull the slope rises to the vertex that the steepest line touches, and falls from there on.
   double highest = -std::numeric_limits<double>::infinity();
   const auto rises = [&](const EnergySums& sum) {
@@ -73,7 +61,10 @@ void look_into(const EnergyBlock& block, const EnergySums& before, double first,
     highest = shortage;
     return true;
   };
-  if (is_cut(block, before, first)) {
+  if (cut) {
+    const auto too_early = [&](const EnergySums& sum) {
+      return before.squared_velocity + sum.squared_velocity < first;
+    };
     auto vertex = static_cast<std::size_t>(std::ranges::partition_point(block.sums, too_early) - block.sums.begin());
     while (rises(block.sums[vertex]) && block.next[vertex] != vertex) vertex = block.next[vertex];
   } else {
@@ -82,67 +73,6 @@ void look_into(const EnergyBlock& block, const EnergySums& before, double first,
   if (!(highest <= largest)) largest = highest;
 }
 
-/// Finds the largest λ of the same blocks in many orders.
-class Shortages {
- public:
-  Shortages(const std::vector<EnergyBlock>& blocks, double first_share) : blocks_(blocks), first_share_(first_share) {
-    EnergySums all;
-    for (const EnergyBlock& block : blocks) add(block, all);
-    usual_ = all.squared_velocity > 0.0 ? -all.absorbed / all.squared_velocity : 0.0;
-    for (const EnergyBlock& block : blocks) {
-      double above = -std::numeric_limits<double>::infinity();
-      for (const EnergySums& sum : block.hull) {
-        above = std::max(above, -sum.absorbed - usual_ * sum.squared_velocity);
-      }
-      above_.push_back(above);
-    }
-  }
-
-  /// As largest_shortage.
-  /// @param end  S of all that are in the order
-  [[nodiscard]] double largest(const std::vector<std::size_t>& order, double end) const {
-    if (!(end > 0.0)) return kNaN;
-    const double first = first_share_ * end;
-    double largest = kNaN;
-    EnergySums before;
-    const EnergyBlock* outlined = nullptr;
-    EnergySums before_outlined;
-    for (const std::size_t k : order) {
-      const EnergyBlock& block = blocks_[k];
-      if (block.sums.empty() && is_cut(block, before, first)) {  // to be made only where it can matter
-        outlined = &block;
-        before_outlined = before;
-      } else if (!stays_below(k, before, largest)) {
-        look_into(block, before, first, largest);
-      }
-      add(block, before);
-    }
-    if (outlined != nullptr && !(highest_possible(*outlined, before_outlined, first) <= largest)) {
-      look_into(energy_block(outlined->duration, outlined->again()), before_outlined, first, largest);
-    }
-    return largest;
-  }
-
- private:
-  static void add(const EnergyBlock& block, EnergySums& sums) {
-    sums.squared_velocity += block.total.squared_velocity;
-    sums.absorbed += block.total.absorbed;
-  }
-
-  /// No λ in a block is above `slope`: no point of it stands above the line of that slope through (−S₀, E₀). How far
-  /// points stand above a line of another slope is known, and within the block both lines part by little.
-  [[nodiscard]] bool stays_below(std::size_t k, const EnergySums& before, double slope) const {
-    const double parted = usual_ - slope, least = blocks_[k].hull.front().squared_velocity;
-    const double farthest = parted > 0.0 ? blocks_[k].total.squared_velocity : least;
-    return above_[k] + parted * farthest <= before.absorbed + slope * before.squared_velocity;
-  }
-
-  const std::vector<EnergyBlock>& blocks_;
-  double first_share_;
-  double usual_;               ///< λ of all blocks at their end
-  std::vector<double> above_;  ///< of each block the largest −E − usual_·S
-};
-
 /// What a bootstrap is about.
 struct Totals {
   double duration = 0, squared_velocity = 0, absorbed = 0, shortage_largest = kNaN;
@@ -150,17 +80,94 @@ struct Totals {
   [[nodiscard]] double shortage_at_end() const { return -absorbed / squared_velocity; }
 };
 
-Totals totals_of(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
-                 const Shortages& shortages) {
-  Totals totals;
-  for (const std::size_t k : order) {
-    totals.duration += blocks[k].duration;
-    totals.squared_velocity += blocks[k].total.squared_velocity;
-    totals.absorbed += blocks[k].total.absorbed;
+/// Puts the same blocks together in many orders.
+class Assembly {
+ public:
+  Assembly(const std::vector<EnergyBlock>& blocks, double first_share) : blocks_(blocks), first_share_(first_share) {
+    EnergySums all;
+    for (const EnergyBlock& block : blocks) {
+      all.squared_velocity += block.total.squared_velocity;
+      all.absorbed += block.total.absorbed;
+    }
+    usual_ = all.squared_velocity > 0.0 ? -all.absorbed / all.squared_velocity : 0.0;
+    for (const EnergyBlock& block : blocks) {
+      double above = -std::numeric_limits<double>::infinity();
+      for (const EnergySums& sum : block.hull) {
+        above = std::max(above, -sum.absorbed - usual_ * sum.squared_velocity);
+      }
+      bounds_.push_back({block.duration, block.total, block.hull.front().squared_velocity, above});
+    }
   }
-  totals.shortage_largest = shortages.largest(order, totals.squared_velocity);
-  return totals;
-}
+
+  /// @param order  as of largest_shortage
+  [[nodiscard]] Totals totals(const std::vector<std::size_t>& order) const {
+    Totals totals;
+    for (const std::size_t k : order) {
+      const Bounds& block = bounds_[k];
+      totals.duration += block.duration;
+      totals.squared_velocity += block.total.squared_velocity;
+      totals.absorbed += block.total.absorbed;
+    }
+    totals.shortage_largest = largest(order, totals.squared_velocity);
+    return totals;
+  }
+
+ private:
+  /// Of a block, all that most orders ask for.
+  struct Bounds {
+    double duration;  ///< [s]
+    EnergySums total;
+    double first_squared_velocity;  ///< S at the first sample
+    double above;                   ///< the largest −E − usual_·S
+  };
+
+  /// As largest_shortage.
+  /// @param end  S of all that are in the order
+  [[nodiscard]] double largest(const std::vector<std::size_t>& order, double end) const {
+    if (!(end > 0.0)) return kNaN;
+    const double first = first_share_ * end;
+    double largest = kNaN;
+    std::optional<std::size_t> cut;  // the block in which S reaches `first`, where not at its first sample
+    EnergySums before, before_cut;
+    for (const std::size_t k : order) {
+      const Bounds& block = bounds_[k];
+      const EnergySums after = {before.squared_velocity + block.total.squared_velocity,
+                                before.absorbed + block.total.absorbed};
+      if (after.squared_velocity >= first) {
+        if (before.squared_velocity + block.first_squared_velocity < first) {
+          cut = k;
+          before_cut = before;
+        } else if (!stays_below(block, before, largest)) {
+          look_into(blocks_[k], before, first, false, largest);
+        }
+      }
+      before = after;
+    }
+    // It is looked into last, for that takes longest, and then it matters least often.
+    if (cut && !stays_below(bounds_[*cut], before_cut, largest)) {
+      const EnergyBlock& block = blocks_[*cut];
+      if (block.sums.empty()) {
+        look_into(energy_block(block.duration, block.again()), before_cut, first, true, largest);
+      } else {
+        look_into(block, before_cut, first, true, largest);
+      }
+    }
+    return largest;
+  }
+
+  /// No λ in a block is above `slope`: no point of it stands above the line of that slope through (−S₀, E₀). How far
+  /// points stand above a line of another slope is known, and within the block both lines part by little.
+  [[nodiscard]] bool stays_below(const Bounds& block, const EnergySums& before, double slope) const {
+    const double parted = usual_ - slope;
+    const double farthest = parted > 0.0 ? block.total.squared_velocity : block.first_squared_velocity;
+    return block.above + parted * farthest <= before.absorbed + slope * before.squared_velocity;
+  }
+
+  const std::vector<EnergyBlock>& blocks_;
+  double first_share_;
+  double usual_;  ///< λ of all blocks at their end
+  std::vector<Bounds> bounds_;
+};
 
 /// Puts the first and the last sixteenth in order, where all percentiles below stand, and what is between them between.
 void sort_ends(std::vector<double>& values) {
@@ -192,14 +199,14 @@ class Percentiles {
   double blocks_;
 };
 
-void add_intervals(const std::vector<EnergyBlock>& blocks, const Shortages& shortages, int replicates,
-                   std::uint64_t seed, EnergyAccount& account) {
+void add_intervals(std::size_t blocks, const Assembly& assembly, int replicates, std::uint64_t seed,
+                   EnergyAccount& account) {
   numeric::Random random(seed);
   Matrix drawn(replicates, 4);
-  std::vector<std::size_t> order(blocks.size());
+  std::vector<std::size_t> order(blocks);
   for (Index i = 0; i < replicates; ++i) {
-    for (std::size_t& k : order) k = static_cast<std::size_t>(random.below(blocks.size()));
-    const Totals totals = totals_of(blocks, order, shortages);
+    for (std::size_t& k : order) k = static_cast<std::size_t>(random.below(blocks));
+    const Totals totals = assembly.totals(order);
     drawn.row(i) << totals.absorbed, totals.mean_power(), totals.shortage_at_end(), totals.shortage_largest;
   }
   std::array<Vector, 4> sorted;
@@ -212,7 +219,7 @@ void add_intervals(const std::vector<EnergyBlock>& blocks, const Shortages& shor
     sort_ends(known);
     sorted[static_cast<std::size_t>(column)] = Eigen::Map<const Vector>(known.data(), static_cast<Index>(known.size()));
   }
-  const Percentiles percentiles(blocks.size());
+  const Percentiles percentiles(blocks);
   account.absorbed95 = percentiles.interval95(sorted[0]);
   account.lower95 = percentiles.at(sorted[0], 0.05);
   account.upper95 = percentiles.at(sorted[0], 0.95);
@@ -244,7 +251,6 @@ EnergyBlock energy_block(double duration, std::vector<EnergySums> sums) {
   block.next = next_vertices(sums);
   block.sums = std::move(sums);
   block.hull = hull_from(block, 0);
-  block.least_absorbed = std::ranges::min(block.hull, {}, &EnergySums::absorbed).absorbed;
   return block;
 }
 
@@ -257,17 +263,15 @@ EnergyBlock outline(EnergyBlock block, std::function<std::vector<EnergySums>()> 
 
 double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
                         double first_share) {
-  double end = 0.0;
-  for (const std::size_t k : order) end += blocks[k].total.squared_velocity;
-  return Shortages(blocks, first_share).largest(order, end);
+  return Assembly(blocks, first_share).totals(order).shortage_largest;
 }
 
 EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbations, double first_share, int replicates,
                          std::uint64_t seed) {
   std::vector<std::size_t> in_order(blocks.size());
   std::iota(in_order.begin(), in_order.end(), 0U);
-  const Shortages shortages(blocks, first_share);
-  const Totals totals = totals_of(blocks, in_order, shortages);
+  const Assembly assembly(blocks, first_share);
+  const Totals totals = assembly.totals(in_order);
   EnergyAccount account;
   account.duration = totals.duration;
   account.absorbed = totals.absorbed;
@@ -278,7 +282,7 @@ EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbati
   account.blocks = static_cast<Index>(blocks.size());
   account.absorbed95 = account.mean_power95 = account.shortage_at_end95 = account.shortage_largest95 = {kNaN, kNaN};
   account.lower95 = account.upper95 = kNaN;
-  if (blocks.size() >= kEnoughBlocks) add_intervals(blocks, shortages, replicates, seed, account);
+  if (blocks.size() >= kEnoughBlocks) add_intervals(blocks.size(), assembly, replicates, seed, account);
   decide(perturbations, account);
   return account;
 }

@@ -19,7 +19,6 @@ struct EnergySums {
 struct EnergyBlock {
   double duration = 0;            ///< [s]
   EnergySums total;               ///< at its end
-  double least_absorbed = 0;      ///< E of the sample at which it is least
   std::vector<EnergySums> hull;   ///< those of the samples that the upper hull of them all touches, the first included
   std::vector<EnergySums> sums;   ///< after each interval; S never falls. Empty where `again` makes them.
   std::vector<std::size_t> next;  ///< for each of `sums` the next at which λ can be larger; the last vertex has its own

@@ -420,6 +420,10 @@ std::string to_json(const Measurement& measured) {
   return dumped(result_json(measured));
 }
 
+std::string to_compact_json(const Measurement& measured) {
+  return result_json(measured).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together) {
   Json json = header(kResultsSchema);
   json["results"] = Json::array();

@@ -21,6 +21,8 @@ namespace mbk::result {
 
 /// Schema "mbk.result/2". SI units; numbers carry every digit; absent = not computed, null = undefined.
 [[nodiscard]] std::string to_json(const Measurement& measured);
+/// The same without blanks, as a study stores it.
+[[nodiscard]] std::string to_compact_json(const Measurement& measured);
 
 /// Schema "mbk.results/1": several results and, where there is one, their summary.
 [[nodiscard]] std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together);

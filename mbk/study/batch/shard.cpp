@@ -2,8 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <libdeflate.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <array>
 #include <bit>
@@ -37,11 +37,9 @@ struct RecordHead {
 static_assert(sizeof(RecordHead) == 24);
 
 std::uint32_t checksum_of(const RecordHead& head, std::string_view payload) {
-  auto sum = crc32(0, reinterpret_cast<const Bytef*>(&head), offsetof(RecordHead, checksum));
-  if (!payload.empty()) {
-    sum = crc32(sum, reinterpret_cast<const Bytef*>(payload.data()), static_cast<uInt>(payload.size()));
-  }
-  return static_cast<std::uint32_t>(sum);
+  const std::uint32_t sum = libdeflate_crc32(0, &head, offsetof(RecordHead, checksum));
+  // of no bytes it would begin anew
+  return payload.empty() ? sum : libdeflate_crc32(sum, payload.data(), payload.size());
 }
 
 double now() {

@@ -103,7 +103,11 @@ class OutcomeReader {
 }  // namespace
 
 Result<std::vector<Outcome>> outcomes_of(std::string_view document) {
-  const Json json = Json::parse(document, nullptr, false);
+  // The curves, most of a document, are passed over.
+  const auto is_read = [](int depth, Json::parse_event_t event, const Json& name) {
+    return event != Json::parse_event_t::key || depth != 2 || name != "models";
+  };
+  const Json json = Json::parse(document, is_read, false);
   if (!json.is_object() || !json.contains("model")) {
     return bad_data("is no result of 'mbk measure --json'", "schema mbk.result/2 is expected");
   }
