@@ -48,7 +48,8 @@ class Server {
 
   /// @param port  0: any that is free
   /// @fails  usage: the port is taken.
-  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(std::uint16_t port, Handlers handlers, ServerTimes times = {});
+  [[nodiscard]] static Result<std::unique_ptr<Server>> listen(std::uint16_t port, Handlers handlers,
+                                                              ServerTimes times = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   ~Server();
