@@ -100,14 +100,42 @@ class OutcomeReader {
   std::vector<Outcome> outcomes_;
 };
 
+/// Where the list ends that begins with the bracket there; npos: nowhere.
+std::size_t end_of_list(std::string_view json, std::size_t at) {
+  int depth = 0;
+  for (; at < json.size(); ++at) {
+    const char c = json[at];
+    if (c == '"') {
+      while (++at < json.size() && json[at] != '"') at += json[at] == '\\' ? 1 : 0;
+    } else if (c == '[') {
+      ++depth;
+    } else if (c == ']' && --depth == 0) {
+      return at + 1;
+    }
+  }
+  return std::string_view::npos;
+}
+
+/// A document without the curves of its models, which are most of it and hold no outcome. Within a text its quotes
+/// would be escaped, so that what is found is a member.
+std::string without_models(std::string_view document) {
+  constexpr std::string_view kMember = R"("models":)";
+  std::string without;
+  while (true) {
+    const std::size_t begin = document.find(kMember);
+    const std::size_t list = begin == std::string_view::npos ? begin : begin + kMember.size();
+    const std::size_t end = list < document.size() && document[list] == '[' ? end_of_list(document, list) : list;
+    without += document.substr(0, end == std::string_view::npos ? end : list);
+    if (end == std::string_view::npos) return without;
+    if (end > list) without += "[]";
+    document.remove_prefix(end);
+  }
+}
+
 }  // namespace
 
 Result<std::vector<Outcome>> outcomes_of(std::string_view document) {
-  // The curves, most of a document, are passed over.
-  const auto is_read = [](int depth, Json::parse_event_t event, const Json& name) {
-    return event != Json::parse_event_t::key || depth != 2 || name != "models";
-  };
-  const Json json = Json::parse(document, is_read, false);
+  const Json json = Json::parse(without_models(document), nullptr, false);
   if (!json.is_object() || !json.contains("model")) {
     return bad_data("is no result of 'mbk measure --json'", "schema mbk.result/2 is expected");
   }

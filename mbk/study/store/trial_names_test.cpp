@@ -108,6 +108,20 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
   EXPECT_FALSE(outcomes_of("{\"model\":"));
 }
 
+TEST(Outcomes, AreTheSameWhateverStandsInTheCurvesOfModels) {
+  const auto absorbed = [](const std::string& models, const std::string& text) {
+    const auto outcomes = outcomes_of(R"({"axes":1,"model":{"K":[[1]]},"passivity":{"models":)" + models +
+                                      R"(,"note":")" + text + R"(","trial":{"absorbed_J":1.5}}})");
+    return outcomes && outcomes->size() == 2 ? outcomes->back().value : -1.0;
+  };
+  for (const char* text : {"", "]", R"(\"models\":[)", R"(\"models\":[ \\)"}) {
+    for (const char* models : {"[]", "[1,[2,[3]]]", R"([{"name":"]\"[","models":[[]]},"\\"])", "null", "7", "{}"}) {
+      EXPECT_EQ(absorbed(models, text), 1.5) << models << ", " << text;
+    }
+    EXPECT_EQ(absorbed("[[1,2]", text), -1.0) << "a list that never ends";
+  }
+}
+
 /// Results of one outcome under one condition.
 OutcomeColumns table_of(const std::string& outcome, const std::vector<std::pair<int, double>>& values) {
   OutcomeColumns columns{{"relaxed"}, {}, {{outcome, "N/m", {}, {}}}};
