@@ -4,7 +4,8 @@
   bytes     100,000 draws of people (well below 10 ms each) and 2,000 simulated trials that are measured, by each engine
             with three lengths of chunks, 20 tasks killed at random in each: held against one process
   cores     one task and two, in pairs, on warm files
-  overhead  10,000 units of 0.1 to 0.2 s by Slurm and by local processes, and an array of as many tasks that do nothing
+  overhead  10,000 units (--units) of 0.1 to 0.2 s by Slurm and by local processes, and an array of as many tasks that
+            do nothing
   rate      trials of 62.1 s a second and core, by an engine and by threads of one process
   merge     10⁶ results of 200 bytes
   resume    kill -9 of the process that waits: finished chunks that were done again
@@ -13,7 +14,7 @@ cores, overhead and rate compare times of this machine: nothing else may run. Sl
 (tests/cluster/private_slurm.py). What was measured stands in --state; a part that stands there is not measured again,
 so that a campaign that was interrupted goes on. Exit code 1: a result differs, or a finished chunk was lost.
 
-usage: cluster.py [--part bytes cores …] [--short] [--bin build/release/bin] [--state FILE] [--again]
+usage: cluster.py [--part bytes cores …] [--short] [--units N] [--bin build/release/bin] [--state FILE] [--again]
 """
 
 import argparse
@@ -183,7 +184,7 @@ class Campaign:
                      f"{statistics.median(found):.2f} × (median of {', '.join(f'{one:.2f}' for one in found)})")
 
     def overhead(self):
-        units, chunk = self.size["units"], self.size["unit_chunk"]
+        units, chunk = self.options.units or self.size["units"], self.size["unit_chunk"]
         arguments = ("validate", "coverage", "--runs", units, "--json",
                      "--quiet", "--chunk-units", chunk)
         script = self.folder / "nothing.sh"
@@ -198,7 +199,7 @@ class Campaign:
                            stdout=subprocess.DEVNULL)
             return {"local_s": local, "slurm_s": slurm, "controller_s": time.monotonic() - begin}
 
-        found = [self.record(f"overhead, {k + 1}", once) for k in range(1 if self.options.short else 3)]
+        found = [self.record(f"overhead, {units} units, {k + 1}", once) for k in range(1 if self.options.short else 3)]
         for one in found:
             self.row(f"{units:,} units in {math.ceil(units / chunk)} tasks", "",
                      f"local {one['local_s']:.1f} s, slurm {one['slurm_s']:.1f} s, an empty array "
@@ -274,6 +275,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--part", nargs="+", choices=PARTS, default=PARTS)
     parser.add_argument("--short", action="store_true", help="a few of each, to see that it runs")
+    parser.add_argument("--units", type=int, help="of overhead (10,000); fewer make its share larger, never smaller")
     parser.add_argument("--again", action="store_true", help="measure what stands in --state once more")
     parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/release/bin"))
     parser.add_argument("--state", type=pathlib.Path, default=pathlib.Path("build/cluster.json"))
