@@ -127,10 +127,10 @@ std::string program_identity() {
 }
 
 double chunk_length(double total_s, int tasks, const ChunkLengths& lengths) {
-  constexpr double kChunksPerTask = 16.0, kLongest_s = 300.0;
+  constexpr double kChunksPerTask = 16.0, kLongest = 300.0;
   constexpr int kTasksOfCluster = 100;
   const double even_s = total_s / (kChunksPerTask * (tasks > 0 ? tasks : kTasksOfCluster));
-  const double length_s = std::clamp(even_s, lengths.shortest_s, kLongest_s);
+  const double length_s = std::clamp(even_s, lengths.shortest_s, kLongest);
   if (tasks == 0) return length_s;
   const double rounds = std::max(std::ceil(total_s / (length_s * tasks)), 1.0);
   return std::max(total_s / (rounds * tasks), lengths.least_s);
