@@ -110,16 +110,23 @@ class Run {
       if (state_.finished + state_.given_up == state_.chunks) return ended(RunEnd::incomplete);
       if (options_.detach && answered_) return ended(RunEnd::detached);
       say();
-      std::this_thread::sleep_for(std::chrono::duration<double>(pause_s()));
-      if (auto ok = look(); !ok) return tl::unexpected(ok.error());
+      if (auto ok = wait(); !ok) return tl::unexpected(ok.error());
     }
   }
 
  private:
-  /// Until the next look: a short job is seen to end soon, a long one does not keep its controller busy.
-  double pause_s() const {
-    constexpr double kOfElapsed = 0.1, kShortest = 0.2;
-    return std::min(engine_.interval_s(), std::max(kShortest, kOfElapsed * seconds_since(begin_)));
+  /// Until the engine is asked again, which must not keep its controller busy. Shards are looked for more often, so
+  /// that the end of a short job is seen soon.
+  Result<void> wait() {
+    constexpr double kAsked = 0.1, kLookedFor = 0.02, kShortest = 0.2;  // of what has elapsed; [s]
+    const double elapsed_s = seconds_since(begin_), longest_s = engine_.interval_s();
+    const auto pause_s = [&](double share) { return std::min(longest_s, std::max(kShortest, share * elapsed_s)); };
+    const auto begin = Clock::now();
+    do {
+      std::this_thread::sleep_for(std::chrono::duration<double>(pause_s(kLookedFor)));
+      if (auto ok = look(); !ok) return ok;
+    } while (seconds_since(begin) < pause_s(kAsked) && state_.finished < state_.chunks && options_.stop() == Stop::no);
+    return {};
   }
 
   /// What the shards say.
