@@ -21,7 +21,6 @@
 #include "mbk/measure/preprocess/exploration_trial_of.h"
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
-#include "mbk/measure/preprocess/resample.h"
 
 namespace mbk::measurement {
 namespace {
@@ -82,34 +81,20 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
     trial->output_labels = {{signals.output_name, named_channel(recording, signals.output)->unit}};
     return trial;
   }
-  const Recording* source = &recording;
-  Inspection inspection = recording::inspect(recording);
-  Recording even;
-  std::optional<Warning> jitter;
-  const auto put = [&](Recording made) {
-    even = std::move(made);
-    source = &even;
-    inspection = recording::inspect(even);
-  };
-  if (options.resample) {
-    auto resampled = preprocess::resample(recording, *options.resample);
-    if (!resampled) return tl::unexpected(resampled.error());
-    put(std::move(*resampled));
-  } else if (preprocess::jitters_only(inspection)) {
-    auto on_clock = preprocess::on_even_clock(recording, inspection);
-    if (!on_clock) return tl::unexpected(on_clock.error());
-    jitter = std::move(on_clock->warning);
-    put(std::move(on_clock->recording));
-  }
+  const Inspection recorded = recording::inspect(recording);
+  auto even = preprocess::reclocked(recording, recorded, options.resample);
+  if (!even) return tl::unexpected(even.error());
   if (options.force_delay != 0.0) {
-    auto in_time = preprocess::undo_force_delay(*source, options.force_delay);
+    auto in_time = preprocess::undo_force_delay(even->recording ? *even->recording : recording, options.force_delay);
     if (!in_time) return tl::unexpected(in_time.error());
-    put(std::move(*in_time));
+    even->recording = std::move(*in_time);
   }
-  auto trial = preprocess::exploration_trial_of(*source, inspection, options.preprocess);
-  if (trial && jitter) trial->warnings.push_back(std::move(*jitter));
+  const Recording& source = even->recording ? *even->recording : recording;
+  auto trial = preprocess::exploration_trial_of(source, even->recording ? recording::inspect(source) : recorded,
+                                                options.preprocess);
+  if (trial && even->warning) trial->warnings.push_back(std::move(*even->warning));
   if (trial && !options.schedule.empty()) {
-    const auto channel = named_channel(*source, options.schedule);
+    const auto channel = named_channel(source, options.schedule);
     if (!channel) return tl::unexpected(channel.error());
     trial->scheduling = channel->values.segment(std::llround(trial->from_s / trial->sample_time), trial->samples());
     if (!trial->scheduling.allFinite()) {

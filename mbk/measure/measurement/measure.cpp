@@ -28,7 +28,6 @@
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
-#include "mbk/measure/preprocess/resample.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::measurement {
@@ -108,12 +107,8 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
   if (!source.clock && options.preprocess.mode == Mode::default_mode) {
     source.clock = clock_across_missed_ticks(recording, source.recorded);
   }
-  if (source.clock) {
-    auto even = preprocess::resample(recording, *source.clock);
-    if (!even) return tl::unexpected(even.error());
-    source.even = std::move(*even);
-  } else if (options.preprocess.mode == Mode::default_mode && preprocess::jitters_only(source.recorded)) {
-    auto even = preprocess::on_even_clock(recording, source.recorded);
+  if (source.clock || options.preprocess.mode == Mode::default_mode) {
+    auto even = preprocess::reclocked(recording, source.recorded, source.clock);
     if (!even) return tl::unexpected(even.error());
     source.even = std::move(even->recording);
     source.jitter = std::move(even->warning);

@@ -7,7 +7,6 @@
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
 #include "mbk/measure/preprocess/recording_checks.h"
-#include "mbk/measure/preprocess/resample.h"
 #include "mbk/measure/preprocess/trial_clock.h"
 #include "mbk/measure/preprocess/windows.h"
 #include "mbk/model/trial/quantity_channels.h"
@@ -41,25 +40,13 @@ bool is_place(const Recording& recording, int axes) {
 
 Result<MovementQuality> movement_quality(const Recording& recording, const MovementQualityOptions& options) {
   using namespace movement_detail;
-  const Recording* source = &recording;
   Inspection inspection = recording::inspect(recording);
-  Recording even;
+  auto even = preprocess::reclocked(recording, inspection, options.resample);
+  if (!even) return tl::unexpected(even.error());
   std::vector<Warning> warnings;
-  const auto put = [&](Recording made) {
-    even = std::move(made);
-    source = &even;
-    inspection = recording::inspect(even);
-  };
-  if (options.resample) {
-    auto resampled = preprocess::resample(recording, *options.resample);
-    if (!resampled) return tl::unexpected(resampled.error());
-    put(std::move(*resampled));
-  } else if (preprocess::jitters_only(inspection)) {
-    auto on_clock = preprocess::on_even_clock(recording, inspection);
-    if (!on_clock) return tl::unexpected(on_clock.error());
-    warnings.push_back(std::move(on_clock->warning));
-    put(std::move(on_clock->recording));
-  }
+  if (even->warning) warnings.push_back(std::move(*even->warning));
+  if (even->recording) inspection = recording::inspect(*even->recording);
+  const Recording* const source = even->recording ? &*even->recording : &recording;
   if (source->samples() < 3 || !(inspection.rate_hz > 0.0)) {
     return bad_data(fmt::format("{} samples cannot show a movement", source->samples()), "record longer");
   }

@@ -110,4 +110,16 @@ Result<EvenRecording> on_even_clock(const Recording& recording, const Inspection
        "record with a steadier clock; --resample HZ chooses another rate"}};
 }
 
+Result<Reclocked> reclocked(const Recording& recording, const Inspection& inspection, std::optional<Hertz> rate) {
+  if (rate) {
+    auto resampled = resample(recording, *rate);
+    if (!resampled) return tl::unexpected(resampled.error());
+    return Reclocked{std::move(*resampled), std::nullopt};
+  }
+  if (!jitters_only(inspection)) return Reclocked{};
+  auto even = on_even_clock(recording, inspection);
+  if (!even) return tl::unexpected(even.error());
+  return Reclocked{std::move(even->recording), std::move(even->warning)};
+}
+
 }  // namespace mbk::preprocess

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/inspection.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/warning.h"
@@ -33,5 +36,16 @@ struct EvenRecording {
 /// under ½: then the samples stay and the stamps are made even.
 /// @param inspection  for which jitters_only()
 [[nodiscard]] Result<EvenRecording> on_even_clock(const Recording& recording, const Inspection& inspection);
+
+/// What is analysed in place of a recording whose clock is not the one that it is analysed on.
+struct Reclocked {
+  std::optional<Recording> recording;  ///< none: the recording as it is
+  std::optional<Warning> warning;      ///< clock_jitter, where that is why
+};
+
+/// The recording at `rate` where one is given (resample), else on_even_clock() where its clock jitters_only().
+/// @fails  as resample
+[[nodiscard]] Result<Reclocked> reclocked(const Recording& recording, const Inspection& inspection,
+                                          std::optional<Hertz> rate);
 
 }  // namespace mbk::preprocess

@@ -29,7 +29,7 @@ constexpr double kTick = 1e-3;
 constexpr double kHandleMass = 0.194;  // [kg]
 constexpr double kDryFriction = 0.45;  // at the hand [N]
 constexpr double kQuiet = 16.0;        // before the first pulse [s]
-constexpr int kSeeds = 10;
+constexpr int kSeeds = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vector2d kHome(0.30, -0.05);
 

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +12,7 @@
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/reliability/distributions.h"
 #include "mbk/study/reliability/second_order_jet.h"
@@ -310,10 +308,10 @@ std::array<double, kJetSize> step_of(const Objective& objective, const std::arra
       hessian(i, k) = at[a] * at[b] * jet.second(a, b) + (i == k ? gradient[i] : 0.0);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(hessian);
-  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  Vector curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-8 * largest).cwiseMax(1e-12);
-  Vector move = -(eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature));
+  const auto [values, vectors] = numeric::symmetric_eigen(hessian);
+  const double largest = values.cwiseAbs().maxCoeff();
+  Vector curvature = values.cwiseAbs().cwiseMax(1e-8 * largest).cwiseMax(1e-12);
+  Vector move = -(vectors * (vectors.transpose() * gradient).cwiseQuotient(curvature));
   const double longest = move.cwiseAbs().maxCoeff();
   constexpr double kLongest = 3.0;
   if (longest > kLongest) move *= kLongest / longest;
@@ -637,8 +635,8 @@ MixedModel summarised(const Prepared& data, const Fitted& fit) {
       information(i, k) = 0.5 * deviance.second(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(k)]);
     }
   }
-  const Eigen::LLT<Matrix> cholesky(information);
-  const bool informed = n > 0 && cholesky.info() == Eigen::Success;
+  const numeric::Cholesky cholesky(information);
+  const bool informed = n > 0 && cholesky.positive_definite();
   if (informed) {
     model.variance_covariance = scale2 * scale2 * cholesky.solve(Matrix::Identity(n, n));
     for (Index i = 0; i < n; ++i) {

@@ -145,7 +145,7 @@ TEST(OneDimensional, NoLinearModelHoldsForAnArmThatCorrectsAndOneDoesWhereItDoes
 }
 
 TEST(Participant, ThreeArmsBehaveAsPeopleDid) {
-  const auto table = participant_study({.runs = 3});  // `mbk validate participant` takes ten seeds
+  const auto table = participant_study({.runs = 2});  // `mbk validate participant` takes ten seeds
   expect_nothing_refuted(table);
   ASSERT_EQ(table->charts.size(), 1u);
   EXPECT_EQ(table->charts[0].series.size(), 3u);
