@@ -21,6 +21,8 @@ enum class Domain { hand, joint };
 struct AnalyseArguments {
   Domain domain = Domain::hand;
   std::string arm;
+
+  [[nodiscard]] bool operator==(const AnalyseArguments&) const = default;
 };
 
 /// Adds --domain and --arm.

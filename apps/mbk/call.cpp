@@ -210,6 +210,26 @@ Prepareds& prepareds() {
   return all;
 }
 
+/// Behind the list of a JSON document that begins there.
+std::size_t end_of_list(std::string_view text, std::size_t begin) {
+  int depth = 0;
+  bool within = false;
+  for (std::size_t k = begin; k < text.size(); ++k) {
+    const char c = text[k];
+    if (within) {
+      if (c == '\\') ++k;
+      if (c == '"') within = false;
+    } else if (c == '"') {
+      within = true;
+    } else if (c == '[') {
+      ++depth;
+    } else if (c == ']' && --depth == 0) {
+      return k + 1;
+    }
+  }
+  return text.size();
+}
+
 /// The words of the call, and before them what is in memory and that none of them names.
 std::vector<std::string> all_words(const Call& call) {
   std::vector<std::string> words;
@@ -260,25 +280,24 @@ Result<Answer> call(const Call& call) {
 }
 
 std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answer) {
+  // A document may be long, and says little of this: only those parts are read.
+  constexpr std::string_view kKey = "\"warnings\": [";
   std::vector<std::pair<std::string, std::string>> warnings;
   if (!answer.json) return warnings;
+  const std::string_view text = answer.text;
   const auto text_of = [](const nlohmann::json& warning, const char* key) {
     const auto found = warning.find(key);
     return found != warning.end() && found->is_string() ? found->get<std::string>() : std::string();
   };
-  const std::function<void(const nlohmann::json&)> visit = [&](const nlohmann::json& at) {
-    if (!at.is_structured()) return;
-    for (auto it = at.begin(); it != at.end(); ++it) {
-      if (at.is_object() && it.key() == "warnings" && it->is_array()) {
-        for (const nlohmann::json& one : *it) {
-          if (one.is_object()) warnings.emplace_back(text_of(one, "code"), text_of(one, "message"));
-        }
-      } else {
-        visit(*it);
-      }
+  for (std::size_t at = text.find(kKey); at != std::string_view::npos; at = text.find(kKey, at)) {
+    const std::size_t begin = at + kKey.size() - 1;
+    const bool quoted = at > 0 && text[at - 1] == '\\';  // the end of a name that says so
+    at = quoted ? begin : end_of_list(text, begin);
+    if (quoted) continue;
+    for (const nlohmann::json& one : nlohmann::json::parse(text.substr(begin, at - begin), nullptr, false)) {
+      if (one.is_object()) warnings.emplace_back(text_of(one, "code"), text_of(one, "message"));
     }
-  };
-  visit(nlohmann::json::parse(answer.text, nullptr, false));
+  }
   return warnings;
 }
 

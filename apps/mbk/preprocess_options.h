@@ -13,6 +13,8 @@ namespace mbk::app {
 /// Which samples count, in seconds from the start of the recording.
 struct WindowArguments {
   std::optional<double> from_s, split_s, to_s;
+
+  [[nodiscard]] bool operator==(const WindowArguments&) const = default;
 };
 
 /// How signals are filtered.
@@ -23,6 +25,8 @@ struct FilterArguments {
   long padding = 15;
   std::optional<long> every;
   std::optional<double> resample_hz;
+
+  [[nodiscard]] bool operator==(const FilterArguments&) const = default;
 };
 
 /// From a recording to a trial that can be identified.
@@ -36,6 +40,8 @@ struct PreprocessArguments {
   ForceSource force_source = ForceSource::sensor;
   double force_delay_ms = 0.0;
   std::optional<std::filesystem::path> robot;
+
+  [[nodiscard]] bool operator==(const PreprocessArguments&) const = default;
 };
 
 /// Adds --from, --split, --to.

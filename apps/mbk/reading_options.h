@@ -28,6 +28,8 @@ struct ReadingArguments {
   std::optional<double> rate_hz;
   int axes = 0;
   bool untimed = false;  ///< rows without a time are welcome
+
+  [[nodiscard]] bool operator==(const ReadingArguments&) const = default;
 };
 
 /// Adds FILE… and how to read it: --channels, --variable, --rate, --axes, --parts.

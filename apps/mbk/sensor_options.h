@@ -25,6 +25,8 @@ struct SensorArguments {
   std::string zero;
   calibration::SensorFrame frame = calibration::SensorFrame::automatic;
   SensorDelay delay = SensorDelay::keep;
+
+  [[nodiscard]] bool operator==(const SensorArguments&) const = default;
 };
 
 /// Adds --sensor, --lever-arm-mm, --sensor-zero, --sensor-frame and --sensor-delay.

@@ -55,8 +55,8 @@ struct Tally {
 class ResultQueue {
  public:
   /// @param units  those that set() and done() speak of
-  ResultQueue(store::Store& study, const Measuring& measuring, store::Role role, std::vector<store::Unit> units = {})
-      : study_(study), measuring_(measuring), role_(role), units_(std::move(units)), results_(units_.size()) {}
+  ResultQueue(store::Store& study, std::string key, store::Role role, std::vector<store::Unit> units = {})
+      : study_(study), key_(std::move(key)), role_(role), units_(std::move(units)), results_(units_.size()) {}
 
   void set(int k, Result<store::UnitResult> result) { results_[static_cast<std::size_t>(k)] = std::move(result); }
 
@@ -96,7 +96,7 @@ class ResultQueue {
     if (waiting_units_.empty() || error) return;
     being_stored_ = std::async(std::launch::async, [this, units = std::exchange(waiting_units_, {}),
                                                     results = std::exchange(waiting_results_, {})] {
-      return study_.save(measuring_.key, std::string(version()), units, results, role_);
+      return study_.save(key_, std::string(version()), units, results, role_);
     });
   }
 
@@ -127,7 +127,7 @@ class ResultQueue {
   }
 
   store::Store& study_;
-  const Measuring& measuring_;
+  std::string key_;
   store::Role role_;
   std::vector<store::Unit> units_;
   std::vector<std::optional<Result<store::UnitResult>>> results_;
@@ -214,6 +214,8 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
                    const StudyMeasureArguments& arguments) {
   Tally tally;
   std::size_t count = 0;
+  const auto key = key_in(study, *measuring);
+  if (!key) return report_error(key.error());
   const std::string options_sum = sum_of(measuring->key + '\n' + std::string(version()));
   constexpr std::size_t kDigits = 12;
   Request request{std::string(kMeasureKind), measure_specification(study.folder(), options, *measuring)};
@@ -221,7 +223,7 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
   request.folder = study.folder() / "jobs" / ("measure-" + options_sum.substr(0, kDigits));
   const std::filesystem::path job_folder = arguments.engine.folder.value_or(request.folder);
   while (true) {
-    const auto units = study.pending(measuring->key, std::string(version()), arguments.again_failed && count == 0);
+    const auto units = study.pending(*key, std::string(version()), arguments.again_failed && count == 0);
     if (!units) return report_error(units.error());
     if (units->empty() && !batch::JobFolder::is_there(job_folder)) return said_of(tally, count);
     auto lengths = lengths_of(study, *units);
@@ -233,7 +235,7 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
     const auto carried = carry_out(arguments.engine, request, arguments.quiet);
     if (!carried) return report_error(carried.error());
     if (!carried->folder) return *carried->code;
-    ResultQueue queue(study, *measuring, arguments.study.role);
+    ResultQueue queue(study, *key, arguments.study.role);
     const auto begin = std::chrono::steady_clock::now();
     const auto collected = collect(*carried->folder, queue);
     tally += queue.tally;
@@ -260,9 +262,11 @@ int run(const CLI::App& command, const StudyMeasureArguments& arguments) {
   const auto measuring = measuring_of(*options);
   if (!measuring) return report_error(measuring.error());
   if (arguments.engine.kind) return measure_as_job(*study, *options, *measuring, arguments);
-  const auto units = study->pending((*measuring)->key, std::string(version()), arguments.again_failed);
+  const auto key = key_in(*study, **measuring);
+  if (!key) return report_error(key.error());
+  const auto units = study->pending(*key, std::string(version()), arguments.again_failed);
   if (!units) return report_error(units.error());
-  ResultQueue queue(*study, **measuring, arguments.study.role, *units);
+  ResultQueue queue(*study, *key, arguments.study.role, *units);
   measure_here(**measuring, study->folder(), *units, arguments, queue);
   if (queue.error) return report_error(*queue.error);
   return said_of(queue.tally, units->size());

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
@@ -67,6 +68,55 @@ GivenOptions canonical(GivenOptions given) {
   for (auto& [name, values] : given) {
     if (std::ranges::find(options_with_files(), name) != options_with_files().end()) continue;
     for (std::string& value : values) value = canonical(value);
+  }
+  return given;
+}
+
+/// @fails  usage: what the parser says
+Result<void> parse(const GivenOptions& given, MeasuringArguments& arguments) {
+  CLI::App app;
+  add_measuring_options(app, arguments);
+  std::vector<std::string> words;  // the parser takes them from the end
+  for (const auto& [name, values] : given) {
+    if (values.empty()) words.push_back(name);
+    for (const std::string& value : values) words.push_back(name + '=' + value);
+  }
+  std::ranges::reverse(words);
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    return bad_usage(error.what(), "see 'mbk study measure --help'");
+  }
+  return {};
+}
+
+/// Every member; with one more the compiler asks for it.
+auto members(const identify::Options& options) {
+  const auto& [method, structure, parameters_from, handle_mass, hac_lag, decimate, bootstrap, block, seed, threads] =
+      options;
+  return std::tie(method, structure, parameters_from, handle_mass, hac_lag, decimate, bootstrap, block, seed, threads);
+}
+
+/// In everything that a result depends on.
+bool measure_alike(const MeasuringArguments& a, const MeasuringArguments& b) {
+  const auto procedure = [](const MeasuringArguments& c) {
+    return c.preprocess.procedure.value_or(Procedure::chapter3);
+  };
+  PreprocessArguments preprocess = a.preprocess;
+  preprocess.procedure = b.preprocess.procedure;
+  return procedure(a) == procedure(b) && preprocess == b.preprocess && a.reading == b.reading && a.sensor == b.sensor &&
+         members(a.identify) == members(b.identify) && a.ignored_ranges == b.ignored_ranges && a.analyse == b.analyse;
+}
+
+/// Without those that say what holds without them: --mode default, --padding 15.
+GivenOptions without_defaults(GivenOptions given) {
+  MeasuringArguments all;
+  if (!parse(given, all)) return given;
+  for (auto it = given.begin(); it != given.end();) {
+    GivenOptions others = given;
+    others.erase(it->first);
+    MeasuringArguments fewer;
+    it = parse(others, fewer) && measure_alike(all, fewer) ? given.erase(it) : std::next(it);
   }
   return given;
 }
@@ -160,23 +210,11 @@ std::string options_text(const GivenOptions& given) {
 
 Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given) {
   auto measuring = std::make_shared<Measuring>();
-  CLI::App app;
-  add_measuring_options(app, measuring->arguments);
-  std::vector<std::string> words;  // the parser takes them from the end
-  for (const auto& [name, values] : given) {
-    if (values.empty()) words.push_back(name);
-    for (const std::string& value : values) words.push_back(name + '=' + value);
-  }
-  std::ranges::reverse(words);
-  try {
-    app.parse(std::move(words));
-  } catch (const CLI::ParseError& error) {
-    return bad_usage(error.what(), "see 'mbk study measure --help'");
-  }
+  if (auto ok = parse(given, measuring->arguments); !ok) return tl::unexpected(ok.error());
   auto options = measurement_options(measuring->arguments, measuring->arguments.analyse);
   if (!options) return tl::unexpected(options.error());
   measuring->options = std::move(*options);
-  GivenOptions key = canonical(given);
+  GivenOptions key = without_defaults(canonical(given));
   for (const std::string& name : options_with_files()) {
     const auto found = key.find(name);
     if (found == key.end()) continue;
@@ -188,6 +226,20 @@ Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given)
   }
   measuring->key = options_to_json(key);
   return std::shared_ptr<const Measuring>(std::move(measuring));
+}
+
+Result<std::string> key_in(const store::Store& study, const Measuring& measuring) {
+  const auto analyses = study.analyses();
+  if (!analyses) return tl::unexpected(analyses.error());
+  std::optional<std::string> alike;
+  for (const store::Analysis& analysis : *analyses) {
+    if (analysis.version != version()) continue;
+    if (analysis.options == measuring.key) return measuring.key;
+    const auto options = options_from_json(analysis.options);
+    if (!options) return tl::unexpected(options.error());
+    if (!alike && options_to_json(without_defaults(*options)) == measuring.key) alike = analysis.options;
+  }
+  return alike.value_or(measuring.key);
 }
 
 bool names_files(const GivenOptions& key) {

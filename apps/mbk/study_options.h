@@ -55,12 +55,16 @@ void add_measuring_options(CLI::App& command, MeasuringArguments& arguments);
 struct Measuring {
   MeasuringArguments arguments;
   measurement::Options options;
-  std::string key;  ///< `options_to_json` with numbers in one way of writing and hashes of files in place of their
-                    ///< names: what a result depends on
+  std::string key;  ///< `options_to_json` without what says a default, with numbers in one way of writing and hashes of
+                    ///< files in place of their names: what a result depends on
 };
 
 /// @fails  usage: options that are none or do not belong together; a file that one of them names cannot be read.
 [[nodiscard]] Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given);
+
+/// The key under which results of this version stand in the study: `key`, or one of before that says the same with
+/// defaults beside it.
+[[nodiscard]] Result<std::string> key_in(const store::Store& study, const Measuring& measuring);
 
 /// Whether a key names files by their hashes, so that the options cannot be had back from it.
 [[nodiscard]] bool names_files(const GivenOptions& key);

@@ -166,13 +166,43 @@ check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'years', 'a unit of 
 data.TimeUnit = 'seconds';
 data.Ts = [];
 check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'Ts', 'no sample time');
+steps = (0:numel(x) - 1)';
 columns = struct('x', 1000 * x, 'F', force);
-table = timetable(duration((0:numel(x) - 1)'), columns, {'mm', 'N'});
-check_near(model_of(table), numbers_of(direct.model), 'timetable');
+timed = timetable(duration(steps), columns, {'mm', 'N'});
+check_near(model_of(timed), numbers_of(direct.model), 'timetable');
+timed = timetable(datetime(1.7e12 + steps), columns, {'mm', 'N'});
+check_near(model_of(timed), numbers_of(direct.model), 'a timetable with dates');
 columns = struct('hand', [x, recording.hand_y], 'force', [force, recording.force_y]);
-table = timetable(duration((0:numel(x) - 1)'), columns, {});
-found = mbk.identify(table, 'channels', 'x=hand_1,y=hand_2,Fx=force_1,Fy=force_2');
+timed = timetable(duration(steps), columns, {});
+found = mbk.identify(timed, 'channels', 'x=hand_1,y=hand_2,Fx=force_1,Fy=force_2');
 check(isequal(size(found.model.K), [2 2]), 'a timetable with several columns in a variable');
+timed = timetable(duration(steps), struct('x', {num2cell(x)}, 'F', force), {});
+check_error(@() mbk.identify(timed, 'axes', 1), 'mbk:usage', 'cell', 'a column of cells');
+untimed = table(struct('time', 1e-3 * steps, 'x', 1000 * x, 'F', force), {'s', 'mm', 'N'});
+check_near(model_of(untimed), numbers_of(direct.model), 'table');
+untimed = table(struct('x', x, 'F', force), {});
+check_near(model_of(untimed, 'rate', 1000), numbers_of(direct.model), 'a table without time and a rate');
+check_error(@() mbk.identify(untimed, 'axes', 1), 'mbk:data', 'rate', 'a table without time');
+
+% A struct with y, u and Ts: rows or columns, names and units; what does not fit is said.
+short = struct('y', 1000 * x', 'u', force', 'Ts', 1e-3, 'OutputName', 'x', 'InputName', 'F', 'OutputUnit', 'mm');
+check_near(model_of(short), numbers_of(direct.model), 'rows with names and a unit');
+both = struct('y', [x, recording.hand_y], 'u', [force, recording.force_y], 'Ts', 1e-3);
+found = mbk.identify(both, 'channels', 'x=y1,y=y2,Fx=u1,Fy=u2');
+check(isequal(size(found.model.K), [2 2]), 'two outputs and two inputs');
+for step = {0, -1e-3, NaN, Inf, [1e-3 1e-3], '1 ms'}
+  short.Ts = step{1};
+  check_error(@() mbk.identify(short, 'axes', 1), 'mbk:usage', 'Ts', 'a sample time that is none');
+end
+short.Ts = 1e-3;
+short.u = force(1:end - 1);
+check_error(@() mbk.identify(short, 'axes', 1), 'mbk:data', 'equal lengths', 'fewer inputs than outputs');
+short.u = 1i * force;
+check_error(@() mbk.identify(short, 'axes', 1), 'mbk:usage', 'real', 'complex inputs');
+bad = force;
+bad(100) = NaN;
+short.u = bad;
+check_error(@() mbk.identify(short, 'axes', 1), 'mbk:data', 'sample 100', 'a gap');
 
 % Results as input of other commands.
 verdict = mbk.passivity(info);

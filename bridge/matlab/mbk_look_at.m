@@ -1,7 +1,9 @@
-function why = mbk_look_at(bytes, magic, lengths)
-%MBK_LOOK_AT  Whether a datagram is one: 0 believed, 1 wrong length, 2 magic, 3 version, 4 checksum.
-%   lengths: of version 1, 2, …
+function [why, head] = mbk_look_at(bytes, magic, lengths)
+%MBK_LOOK_AT  Whether a datagram is one, and what every datagram begins with.
+%   why: 0 believed, 1 wrong length, 2 wrong magic, 3 wrong version, 4 wrong checksum.   lengths: of version 1, 2, …
+%   head: version, flags and session; of a datagram that is not believed version 1 and zeros.
 %#codegen
+head = struct('version', uint16(1), 'flags', uint16(0), 'session', uint32(0));
 why = 0;
 count = numel(bytes);
 if count < 6
@@ -16,6 +18,10 @@ else
     why = 1;
   elseif typecast(bytes(count-3:count), 'uint32') ~= mbk_crc32(bytes(1:count-4))
     why = 4;
+  else
+    head.version = typecast(bytes(5:6), 'uint16');
+    head.flags = typecast(bytes(7:8), 'uint16');
+    head.session = typecast(bytes(9:12), 'uint32');
   end
 end
 end

@@ -5,7 +5,9 @@ MBK_STUDY_KILLS says how many times a command is killed in mid-work (20).
 """
 
 import collections
+import contextlib
 import csv
+import hashlib
 import io
 import json
 import os
@@ -119,6 +121,33 @@ class AStudy(StudyCase):
         first, second = (self.do("summary", "--json", "--analysis", n).json["outcomes"][0]["mean"] for n in (1, 2))
         self.assertNotEqual(first, second)
 
+    def test_a_default_that_is_typed_makes_no_other_analysis(self):
+        self.do("add", self.trials[0], "--participant", 1)
+        self.do("measure")
+        for typed in (["--mode", "default"], ["--padding", "15.0", "--protocol", "auto"], ["--hac-lag=1", "--seed", "1"],
+                      ["--bootstrap", "0", "--domain", "hand", "--force-delay-ms", "0"]):
+            self.assertIn("nothing new", self.do("measure", *typed).out, typed)
+        self.do("measure", "--mode", "reference", "--procedure", "chapter3")
+        self.assertIn("nothing new", self.do("measure", "--mode", "reference").out)
+        self.assertIn("1 measured", self.do("measure", "--mode", "reference", "--procedure", "chapter5").out)
+        self.do("defaults", "--mode", "reference")
+        self.assertIn("nothing new", self.do("measure", "--mode", "default").out, "it takes the place of another default")
+        self.assertEqual([one["options"] for one in self.listed()["analyses"]],
+                         [{}, {"--mode": ["reference"]}, {"--mode": ["reference"], "--procedure": ["chapter5"]}])
+
+    def test_results_of_before_are_found_under_a_key_that_says_defaults(self):
+        self.do("add", self.trials[0], "--participant", 1)
+        self.do("measure", "--cutoff", "4")
+        key = '{"--cutoff":["4"],"--mode":["default"]}'  # as it was stored once
+        with contextlib.closing(sqlite3.connect(self.study / "study.sqlite")) as database, database:
+            database.execute("UPDATE analysis SET options = ?, options_sha256 = ?",
+                             (key, hashlib.sha256(key.encode()).hexdigest()))
+        self.do("add", self.trials[1], "--participant", 2)
+        self.assertIn("1 measured", self.do("measure", "--cutoff", "4").out)
+        self.assertIn("nothing new", self.do("measure", "--cutoff", "4", "--mode", "default").out)
+        self.assertEqual([one["options"] for one in self.listed()["analyses"]], [{"--cutoff": ["4"], "--mode": ["default"]}])
+        self.assertEqual(self.do("summary", "--json").json["counts"]["usable"], 2)
+
     def test_same_study_for_any_number_of_threads_and_any_order(self):
         exports = []
         for threads, trials in ((1, self.trials), (3, self.trials[::-1])):
@@ -206,7 +235,6 @@ class AStudy(StudyCase):
     def test_log_can_be_recomputed_by_others(self):
         self.do("add", self.trials[0], "--participant", 7)
         self.do("exclude", 1, "--why", "Größe")
-        import hashlib
         before = ""
         for line in self.do("log", "--json").json["lines"]:
             text = json.dumps(["mbk.study.log/1", line["number"], line["time"], line["role"], line["action"],

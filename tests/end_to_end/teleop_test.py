@@ -93,6 +93,11 @@ class Teleop(Case):
         self.assertAlmostEqual(band["worst"], 10, places=3)
         self.assertAlmostEqual(band["value"], -0.01, places=6)
         self.assertIn("r11 ≥ 0", self.fine("teleop", EXAMPLES / "narrow_resonance.toml").out)
+        curve = ran["curves"][0]
+        at = min(range(len(curve["value"])), key=curve["value"].__getitem__)
+        self.assertAlmostEqual(curve["frequency"][at], 10, places=3)
+        self.assertLess(curve["value"][at], 0)
+        self.assertEqual(curve["frequency"], sorted(curve["frequency"]))
 
     def test_the_ideal_teleoperator_is_marginal(self):
         ideal = self.file("ideal.toml", TWO_PORT.format(form="h", n11="[0]", n12="[1]", n21="[-1]", n22="[0]"))

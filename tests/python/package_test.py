@@ -3,6 +3,7 @@
 and plots, errors and warnings. What both say is compared in twins_test.py."""
 
 import copy
+import datetime
 import gc
 import inspect
 import json
@@ -20,6 +21,7 @@ import warnings
 
 import mbk
 import numpy as np
+import pandas
 
 MBK = os.environ["MBK"]
 
@@ -92,7 +94,9 @@ class Package(unittest.TestCase):
         swapped = x.astype(">f8")
         for name, same in (("strided", wide[:, 1]), ("backwards", backwards[::-1]), ("read-only", frozen),
                            ("other byte order", swapped), ("list", x.tolist()), ("tuple", tuple(x)),
-                           ("memoryview", memoryview(x)), ("subclass", x.view(np.recarray))):
+                           ("memoryview", memoryview(x)), ("subclass", x.view(np.recarray)), ("masked", np.ma.array(x)),
+                           ("Series", pandas.Series(x, index=t[::-1])), ("nullable", pandas.Series(x).astype("Float64")),
+                           ("column", x[:, None]), ("row", x[None, :]), ("wider", x.astype(np.longdouble))):
             with self.subTest(name):
                 got = silent(mbk.measure, mbk.Recording(time=t, x=same, F=reaction))
                 self.assertEqual(got.model.K[0, 0], want)
@@ -116,9 +120,66 @@ class Package(unittest.TestCase):
             self.assertTrue(caught.exception.what, name)
             self.assertTrue(caught.exception.hint, name)
             self.assertNotIn("\n", str(caught.exception))
-        for name, given in (("a string", "log"), ("nothing", object())):
-            with self.subTest(name), self.assertRaises(mbk.UsageError):
+        for name, given in (("a string", "log"), ("nothing", object()), ("an array", x), ("no column", pandas.DataFrame()),
+                            ("a column twice", pandas.DataFrame(np.c_[t, x, x], columns=["time", "x", "x"])),
+                            ("no word", {"\udc80": x})):
+            with self.subTest(name), self.assertRaises(mbk.UsageError) as caught:
                 mbk.Recording(given)
+            self.assertTrue(caught.exception.hint, name)
+
+    def test_what_is_said_of_arrays_is_checked(self):
+        t, x, reaction = joint(3000)
+        arrays = {"time": t, "x": x, "F": reaction}
+        without = {"x": x, "F": reaction}
+        for name, work in (
+                ("a unit of another kind", lambda: mbk.measure(mbk.Recording(arrays, units={"x": "N"}))),
+                ("an unknown unit", lambda: mbk.measure(mbk.Recording(arrays, units={"x": "parsec"}))),
+                ("a unit of nothing", lambda: mbk.Recording(arrays, units={"y": "m"})),
+                ("no unit", lambda: mbk.Recording(arrays, units={"x": None})),
+                ("units without names", lambda: mbk.Recording(arrays, units=["m"])),
+                ("units as a word", lambda: mbk.Recording(arrays, units="mm")),
+                ("metadata without names", lambda: mbk.Recording(arrays, metadata=[1])),
+                ("an event without a name", lambda: mbk.Recording(arrays, events=[(1.0,)])),
+                ("events without a time", lambda: mbk.Recording(arrays, events=["go"])),
+                ("no events", lambda: mbk.Recording(arrays, events=5)),
+                ("a time and a rate", lambda: mbk.Recording(arrays, rate_hz=1000)),
+                ("two times", lambda: mbk.Recording(arrays, time=t)), ("two positions", lambda: mbk.Recording(arrays, x=x)),
+                ("no rate", lambda: mbk.Recording(without, rate_hz="fast")),
+                ("a rate of 0", lambda: mbk.Recording(without, rate_hz=0)),
+                ("a rate that is none", lambda: mbk.Recording(without, rate_hz=math.nan)),
+                ("time backwards", lambda: mbk.measure(mbk.Recording(without, time=t[::-1]))),
+                ("a time that stands", lambda: mbk.measure(mbk.Recording(without, time=0 * t))),
+                ("a time that is none", lambda: mbk.measure(mbk.Recording(without, time=np.where(t == 1, np.nan, t)))),
+                ("a date that is none", lambda: mbk.measure(mbk.Recording(
+                    without, time=pandas.DatetimeIndex([*pandas.date_range("2026", periods=2999, freq="ms"), pandas.NaT])))),
+                ("dates and numbers", lambda: mbk.Recording(without, time=[datetime.datetime(2026, 5, 4)] + [1.0] * 2999)),
+                ("a number that is missing", lambda: mbk.measure(mbk.Recording(
+                    time=t, x=pandas.Series([None, *x[1:]], dtype="Float64"), F=reaction))),
+                ("an empty option", lambda: mbk.measure(arrays, cutoff=[]))):
+            with self.subTest(name):
+                with self.assertRaises(mbk.Error) as caught:
+                    silent(work)
+                self.assertTrue(caught.exception.what)
+                self.assertTrue(caught.exception.hint)
+                self.assertNotIn("\n", str(caught.exception))
+
+    def test_dates_are_counted_from_the_first(self):
+        t, x, reaction = joint(3000)
+        want = silent(mbk.measure, mbk.Recording(time=t, x=x, F=reaction)).model.K[0, 0]
+        dates = pandas.date_range("2026-05-04T12:00", periods=3000, freq="ms")
+        zoned = dates.tz_localize("Europe/Berlin")
+        for name, time in (("datetime64", dates.to_numpy()), ("timedelta64", dates.to_numpy() - dates.to_numpy()[0]),
+                           ("index", dates), ("with a zone", zoned), ("Series", pandas.Series(zoned)),
+                           ("datetime", list(dates.to_pydatetime())), ("datetime with a zone", list(zoned.to_pydatetime())),
+                           ("timedelta", list((dates - dates[0]).to_pytimedelta()))):
+            with self.subTest(name):
+                recording = mbk.Recording(time=time, x=x, F=reaction, units={"time": "ms"})
+                np.testing.assert_allclose(recording.time, t, atol=1e-12)
+                self.assertAlmostEqual(silent(mbk.measure, recording).model.K[0, 0], want, delta=1e-6 * abs(want))
+        for name, table in (("index", pandas.DataFrame({"x": x, "F": reaction}, index=zoned)),
+                            ("column", pandas.DataFrame({"time": dates, "x": x, "F": reaction}))):
+            with self.subTest(name):
+                np.testing.assert_allclose(mbk.Recording(table).time, t, atol=1e-12)
 
     def test_gaps_and_infinities_are_said_and_not_computed_with(self):
         t, x, reaction = joint(6000)
@@ -144,7 +205,6 @@ class Package(unittest.TestCase):
                 np.testing.assert_array_equal(got.model.K, want.K)
         self.assertEqual(self.relaxed.to_xarray()["hand_x"].attrs["units"], "m")
         dated = table.copy()
-        import pandas
         dated.index = pandas.Timestamp("2026-05-04T12:00:00") + pandas.to_timedelta(table.index, unit="s")
         np.testing.assert_allclose(silent(mbk.measure, dated, handle_mass=0.194).model.K, want.K, rtol=1e-6)
 
@@ -308,6 +368,25 @@ class Package(unittest.TestCase):
         hostile = mbk._documents.of(self.result.json.replace("log.h5", "<script>alert(1)</script>"))
         self.assertNotIn("<script>", hostile._repr_html_())
 
+    def test_every_document_shows_what_it_holds_with_units(self):
+        for document, words in (
+                (mbk.info(self.log), ("duration_s", "62.10", "hand_x", "Info")),
+                (mbk.springs.field("rig_springs_table_3_1", trial="config_1"), ("tension [N]", "principal.stiffness", "N/m")),
+                (mbk.robot.workspace(at=(300, -50)), ("area_m2", "at.margins", "left_deg [°]")),
+                (mbk.study.plan(sd_people=60, sd_trials=25, difference=50), ("mdc95.value", "variance.participant")),
+                (self.result.model, ("1.341, −0.9232; −0.9294, 1.890", "N·s/m")),
+                (mbk.measure(self.log, domain="joint"), ("At the joints of the arm", "N·m/rad")),
+                (mbk.passivity(self.log, self.log), ("Is the limb of", "in this trial the hand absorbed"))):
+            with self.subTest(repr(document)[:60]):
+                page = document._repr_html_()
+                for word in words:
+                    self.assertIn(word, page)
+                self.assertNotIn("sha256", page)
+        rows = mbk.passivity(self.log, self.log).to_dataframe()
+        self.assertEqual((len(rows), list(rows["verdict"])), (2, ["passive", "passive"]))
+        self.assertTrue((rows["low95"] < rows["absorbed_J"]).all() and (rows["absorbed_J"] < rows["high95"]).all())
+        self.assertEqual(len(mbk.info(self.log, self.log).to_dataframe()), 2 * len(mbk.info(self.log).to_dataframe()))
+
     def test_every_plot_has_labelled_axes_with_units(self):
         import matplotlib.pyplot as plt
         x, force = self.relaxed["hand_x"], self.relaxed["force_x"]
@@ -329,10 +408,20 @@ class Package(unittest.TestCase):
                     for label in (axes.get_xlabel(), axes.get_ylabel()):
                         self.assertRegex(label, r"\[.+\]|^$|coherence|condition|recording|value", name)
                     self.assertTrue(axes.lines or axes.collections, name)
+                    if name == "teleop":
+                        self.assertTrue(np.isfinite(axes.lines[0].get_xydata()).all(), "every frequency is a number")
+                        self.assertLess(axes.get_xlim()[1], 1e6)
                 self.assertTrue(any(axes.get_xlabel() for axes in figure.axes))
                 plt.close("all")
         with self.assertRaises(NotImplementedError):
             mbk.info(self.log).plot()
+        identified = mbk.identify(self.log, structure="symmetric")
+        self.assertEqual(len(identified.plot().axes[0].get_xticks()), 4, "every entry of a matrix")
+        self.assertEqual(len(identified.plot_fit().axes), 4)
+        with self.assertRaises(mbk.UsageError):
+            identified.plot_energy()
+        self.assertEqual(len(mbk.passivity(self.log, self.log).plot().axes[0].lines), 3, "both, and zero")
+        plt.close("all")
 
     # ---- what goes wrong
 

@@ -44,6 +44,11 @@ class DataSet(Protocol):
 Source = Union[str, "os.PathLike[str]", Recording, _documents.Document, Mapping[str, Any], Sequence[Any], Table, DataSet]
 
 
+def _plain(value: Any) -> Any:
+    """A scalar of NumPy as one of Python."""
+    return value.item() if isinstance(value, np.generic) or isinstance(value, np.ndarray) and value.ndim == 0 else value
+
+
 class _Given:
     """The words of a call, with what stands for them in memory."""
 
@@ -80,20 +85,23 @@ class _Given:
 
     def value(self, value: Any, separator: str) -> Any:
         """An option's value as it would be typed."""
-        if isinstance(value, (str, int, float, np.number)):
+        value = _plain(value)
+        if isinstance(value, (str, int, float)):
             return value
         if isinstance(value, (os.PathLike, _documents.Document, Recording)):
             return self.word(value)
         if isinstance(value, Mapping):
             return ",".join(f"{name}={self.value(one, ':')}" for name, one in value.items())
         if isinstance(value, (Sequence, np.ndarray)):
+            if not len(value):
+                raise _errors.usage("an option cannot be an empty list", "leave it out")
             return separator.join(str(self.value(one, ":")) for one in value)
-        raise _errors.UsageError(f"an option cannot be {type(value).__name__}; give a number, a word, or several",
-                                 what=f"an option cannot be {type(value).__name__}", hint="give a number, a word, or several")
+        raise _errors.usage(f"an option cannot be {type(value).__name__}", "give a number, a word, or several")
 
     def options(self, options: Mapping[str, Any], several: Mapping[str, str]) -> dict[str, Any]:
         given: dict[str, Any] = {}
         for name, value in options.items():
+            value = _plain(value)
             if value is None or value is False:
                 continue
             if isinstance(value, (str, int, float)):
@@ -145,7 +153,7 @@ def run(command: str, sources: Sequence[Any], options: Mapping[str, Any], severa
     if not text.startswith("{"):
         return text
     document = _documents.of(text, answer.exit_code)
-    if command == "measure" and isinstance(document, _documents.Result):
+    if command in ("measure", "identify") and isinstance(document, _documents.Result):
         document._again = functools.partial(_report, given, given.options(options, several))
     return document
 

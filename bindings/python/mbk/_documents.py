@@ -320,7 +320,9 @@ class Result(_Measured):
         return pandas.DataFrame(_tables.parameters(self._values)).set_index("parameter")
 
     def plot_energy(self) -> matplotlib.figure.Figure:
-        """The least damping in any direction over frequency with its 95 % band, and the energy that was absorbed."""
+        """The least damping in any direction over frequency with its 95 % band, of what `mbk.measure` found."""
+        if "passivity" not in self._values:
+            raise _errors.usage("this result says nothing of energy", "measure the recording with mbk.measure")
         from mbk import _plots
 
         return _plots.passivity(self)
@@ -334,8 +336,7 @@ class Result(_Measured):
             `trials` with predicted force, residual, spectra and energy.
         """
         if self._again is None:
-            raise _errors.UsageError("this result was not measured here; measure the recording again",
-                                     what="this result was not measured here", hint="measure the recording again")
+            raise _errors.usage("this result was not measured here", "measure the recording again")
         found: dict[str, Any] = self._again()
         return found
 
@@ -381,6 +382,13 @@ def _inner(kind: type[Document], values: dict[str, Any]) -> Any:
 
 class Passivity(Document):
     """What energy the limb absorbed in the trial, and what its model predicts."""
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """A row for each recording: the energy that was absorbed [J] with its 95 % interval and verdict, what the model
+        predicts, the least passivity index and the excess of passivity [unit of the damping]."""
+        import pandas
+
+        return pandas.DataFrame(_tables.passivity_rows(self._values))
 
     def plot(self) -> matplotlib.figure.Figure:
         """Absorbed energy of the trial, and the least damping in any direction over frequency with its 95 % band."""
@@ -482,7 +490,7 @@ class Information(Document):
         """A row for each channel."""
         import pandas
 
-        return pandas.DataFrame(self._values.get("channels", []))
+        return pandas.DataFrame(_tables.channel_rows(self._values))
 
 
 class Movement(Document):
@@ -503,7 +511,8 @@ class Springs(Document):
         """A row for each spring."""
         import pandas
 
-        return pandas.DataFrame(self._values.get("springs", self._values.get("constants", [])))
+        rows = self._values.get("springs", self._values.get("constants", []))
+        return pandas.DataFrame([dict(_tables.leaves(one)) for one in rows])
 
     def plot(self) -> matplotlib.figure.Figure:
         """The stiffness ellipse at the equilibrium and the springs on their anchors."""

@@ -73,6 +73,11 @@ class MbkWarning(UserWarning):
         self.code, self.text = code, text
 
 
+def usage(what: str, hint: str) -> UsageError:
+    """An argument is wrong."""
+    return UsageError(f"{what}; {hint}", what=what, hint=hint)
+
+
 _CLASSES: dict[int, type[Error]] = {2: UsageError, 3: DataError, 4: NotUsableError}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -47,7 +48,7 @@ def logarithmic(axis: Any) -> None:
 
 
 def unit_text(unit: str) -> str:
-    return f" [{unit}]" if unit else ""
+    return f" [{_tables.unit_as_read(unit)}]" if unit else ""
 
 
 # ---- recordings
@@ -141,20 +142,23 @@ def ellipses(document: Any) -> matplotlib.figure.Figure:
 
 
 def parameters(results: list[dict[str, Any]]) -> matplotlib.figure.Figure:
-    """One axis: M, B and K of each recording with their 95 % intervals."""
+    """M, B and K of each recording, entry by entry, with their 95 % intervals."""
     units = results[0].get("units", _tables.UNITS)
+    entries = [(result, i, k) for result in results for i in range(result["axes"]) for k in range(result["axes"])]
+    names = ["".join(_tables.axis_names(result["axes"])[one] for one in (i, k)) for result, i, k in entries]
+    places = np.arange(1, len(entries) + 1)
     made, axes = figure(1, 3, width=8.0, height=2.6)
     for panel, (symbol, name) in zip(axes[0], _tables.MATRICES):
-        values = numbers([one["model"][symbol][0][0] for one in results])
-        halves = _tables.NORMAL95 * numbers([one["standard_error"][symbol][0][0] for one in results])
-        panel.errorbar(np.arange(1, len(results) + 1), values, yerr=halves, fmt="o", capsize=4,
-                       color=MATRIX_COLOURS[name])
-        panel.set_xticks(np.arange(1, len(results) + 1))
-        panel.set_xlim(0.3, len(results) + 0.7)
-        panel.set_xlabel("recording")
+        values = numbers([result["model"][symbol][i][k] for result, i, k in entries])
+        halves = _tables.NORMAL95 * numbers([result["standard_error"][symbol][i][k] for result, i, k in entries])
+        panel.errorbar(places, values, yerr=halves, fmt="o", capsize=4, color=MATRIX_COLOURS[name])
+        panel.set_xticks(places, names if any(names) else None)
+        panel.set_xlim(0.3, len(entries) + 0.7)
+        panel.set_xlabel("entry" if any(names) else "recording")
         panel.set_ylabel(f"{name} {symbol}{unit_text(units[symbol])}")
-        panel.ticklabel_format(useOffset=False)
-    made.suptitle("95 % intervals", fontsize="medium")
+        panel.ticklabel_format(axis="y", useOffset=False)
+    usable = all(result.get("usable", True) for result in results)
+    made.suptitle("95 % intervals" if usable else "not usable: do not report these numbers", fontsize="medium")
     return made
 
 
@@ -181,31 +185,35 @@ def fit(report: dict[str, Any], unit: str) -> matplotlib.figure.Figure:
 
 
 def passivity(document: Any) -> matplotlib.figure.Figure:
-    values = document._values
-    values = values.get("results", [values])[0]
-    found = values["passivity"]
-    recordings = values.get("recordings", [])
-    models = [one for one in found.get("models", []) if "index" in one]
-    units = values.get("units", {})
+    results = document._values.get("results", [document._values])
+    models = [(one, result) for result in results for one in result["passivity"].get("models", []) if "index" in one]
+    if len(results) == 1:
+        curves = [(one["index"], _tables.METHODS.get(one["method"], one["method"])) for one, _ in models]
+    else:  # of each recording the model that it is judged by
+        first = {id(result): one for one, result in reversed(models)}
+        curves = [(first[id(result)]["index"], _tables.names_of(result)) for result in results if id(result) in first]
+    recordings = [(one, _tables.names_of(result)) for result in results for one in result.get("recordings", [])]
+    units = results[0].get("units", {})
     made, axes = figure(1 + (1 if recordings else 0), height=2.7)
     panel = axes[-1, 0]
-    for one, colour in zip(models, COLOURS):
-        index = one["index"]
+    for (index, label), colour in zip(curves, itertools.cycle(COLOURS)):
         frequency = numbers(index["frequency_hz"])
         shaded(panel, frequency, index["lower95"], index["upper95"], colour)
-        panel.plot(frequency, numbers(index["value"]), color=colour, label=_tables.METHODS.get(one["method"], one["method"]))
+        panel.plot(frequency, numbers(index["value"]), color=colour, label=label)
     panel.axhline(0.0, color=GREY, linewidth=0.8)
     panel.set_xscale("log")
     logarithmic(panel.xaxis)
     panel.set_xlabel("frequency [Hz]")
     panel.set_ylabel(f"passivity index{unit_text(units.get('B', 'N·s/m'))}")
     panel.set_title("below zero the model can generate energy; bands are 95 % intervals", fontsize="medium")
-    if models:
+    if curves:
         panel.legend(loc="best", frameon=False)
     if recordings:
         above = axes[0, 0]
-        for one, colour in zip(recordings, COLOURS * 10):
-            above.plot(numbers(one["time_s"]), numbers(one["absorbed_J"]), color=colour, linewidth=1.2)
+        for (one, label), colour in zip(recordings, itertools.cycle(COLOURS)):
+            above.plot(numbers(one["time_s"]), numbers(one["absorbed_J"]), color=colour, linewidth=1.2, label=label)
+        if len(recordings) > 1:
+            above.legend(loc="best", frameon=False)
         above.axhline(0.0, color=GREY, linewidth=0.8)
         above.set_xlabel("time [s]")
         above.set_ylabel("absorbed energy [J]")
@@ -334,10 +342,9 @@ def springs(document: Any) -> matplotlib.figure.Figure:
         size = 0.3 * max(np.ptp(panel.get_xlim()), np.ptp(panel.get_ylim())) / eigenvalues[1]
         angle = np.linspace(0, 2 * np.pi, 181)
         points = vectors @ (eigenvalues[:, None] * np.array([np.cos(angle), np.sin(angle)])) * size
-        panel.plot(centre[0] * 1000.0 + points[0], centre[1] * 1000.0 + points[1], color=BLUE,
-                   label=f"stiffness: {_tables.significant(eigenvalues[1])} and "
-                         f"{_tables.significant(eigenvalues[0])} N/m")
-        panel.legend(loc="best", frameon=False)
+        panel.plot(centre[0] * 1000.0 + points[0], centre[1] * 1000.0 + points[1], color=BLUE)
+        panel.set_title(f"stiffness {_tables.significant(eigenvalues[1])} and {_tables.significant(eigenvalues[0])} N/m",
+                        fontsize="medium")
     panel.plot(*(centre * 1000.0), "+", color=ORANGE, markersize=10)
     panel.set_aspect("equal", adjustable="datalim")
     panel.set_xlabel("x [mm]")

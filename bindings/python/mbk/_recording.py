@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import html
+import datetime
 import re
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from mbk import _errors, _mbk
+from mbk import _errors, _mbk, _tables
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mbk._documents import Information
 
 Array = npt.NDArray[np.float64]
+_TIMES = frozenset(("time", "t"))
 _ALIAS = re.compile(r"t|x|y|a|F|xr|yr|Fx|Fy|ax|ay|Vx|Vy|(?:q|tau|qr)[1-8]")  # names that carry no unit
 
 
@@ -35,7 +36,7 @@ class Recording:
         ``x``, ``y``, ``Fx``, ``Fy``, ``xr``, ``yr``, ``ax``, …, also ``hand_x_mm``. Arrays of float64 in one piece are
         taken without a copy: do not change them while the recording lives. Others are converted.
     time : array_like, optional
-        Time of each sample [s], where it is not among the channels.
+        Time of each sample, where it is not among the channels: seconds, or dates, which are counted from the first.
     rate_hz : float, optional
         Sample rate [Hz], where there is no time.
     units : mapping of str to str, optional
@@ -46,6 +47,13 @@ class Recording:
         Time [s], name and value of what happened.
     **named : array_like
         Further channels.
+
+    Raises
+    ------
+    UsageError
+        What is given is no recording: no real numbers, a name that is given twice, a unit that is no text.
+    DataError
+        The signals have different lengths, or none.
 
     Examples
     --------
@@ -72,15 +80,21 @@ class Recording:
         **named: npt.ArrayLike,
     ) -> None:
         signals, known_units, known_metadata = _signals_of(channels)
-        if time is not None:
-            signals = {"time": time, **signals}
-        signals.update(named)
-        known_units.update(units or {})
-        known_metadata.update({name: str(value) for name, value in (metadata or {}).items()})
-        happened = [(float(one[0]), str(one[1]), float(one[2]) if len(one) > 2 else float("nan")) for one in events]
+        for name in ("time", *named) if time is not None else named:
+            if name in signals:
+                raise _errors.usage(f"'{name}' is given twice", "leave one of them out")
+        signals = {**({} if time is None else {"time": time}), **signals, **named}
+        known_units.update(_mapping("units", units))
+        known_metadata.update(_mapping("metadata", metadata))
+        for name in _TIMES & signals.keys():
+            if rate_hz is not None:
+                raise _errors.usage(f"'{name}' is given, and a rate", "leave one of them out")
+            signals[name] = _time(name, signals[name], known_units)
+        signals = {name: _numbers(name, values) for name, values in signals.items()}
+        self._rate_hz = 0.0 if rate_hz is None else _rate(rate_hz)
         with _errors.translated():
-            self._core: _mbk.Recording = _mbk.Recording(signals, rate_hz or 0.0, known_units, known_metadata, happened)
-        self._rate_hz = float(rate_hz or 0.0)
+            self._core: _mbk.Recording = _mbk.Recording(signals, self._rate_hz, _texts(known_units), known_metadata,
+                                                        _events(events))
 
     @classmethod
     def _of(cls, core: _mbk.Recording) -> Recording:
@@ -298,15 +312,13 @@ class Recording:
         except (_errors.Error, KeyError):
             rows = [(name, unit, self[name]) for name, unit in self.signals.items()]
             head = "Signals whose meaning takes channels=…"
-        body = "".join(
-            f"<tr><th>{html.escape(name)}</th><td>{values.min():.6g}</td><td>{values.max():.6g}</td>"
-            f"<td>{html.escape(unit)}</td></tr>" for name, unit, values in rows)
-        return (f"<p><strong>Recording</strong>: {html.escape(head)}</p><table><thead><tr><th>channel</th><th>lowest</th>"
-                f"<th>highest</th><th>unit</th></tr></thead><tbody>{body}</tbody></table>")
+        body = [[name, *(_tables.significant(float(one), 6) for one in (np.fmin.reduce(values), np.fmax.reduce(values))),
+                 _tables.unit_as_read(unit)] for name, unit, values in rows]
+        return (f"<p><strong>Recording</strong>: {_tables.escaped(head)}</p>"
+                + _tables.table("", ["channel", "lowest", "highest", "unit"], body))
 
 
-
-def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
     """Signals, units and metadata of what holds named arrays."""
     if given is None:
         return {}, {}, {}
@@ -317,23 +329,86 @@ def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, str], dict[str, s
         units = {str(name): str(variable.attrs["units"]) for name, variable in given.data_vars.items()
                  if "units" in variable.attrs}
         if "time" not in signals and "time" in given.coords:
-            signals = {"time": _seconds(given.coords["time"].values), **signals}
+            signals = {"time": given.coords["time"].values, **signals}
         return signals, units, {str(name): str(value) for name, value in given.attrs.items()}
     if hasattr(given, "columns") and hasattr(given, "index"):  # a pandas DataFrame
-        signals = {str(name): given[name].to_numpy() for name in given.columns}
-        units = {str(name): str(unit) for name, unit in dict(given.attrs.get("units", {})).items() if name in signals}
-        if "time" not in signals and (given.index.name in ("time", "t") or given.index.dtype.kind in "mM"):
-            signals = {"time": _seconds(given.index.to_numpy()), **signals}
+        for name in given.columns[given.columns.duplicated()]:
+            raise _errors.usage(f"two columns are called '{name}'", "leave one of them out")
+        signals = {str(name): values for name, values in given.items()}
+        units = {str(name): unit for name, unit in dict(given.attrs.get("units", {})).items() if name in signals}
+        if "time" not in signals and (given.index.name in _TIMES or given.index.dtype.kind in "mM"):
+            signals = {"time": given.index, **signals}
         return signals, units, {}
     if isinstance(given, Mapping):
         return {str(name): value for name, value in given.items()}, {}, {}
-    raise _errors.UsageError(f"a recording cannot be made of {type(given).__name__}; give a mapping of names to arrays",
-                             what=f"a recording cannot be made of {type(given).__name__}",
-                             hint="give a mapping of names to arrays")
+    raise _errors.usage(f"a recording cannot be made of {type(given).__name__}",
+                        "give arrays by their names, as in mbk.Recording(time=t, x=x, F=F)")
 
 
-def _seconds(times: Any) -> Any:
-    """Dates and differences of NumPy, in seconds from the first; numbers as they are."""
-    if times.dtype.kind not in "mM":
-        return times
-    return (times - times[0]).astype("timedelta64[ns]").astype(np.float64) * 1e-9
+def _numbers(name: str, given: Any) -> Any:
+    """What pandas has as numbers of which some may be missing; anything else as it is, since the core looks at it."""
+    if not name.isascii() and any("\ud800" <= letter <= "\udfff" for letter in name):
+        raise _errors.usage(f"the name {ascii(name)} is no text", "name the signal otherwise")
+    dtype = getattr(given, "dtype", None)
+    if isinstance(dtype, np.dtype) or getattr(dtype, "kind", "O") not in "fiub" or not hasattr(given, "to_numpy"):
+        return given
+    return given.to_numpy(dtype=np.float64, na_value=np.nan)
+
+
+def _time(name: str, given: Any, units: dict[str, Any]) -> Any:
+    """Dates and differences of NumPy, pandas and Python in seconds from the first; numbers as they are."""
+    try:
+        times = _dates(given)
+    except (TypeError, ValueError, AttributeError):
+        raise _errors.usage(f"'{name}' is neither numbers nor dates", "give seconds") from None
+    if times is None:
+        return given
+    units.pop(name, None)  # they say it themselves
+    since = times - times[:1]
+    return np.where(np.isnat(since), np.nan, since.astype(np.float64) * 1e-9)
+
+
+def _dates(given: Any) -> npt.NDArray[Any] | None:
+    """As NumPy has them, to the nanosecond; nothing where it is none."""
+    kind = getattr(getattr(given, "dtype", None), "kind", "O")
+    if kind == "O" and isinstance(given, (Sequence, np.ndarray)) and len(given):
+        if isinstance(given[0], datetime.datetime):
+            zone = datetime.timezone.utc
+            given = [one.astimezone(zone).replace(tzinfo=None) if one.tzinfo else one for one in given]
+            kind = "M"
+        elif isinstance(given[0], datetime.timedelta):
+            kind = "m"
+    return np.asarray(given, dtype={"M": "datetime64[ns]", "m": "timedelta64[ns]"}[kind]) if kind in "Mm" else None
+
+
+def _rate(given: Any) -> float:
+    try:
+        rate = float(given)
+    except (TypeError, ValueError):
+        rate = float("nan")
+    if not 0.0 < rate < float("inf"):
+        raise _errors.usage(f"rate {given!r} Hz is not a positive number", "give the sample rate in Hz")
+    return rate
+
+
+def _mapping(what: str, given: Any) -> dict[str, Any]:
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        raise _errors.usage(f"{what} is of {type(given).__name__}", f"give a mapping of names: {what}={{…}}")
+    return {str(name): value if what == "units" else str(value) for name, value in given.items()}
+
+
+def _texts(units: dict[str, Any]) -> dict[str, str]:
+    for name, unit in units.items():
+        if not isinstance(unit, str):
+            raise _errors.usage(f"the unit of '{name}' is {unit!r}", "give a text, such as 'mm'")
+    return units
+
+
+def _events(given: Iterable[tuple[Any, ...]]) -> list[tuple[float, str, float]]:
+    try:
+        return [(float(one[0]), str(one[1]), float(one[2]) if len(one) > 2 else float("nan")) for one in given]
+    except (TypeError, ValueError, LookupError):
+        raise _errors.usage("an event is not (time in seconds, name) or (time, name, value)",
+                            "give a list of such") from None

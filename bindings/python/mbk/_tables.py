@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import math
+import re
+from collections.abc import Callable, Iterator
 from typing import Any
 
 NORMAL95 = 1.959963984540054
@@ -33,6 +36,11 @@ def significant(value: float | None, digits: int = 3) -> str:
     if magnitude < -4 or magnitude > 6:
         return minus(f"{value:.{digits - 1}e}")
     return fixed(value, digits - 1 - magnitude)
+
+
+def unit_as_read(unit: str) -> str:
+    """As it is read: "N·m", "m/s²" for "N.m", "m/s2" of a recording."""
+    return re.sub(r"(?<=[a-z])2$", "²", unit.replace(".", "·"))
 
 
 def with_half_width(value: float | None, error: float | None, scale: float = 1.0) -> str:
@@ -190,12 +198,35 @@ def reliability_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
+def passivity_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = []
+    for one in found.get("results", [found]):
+        passivity = one["passivity"]
+        trial, prediction, excess = passivity.get("trial"), passivity.get("prediction"), passivity.get("eop", {})
+        low, high = trial["interval95"] if trial else (None, None)
+        excess_low, excess_high = excess.get("interval95") or (None, None)
+        rows.append({
+            "file": names_of(one), "verdict": trial["verdict"] if trial else None,
+            "absorbed_J": number(trial["absorbed_J"] if trial else None), "low95": number(low), "high95": number(high),
+            "predicted": prediction["verdict"] if prediction else None, "min_index": number(passivity.get("min_index")),
+            "excess": number(excess.get("corrected")), "excess_low95": number(excess_low),
+            "excess_high95": number(excess_high)})
+    return rows
+
+
+def channel_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """A row for each channel of each recording."""
+    if "results" not in found:
+        return list(found.get("channels", []))
+    return [{"file": names_of(one), **channel} for one in found["results"] for channel in one.get("channels", [])]
+
+
 def flat(values: dict[str, Any]) -> list[dict[str, Any]]:
     """The first list of objects of a document, else its numbers and words."""
-    for value in values.values():
-        if isinstance(value, list) and value and isinstance(value[0], dict) and value is not values.get("inputs"):
-            return value
-    return [{name: value for name, value in values.items() if not isinstance(value, (dict, list))}]
+    for name, value in values.items():
+        if objects(value) and name != "inputs":
+            return [dict(leaves(one)) for one in value]
+    return [{name: value for name, value in leaves(values) if not isinstance(value, list)}]
 
 
 # ---- HTML
@@ -205,12 +236,13 @@ def escaped(text: object) -> str:
     return html.escape(str(text))
 
 
-def table(caption: str, head: list[str], rows: list[list[str]]) -> str:
+def table(caption: str, head: list[str], rows: list[list[str]], align: str = "right") -> str:
     """A table whose first column names its rows."""
+    style = f" style='text-align:{align}'"
     body = "".join(
-        "<tr>" + "".join(f"<th style='text-align:left'>{escaped(cell)}</th>" if k == 0 else f"<td>{escaped(cell)}</td>"
-                         for k, cell in enumerate(row)) + "</tr>" for row in rows)
-    heads = f"<thead><tr>{''.join(f'<th>{escaped(one)}</th>' for one in head)}</tr></thead>" if head else ""
+        "<tr>" + "".join(f"<th style='text-align:left'>{escaped(one)}</th>" if k == 0 else f"<td{style}>{escaped(one)}</td>"
+                         for k, one in enumerate(row)) + "</tr>" for row in rows)
+    heads = f"<thead><tr>{''.join(f'<th{style}>{escaped(one)}</th>' for one in head)}</tr></thead>" if head else ""
     return (f"<table><caption style='text-align:left;white-space:nowrap'>{escaped(caption)}</caption>"
             f"{heads}<tbody>{body}</tbody></table>")
 
@@ -267,6 +299,8 @@ def result_html(result: dict[str, Any], heading: bool = True) -> str:
         [f"RMSE on {where}", per_axis(fit["RMSE"], 3, units["force"])]]))
     if "ellipses" in result and result["usable"]:
         out.append(ellipses_html(result, units))
+    if "joint_domain" in result and result["usable"]:
+        out.append(joint_html(result["joint_domain"]))
     if "passivity" in result:
         out.append(passivity_html(result["passivity"]))
     out.append(warning_list(result["warnings"]))
@@ -293,13 +327,26 @@ def ellipses_html(result: dict[str, Any], units: dict[str, str]) -> str:
                  ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows)
 
 
-def passivity_html(passivity: dict[str, Any]) -> str:
+def joint_html(joints: dict[str, Any]) -> str:
+    pairs = [(0, 0), (0, 1), (1, 0), (1, 1)]
+    rows = [[f"{name} {symbol}", *(with_half_width(joints["model"][symbol][i][j], joints["standard_error"][symbol][i][j])
+                                   for i, j in pairs), joints["units"][symbol]] for symbol, name in MATRICES]
+    return table(f"At the joints of the {joints['of']}; ± is the 95 % interval",
+                 ["", *(f"{i + 1}{j + 1}" for i, j in pairs), "unit"], rows)
+
+
+def names_of(document: dict[str, Any]) -> str:
+    """The files that it is about."""
+    return ", ".join(one["file"] or "arrays" for one in document["inputs"])
+
+
+def passivity_html(passivity: dict[str, Any], of_what: str = "the limb") -> str:
     rows = []
     for key, title in (("trial", "what happened"), ("prediction", "what the model predicts")):
         one = passivity.get(key)
         if one:
             rows.append([title, one["verdict"], one.get("statement", "")])
-    return table("Is the limb passive?", ["", "verdict", "in words"], rows)
+    return table(f"Is {of_what} passive?", ["", "verdict", "in words"], rows)
 
 
 def results_html(found: dict[str, Any]) -> str:
@@ -309,7 +356,7 @@ def results_html(found: dict[str, Any]) -> str:
         names = axis_names(result["axes"])
         diagonal = [(symbol, k, named(symbol, name, name)) for symbol, _ in MATRICES for k, name in enumerate(names)]
         head = ["recording", "usable", *(f"{name} [{units[symbol]}]" for symbol, _, name in diagonal)]
-        rows.append([", ".join(one["file"] or "arrays" for one in result["inputs"]), "yes" if result["usable"] else "no",
+        rows.append([names_of(result), "yes" if result["usable"] else "no",
                      *(with_half_width(result["model"][symbol][k][k], result["standard_error"][symbol][k][k])
                        if result["usable"] else "" for symbol, k, _ in diagonal)])
     out = [f"<p><strong>Impedance of {len(found['results'])} recordings</strong></p>",
@@ -355,55 +402,110 @@ def validation_html(found: dict[str, Any]) -> str:
             + table("", ["", "value", "95 %", "expected", "unit", "verdict"], rows))
 
 
-def generic(rows: list[dict[str, Any]], title: str) -> str:
-    """Rows of numbers and words."""
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    names = [name for name in names if all(not isinstance(row.get(name), (dict, list)) for row in rows)]
+HIDDEN = frozenset(("schema", "units", "software", "sha256", "options_sha256", "hash", "digest", "covariance", "description"))
+NUMBERS_SHOWN, ROWS_SHOWN = 8, 60
 
-    def shown(value: Any) -> str:
-        if isinstance(value, bool) or value is None:
-            return "" if value is None else "yes" if value else "no"
-        return significant(value, 4) if isinstance(value, float) else str(value)
 
-    return f"<p><strong>{escaped(title)}</strong></p>" + table("", names, [[shown(row.get(name)) for name in names]
-                                                                           for row in rows])
+def scalars(values: Any) -> int:
+    return sum(map(scalars, values)) if isinstance(values, list) else 1
+
+
+def cell(value: Any) -> str:
+    """A value as a table shows it."""
+    if isinstance(value, bool) or value is None:
+        return "" if value is None else "yes" if value else "no"
+    if isinstance(value, list):
+        if not value:
+            return "none"
+        if scalars(value) > NUMBERS_SHOWN and not all(isinstance(one, str) for one in value):
+            return f"{scalars(value)} numbers"
+        return ("; " if isinstance(value[0], (list, str)) else ", ").join(cell(one) or "–" for one in value)
+    return significant(value, 4) if isinstance(value, float) else str(value)
+
+
+def objects(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+
+
+def leaves(values: dict[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    """Every value below, and every list of several objects, by what stands behind the document's name in Python."""
+    for name, value in values.items():
+        if objects(value) and len(value) == 1:
+            name, value = f"{name}[0]", value[0]
+        if isinstance(value, dict):
+            yield from leaves(value, f"{path}{name}.")
+        elif name not in HIDDEN and value is not None and value != "":
+            yield path + name, value
+
+
+def unit_of(part: Any, path: str) -> str:
+    try:
+        unit: str = part.unit(path.replace("[0]", ".0"))
+    except KeyError:
+        return ""
+    return unit
+
+
+def unit_below(part: Any, path: str, name: str) -> str:
+    return unit_of(part, f"{path}.{name}")
+
+
+def listed(caption: str, rows: list[dict[str, Any]], unit: Callable[[str], str]) -> str:
+    """A table with a row for each of several objects."""
+    shown = [dict(leaves(row)) for row in rows[:ROWS_SHOWN]]
+    names = [name for name in dict.fromkeys(name for row in shown for name in row)
+             if all(scalars(row.get(name)) <= NUMBERS_SHOWN and not objects(row.get(name)) for row in shown)]
+    if len(rows) > ROWS_SHOWN:
+        caption = f"{caption}: the first {ROWS_SHOWN} of {len(rows)}".lstrip(": ")
+    heads = [f"{name} [{unit(name)}]" if unit(name) else name for name in names]
+    return table(caption, heads, [[cell(row.get(name)) for name in names] for row in shown])
 
 
 def fields(part: Any) -> str:
-    """Every field of a part that is no further part."""
-    rows = [[name, ", ".join(map(str, value)) if isinstance(value, list) else str(value)]
-            for name, value in part._values.items()
-            if not isinstance(value, dict) and not (isinstance(value, list) and len(str(value)) > 200)]
-    return table("", [], rows)
+    """Everything that a part holds, under the names that it has in Python."""
+    rows, lists = [], []
+    for path, value in leaves(part._values):
+        if objects(value):
+            lists.append(listed(path, value, functools.partial(unit_below, part, f"{path}.0")))
+        elif path not in ("usable", "warnings"):
+            rows.append([path, cell(value), unit_of(part, path)])
+    return (table("", ["", "value", "unit"], rows, "left") if rows else "") + "".join(lists)
+
+
+def title_of(document: dict[str, Any]) -> str:
+    """'study_check' is 'Study check'."""
+    schema: str = document.get("schema", "").split("/")[0].removeprefix("mbk.")
+    return str(document.get("title") or schema.replace("_", " ").capitalize() or "mbk")
 
 
 def of(document: Any) -> str:
     """A document for a notebook."""
     values: dict[str, Any] = document._values
     schema = values.get("schema", "").split("/")[0]
-    if schema == "mbk.result":
-        return result_html(values)
-    if schema == "mbk.results":
-        return results_html(values)
+    special: dict[str, Callable[[dict[str, Any]], str]] = {
+        "mbk.result": result_html, "mbk.results": results_html, "mbk.tf": transfer_function_html,
+        "mbk.teleop": teleoperation_html, "mbk.validation": validation_html}
+    if schema in special:
+        return special[schema](values)
     if schema == "mbk.passivity":
         return passivity_html(values["passivity"])
-    if schema == "mbk.tf":
-        return transfer_function_html(values)
-    if schema == "mbk.teleop":
-        return teleoperation_html(values)
-    if schema == "mbk.validation":
-        return validation_html(values)
+    if schema == "mbk.passivities":
+        return "".join(passivity_html(one["passivity"], f"the limb of {names_of(one)}") for one in values["results"])
     if schema == "mbk.compare":
-        return generic(widths(values), "How far the two are apart")
+        return heading("How far the two are apart") + listed("", widths(values), no_unit)
     if schema == "mbk.ellipse":
-        return generic(ellipse_rows(values), "Ellipses")
-    if schema == "mbk.explore":
-        names = [name for name, value in values.items() if isinstance(value, dict) and name != "units"]
-        rows = [[name.replace("_", " "), str(values[name].get("method", values[name].get("verdict", "")))] for name in names]
-        return "<p><strong>Exploration</strong></p>" + verdict(values) + table("", ["part", "how"], rows) + warning_list(
-            values["warnings"])
+        return heading("Ellipses") + listed("", ellipse_rows(values), no_unit)
     if schema == "mbk.study_list":
-        return generic(study_rows(values), values["title"] or "Study")
+        return heading(title_of(values)) + listed("", study_rows(values), no_unit)
     if schema == "mbk.study_summary":
-        return generic(values["outcomes"], values["title"] or "Study")
-    return generic(flat(values), schema or "mbk")
+        return heading(title_of(values)) + listed("", values["outcomes"], no_unit)
+    judged = verdict(values) if "usable" in values and "warnings" in values else ""
+    return heading(title_of(values)) + judged + fields(document) + (warning_list(values["warnings"]) if judged else "")
+
+
+def heading(text: str) -> str:
+    return f"<p><strong>{escaped(text)}</strong></p>"
+
+
+def no_unit(name: str) -> str:
+    return ""

@@ -36,11 +36,8 @@ bool moves(const Matrix& reference) {
 
 Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const Inspection& inspection,
                                               const Options& options) {
-  constexpr Index kMin = 20;
   const Index samples = recording.samples();
-  if (samples < kMin || !(inspection.rate_hz > 0.0)) {
-    return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
-  }
+  if (auto ok = check_length(samples, inspection); !ok) return tl::unexpected(ok.error());
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
   if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());
@@ -71,7 +68,7 @@ Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const 
 
   const Cut& cut = plan->cuts.front();
   const Index rows = cut.end - cut.begin;
-  if (rows < kMin) {
+  if (rows < kFewestSamples) {
     return bad_data(fmt::format("{} samples of the analysed interval are too few", rows), "choose a longer interval");
   }
   trial.sample_time = 1.0 / rate.value;

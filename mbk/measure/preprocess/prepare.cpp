@@ -72,10 +72,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
   const bool published = options.mode == Mode::reference;
   const Index samples = recording.samples();
-  constexpr Index kMin = 20;  // about three for each parameter of one axis
-  if (samples < kMin || !(inspection.rate_hz > 0.0)) {
-    return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
-  }
+  if (auto ok = check_length(samples, inspection); !ok) return tl::unexpected(ok.error());
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
   if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());

@@ -34,6 +34,16 @@ Result<void> check_choices(const Options& options) {
   return {};
 }
 
+Result<void> check_length(Index samples, const Inspection& inspection) {
+  if (samples < kFewestSamples) {
+    return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
+  }
+  if (!(inspection.rate_hz > 0.0)) {
+    return bad_data("time never rises", "check which channel is the time, and whether it is turned around");
+  }
+  return {};
+}
+
 Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,
                          std::vector<Warning>& warnings) {
   const double median = inspection.interval_median;
@@ -44,9 +54,12 @@ Result<void> check_clock(const Clock& clock, const Inspection& inspection, const
       const double interval = clock.seconds(i) - clock.seconds(i - 1);
       const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, clock.seconds(i)); };
       if (!(interval > 0.0)) {
-        return bad_data(
-            interval == 0.0 ? fmt::format("time repeats {}", at()) : fmt::format("time runs backwards {}", at()),
-            "choose a window without it with --from and --to");
+        const auto fault = [&] {
+          if (std::isnan(clock.seconds(i - 1))) return fmt::format("time is not a number at sample {}", i);
+          if (std::isnan(interval)) return fmt::format("time is not a number at sample {}", i + 1);
+          return fmt::format("time {} {}", interval == 0.0 ? "repeats" : "runs backwards", at());
+        };
+        return bad_data(fault(), "choose a window without it with --from and --to");
       }
       if (std::ranges::binary_search(inspection.gaps, i - 1, {}, &Gap::sample)) {
         return bad_data(

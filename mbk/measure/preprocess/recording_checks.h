@@ -15,6 +15,12 @@ namespace mbk::preprocess {
 /// Settings that no filter can have are refused before anything is sized by them.
 [[nodiscard]] Result<void> check_choices(const Options& options);
 
+/// About three for each parameter of one axis.
+inline constexpr Index kFewestSamples = 20;
+
+/// Samples enough, on a clock that rises.
+[[nodiscard]] Result<void> check_length(Index samples, const Inspection& inspection);
+
 /// Time inside the cuts must be even enough to be called even: it neither repeats nor runs backwards nor leaves a gap
 /// that inspection found. Lesser jitter is left as it is, and warned of from 1 % on.
 [[nodiscard]] Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,

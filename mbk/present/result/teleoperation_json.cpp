@@ -59,7 +59,7 @@ Json admissible_json(const AdmissibleSet& set) {
 
 Json chart_json(const Chart& chart) {
   Json x = Json::array(), y = Json::array();
-  for (const double value : chart.series.front().x) x.push_back(number(std::pow(10.0, value)));
+  for (const double value : chart.series.front().x) x.push_back(number(value));
   for (const double value : chart.series.front().y) y.push_back(number(value));
   return {{"name", chart.series.front().name}, {"frequency", std::move(x)}, {"value", std::move(y)}};
 }
