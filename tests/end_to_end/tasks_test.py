@@ -173,7 +173,8 @@ class Tasks(Case):
 
     def test_find_which_column_is_what(self):
         time_s, x, y, *rest = table_of(make_log())
-        write_csv(self.folder / "theirs.csv", [[1e3 * t for t in time_s], [1e3 * v for v in x], [1e3 * v for v in y], *rest],
+        columns = [[1e3 * t for t in time_s], [1e3 * v for v in x], [1e3 * v for v in y], *rest]
+        write_csv(self.folder / "theirs.csv", columns,
                   ("Time (ms)", "PosX_mm", "PosY_mm", "Hand force X [N]", "Hand force Y [N]", "ref pos x", "ref pos y"))
         self.newcomer.help("new")
         self.newcomer.help("new", "channels")
@@ -198,7 +199,8 @@ class Tasks(Case):
     def test_recover_a_session_that_was_cut_off(self):
         journal = self.folder / "cut.h5.journal"
         command = [program("MBK"), "run", "relaxed_sinusoidal", "--no-console", "--no-measure", "--out", "cut.h5"]
-        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as session:
+        quiet = subprocess.DEVNULL
+        with subprocess.Popen(command, cwd=self.folder, stdout=quiet, stderr=quiet) as session:
             until = time.monotonic() + 60
             while not (journal.exists() and journal.stat().st_size > 100_000) and time.monotonic() < until:
                 time.sleep(0.05)
