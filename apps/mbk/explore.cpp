@@ -86,6 +86,7 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (!options) return report_error(options.error());
   const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
+  for (const Recording& recording : *recordings) say_exclusions(recording, false);
   const auto found = measurement::explore(*recordings, *options);
   if (!found) return report_error(found.error());
   if (arguments.report.file) {

@@ -36,6 +36,7 @@ int run_movement(const MovementArguments& arguments) {
   if (!recordings) return report_error(recordings.error());
   std::vector<MovementQuality> all;
   for (const Recording& recording : *recordings) {
+    say_exclusions(recording, false);
     auto found = measurement::movement_quality(recording, options);
     if (!found) {
       return report_error(recording.sources.empty() ? found.error()

@@ -63,6 +63,8 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   if (!options) return tl::unexpected(options.error());
   options->band = band;
   const auto answer = [&](std::span<const Recording> recordings) -> Result<Answer> {
+    const bool leaves_out = options->preprocess.mode == Mode::default_mode;
+    for (const Recording& recording : recordings) say_exclusions(recording, leaves_out);
     auto measured = measurement::measure(recordings, *options);
     if (!measured) return tl::unexpected(measured.error());
     const Identification& id = measured->identification;

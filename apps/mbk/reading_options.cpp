@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include "apps/mbk/caller.h"
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 
 namespace mbk::app {
@@ -215,6 +217,14 @@ Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments
 Result<std::vector<Recording>> read_perturbations(const ReadingArguments& arguments,
                                                   const SensorArguments& with_sensor) {
   return all_of(arguments, with_sensor, &RecordingReader::read_perturbation);
+}
+
+void say_exclusions(const Recording& recording, bool leaves_windows_out) {
+  const std::string exclusions = preprocess::exclusions_text(recording);
+  if (exclusions.empty()) return;
+  say("mbk: {}: the operator said of this recording: {}; {}\n",
+      recording.sources.empty() ? "recording" : recording.sources.front().label(), exclusions,
+      leaves_windows_out ? "windows are left out" : "nothing is left out here: --from and --to can");
 }
 
 }  // namespace mbk::app

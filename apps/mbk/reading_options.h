@@ -91,4 +91,8 @@ class RecordingReader {
 [[nodiscard]] Result<std::vector<Recording>> read_perturbations(const ReadingArguments& arguments,
                                                                 const SensorArguments& with_sensor = {});
 
+/// Says what the operator excluded of a recording, for commands whose results have no place for it.
+/// @param leaves_windows_out  whether the command does so
+void say_exclusions(const Recording& recording, bool leaves_windows_out);
+
 }  // namespace mbk::app

@@ -9,11 +9,13 @@
 #include "apps/mbk/progress.h"
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_options.h"
+#include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/files/bids/read_run.h"
 #include "mbk/files/c3d/c3d.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/kinarm/exam_parameters.h"
 #include "mbk/files/recording/write.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/trial_names.h"
 
@@ -75,13 +77,31 @@ class Adder {
       const std::vector<std::string> unseen = unseen_entries(incoming.path(), *recording);
       auto trial = check(*recording, facts, unseen);
       if (!trial) return tl::unexpected(trial.error());
-      recordings.push_back({reader->count() > 1 ? k + 1 : 0, *trial, duration(*recording)});
       if (!unseen.empty() || !store::identifying_entries(recording->metadata).empty()) {
         return add_stripped(incoming, *reader, facts, unseen);
       }
+      recordings.push_back(to_store(reader->count() > 1 ? k + 1 : 0, *trial, *recording));
     }
     const std::string sha256 = incoming.sha256();
     return study_.add(std::move(incoming), recordings, sha256, arguments_.study.role);
+  }
+
+  /// What the operator excluded is excluded in the study too; windows stay in the recording, and whoever measures it
+  /// leaves them out. Both are said.
+  store::NewRecording to_store(std::int64_t part, const store::TrialFacts& trial, const Recording& recording) const {
+    const std::string exclusions = preprocess::exclusions_text(recording);
+    if (const auto warning = protocol::personal_warning("the reason of an exclusion", exclusions, false);
+        !warning.empty()) {
+      say("mbk: {}\n", warning);
+    }
+    const auto windows = preprocess::excluded_windows(recording);
+    if (!windows) {
+      say("mbk: {}\n", windows.error().line());
+    } else if (!windows->empty()) {
+      say("mbk: the operator excluded windows, which measuring leaves out in default mode: {}\n",
+          preprocess::excluded_windows_text(*windows));
+    }
+    return {part, trial, duration(recording), preprocess::why_excluded(recording)};
   }
 
   static double duration(const Recording& recording) {
@@ -195,7 +215,7 @@ class Adder {
     std::error_code ignored;
     std::filesystem::remove(made, ignored);
     if (!copy) return tl::unexpected(copy.error());
-    const store::NewRecording one{0, trial, duration(recording)};
+    const store::NewRecording one = to_store(0, trial, recording);
     return study_.add(std::move(*copy), {&one, 1}, incoming.sha256(), arguments_.study.role);
   }
 
@@ -206,9 +226,10 @@ class Adder {
 
 std::string added_line(const AddedRecording& added) {
   const store::StoredRecording& r = added.recording;
-  return fmt::format("recording {}: participant {}, session {}, {}trial {}, {:.1f} s{}\n", r.number, r.participant,
+  return fmt::format("recording {}: participant {}, session {}, {}trial {}, {:.1f} s{}{}\n", r.number, r.participant,
                      r.session, r.condition.empty() ? "" : r.condition + ", ", r.trial, r.duration_s,
-                     added.there_before ? " (there already)" : "");
+                     added.there_before ? " (there already)" : "",
+                     r.excluded_why ? ", excluded: " + *r.excluded_why : "");
 }
 
 /// Adds all of them; one that cannot be added costs only itself.

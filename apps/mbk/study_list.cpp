@@ -62,13 +62,13 @@ std::string list_text(const StudyList& list) {
   if (list.recordings.empty()) return text + "  'mbk study add' and 'mbk study import' bring recordings in\n";
   std::size_t width = 9;
   for (const ListedRecording& one : list.recordings) width = std::max(width, one.recording.condition.size());
-  text += fmt::format("\n{:>9} {:>11} {:>7}  {:<{}} {:>5} {:>8}  state\n", "recording", "participant", "session",
+  text += fmt::format("\n{:>9}  {:>11}  {:>7}  {:<{}}  {:>5}  {:>6}  state\n", "recording", "participant", "session",
                       "condition", width, "trial", "s");
   for (const ListedRecording& one : list.recordings) {
     const store::StoredRecording& r = one.recording;
     std::string state(word_of(one.state));
     std::ranges::replace(state, '-', ' ');
-    text += fmt::format("{:>9} {:>11} {:>7}  {:<{}} {:>5} {:>8.1f}  {}{}\n", r.number, r.participant, r.session,
+    text += fmt::format("{:>9}  {:>11}  {:>7}  {:<{}}  {:>5}  {:>6.1f}  {}{}\n", r.number, r.participant, r.session,
                         r.condition, width, r.trial, r.duration_s, state, one.reason.empty() ? "" : ": " + one.reason);
   }
   return text;
@@ -76,7 +76,7 @@ std::string list_text(const StudyList& list) {
 
 std::string outcome_line(const store::Outcome& one) {
   const std::string error = one.standard_error ? fmt::format("{:.3g}", *one.standard_error) : "";
-  return fmt::format("    {:<24} {:>12.6g} {:>15}  {}\n", one.name, one.value, error, one.unit);
+  return fmt::format("    {:<24}  {:>12.6g}  {:>15}  {}\n", one.name, one.value, error, one.unit);
 }
 
 std::string show_text(const store::ShownRecording& shown) {
@@ -96,12 +96,19 @@ std::string show_text(const store::ShownRecording& shown) {
                             : "  not usable: " + result.reason + "\n";
     // Of a model that is not usable no number is shown; --json holds them.
     if (!result.usable) continue;
-    text += fmt::format("    {:<24} {:>12} {:>15}\n", "outcome", "value", "standard error");
+    text += fmt::format("    {:<24}  {:>12}  {:>15}\n", "outcome", "value", "standard error");
     for (const store::Outcome& one : outcomes) text += outcome_line(one);
   }
   return text;
 }
 
+/// For people, or the document that --json asks for.
+int show(const ListArguments& arguments, const std::string& text) {
+  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+/// For programs.
 int write(const ListArguments& arguments, const std::string& text) {
   if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
   return kFine;
@@ -118,7 +125,7 @@ int run_list(const ListArguments& arguments) {
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
-  return write(arguments, arguments.output.json ? store::to_json(*list) : list_text(*list));
+  return show(arguments, arguments.output.json ? store::to_json(*list) : list_text(*list));
 }
 
 int run_show(const ListArguments& arguments) {
@@ -127,7 +134,7 @@ int run_show(const ListArguments& arguments) {
   if (!study) return report_error(study.error());
   const auto shown = store::show_recording(*study, arguments.recording);
   if (!shown) return report_error(shown.error());
-  if (!arguments.document) return write(arguments, arguments.output.json ? store::to_json(*shown) : show_text(*shown));
+  if (!arguments.document) return show(arguments, arguments.output.json ? store::to_json(*shown) : show_text(*shown));
   const auto list = store::list_study(*study, arguments.analysis);
   if (!list) return report_error(list.error());
   for (const auto& one : shown->results) {

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <span>
 #include <vector>
 
+#include "apps/mbk/folded_table.h"
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 
@@ -30,13 +32,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 
 std::size_t indent_of(std::string_view line) {
   return std::min(line.find_first_not_of(' '), line.size());
-}
-
-/// Braille dots and the lines of axes (U+2500 to U+28FF without arrows and letters).
-bool is_drawing(std::string_view line) {
-  return line.find("\xE2\xA0") != std::string_view::npos || line.find("\xE2\xA1") != std::string_view::npos ||
-         line.find("\xE2\xA2") != std::string_view::npos || line.find("\xE2\xA3") != std::string_view::npos ||
-         line.find("\xE2\x94") != std::string_view::npos || line.find("\xE2\x96") != std::string_view::npos;
 }
 
 /// Where what a line says begins: behind its first column where it has one, as in "  window    12 s to 62 s".
@@ -82,6 +77,12 @@ std::string coloured_line(std::string_view line) {
 
 }  // namespace terminal
 
+bool is_drawing(std::string_view line) {
+  return line.find("\xE2\xA0") != std::string_view::npos || line.find("\xE2\xA1") != std::string_view::npos ||
+         line.find("\xE2\xA2") != std::string_view::npos || line.find("\xE2\xA3") != std::string_view::npos ||
+         line.find("\xE2\x94") != std::string_view::npos || line.find("\xE2\x96") != std::string_view::npos;
+}
+
 Terminal terminal_at(int descriptor) {
   Terminal found;
   if (::isatty(descriptor) != 1) return found;
@@ -107,7 +108,15 @@ std::string fitted(std::string_view text, std::size_t columns) {
     if (!rest.empty()) put(std::string(hanging, ' ') + rest);
     rest.clear();
   };
-  for (const std::string_view given : lines_of(text)) {
+  const std::vector<std::string_view> lines = lines_of(text);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    if (const FoldedTable table = folded_table(std::span(lines).subspan(k), columns); table.lines > 0) {
+      finish();
+      out += table.text;
+      k += table.lines - 1;
+      continue;
+    }
+    const std::string_view given = lines[k];
     std::string line(given);
     if (goes_on(rest, hanging, given)) {
       line = std::string(hanging, ' ') + rest + " " + std::string(given.substr(hanging));

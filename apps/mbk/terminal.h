@@ -16,8 +16,12 @@ struct Terminal {
 /// Standard output or standard error, as it is now.   @param descriptor  STDOUT_FILENO or STDERR_FILENO
 [[nodiscard]] Terminal terminal_at(int descriptor);
 
-/// Lines that are too long are broken between words; what goes on stands under the text of its line, and flows into the
-/// line that goes on there already. Lines of drawings stay as they are.
+/// Whether a line holds Braille dots or lines of axes (U+2500 to U+28FF without arrows and letters).
+[[nodiscard]] bool is_drawing(std::string_view line);
+
+/// Tables that are too wide come in parts (folded_table.h). Lines that are too long are broken between words; what goes
+/// on stands under the text of its line, and flows into the line that goes on there already. Lines of drawings stay as
+/// they are.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t columns);
 
 /// With headings, names of options, warnings and verdicts that nobody may miss in colour.

@@ -154,7 +154,9 @@ Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<
   ReadingArguments reading = a.reading;
   reading.files = files;
   auto recordings = files.empty() ? Result<std::vector<Recording>>() : read_perturbations(reading);
-  if (!recordings || !a.resample_hz) return recordings;
+  if (!recordings) return recordings;
+  for (const Recording& recording : *recordings) say_exclusions(recording, false);
+  if (!a.resample_hz) return recordings;
   for (Recording& recording : *recordings) {
     auto even = preprocess::resample(recording, Hertz(*a.resample_hz));
     if (!even) return tl::unexpected(even.error());

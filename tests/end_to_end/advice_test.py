@@ -462,6 +462,29 @@ def _(test):  # pool only what belongs together
     test.goes("mixed-conditions", raised, test.measured("--pool", one))
 
 
+def excluded(test, key, text):
+    """A recording of which its operator excluded something."""
+    table = test.with_columns(test.simulated("relaxed_sinusoidal"), f"{key}.csv")
+    table.write_text(f"# mbk.recording/1\n# {key}: {text}\n" + table.read_text(encoding="utf-8"), encoding="utf-8")
+    return table
+
+
+@advice_of("excluded-trial")
+def _(test):  # leave it out
+    one, other = excluded(test, "excluded", "coughed"), test.simulated("relaxed_underdamped")
+    raised = test.measured("--pool", one, other)
+    test.assertIn("leave the recording out", hint_of(raised, "excluded-trial"))
+    test.goes("excluded-trial", raised, test.measured("--pool", other))
+
+
+@advice_of("excluded-window")
+def _(test):
+    path = excluded(test, "excluded_windows", "20-24 s: coughed")
+    raised = test.measured("--mode", "reference", path)
+    test.assertIn("default mode", hint_of(raised, "excluded-window"))
+    test.goes("excluded-window", raised, test.measured("--mode", "default", path))
+
+
 @advice_of("no-held-out-data")
 def _(test):
     path = test.simulated("relaxed_sinusoidal")

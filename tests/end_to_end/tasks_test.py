@@ -1,15 +1,23 @@
 #!/usr/bin/env python3
 """What people sit down to do, done by whoever knows nothing but `mbk --help`: every command and option that is used has
-been read in a help text before, and the steps (help texts read, commands run) are counted.
+been read in a help text before, and the steps (help texts read, commands run) are counted. The counts are those of
+docs/guide/tasks.md; tests/web/tasks_test.mjs does the tasks of a browser.
 
   MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/tasks_test.py    prints the counts
 """
 
 import json
+import pathlib
 import re
+import signal
+import subprocess
+import time
 import unittest
 
-from command import FINE, NOT_USABLE, Case, main, make_log, run, table_of, write_csv
+from command import FINE, NOT_USABLE, Case, main, make_log, program, run, table_of, write_csv
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "guide" / "tasks.md").read_text(encoding="utf-8")
 
 ALL_HELP = "--help-all"  # where a command has one: what --help leaves for it
 
@@ -67,10 +75,13 @@ class Tasks(Case):
         self.newcomer = Newcomer(self)
 
     def in_steps(self, most):
-        """The task is done."""
+        """The task is done, in as many steps as the guide says."""
         name = self.id().rsplit(".test_", 1)[1].replace("_", " ")
         self.counted[name] = len(self.newcomer.steps)
         self.assertLessEqual(len(self.newcomer.steps), most, self.newcomer.steps)
+        row = re.search(rf"(?mi)^\| {name} \|.*\| terminal \| (\d+) \|$", PAGE)
+        self.assertTrue(row, f'docs/guide/tasks.md has no row "{name}", terminal')
+        self.assertEqual(int(row[1]), len(self.newcomer.steps), f"docs/guide/tasks.md says {row[1]} steps")
 
     def csv(self):
         """A recording as a spreadsheet has it: its own names, mm, semicolons."""
@@ -159,6 +170,45 @@ class Tasks(Case):
         self.newcomer.help("robot", "check")
         self.assertIn("links", self.newcomer.do("robot", "check", "relaxed_sinusoidal").out)
         self.in_steps(4)
+
+    def test_find_which_column_is_what(self):
+        time_s, x, y, *rest = table_of(make_log())
+        columns = [[1e3 * t for t in time_s], [1e3 * v for v in x], [1e3 * v for v in y], *rest]
+        write_csv(self.folder / "theirs.csv", columns,
+                  ("Time (ms)", "PosX_mm", "PosY_mm", "Hand force X [N]", "Hand force Y [N]", "ref pos x", "ref pos y"))
+        self.newcomer.help("new")
+        self.newcomer.help("new", "channels")
+        option = self.newcomer.do("new", "channels", "theirs.csv", "--yes").out.split()
+        self.newcomer.help("measure")
+        self.assertIn("stiffness K", self.newcomer.do("measure", "theirs.csv", *option).out)
+        self.in_steps(6)
+
+    def test_ask_whether_a_teleoperator_is_stable(self):
+        self.newcomer.help("teleop")
+        design = ROOT / "examples" / "teleop" / "position_position.toml"
+        self.assertRegex(self.newcomer.do("teleop", design).out, "absolutely stable")
+        self.in_steps(3)
+
+    def test_reproduce_a_table_of_the_thesis(self):
+        self.newcomer.help("reproduce")
+        self.assertIn("table-3.6", self.newcomer.do("reproduce", "--list").out)
+        self.newcomer.do("reproduce", "--only", "table-3.6", "--out", "thesis")
+        self.assertTrue((self.folder / "thesis" / "index.html").exists())
+        self.in_steps(4)
+
+    def test_recover_a_session_that_was_cut_off(self):
+        journal = self.folder / "cut.h5.journal"
+        command = [program("MBK"), "run", "relaxed_sinusoidal", "--no-console", "--no-measure", "--out", "cut.h5"]
+        quiet = subprocess.DEVNULL
+        with subprocess.Popen(command, cwd=self.folder, stdout=quiet, stderr=quiet) as session:
+            until = time.monotonic() + 60
+            while not (journal.exists() and journal.stat().st_size > 100_000) and time.monotonic() < until:
+                time.sleep(0.05)
+            session.send_signal(signal.SIGKILL)
+        self.newcomer.help("recover")
+        self.newcomer.do("recover", journal.name)
+        self.assertIn("interrupted", self.mbk("info", self.folder / "cut.h5").out)
+        self.in_steps(3)
 
 
 class TheNewcomer(unittest.TestCase):

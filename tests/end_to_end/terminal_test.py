@@ -2,6 +2,7 @@
 """What a person at a terminal sees: help that fits a screen, lines as wide as the window, colour, and in a pipe none of
 it; few lines of progress."""
 
+import collections
 import fcntl
 import os
 import pty
@@ -75,9 +76,49 @@ class Width(Case):
         for columns in (60, 80):
             _, text = at_terminal("measure", "--quiet", log, columns=columns)
             text = ESCAPE.sub("", text)
-            self.assertEqual(text.split(), plain.split())
-            prose = [line for line in text.splitlines() if not re.search("[\u2500-\u28ff]", line)]
-            self.assert_lines_fit("\n".join(prose), columns)
+            self.assertEqual(collections.Counter(plain.split()) - collections.Counter(text.split()), {})
+            self.assert_lines_fit(text, columns)
+
+    def test_tables_come_in_parts_with_the_names_of_their_rows(self):
+        log = make_log().path
+        plain = self.fine("measure", "--quiet", log).out
+        for columns in (60, 80):
+            parts = ESCAPE.sub("", at_terminal("measure", "--quiet", log, columns=columns)[1]).splitlines()
+            for name in ("inertia M", "damping B", "stiffness K"):
+                whole = next(line for line in plain.splitlines() if line.strip().startswith(name))
+                cells = re.split("  +", whole.strip())
+                self.assertEqual(len(cells), 6, whole)  # name, four numbers, unit
+                found = [re.split("  +", line.strip()) for line in parts if line.strip().startswith(name)]
+                self.assertEqual([cell for part in found for cell in part[1:-1]], cells[1:-1], found)
+                self.assertTrue(all(part[-1] == cells[-1] for part in found), found)  # the unit in each part
+
+    def test_drawings_beside_one_another_are_put_below(self):
+        _, text = at_terminal("measure", "--quiet", make_log().path, columns=60)
+        captions = [line for line in ESCAPE.sub("", text).splitlines() if ", radius " in line]
+        self.assertEqual([line.count(", radius ") for line in captions], [2, 1])
+        wide = at_terminal("measure", "--quiet", make_log().path, columns=100)[1]
+        self.assertEqual([line.count(", radius ") for line in wide.splitlines() if ", radius " in line], [3])
+
+    def test_a_comparison_and_a_study_fit_too(self):
+        for k, protocol in enumerate(("sinusoidal", "underdamped")):
+            self.mbk("measure", "--quiet", make_log(protocol).path, "--json", "--out", self.folder / f"{k}.json")
+        study = self.folder / "study"
+        self.mbk("study", "init", study)
+        self.mbk("study", "add", make_log().path, "--study", study, "--participant", "7", "--condition", "relaxed")
+        self.mbk("study", "add", make_log("underdamped").path, "--study", study, "--participant", "8", "--condition",
+                 "relaxed arm, hand on the table")
+        self.mbk("study", "measure", "--study", study, "--quiet")
+        self.mbk("study", "exclude", "2", "--study", study, "--why",
+                 "the hand slipped off the handle in the middle of it")
+        shown = (("compare", self.folder / "0.json", self.folder / "1.json"), ("study", "list", "--study", study),
+                 ("study", "summary", "--study", study))
+        for command in shown:
+            plain = run(*command).out
+            for columns in (60, 80):
+                code, text = at_terminal(*command, columns=columns)
+                self.assertEqual(code, 0)
+                self.assertEqual(collections.Counter(plain.split()) - collections.Counter(text.split()), {}, command)
+                self.assert_lines_fit(ESCAPE.sub("", text), columns)
 
     def test_a_document_stays_as_it_is(self):
         log = make_log().path

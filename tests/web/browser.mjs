@@ -140,6 +140,13 @@ export function start(...args) {
   return running;
 }
 
+/** A run with its console, writing to NAME….h5; addresses as it printed them. */
+export async function runWithConsole(experiment, name, ...args) {
+  const running = start("run", experiment, "--out", `${name}.h5`, "--console", "--quiet", ...args);
+  const address = (label) => running.until(new RegExp(`${label}: +(http://127\\.0\\.0\\.1:\\d+/\\S*)`)).then(([, url]) => url);
+  return Object.assign(running, { operator: await address("console"), participant: await address("screen"), viewing: await address("watch") });
+}
+
 /** The console without a session, which shows of the robot what it is told (console_double.cpp). */
 export const startDouble = () => started(program("CONSOLE_DOUBLE"), []);
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, screenshot, scrollThrough, start, startDouble, violations, violationsInBoth } from "./browser.mjs";
+import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, runWithConsole, screenshot, scrollThrough, startDouble, violations, violationsInBoth } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -48,12 +48,7 @@ position_gain = 1.4
 slope = 0.6
 `);
 
-/** A run with its console; addresses as it printed them. */
-async function run(name, ...args) {
-  const running = start("run", experiment, "--out", `${name}.h5`, "--console", "--quiet", ...args);
-  const address = (label) => running.until(new RegExp(`${label}: +(http://127\\.0\\.0\\.1:\\d+/\\S*)`)).then(([, url]) => url);
-  return Object.assign(running, { operator: await address("console"), participant: await address("screen"), viewing: await address("watch") });
-}
+const run = (name, ...args) => runWithConsole(experiment, name, ...args);
 
 /** The page at an address, at a size of its own; nothing of it may ask anyone but the console. */
 async function visit(address, options = {}) {

@@ -14,6 +14,7 @@
 #include "mbk/experiment/console/page.h"
 #include "mbk/experiment/control/sequencer.h"
 #include "mbk/experiment/safety/trip.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::console {
@@ -347,11 +348,9 @@ std::vector<Exclusion> Console::take_exclusions() {
   std::vector<Exclusion> taken;
   for (Attempt& attempt : attempts_) {
     if (!std::exchange(attempt.changed, false)) continue;
-    std::string windows;
-    for (const auto& [window, why] : attempt.windows) {
-      windows += fmt::format("{}{:g}-{:g} s: {}", windows.empty() ? "" : "; ", window.from, window.to, why);
-    }
-    taken.push_back({attempt.recording, attempt.excluded, std::move(windows)});
+    std::vector<preprocess::ExcludedWindow> windows;
+    for (const auto& [window, why] : attempt.windows) windows.push_back({window.from, window.to, why});
+    taken.push_back({attempt.recording, attempt.excluded, preprocess::excluded_windows_text(windows)});
   }
   return taken;
 }

@@ -4,6 +4,7 @@
 
 #include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/experiment/session/idle_watch.h"
+#include "mbk/measure/preprocess/exclusions.h"
 
 namespace mbk::console {
 namespace {
@@ -87,8 +88,8 @@ Result<void> PageOperator::judged(const conduct::Performed& performed) {
 Result<void> PageOperator::keep_notes() {
   for (const Exclusion& one : console_.take_exclusions()) {
     warn_of_names("the reason", one.excluded + one.excluded_windows);
-    const auto kept =
-        session::set_metadata(one.recording, {{"excluded", one.excluded}, {"excluded_windows", one.excluded_windows}});
+    const auto kept = session::set_metadata(
+        one.recording, {{preprocess::kExcluded, one.excluded}, {preprocess::kExcludedWindows, one.excluded_windows}});
     if (!kept) return kept;
   }
   if (recording_.empty()) return {};

@@ -67,10 +67,13 @@ Result<Summary> summarise(const std::vector<Identification>& identifications) {
       continue;
     }
     seen.emplace_back(hash, file_of(one));
-    if (one.usable) {
-      kept.push_back(&one);
-    } else {
+    const auto excluded = std::ranges::find(one.warnings, WarningCode::excluded_trial, &Warning::code);
+    if (!one.usable) {
       summary.omitted.push_back({file_of(one), "not usable"});
+    } else if (excluded != one.warnings.end()) {
+      summary.omitted.push_back({file_of(one), excluded->message});
+    } else {
+      kept.push_back(&one);
     }
   }
   if (kept.size() < 2) {

@@ -26,6 +26,7 @@
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/measure/analyse/tremor.h"
 #include "mbk/measure/identify/consistent_model.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
 #include "mbk/model/trial/quantity_channels.h"
@@ -73,11 +74,14 @@ struct Source {
   std::optional<Hertz> clock;     ///< of `even`, where one was chosen
   std::optional<Warning> jitter;  ///< of the recorded clock, where `even` is its cure
   std::optional<preprocess::VirtualForce> computed;
+  std::optional<Recording> blanked;  ///< without what the operator excluded, where that is left out
 
   [[nodiscard]] const Recording& recording() const {
     if (computed) return computed->recording;
     return even ? *even : *given;
   }
+  /// What counts of it, sample by sample.
+  [[nodiscard]] const Recording& counted() const { return blanked ? *blanked : recording(); }
   [[nodiscard]] tl::unexpected<Error> in_file(const Error& error) const { return measurement::in_file(*given, error); }
 };
 
@@ -103,7 +107,7 @@ std::optional<Hertz> clock_across_missed_ticks(const Recording& recording, const
 }
 
 Result<Source> make_ready(const Recording& recording, const Options& options) {
-  Source source{&recording, recording::inspect(recording), {}, options.resample, {}, {}};
+  Source source{&recording, recording::inspect(recording), {}, options.resample, {}, {}, {}};
   if (!source.clock && options.preprocess.mode == Mode::default_mode) {
     source.clock = clock_across_missed_ticks(recording, source.recorded);
   }
@@ -140,6 +144,10 @@ Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, co
     }
     auto source = make_ready(recording, options);
     if (!source) return in_file(recording, source.error());
+    const auto excluded = preprocess::excluded_windows(recording);  // what cannot be read is said by the preparation
+    if (options.preprocess.mode == Mode::default_mode && excluded && !excluded->empty()) {
+      source->blanked = preprocess::blanked(source->recording(), *excluded);
+    }
     sources.push_back(std::move(*source));
   }
   return sources;
@@ -240,7 +248,7 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
 
 std::vector<const Recording*> recordings_of(const std::vector<Source>& sources) {
   std::vector<const Recording*> recordings;
-  for (const Source& source : sources) recordings.push_back(&source.recording());
+  for (const Source& source : sources) recordings.push_back(&source.counted());
   return recordings;
 }
 
@@ -250,7 +258,7 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
   const impedance::Model& model = measured.identification.model;
   const bool known = model.axes() == 2 && model.K.allFinite();
   for (std::size_t k = 0; k < sources.size(); ++k) {
-    auto energy = analyse::absorbed_energy(sources[k].recording(), trials[k], {}, known ? &model : nullptr);
+    auto energy = analyse::absorbed_energy(sources[k].counted(), trials[k], {}, known ? &model : nullptr);
     if (!energy) return tl::unexpected(energy.error());
     measured.energies.push_back(std::move(*energy));
   }
@@ -350,7 +358,7 @@ Result<JointDomain> at_joints(const std::vector<Source>& sources, const std::vec
   constexpr double kSamePosture = 0.01;  // [m]: within it J changes by a few percent
   const auto posture_of = [&](std::size_t k) {
     const Preparation& how = trials[k].preparation;
-    return analyse::posture(sources[k].recording(), how.from_s, how.to_s).value_or(ArmPosture{});
+    return analyse::posture(sources[k].counted(), how.from_s, how.to_s).value_or(ArmPosture{});
   };
   const ArmPosture first = posture_of(0);
   for (std::size_t k = 1; k < sources.size(); ++k) {
@@ -431,7 +439,7 @@ std::optional<PreparedTrial> with_other_acceleration(const Source& source, const
 Result<Diagnostics> diagnose(const Source& source, const PreparedTrial& trial, const Identification& identification,
                              const Options& options) {
   const auto other = with_other_acceleration(source, trial, options);
-  return analyse::diagnose(source.recording(), trial, identification, other ? &*other : nullptr);
+  return analyse::diagnose(source.counted(), trial, identification, other ? &*other : nullptr);
 }
 
 }  // namespace

@@ -26,6 +26,14 @@ TEST(PerturbationOnly, KeepsWhatLiesBetweenOnItsOwnClock) {
   EXPECT_EQ(cut.notes.size(), 1U);
 }
 
+TEST(PerturbationOnly, MovesExcludedWindowsToItsClock) {
+  Recording recording = ten_seconds();
+  recording.metadata["excluded_windows"] = "1-2 s: before; 2-4.5 s: into; 5-6 s: within";
+  EXPECT_EQ(perturbation_only(recording).metadata.at("excluded_windows"), "0-1.5 s: into; 2-3 s: within");
+  recording.metadata["excluded_windows"] = "the first half";
+  EXPECT_EQ(perturbation_only(recording).metadata.at("excluded_windows"), "the first half");
+}
+
 TEST(PerturbationOnly, GoesOnToTheLastSampleWhereTheEndIsMissing) {
   Recording recording = ten_seconds();
   recording.events.pop_back();

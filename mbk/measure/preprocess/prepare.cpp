@@ -9,6 +9,7 @@
 
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/preprocess/band.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/filters.h"
 #include "mbk/measure/preprocess/recorded_handle_mass.h"
 #include "mbk/measure/preprocess/recording_checks.h"
@@ -38,6 +39,8 @@ Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const Fi
       last_end = displaced.end;
       if (length <= 0) continue;
       const Cut rest{displaced.begin - length, displaced.begin, {}};
+      const auto touches = [&](const Segment& one) { return one.begin < rest.end && one.end > rest.begin; };
+      if (std::ranges::any_of(plan.excluded, touches)) continue;
       if (!signals.force_hand_on_robot.middle_rows(rest.begin, length).allFinite()) continue;
       const auto filtered = filter_cut(signals, rest, filters, plan.trim, rate, padding, false);
       if (!filtered || filtered->rows() == 0) continue;  // too short for the filters
@@ -53,6 +56,34 @@ Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const Fi
     row += piece.rows();
   }
   return (all.rowwise() - all.colwise().mean()).colwise().squaredNorm().transpose() / static_cast<double>(rows);
+}
+
+/// What the operator excluded: windows are cut out of the plan where mbk chooses it; the published procedure takes its
+/// own window whole, which is said.
+Result<void> heed_exclusions(const Recording& recording, const Clock& clock, const Preparation& how, WindowPlan& plan,
+                             std::vector<Warning>& warnings) {
+  if (const std::string why = why_excluded(recording); !why.empty()) {
+    warnings.push_back({WarningCode::excluded_trial, fmt::format("the operator excluded this trial: {}", why),
+                        "leave the recording out"});
+  }
+  const auto windows = excluded_windows(recording);
+  if (!windows) {
+    warnings.push_back({WarningCode::excluded_window, windows.error().message + ", and nothing is left out",
+                        windows.error().remedy + "; leave them out with --from and --to"});
+    return {};
+  }
+  const double origin = recording.time[0];
+  const bool displacements = how.protocol == Protocol::underdamped;
+  if (how.mode != Mode::reference) return leave_out(*windows, clock, origin, displacements, plan);
+  WindowPlan without = plan;
+  const bool left = leave_out(*windows, clock, origin, displacements, without).has_value();
+  if (left && without.excluded.empty()) return {};
+  warnings.push_back({WarningCode::excluded_window,
+                      fmt::format("the operator excluded a part of what is measured, and reference mode takes the "
+                                  "published window whole: {}",
+                                  excluded_windows_text(*windows)),
+                      "use default mode, which leaves it out, or choose --from and --to beside it"});
+  return {};
 }
 
 /// Every so many samples, in passing.
@@ -121,6 +152,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
                                             filters.smoothing.half_window())
                         : default_windows(how.protocol, signals->reference, clock, options.window);
   if (!plan) return tl::unexpected(plan.error());
+  const std::vector<Cut> whole = plan->cuts;
+  if (auto ok = heed_exclusions(recording, clock, how, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) {
     return tl::unexpected(ok.error());
   }
@@ -130,7 +163,8 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   warn_of_small_motion(*signals, *plan, trial.warnings);
 
   const bool by_reference = how.protocol == Protocol::sinusoidal;
-  const auto band = excited_band(by_reference ? signals->reference : signals->position, plan->cuts, rate);
+  const auto band = by_reference ? excited_band(signals->reference, whole, rate)  // known where the limb is not
+                                 : excited_band(signals->position, plan->cuts, rate);
   if (!band) return tl::unexpected(band.error());
   if (!published) {
     Index shortest = samples;

@@ -27,6 +27,7 @@ struct WindowPlan {
   std::string rule;               ///< in words
   std::optional<double> split_s;  ///< where validation begins
   Index trim = 0;                 ///< samples that the published procedure leaves unused at each end of a cut
+  std::vector<Segment> excluded;  ///< what was left out of the cuts, in order; none of it is looked at
 };
 
 /// The protocol that a reference signal shows, and the reason.

@@ -53,6 +53,8 @@ enum class WarningCode {
   nonlinear_distortion,
   elastic_drive,
   backlash,
+  excluded_trial,
+  excluded_window,
 };
 
 /// Stable: scripts may test for these words.
@@ -103,6 +105,8 @@ enum class WarningCode {
       {nonlinear_distortion, "nonlinear-distortion"},
       {elastic_drive, "elastic-drive"},
       {backlash, "backlash"},
+      {excluded_trial, "excluded-trial"},
+      {excluded_window, "excluded-window"},
   });
 }
 

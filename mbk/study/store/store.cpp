@@ -26,10 +26,19 @@ std::string temporary_name() {
 }
 
 Result<void> check_why(const std::string& why) {
-  constexpr std::size_t kLongest = 500;
+  constexpr std::size_t kLongest = 2000;  // as the pages of a session take it
   if (why.empty()) return bad_usage("there is no reason", "say why; it stays in the log, so name nobody");
-  if (why.size() > kLongest) return bad_usage("the reason is longer than 500 bytes", "say it shorter");
+  if (why.size() > kLongest) return bad_usage("the reason is longer than 2000 bytes", "say it shorter");
   return {};
+}
+
+/// In a transaction that is open.
+void exclude_one(SQLite::Database& connection, std::int64_t number, const std::string& why, Role role) {
+  execute(connection, "UPDATE recording SET excluded_why = ? WHERE number = ?", printable(why), number);
+  LogLine line{.role = role, .action = LoggedAction::exclude};
+  line.recording = number;
+  line.why = why;
+  append_to_log(connection, line);
 }
 
 Result<void> check_facts(const TrialFacts& facts) {
@@ -203,6 +212,8 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
                                                const std::string& origin_sha256, Role role) {
   for (const NewRecording& one : recordings) {
     if (auto ok = check_facts(one.trial); !ok) return tl::unexpected(ok.error());
+    if (one.excluded_why.empty()) continue;
+    if (auto ok = check_why(one.excluded_why); !ok) return tl::unexpected(ok.error());
   }
   // The file has its name, and the disk has that, before any row speaks of it.
   const fs::path to = folder() / stored_name(incoming.sha256_, incoming.extension_);
@@ -263,6 +274,10 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
       line.recording = r.number;
       line.digest = digest_of(salted);
       append_to_log(connection, line);
+      if (!one.excluded_why.empty()) {
+        exclude_one(connection, r.number, one.excluded_why, role);
+        r.excluded_why = printable(one.excluded_why);
+      }
       added.push_back({r, false});
     }
     if (!any_new) return added;
@@ -303,11 +318,7 @@ Result<void> Store::exclude(std::int64_t number, const std::string& why, Role ro
       return bad_usage(fmt::format("recording {} is excluded already: {}", number, *there->excluded_why),
                        "pass --undo to take that back");
     }
-    execute(connection, "UPDATE recording SET excluded_why = ? WHERE number = ?", printable(why), number);
-    LogLine line{.role = role, .action = LoggedAction::exclude};
-    line.recording = number;
-    line.why = why;
-    append_to_log(connection, line);
+    exclude_one(connection, number, why, role);
     transaction.commit();
     return {};
   });

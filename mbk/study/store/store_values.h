@@ -58,6 +58,7 @@ struct NewRecording {
   std::int64_t part = 0;  ///< which one of the file, from 1; 0: its only one
   TrialFacts trial;
   double duration_s = 0.0;
+  std::string excluded_why = {};  ///< by whoever recorded it; "": it counts
 };
 
 /// A recording of a study.

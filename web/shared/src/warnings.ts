@@ -53,6 +53,14 @@ export const plainWarnings: PlainWarnings = {
     title: "The drive of a joint has play",
     meaning: "Wherever the torque of the joint turns round, the motor moves for a moment without the link. Inertia and friction of the robot are biased by that.",
   },
+  "excluded-trial": {
+    title: "The operator excluded this trial",
+    meaning: "Whoever made the recording did not want it to count. The reason stands in it.",
+  },
+  "excluded-window": {
+    title: "A part that the operator excluded was measured too",
+    meaning: "The published procedure takes its own window whole. Default mode leaves the excluded part out.",
+  },
   "handle-mass-too-large": {
     title: "More handle mass was subtracted than was measured",
     meaning: "The inertia that is left is not that of a limb.",

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mbk::app {
+
+/// A table that does not fit, in parts below one another.
+struct FoldedTable {
+  std::size_t lines = 0;  ///< of the text that it replaces; 0: there is no table, or it fits
+  std::string text;
+};
+
+/// The table that begins with the first of these lines, or the drawings beside one another below a caption. Columns are
+/// told by the two blanks between them that all lines share. Each part has the first column; short columns without a
+/// heading, such as units, stand in each part too. What is wider than a part by itself is broken between words.
+/// @param columns  of the terminal
+[[nodiscard]] FoldedTable folded_table(std::span<const std::string_view> lines, std::size_t columns);
+
+}  // namespace mbk::app

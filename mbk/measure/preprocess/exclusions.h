@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/measure/preprocess/trial_clock.h"
+#include "mbk/measure/preprocess/windows.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::preprocess {
+
+/// Metadata in which the console keeps what the operator excluded: why, and which windows.
+inline constexpr const char *kExcluded = "excluded", *kExcludedWindows = "excluded_windows";
+
+/// A part of a recording that its operator excluded.
+struct ExcludedWindow {
+  double from_s = 0.0, to_s = 0.0;  ///< [s], on the clock of Recording::time, both ends included
+  std::string why;
+};
+
+/// As metadata have them: "1.5-4 s: coughed; 7-9 s: spoke".
+[[nodiscard]] std::string excluded_windows_text(std::span<const ExcludedWindow> windows);
+
+/// What such a text says. A reason may hold anything but what begins a window: "; 7-9 s: ".
+/// @fails  data: it does not begin with a window; a window does not end behind its begin.
+[[nodiscard]] Result<std::vector<ExcludedWindow>> parse_excluded_windows(std::string_view text);
+
+/// Those of a recording; none where nothing was excluded.   @fails  as parse_excluded_windows
+[[nodiscard]] Result<std::vector<ExcludedWindow>> excluded_windows(const Recording& recording);
+
+/// Why the whole recording was excluded; "" where it was not.
+[[nodiscard]] std::string why_excluded(const Recording& recording);
+
+/// All that was excluded of it, in words: "excluded: coughed; 3.5 s to 5 s excluded: spoke"; "" where nothing was.
+[[nodiscard]] std::string exclusions_text(const Recording& recording);
+
+/// Cuts what was excluded out of the plan, before any filter sees it, and says so in its rule. A displacement that an
+/// excluded window touches goes as a whole; of a sustained perturbation, what is left beside a window counts from 2 s
+/// on.
+/// @param displacements  each cut is one    @param origin_s  when the first sample was taken, on the windows' clock [s]
+/// @fails  data: nothing is left.
+[[nodiscard]] Result<void> leave_out(std::span<const ExcludedWindow> windows, const Clock& clock, double origin_s,
+                                     bool displacements, WindowPlan& plan);
+
+/// The same recording with NaN in place of what was measured in excluded windows; the reference stays.
+[[nodiscard]] Recording blanked(const Recording& recording, std::span<const ExcludedWindow> windows);
+
+}  // namespace mbk::preprocess
