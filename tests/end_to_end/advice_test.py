@@ -472,9 +472,9 @@ def excluded(test, key, text):
 @advice_of("excluded-trial")
 def _(test):  # leave it out
     one, other = excluded(test, "excluded", "coughed"), test.simulated("relaxed_underdamped")
-    raised = test.measured("--pool", one, other)
+    raised = test.measured(one)
     test.assertIn("leave the recording out", hint_of(raised, "excluded-trial"))
-    test.goes("excluded-trial", raised, test.measured("--pool", other))
+    test.goes("excluded-trial", raised, test.measured(other))
 
 
 @advice_of("excluded-window")
