@@ -124,12 +124,13 @@ class AStudy(StudyCase):
     def test_a_default_that_is_typed_makes_no_other_analysis(self):
         self.do("add", self.trials[0], "--participant", 1)
         self.do("measure")
-        for typed in (["--mode", "default"], ["--padding", "15.0", "--protocol", "auto"], ["--hac-lag=1", "--seed", "1"],
+        for typed in (["--mode", "default"], ["--padding", "15", "--protocol", "auto"], ["--hac-lag=1", "--seed", "1"],
                       ["--bootstrap", "0", "--domain", "hand", "--force-delay-ms", "0"]):
             self.assertIn("nothing new", self.do("measure", *typed).out, typed)
-        self.do("measure", "--mode", "reference", "--procedure", "chapter3")
+        chapter3, chapter5 = (["--mode", "reference", "--procedure", one] for one in ("chapter3", "chapter5"))
+        self.do("measure", *chapter3, code=BAD_DATA)  # the trial is too short for it, which is a result
         self.assertIn("nothing new", self.do("measure", "--mode", "reference").out)
-        self.assertIn("1 measured", self.do("measure", "--mode", "reference", "--procedure", "chapter5").out)
+        self.assertIn("1 measured", self.do("measure", *chapter5, code=BAD_DATA).out)
         self.do("defaults", "--mode", "reference")
         self.assertIn("nothing new", self.do("measure", "--mode", "default").out, "it takes the place of another default")
         self.assertEqual([one["options"] for one in self.listed()["analyses"]],

@@ -347,7 +347,10 @@ def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, s
 
 def _numbers(name: str, given: Any) -> Any:
     """What pandas has as numbers of which some may be missing; anything else as it is, since the core looks at it."""
-    if not name.isascii() and any("\ud800" <= letter <= "\udfff" for letter in name):
+    plain = name.isascii()
+    if plain and type(given) is np.ndarray:
+        return given
+    if not plain and any("\ud800" <= letter <= "\udfff" for letter in name):
         raise _errors.usage(f"the name {ascii(name)} is no text", "name the signal otherwise")
     dtype = getattr(given, "dtype", None)
     if isinstance(dtype, np.dtype) or getattr(dtype, "kind", "O") not in "fiub" or not hasattr(given, "to_numpy"):

@@ -38,6 +38,9 @@ Result<void> check_length(Index samples, const Inspection& inspection) {
   if (samples < kFewestSamples) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
+  if (!std::isfinite(inspection.duration)) {
+    return bad_data("the first or last time is not a number", "mend the recording");
+  }
   if (!(inspection.rate_hz > 0.0)) {
     return bad_data("time never rises", "check which channel is the time, and whether it is turned around");
   }
