@@ -7,4 +7,8 @@ namespace mbk::app {
 /// 4 kB, asking for them takes longer than the measurement. Changes nothing but time and memory. To be called first.
 void prefer_large_pages();
 
+/// Where that was called: from now on what is larger than the columns of some minutes goes back when it is freed. For a
+/// long recording, of which there would otherwise be much that nobody uses.
+void give_back_large_blocks();
+
 }  // namespace mbk::app

@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+
 #include "apps/mbk/caller.h"
+#include "apps/mbk/memory.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "mbk/files/journal/journal.h"
@@ -14,6 +19,14 @@
 
 namespace mbk::app {
 namespace {
+
+/// Whether a file holds more than some minutes.
+bool is_long(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLong = std::uintmax_t{32} << 20;
+  std::error_code none;
+  const std::uintmax_t size = std::filesystem::file_size(file, none);
+  return !none && size > kLong;
+}
 
 Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   recording::ReadOptions options;
@@ -177,6 +190,7 @@ Result<Recording> RecordingReader::read_stored(int k) const {
     return bad_data("is the journal of a session that was cut off, or still runs",
                     fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
   }
+  if (is_long(file(k))) give_back_large_blocks();
   const recording::ReadOptions options = options_of(k);
   return parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
 }

@@ -133,12 +133,12 @@ struct Layout {
   std::vector<std::size_t> picks;  ///< 4·derivative + lane
   std::vector<Group> groups;
 
-  Layout(const Batch& batch, const FourValues& reference, Matrix& answer) {
+  Layout(const Batch& batch, const FourValues& reference, std::span<double* const> answer) {
     for (const auto& [from, to] : batch.outputs) {
       const std::size_t place = picks.size() % kLanes;
       if (place == 0) groups.emplace_back();
       picks.push_back(from);
-      groups.back().to[place] = answer.col(to).data();
+      groups.back().to[place] = answer[static_cast<std::size_t>(to)];
       if (batch.derivatives[from / kLanes] == 0) groups.back().plus[place] = reference[from % kLanes];
     }
     while (picks.size() % kLanes != 0) {  // whatever keeps pairs of lanes together
@@ -159,8 +159,8 @@ struct Layout {
 };
 
 /// Each output separately: where there are no running sums.
-Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column> columns,
-                               std::span<const FilterOutput> outputs, Hertz rate) {
+Result<void> smooth_directly(const FilterChain& chain, std::span<const Column> columns,
+                             std::span<const FilterOutput> outputs, Hertz rate, std::span<double* const> to) {
   Matrix smoothed;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const Column& column = columns[static_cast<std::size_t>(outputs[k].column)];
@@ -169,8 +169,15 @@ Result<Matrix> smooth_directly(const FilterChain& chain, std::span<const Column>
     smoothed.conservativeResize(one->rows(), static_cast<Index>(outputs.size()));
     smoothed.col(static_cast<Index>(k)) = *one;
   }
-  if (chain.lowpass.empty()) return smoothed;
-  return filter_zero_phase(chain.lowpass, smoothed, chain.padding);
+  if (!chain.lowpass.empty()) {
+    auto filtered = filter_zero_phase(chain.lowpass, smoothed, chain.padding);
+    if (!filtered) return tl::unexpected(filtered.error());
+    smoothed = std::move(*filtered);
+  }
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    Eigen::Map<Vector>(to[k], smoothed.rows()) = smoothed.col(static_cast<Index>(k));
+  }
+  return {};
 }
 
 /// Columns with `window` − 1 rows before the present chunk, in the first cache.
@@ -249,69 +256,94 @@ void filter_batch(const FilterChain& chain, const RunningSums& sums, const FourC
 }
 
 /// Every row.
-Result<Matrix> filter_all(const FilterChain& chain, std::span<const Column> columns,
-                          std::span<const FilterOutput> outputs, Hertz rate) {
+Result<void> filter_all(const FilterChain& chain, std::span<const Column> columns,
+                        std::span<const FilterOutput> outputs, Hertz rate, std::span<double* const> to) {
   if (!has_running_sums(chain.smoothing) || !OneWay::can_run(chain.lowpass)) {
-    return smooth_directly(chain, columns, outputs, rate);
+    return smooth_directly(chain, columns, outputs, rate, to);
   }
   const Index count = columns.front().size() - chain.smoothing.window + 1;
-  Matrix answer(count, static_cast<Index>(outputs.size()));
   for (const Batch& batch : batches_of(outputs)) {
     const auto sums = running_sums(chain.smoothing, batch.derivatives, rate.value);
     if (!sums) return tl::unexpected(sums.error());
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);  // sums of differences keep the digits that sums of values lose
-    filter_batch(chain, *sums, lanes, count, reference, Layout(batch, reference, answer));
+    filter_batch(chain, *sums, lanes, count, reference, Layout(batch, reference, to));
   }
-  return answer;
+  return {};
 }
 
-/// Every so many rows, where blocks of samples can do; nothing where they cannot.
-Result<std::optional<Matrix>> filter_blocks(const FilterChain& chain, std::span<const Column> columns,
-                                            std::span<const FilterOutput> outputs, Index every, Hertz rate,
-                                            const Passed& passed) {
+/// Every so many rows, where blocks of samples can do; whether they can.
+Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> columns,
+                           std::span<const FilterOutput> outputs, Index every, Hertz rate, const Passed& passed,
+                           std::span<double* const> to) {
   const Index length = columns.front().size(), count = (length - chain.smoothing.window) / every + 1;
-  Matrix answer(count, static_cast<Index>(outputs.size()));
   for (const Batch& batch : batches_of(outputs)) {
     const auto blocks = DecimatedChain::plan(chain, batch.derivatives, rate, every);
     if (!blocks) return tl::unexpected(blocks.error());
-    if (!*blocks || length < (*blocks)->shortest()) return std::nullopt;
+    if (!*blocks || length < (*blocks)->shortest()) return false;
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
     const std::size_t width = kLanes * batch.derivatives.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
     (*blocks)->run(lanes, length, reference, passed, values.get());
     for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
-      std::array<double*, kLanes> to{};
+      std::array<double*, kLanes> lane_to{};
       for (const auto& [from, target] : batch.outputs) {
-        if (from / kLanes == order) to[from % kLanes] = answer.col(target).data();
+        if (from / kLanes == order) lane_to[from % kLanes] = to[static_cast<std::size_t>(target)];
       }
       separate(values.get() + kLanes * order, static_cast<Index>(width), count, 1.0,
-               batch.derivatives[order] == 0 ? reference : FourValues{}, to);
+               batch.derivatives[order] == 0 ? reference : FourValues{}, lane_to);
     }
   }
-  return answer;
+  return true;
+}
+
+std::vector<double*> columns_of(Matrix& matrix) {
+  std::vector<double*> columns;
+  for (Index k = 0; k < matrix.cols(); ++k) columns.push_back(matrix.col(k).data());
+  return columns;
 }
 
 }  // namespace
 
+Result<Index> rows_left(const FilterChain& chain, Index samples, Index every) {
+  if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
+  const auto left = smoothed_length(chain, samples);
+  if (!left) return left;
+  return (*left - 1) / every + 1;
+}
+
+Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
+                                 std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
+                                 const Passed& passed, std::span<double* const> to) {
+  const auto length = length_of(columns);
+  if (!length) return tl::unexpected(length.error());
+  const auto rows = rows_left(chain, *length, every);
+  if (!rows) return tl::unexpected(rows.error());
+  if (every == 1) return filter_all(chain, columns, outputs, sample_rate, to);
+
+  const auto some = filter_blocks(chain, columns, outputs, every, sample_rate, passed, to);
+  if (!some) return tl::unexpected(some.error());
+  if (*some) return {};
+  Matrix all(*length - chain.smoothing.window + 1, static_cast<Index>(outputs.size()));
+  if (auto ok = filter_all(chain, columns, outputs, sample_rate, columns_of(all)); !ok) return ok;
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    Eigen::Map<Vector>(to[k], *rows) = all(Eigen::seqN(0, *rows, every), static_cast<Index>(k));
+  }
+  return {};
+}
+
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                    std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
                                    const Passed& passed) {
-  if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
-  const auto left = smoothed_length(chain, *length);
-  if (!left) return tl::unexpected(left.error());
-
-  if (every > 1) {
-    auto some = filter_blocks(chain, columns, outputs, every, sample_rate, passed);
-    if (!some) return tl::unexpected(some.error());
-    if (*some) return std::move(**some);
-  }
-  auto all = filter_all(chain, columns, outputs, sample_rate);
-  if (!all || every == 1) return all;
-  return Matrix((*all)(Eigen::seqN(0, (*left - 1) / every + 1, every), Eigen::all));
+  const auto rows = rows_left(chain, *length, every);
+  if (!rows) return tl::unexpected(rows.error());
+  Matrix answer(*rows, static_cast<Index>(outputs.size()));
+  auto ok = smooth_then_lowpass(chain, columns, outputs, sample_rate, every, passed, columns_of(answer));
+  if (!ok) return tl::unexpected(ok.error());
+  return answer;
 }
 
 }  // namespace mbk::dsp

@@ -48,4 +48,13 @@ using Passed = std::function<void(Index, Index)>;
                                                  Index every = 1, const Passed& passed = {});
 inline constexpr double kDecimationError = 1e-7;
 
+/// The same, to where it is wanted.
+/// @param to  of each output, room for as many numbers as there are rows
+[[nodiscard]] Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
+                                               std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
+                                               const Passed& passed, std::span<double* const> to);
+
+/// Rows that the filters leave of so many samples.   @fails as smooth_then_lowpass
+[[nodiscard]] Result<Index> rows_left(const FilterChain& chain, Index samples, Index every);
+
 }  // namespace mbk::dsp

@@ -116,38 +116,92 @@ Matrix products(const Tiled& left, const Tiled& right, bool upper) {
   return all;
 }
 
-/// y − Σ θ_k z_k over `rows` rows from `begin` on.
+/// Outputs y, regressors z, coefficients θ (count×outputs), and where the residuals of each output go.
+struct Residuals {
+  const double* const* y;
+  Index outputs;
+  const double* const* z;
+  Index count;
+  const double* theta;
+  double* const* to;
+};
+
+constexpr Index kOutputs = 3;  // go together, so that what is read of z serves them all
+
+/// y − Σ θ_k z_k of `Outputs` outputs from the first on, `Together` lanes of rows at a time, as long as there are such.
+template <class Lanes, Index Outputs, Index Together>
+[[gnu::always_inline]] inline Index residual_rows(const Residuals& task, Index first, Index t, Index end) {
+  constexpr Index kRows = Together * Lanes::kWidth;
+  for (; t + kRows <= end; t += kRows) {
+    typename Lanes::V rest[Outputs][Together];
+    for (Index j = 0; j < Outputs; ++j) {
+      for (Index i = 0; i < Together; ++i) rest[j][i] = Lanes::at(task.y[first + j] + t + i * Lanes::kWidth);
+    }
+    for (Index k = 0; k < task.count; ++k) {
+      typename Lanes::V z[Together];
+      for (Index i = 0; i < Together; ++i) z[i] = Lanes::at(task.z[k] + t + i * Lanes::kWidth);
+      for (Index j = 0; j < Outputs; ++j) {
+        const double theta = task.theta[k + task.count * (first + j)];
+        for (Index i = 0; i < Together; ++i) rest[j][i] -= theta * z[i];
+      }
+    }
+    for (Index j = 0; j < Outputs; ++j) {
+      for (Index i = 0; i < Together; ++i) Lanes::at(task.to[first + j] + t + i * Lanes::kWidth) = rest[j][i];
+    }
+  }
+  return t;
+}
+
+template <class Lanes, Index Outputs>
+[[gnu::always_inline]] inline void residual_columns(const Residuals& task, Index first, Index begin, Index end) {
+  Index t = residual_rows<Lanes, Outputs, 2>(task, first, begin, end);
+  t = residual_rows<Lanes, Outputs, 1>(task, first, t, end);
+  for (; t < end; ++t) {
+    for (Index j = first; j < first + Outputs; ++j) {
+      double rest = task.y[j][t];
+      for (Index k = 0; k < task.count; ++k) rest -= task.theta[k + task.count * j] * task.z[k][t];
+      task.to[j][t] = rest;
+    }
+  }
+}
+
+/// In blocks, so that z is read from memory once.
 template <class Lanes>
-[[gnu::always_inline]] inline void residual_body(const double* y, const double* const* z, const double* theta,
-                                                 Index count, Index begin, Index rows, double* to) {
-  Index t = begin;
-  const Index end = begin + rows;
-  for (; t + Lanes::kWidth <= end; t += Lanes::kWidth, to += Lanes::kWidth) {
-    typename Lanes::V rest = Lanes::at(y + t);
-    for (Index k = 0; k < count; ++k) rest -= theta[k] * Lanes::at(z[k] + t);
-    Lanes::at(to) = rest;
-  }
-  for (; t < end; ++t, ++to) {
-    double rest = y[t];
-    for (Index k = 0; k < count; ++k) rest -= theta[k] * z[k][t];
-    *to = rest;
+[[gnu::always_inline]] inline void residual_body(const Residuals& task, Index rows) {
+  for (Index begin = 0; begin < rows; begin += kBlock) {
+    const Index end = std::min(begin + kBlock, rows);
+    Index j = 0;
+    for (; j + kOutputs <= task.outputs; j += kOutputs) residual_columns<Lanes, kOutputs>(task, j, begin, end);
+    if (task.outputs - j == 2) residual_columns<Lanes, 2>(task, j, begin, end);
+    if (task.outputs - j == 1) residual_columns<Lanes, 1>(task, j, begin, end);
   }
 }
-void residual_any(const double* y, const double* const* z, const double* theta, Index count, Index begin, Index rows,
-                  double* to) {
-  residual_body<Four>(y, z, theta, count, begin, rows, to);
+void residual_any(const Residuals& task, Index rows) {
+  residual_body<Four>(task, rows);
 }
-MBK_X86_64_V3 void residual_v3(const double* y, const double* const* z, const double* theta, Index count, Index begin,
-                               Index rows, double* to) {
-  residual_body<Four>(y, z, theta, count, begin, rows, to);
+MBK_X86_64_V3 void residual_v3(const Residuals& task, Index rows) {
+  residual_body<Four>(task, rows);
 }
-MBK_X86_64_V4 void residual_v4(const double* y, const double* const* z, const double* theta, Index count, Index begin,
-                               Index rows, double* to) {
-  residual_body<Eight>(y, z, theta, count, begin, rows, to);
+MBK_X86_64_V4 void residual_v4(const Residuals& task, Index rows) {
+  residual_body<Eight>(task, rows);
 }
-using Residual = void (*)(const double*, const double* const*, const double*, Index, Index, Index, double*);
-Residual residual() {
-  return has_x86_64_v4() ? residual_v4 : has_x86_64_v3() ? residual_v3 : residual_any;
+
+/// The pointers to columns that lie `stride` apart.
+template <class Number>
+std::vector<Number*> columns_at(Number* first, Index count, Index stride) {
+  std::vector<Number*> columns;
+  for (Index j = 0; j < count; ++j) columns.push_back(first + j * stride);
+  return columns;
+}
+
+/// Y − Z θ, into the columns of `to`.
+void take_residuals(const Tiled& Z, const MatrixPart& Y, const Matrix& theta, Index begin, Eigen::Ref<Matrix> to) {
+  std::vector<const double*> z(Z.data(), Z.data() + Z.count());
+  for (const double*& column : z) column += begin;
+  const auto y = columns_at(Y.data() + begin, Y.cols(), Y.outerStride());
+  const auto into = columns_at(to.data(), to.cols(), to.outerStride());
+  const auto run = has_x86_64_v4() ? residual_v4 : has_x86_64_v3() ? residual_v3 : residual_any;
+  run({y.data(), Y.cols(), z.data(), Z.count(), theta.data(), into.data()}, to.rows());
 }
 
 }  // namespace
@@ -164,28 +218,19 @@ Matrix products_of(const MatrixPart& A, const MatrixPart& B) {
 
 Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matrix& theta) {
   const Tiled regressors({Z});
-  const Residual run = residual();
   constexpr Index kRows = 8 * kBlock;  // that stay in the second cache
   Matrix projected = Matrix::Zero(Z.cols(), Y.cols()), block(std::min(kRows, Z.rows()), Y.cols());
   for (Index begin = 0; begin < Z.rows(); begin += kRows) {
     const Index rows = std::min(kRows, Z.rows() - begin);
-    for (Index j = 0; j < Y.cols(); ++j) {
-      run(Y.data() + j * Y.outerStride(), regressors.data(), theta.data() + j * theta.rows(), Z.cols(), begin, rows,
-          block.col(j).data());
-    }
+    take_residuals(regressors, Y, theta, begin, block.topRows(rows));
     projected += products_of(Z.middleRows(begin, rows), block.topRows(rows));
   }
   return projected;
 }
 
 Matrix residuals_of(const std::vector<MatrixPart>& Z, const MatrixPart& Y, const Matrix& theta) {
-  const Tiled regressors(Z);
-  const Residual run = residual();
   Matrix left(Y.rows(), Y.cols());
-  for (Index j = 0; j < Y.cols(); ++j) {
-    run(Y.data() + j * Y.outerStride(), regressors.data(), theta.data() + j * theta.rows(), regressors.count(), 0,
-        Y.rows(), left.col(j).data());
-  }
+  take_residuals(Tiled(Z), Y, theta, 0, left);
   return left;
 }
 

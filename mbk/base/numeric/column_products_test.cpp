@@ -28,14 +28,17 @@ TEST(ColumnProducts, AreThoseOfThePlainProductForAnyShape) {
 
 TEST(ColumnProducts, LeaveTheResidualsOfThePlainProduct) {
   for (const Index rows : {1, 7, 8, 300, 1001}) {
-    const Matrix Z = Matrix::Random(rows + 3, 7), Y = Matrix::Random(rows + 3, 2), theta = Matrix::Random(7, 2);
-    const Matrix want = Y - Z * theta;
-    EXPECT_LE((residuals_of({Z}, Y, theta) - want).cwiseAbs().maxCoeff(), kTolerance);
-    const auto part = Z.topRows(rows);
-    EXPECT_LE((residuals_of({part.leftCols(3), part.rightCols(4)}, Y.topRows(rows), theta) - want.topRows(rows))
-                  .cwiseAbs()
-                  .maxCoeff(),
-              kTolerance);
+    for (const Index outputs : {1, 2, 3, 4, 8}) {
+      const Matrix Z = Matrix::Random(rows + 3, 7), Y = Matrix::Random(rows + 3, outputs),
+                   theta = Matrix::Random(7, outputs);
+      const Matrix want = Y - Z * theta;
+      EXPECT_LE((residuals_of({Z}, Y, theta) - want).cwiseAbs().maxCoeff(), kTolerance);
+      const auto part = Z.topRows(rows);
+      EXPECT_LE((residuals_of({part.leftCols(3), part.rightCols(4)}, Y.topRows(rows), theta) - want.topRows(rows))
+                    .cwiseAbs()
+                    .maxCoeff(),
+                kTolerance);
+    }
   }
 }
 

@@ -30,7 +30,6 @@ Result<void> check(const MatrixPart& Z, const MatrixPart& R, const MatrixPart& Y
   if (Z.rows() < Z.cols()) {
     return bad_data(fmt::format("{} samples are too few for {} coefficients", Z.rows(), Z.cols()), "record longer");
   }
-  if (!Z.allFinite() || !R.allFinite() || !Y.allFinite()) return bad_data("a value of the regression is not finite");
   return {};
 }
 
@@ -45,6 +44,9 @@ Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const Ma
   const Vector unit_Z = scaling(Z), unit_R = scaling(R);
   const Matrix cross = unit_R.asDiagonal() * products_of(R, Z) * unit_Z.asDiagonal();
   const Matrix right = unit_R.asDiagonal() * products_of(R, Y);
+  if (!cross.allFinite() || !right.allFinite()) {  // as every value that is not finite makes them
+    return bad_data("a value of the regression is not finite, or too large to be squared");
+  }
   const double threshold = static_cast<double>(p) * std::numeric_limits<double>::epsilon() * 1e3;
   fit.rank = static_cast<int>(PivotedQr(cross, threshold).rank());
   const Index k = fit.structure.cols();
@@ -98,9 +100,9 @@ Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std:
   struct Conditional {
     Index regressor;
     Vector coefficients;  // of the instruments
-    Vector taken;         // of [Z R], from nothing to what is left
   };
   std::vector<Conditional> all;
+  Matrix taken(Z.cols() + R.cols(), m);  // of [Z R], from nothing to what is left of each
   for (Index j = 0; j < m; ++j) {
     std::vector<Index> others;
     for (Index i = 0; i <= m; ++i) {
@@ -110,19 +112,20 @@ Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std:
     if (second.rank() < m) continue;
     Vector own = Vector::Unit(Z.cols(), j);  // z_j without what the others explain of it
     own(others) = -second.solve(predicted(others, j));
-    Conditional one{j, inverse * (RZ * own), Vector(Z.cols() + R.cols())};
-    one.taken << -unit_Z.cwiseProduct(own), unit_R.cwiseProduct(one.coefficients);
+    Conditional one{j, inverse * (RZ * own)};
+    taken.col(std::ssize(all)) << -unit_Z.cwiseProduct(own), unit_R.cwiseProduct(one.coefficients);
     all.push_back(std::move(one));
   }
   Vector strength = Vector::Zero(m);
-  const auto kinds = static_cast<Index>(all.size());
+  const Index kinds = std::ssize(all);
+  taken.conservativeResize(Eigen::NoChange, kinds);
   const std::vector<Matrix> omegas = long_run_covariances(kinds, R.cols(), ranges, lags, [&](const RowRange& range) {
     const auto rows = R.middleRows(range.begin, range.size());
+    const Matrix left =
+        residuals_of({Z.middleRows(range.begin, range.size()), rows}, Matrix::Zero(range.size(), kinds), taken);
     Matrix scores(range.size(), kinds * R.cols());
     for (Index kind = 0; kind < kinds; ++kind) {
-      const Vector left = residuals_of({Z.middleRows(range.begin, range.size()), rows}, Vector::Zero(range.size()),
-                                       all[static_cast<std::size_t>(kind)].taken);
-      scores.middleCols(kind * R.cols(), R.cols()) = rows.array().colwise() * left.array();
+      scores.middleCols(kind * R.cols(), R.cols()) = rows.array().colwise() * left.col(kind).array();
     }
     return scores;
   });

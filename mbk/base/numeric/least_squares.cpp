@@ -96,16 +96,15 @@ namespace {
 /// Sums over a window that moves along `Count` columns: sum += enters − leaves, row by row.
 template <int Count>
 void move_window(const Matrix& scores, Index first, Index rows, Index before, Vector& sums, Matrix& windows) {
-  const double *enters[Count], *leaves[Count];
   double *to[Count], sum[Count];
   for (int j = 0; j < Count; ++j) {
-    leaves[j] = scores.col(first + j).data();
-    enters[j] = leaves[j] + before;
+    const auto column = scores.col(first + j);
+    windows.col(first + j).head(rows) = column.segment(before, rows) - column.head(rows);
     to[j] = windows.col(first + j).data();
     sum[j] = sums[first + j];
   }
   for (Index i = 0; i < rows; ++i) {
-    for (int j = 0; j < Count; ++j) to[j][i] = sum[j] += enters[j][i] - leaves[j][i];
+    for (int j = 0; j < Count; ++j) to[j][i] = sum[j] += to[j][i];
   }
   for (int j = 0; j < Count; ++j) sums[first + j] = sum[j];
 }

@@ -95,7 +95,7 @@ void FreeBytes::operator()(std::byte* bytes) const {
   }
 }
 
-Buffer::Buffer(std::size_t n) : data(n >= std::size_t{5} << 20 ? mapped_bytes(n) : bytes_of_heap(n)), size(n) {}
+Buffer::Buffer(std::size_t n) : data(n >= std::size_t{16} << 20 ? mapped_bytes(n) : bytes_of_heap(n)), size(n) {}
 
 std::string begin_of(const std::filesystem::path& file, std::size_t count) {
   const auto open = open_file(file);

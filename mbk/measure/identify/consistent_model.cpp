@@ -54,15 +54,19 @@ impedance::Model model_with_equilibrium(const Matrix& coefficients, const Vector
 std::array<double, 4> residual_powers(const numeric::MatrixPart& Z, const numeric::MatrixPart& Y,
                                       const std::array<const Matrix*, 3>& theta, const Matrix& change) {
   constexpr Index kBlock = 1024;
+  const Index n = Y.cols();
   std::array<double, 4> powers{};
-  const Matrix none = Matrix::Zero(std::min(kBlock, Z.rows()), Y.cols());
+  Matrix coefficients(Z.cols(), 4 * n);
+  coefficients << *theta[0], *theta[1], *theta[2], change;
   for (Index begin = 0; begin < Z.rows(); begin += kBlock) {
     const Index rows = std::min(kBlock, Z.rows() - begin);
-    const auto part = Z.middleRows(begin, rows);
-    for (std::size_t k = 0; k < theta.size(); ++k) {
-      powers[k] += numeric::residuals_of({part}, Y.middleRows(begin, rows), *theta[k]).squaredNorm();
+    const auto target = Y.middleRows(begin, rows);
+    Matrix targets(rows, 4 * n);
+    targets << target, target, target, Matrix::Zero(rows, n);
+    const Matrix left = numeric::residuals_of({Z.middleRows(begin, rows)}, targets, coefficients);
+    for (std::size_t k = 0; k < powers.size(); ++k) {
+      powers[k] += left.middleCols(static_cast<Index>(k) * n, n).squaredNorm();
     }
-    powers[3] += numeric::residuals_of({part}, none.topRows(rows), change).squaredNorm();
   }
   for (double& power : powers) power /= static_cast<double>(Z.rows());
   return powers;

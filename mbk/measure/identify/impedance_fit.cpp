@@ -14,6 +14,7 @@
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/identify/fit_checks.h"
 #include "mbk/measure/identify/instruments.h"
 #include "mbk/measure/identify/missing_dynamics.h"
@@ -38,6 +39,7 @@ struct Estimate {
   Matrix structure;     ///< S
   Matrix bread;         ///< A, k×k
   int rank = 0;
+  Matrix residuals = {};  ///< Y − Z θ of every row, where they were asked for
 };
 
 /// What is fitted, and from which rows.
@@ -66,6 +68,9 @@ class Fitter {
   [[nodiscard]] Matrix covariance_of_robot(Method method, const Estimate& estimate) const;
   /// Ω of the scores of a method that was found or, where both were, those of both in one pass.
   [[nodiscard]] const Matrix& long_run(Method method);
+  /// Y − Z θ of every row by a method that was found.
+  [[nodiscard]] const Matrix& residuals(Method method);
+  /// @param estimate  whose residuals are there
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
   /// What the instruments explain of the residual of a method of full rank, axis by axis; of all such in one pass.
   [[nodiscard]] const Vector& coherent_fraction(Method method);
@@ -194,9 +199,16 @@ impedance::Model Fitter::model_from(const Estimate& estimate) const {
 }
 
 Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& range) const {
-  const auto of_range = [&](const Matrix& all) { return all.middleRows(range.begin, range.size()); };
-  const Matrix residual = numeric::residuals_of({of_range(r_.Z)}, of_range(r_.Y), estimate.coefficients);
-  return numeric::regression_scores(of_range(instruments(method)), residual, estimate.structure, {0, range.size()});
+  return numeric::regression_scores(instruments(method), estimate.residuals, estimate.structure, range);
+}
+
+const Matrix& Fitter::residuals(Method method) {
+  Estimate& one = *estimates_[static_cast<std::size_t>(method)];
+  if (one.residuals.size() == 0) {
+    one.residuals = numeric::residuals_of({r_.Z}, r_.Y, one.coefficients);
+    put_on_disk(one.residuals);
+  }
+  return one.residuals;
 }
 
 /// What the coefficients of the robot, on which the force rests, leave open of φ: D V Dᵀ with D = ∂φ/∂θ, found by the
@@ -273,11 +285,13 @@ const Matrix& Fitter::long_run(Method method) {
   const auto &ls = estimates_[0], &iv = estimates_[1];
   if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) {
     const Estimate& one = *estimates_[static_cast<std::size_t>(method)];
+    (void)residuals(method);
     wanted = numeric::long_run_covariance(one.bread.rows(), ranges_, lags_,
                                           [&](const RowRange& range) { return scores(method, one, range); });
     return wanted;
   }
   const Index k = iv->bread.rows();
+  for (const Method one : {kLs, kIv}) (void)residuals(one);
   omega_of_both_ = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
     Matrix both(range.size(), 2 * k);
     both << scores(kIv, *iv, range), scores(kLs, *ls, range);
@@ -296,12 +310,9 @@ const Vector& Fitter::coherent_fraction(Method method) {
     if (estimates_[at] && is_full(*estimates_[at])) full.push_back(at);
   }
   const Index n = r_.axes();
-  Matrix residuals(r_.Y.rows(), n * std::ssize(full));
-  for (std::size_t k = 0; k < full.size(); ++k) {
-    residuals.middleCols(static_cast<Index>(k) * n, n) =
-        numeric::residuals_of({r_.Z}, r_.Y, estimates_[full[k]]->coefficients);
-  }
-  const Vector fractions = coherent_residual_fraction(r_, *instruments_, residuals, ranges_);
+  std::vector<numeric::MatrixPart> all;
+  for (const std::size_t k : full) all.emplace_back(residuals(static_cast<Method>(k)));
+  const Vector fractions = coherent_residual_fraction(r_, *instruments_, all, ranges_);
   for (std::size_t k = 0; k < full.size(); ++k) coherent_[full[k]] = fractions.segment(static_cast<Index>(k) * n, n);
   return wanted;
 }
@@ -317,7 +328,7 @@ Result<Identification> Fitter::identify(Method method) {
   result.method = method;
   result.model = model_from(*fit);
   result.judged = model_from(*check);
-  result.fit = judge(r_, check->coefficients);
+  result.fit = check == fit ? judge_residuals(r_, residuals(method)) : judge(r_, check->coefficients);
   const auto count = static_cast<Index>(result.parameters.size());
   result.covariance.setConstant(count, count, std::numeric_limits<double>::quiet_NaN());
   if (is_full(*fit)) {
@@ -338,7 +349,10 @@ Result<Identification> Fitter::identify(Method method) {
   if (instruments_ && is_full(*fit)) {
     const Vector& fraction = coherent_fraction(method);
     if (result.instrument) result.instrument->coherent_residual = fraction;
-    result.response = response_in(numeric::residuals_of({r_.Z}, r_.Y, fit->coefficients), fraction);
+    result.response = response_in(residuals(method), fraction);
+    for (const auto& one : estimates_) {
+      if (one) recording::let_go(one->residuals.data(), one->residuals.size());
+    }
   }
   if (is_full(*fit)) result.assumptions = assumptions_tested(method, *fit);
   if (options_.bootstrap > 0 && is_full(*fit)) {

@@ -177,9 +177,10 @@ Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quan
   return response.strength.minCoeff() > position.strength.minCoeff() ? std::move(response) : std::move(position);
 }
 
-Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments, const Matrix& residuals,
+Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments,
+                                  const std::vector<numeric::MatrixPart>& residuals,
                                   const std::vector<RowRange>& ranges) {
-  const Index n = r.axes(), p = instruments.R.cols(), k = residuals.cols();
+  const Index n = r.axes(), p = instruments.R.cols(), k = n * std::ssize(residuals);
   const Index every = std::max<Index>(1, std::llround(kReach / (r.sample_time * static_cast<double>(kLagsOfAnswer))));
   const Index reach = every * kLagsOfAnswer, columns = p + n * kLagsOfAnswer;
   std::vector<RowRange> rows;  // of ranges, without those that have no whole past
@@ -196,13 +197,11 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
     for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) {
       parts.emplace_back(r.reference.rightCols(n).middleRows(range.begin - lag * every, range.size()));
     }
-    parts.emplace_back(residuals.middleRows(range.begin, range.size()));
+    for (const numeric::MatrixPart& one : residuals) parts.emplace_back(one.middleRows(range.begin, range.size()));
     gram += numeric::gram_of(parts);
   }
-  Matrix Y = rows_of(residuals, rows);
-  const Vector mean = Y.colwise().mean();
-  Y.rowwise() -= mean.transpose();
   // R has a column of ones, behind the motion.
+  const Vector mean = gram.row(p - 1).tail(k).transpose() / static_cast<double>(count);
   const Matrix to_Y = gram.topRightCorner(columns, k) - gram.col(p - 1).head(columns) * mean.transpose();
   Vector unit = gram.diagonal().head(columns);
   unit = (unit.array() > 0.0).select(unit.cwiseSqrt().cwiseInverse(), 1.0);
@@ -214,7 +213,14 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
   // Independent samples: those of the residual's own correlation.
   Vector share(k);
   for (Index j = 0; j < k; ++j) {
-    const double power = Y.col(j).squaredNorm(), memory = memory_of(Y.col(j), power);
+    const numeric::MatrixPart& one = residuals[static_cast<std::size_t>(j / n)];
+    Vector e(count);
+    Index row = 0;
+    for (const RowRange& range : rows) {
+      e.segment(row, range.size()) = one.col(j % n).segment(range.begin, range.size()).array() - mean[j];
+      row += range.size();
+    }
+    const double power = e.squaredNorm(), memory = memory_of(e, power);
     const double chance = static_cast<double>(columns - 1) * memory / static_cast<double>(count);
     const double explained = power > 0.0 ? weights.dot(along.col(j).cwiseAbs2()) / power : 0.0;
     share[j] = chance < 1.0 ? std::clamp((explained - chance) / (1.0 - chance), 0.0, 1.0) : std::nan("");

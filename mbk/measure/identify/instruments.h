@@ -28,9 +28,10 @@ struct Instruments {
 
 /// How much of what a model leaves is a linear answer to the known perturbation that no inertia, damping and stiffness
 /// gives: the residual on the instruments and on the reference as it was up to half a second before.
-/// @param residuals  N×k, of one model or of several side by side
-/// @returns share of each column's power, k; what chance would give is subtracted
+/// @param residuals  N×n of each model
+/// @returns share of each column's power, model after model; what chance would give is subtracted
 [[nodiscard]] Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments,
-                                                const Matrix& residuals, const std::vector<RowRange>& ranges);
+                                                const std::vector<numeric::MatrixPart>& residuals,
+                                                const std::vector<RowRange>& ranges);
 
 }  // namespace mbk::identify

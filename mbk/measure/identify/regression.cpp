@@ -12,7 +12,9 @@
 namespace mbk::identify {
 namespace {
 
-Vector vaf(const numeric::MatrixPart& Y, const Matrix& residual) {
+constexpr Index kLong = recording::kLong / 2;  ///< rows
+
+Vector vaf(const numeric::MatrixPart& Y, const numeric::MatrixPart& residual) {
   Vector result(Y.cols());
   for (Index j = 0; j < Y.cols(); ++j) result[j] = numeric::variance_accounted_for(Y.col(j), residual.col(j));
   return result;
@@ -95,8 +97,11 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
 
 }  // namespace
 
+void put_on_disk(Matrix& columns) {
+  if (columns.rows() >= kLong) recording::DiskPages().take(columns.data(), columns.size());
+}
+
 void put_on_disk(Regression& r) {
-  constexpr Index kLong = recording::kLong / 2;  // rows
   if (r.Z.rows() < kLong) return;
   recording::DiskPages disk;
   for (Matrix* part : {&r.Z, &r.Y, &r.reference, &r.force_sensitivity}) disk.take(part->data(), part->size());
@@ -215,18 +220,17 @@ Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedanc
 }
 
 Fit judge(const Regression& r, const Matrix& coefficients) {
-  const auto residual = [&](const std::vector<RowRange>& ranges) {
-    const SelectedRows Z(r.Z, ranges), Y(r.Y, ranges);
-    return numeric::residuals_of({*Z}, *Y, coefficients);
-  };
+  return judge_residuals(r, numeric::residuals_of({r.Z}, r.Y, coefficients));
+}
+
+Fit judge_residuals(const Regression& r, const Matrix& residuals) {
   Fit fit;
-  Matrix judged = residual(r.identification);
-  fit.vaf_in_sample = vaf(*SelectedRows(r.Y, r.identification), judged);
+  fit.vaf_in_sample = vaf(*SelectedRows(r.Y, r.identification), *SelectedRows(residuals, r.identification));
   fit.held_out = !r.validation.empty();
-  if (fit.held_out) judged = residual(r.validation);
-  fit.vaf = fit.held_out ? vaf(*SelectedRows(r.Y, r.validation), judged) : fit.vaf_in_sample;
+  const SelectedRows judged(residuals, fit.held_out ? r.validation : r.identification);
+  fit.vaf = fit.held_out ? vaf(*SelectedRows(r.Y, r.validation), *judged) : fit.vaf_in_sample;
   fit.rmse.resize(r.axes());
-  for (Index j = 0; j < r.axes(); ++j) fit.rmse[j] = numeric::root_mean_square(judged.col(j));
+  for (Index j = 0; j < r.axes(); ++j) fit.rmse[j] = numeric::root_mean_square(judged->col(j));
   return fit;
 }
 

@@ -36,6 +36,7 @@ struct Regression {
 
 /// Puts the columns of a long one on disk, and lets go of them until they are read again (disk_pages.h).
 void put_on_disk(Regression& r);
+void put_on_disk(Matrix& columns);
 void let_go(const Regression& r);
 
 /// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
@@ -78,5 +79,7 @@ class SelectedRows {
 
 /// How well the coefficients explain the force: on what was held out, or in sample where nothing was.
 [[nodiscard]] Fit judge(const Regression& r, const Matrix& coefficients);
+/// The same from what they leave, Y − Z θ of every row.
+[[nodiscard]] Fit judge_residuals(const Regression& r, const Matrix& residuals);
 
 }  // namespace mbk::identify

@@ -79,15 +79,21 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   return with_choices(std::move(plan), options);
 }
 
-Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim, Hertz rate,
-                          const dsp::Padding& padding, bool with_reference) {
-  const Index n = signals.position.cols(), length = cut.end - cut.begin;
+Result<Index> filtered_rows(const Cut& cut, const FilterPlan& filters, Index trim, const dsp::Padding& padding) {
+  const Index length = cut.end - cut.begin;
   if (length < filters.smoothing.window + 2 * trim + (filters.cutoff ? padding.samples + 1 : 0)) {
     return bad_data(fmt::format("a window of {} samples is too short for a Savitzky–Golay window of {}{}", length,
                                 filters.smoothing.window,
                                 filters.cutoff ? fmt::format(" and a padding of {}", padding.samples) : ""),
                     "record longer, or choose a smaller --sg-window or --padding");
   }
+  return dsp::rows_left({filters.smoothing, {}, padding}, length - 2 * trim, filters.every);
+}
+
+Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim, Hertz rate,
+                        const dsp::Padding& padding, bool with_reference, std::span<double* const> to) {
+  if (const auto rows = filtered_rows(cut, filters, trim, padding); !rows) return tl::unexpected(rows.error());
+  const Index n = signals.position.cols(), length = cut.end - cut.begin;
   const auto chain = chain_of(filters, padding, rate);
   if (!chain) return tl::unexpected(chain.error());
   std::vector<dsp::Column> columns;
@@ -119,7 +125,7 @@ Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPl
   const auto passed = [&](Index first, Index end) {
     for (const dsp::Column& column : columns) recording::let_go(column.segment(first, end - first));
   };
-  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every, passed);
+  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every, passed, to);
 }
 
 Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,

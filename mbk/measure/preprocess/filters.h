@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -31,12 +32,17 @@ struct FilterPlan {
 /// @param shortest_cut [samples]; the window takes at most a quarter of it
 [[nodiscard]] FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate, Index shortest_cut);
 
+/// Rows that the filters leave of a cut.   @fails the cut is shorter than the filters need; every < 1.
+[[nodiscard]] Result<Index> filtered_rows(const Cut& cut, const FilterPlan& filters, Index trim,
+                                          const dsp::Padding& padding);
+
 /// One cut through both filters: [x ẋ ẍ F], each n columns, then [r̈ ṙ r] of the reference where it is wanted and what a
-/// computed force's sensitivity has; row i
-/// belongs to sample cut.begin + half window + trim + i·every.
-/// @fails the cut is shorter than the filters need; the settings are none that a filter can have.
-[[nodiscard]] Result<Matrix> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
-                                        Hertz rate, const dsp::Padding& padding, bool with_reference);
+/// computed force's sensitivity has; row i belongs to sample cut.begin + half window + trim + i·every.
+/// @param to  the columns' first numbers; each has room for `filtered_rows`
+/// @fails as filtered_rows; the settings are none that a filter can have.
+[[nodiscard]] Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
+                                      Hertz rate, const dsp::Padding& padding, bool with_reference,
+                                      std::span<double* const> to);
 
 /// Signals through both filters, sample by sample, without their derivatives: row i belongs to sample half window + i.
 /// @fails  as filter_cut

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,15 @@ std::string metadata_of(const Recording& recording, const char* key) {
   return found == recording.metadata.end() ? "" : found->second;
 }
 
+/// The columns of matrices side by side, from a row on.
+std::vector<double*> columns_from(Index row, std::initializer_list<Matrix*> matrices) {
+  std::vector<double*> columns;
+  for (Matrix* matrix : matrices) {
+    for (Index k = 0; k < matrix->cols(); ++k) columns.push_back(matrix->col(k).data() + row);
+  }
+  return columns;
+}
+
 /// PreparedTrial::force_variance_at_rest, from as long before each displacement as that lasts, at most half of the way
 /// back to the one before, by which the limb has come to rest.
 Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const FilterPlan& filters, Hertz rate,
@@ -42,10 +52,12 @@ Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const Fi
       const auto touches = [&](const Segment& one) { return one.begin < rest.end && one.end > rest.begin; };
       if (std::ranges::any_of(plan.excluded, touches)) continue;
       if (!signals.force_hand_on_robot.middle_rows(rest.begin, length).allFinite()) continue;
-      const auto filtered = filter_cut(signals, rest, filters, plan.trim, rate, padding, false);
-      if (!filtered || filtered->rows() == 0) continue;  // too short for the filters
-      pieces.emplace_back(filtered->middleCols(3 * n, n));
-      rows += filtered->rows();
+      const auto left = filtered_rows(rest, filters, plan.trim, padding);
+      if (!left) continue;  // too short for the filters
+      Matrix filtered(*left, 4 * n + signals.force_sensitivity.cols());
+      if (!filter_cut(signals, rest, filters, plan.trim, rate, padding, false, columns_from(0, {&filtered}))) continue;
+      pieces.emplace_back(filtered.middleCols(3 * n, n));
+      rows += *left;
     }
   }
   if (rows == 0) return {};
@@ -174,12 +186,12 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
 
   const bool with_reference = options.instruments && signals->reference.size() > 0;
   Index total = 0;
-  std::vector<Matrix> filtered;
+  std::vector<Index> rows_of_cuts;
   for (const Cut& cut : plan->cuts) {
-    auto piece = filter_cut(*signals, cut, filters, plan->trim, rate, options.padding, with_reference);
-    if (!piece) return tl::unexpected(piece.error());
-    total += piece->rows();
-    filtered.push_back(std::move(*piece));
+    const auto rows = filtered_rows(cut, filters, plan->trim, options.padding);
+    if (!rows) return tl::unexpected(rows.error());
+    rows_of_cuts.push_back(*rows);
+    total += *rows;
   }
 
   const Index n = trial.axes, lost = filters.smoothing.half_window() + plan->trim;
@@ -195,26 +207,21 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   trial.force_sensitivity.resize(signals->force_sensitivity.size() > 0 ? total : 0, signals->force_sensitivity.cols());
   trial.reference_quantity = signals->reference_quantity;
   Index row = 0;
-  for (std::size_t k = 0; k < filtered.size(); ++k) {
+  for (std::size_t k = 0; k < plan->cuts.size(); ++k) {
     const Cut& cut = plan->cuts[k];
-    const Matrix& piece = filtered[k];
-    const Index rows = piece.rows(), first = cut.begin + lost;
+    const Index rows = rows_of_cuts[k], first = cut.begin + lost;
+    const auto to = columns_from(row, {&trial.position, &trial.velocity, &trial.acceleration,
+                                       &trial.force_hand_on_robot, &trial.reference_motion, &trial.force_sensitivity});
+    if (auto ok = filter_cut(*signals, cut, filters, plan->trim, rate, options.padding, with_reference, to); !ok) {
+      return tl::unexpected(ok.error());
+    }
     take_every(recording.time, first, every, trial.time.segment(row, rows));
     for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
       take_every(signals->reference.col(axis), first, every, trial.reference.col(axis).segment(row, rows));
     }
-    trial.position.middleRows(row, rows) = piece.leftCols(n);
-    trial.velocity.middleRows(row, rows) = piece.middleCols(n, n);
-    trial.acceleration.middleRows(row, rows) = piece.middleCols(2 * n, n);
-    trial.force_hand_on_robot.middleRows(row, rows) = piece.middleCols(3 * n, n);
-    if (with_reference) trial.reference_motion.middleRows(row, rows) = piece.middleCols(4 * n, 3 * n);
-    if (trial.force_sensitivity.size() > 0) {
-      trial.force_sensitivity.middleRows(row, rows) = piece.rightCols(trial.force_sensitivity.cols());
-    }
     append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;
   }
-  filtered.clear();
   trial.time.array() -= recording.time[0];
   if (samples > recording::kLong) recording::DiskPages().take(trial);
   if (trial.segments.empty()) return bad_data("no sample is left after filtering", "record longer");
