@@ -13,10 +13,13 @@ def columns():
     return table_of(make_log("sinusoidal", "--coloured-force-noise", "0.3"))
 
 
-def coughed():
-    """The same recording with a push of 30 N in the middle."""
+@functools.lru_cache(maxsize=None)
+def table(coughed):
+    """The recording as CSV, with a push of 30 N in the middle where somebody coughed."""
     time, x, y, fx, *rest = columns()
-    return [time, x, y, [f + 30.0 * (COUGH[0] <= t <= COUGH[1]) for t, f in zip(time, fx)], *rest]
+    push = [f + 30.0 * (coughed and COUGH[0] <= t <= COUGH[1]) for t, f in zip(time, fx)]
+    path = write_csv(folder_of_logs() / f"exclusions_{coughed}.csv", [time, x, y, push, *rest])
+    return path.read_text(encoding="utf-8")
 
 
 def codes_of(ran):
@@ -24,11 +27,10 @@ def codes_of(ran):
 
 
 class Exclusions(Case):
-    def recording(self, name="trial.csv", signals=None, **metadata):
-        path = write_csv(self.folder / name, signals or columns())
+    def recording(self, name="trial.csv", coughed=False, **metadata):
         comments = "".join(f"# {key}: {value}\n" for key, value in metadata.items())
-        path.write_text("# mbk.recording/1\n" + comments + path.read_text(encoding="utf-8"), encoding="utf-8")
-        return path
+        (self.folder / name).write_text("# mbk.recording/1\n" + comments + table(coughed), encoding="utf-8")
+        return self.folder / name
 
     def measured(self, *arguments):
         ran = run("measure", "--json", *arguments)
@@ -41,8 +43,8 @@ class Exclusions(Case):
         return max(abs(a - b) for a, b in zip(flat(ran.json["model"]["K"]), flat(truth))) / max(map(abs, flat(truth)))
 
     def test_a_window_is_left_out_and_that_is_said(self):
-        spoilt = self.measured(self.recording(signals=coughed()))
-        without = self.measured(self.recording("marked.csv", coughed(), excluded_windows="20-24 s: coughed"))
+        spoilt = self.measured(self.recording(coughed=True))
+        without = self.measured(self.recording("marked.csv", coughed=True, excluded_windows="20-24 s: coughed"))
         clean = self.measured(self.recording("clean.csv"))
         self.assertLess(self.distance(without), 2 * self.distance(clean) + 0.01)
         self.assertGreater(self.distance(spoilt), self.distance(without))
@@ -82,8 +84,8 @@ class Exclusions(Case):
         self.assertIn("the operator excluded this trial: hand slipped", " ".join(run("measure", path).out.split()))
 
     def test_a_mean_leaves_it_out(self):
-        paths = [self.recording(f"{k}.csv", [columns()[0], *[[v + 1e-9 * k for v in one] for one in columns()[1:]]],
-                                **({"excluded": "hand slipped"} if k == 2 else {})) for k in range(3)]
+        paths = [self.recording(f"{k}.csv", trial=k, **({"excluded": "hand slipped"} if k == 2 else {}))
+                 for k in range(3)]
         summary = self.measured(*paths).json["summary"]
         self.assertEqual(summary["trials"], 2)
         self.assertIn("hand slipped", summary["omitted"][0]["why"])

@@ -85,7 +85,7 @@ std::string reliability_line(const OutcomeReliability& one) {
   const std::string name = fmt::format("  {:<23}", one.outcome);
   if (sessions.support != Support::enough) return name + "  " + why_not(sessions.support, people_of(one)) + "\n";
   const reliability::TestRetest& found = sessions.test_retest;
-  return name + fmt::format("  {:>6}  {:>5}  {:>13}  {:>8}  {:>8}  {}\n",
+  return name + fmt::format("  {:>5}  {:>5}  {:>13}  {:>7}  {:>7}  {}\n",
                             fmt::format("{}×{}", sessions.participants.size(), sessions.repetitions.size()),
                             share(found.icc[1].value), shares(found.agreement_by_large_samples95),
                             digits(found.error[0].sem), digits(found.error[0].mdc95), one.unit);
@@ -127,7 +127,7 @@ std::string reliability_table(const std::vector<OutcomeReliability>& all) {
     if (!any && alike) {
       text += item("  ", "none is stated: " + why_not(first, people_of(all[begin])));
     } else {
-      text += fmt::format("  {:<23}  {:>6}  {:>5}  {:>13}  {:>8}  {:>8}  {}\n", "outcome", "n×k", "ICC", "95 %", "SEM",
+      text += fmt::format("  {:<23}  {:>5}  {:>5}  {:>13}  {:>7}  {:>7}  {}\n", "outcome", "n×k", "ICC", "95 %", "SEM",
                           "MDC", "unit");
       for (std::size_t k = begin; k < end; ++k) text += reliability_line(all[k]);
     }
@@ -262,14 +262,14 @@ std::string matrices_text(const std::vector<MatrixSpread>& matrices) {
       return fmt::format("{} ({} to {})", digits(q.median, 2), digits(q.lower, 2), digits(q.upper, 2));
     };
     left_out += one.left_out;
-    rows += fmt::format("  {:<20}  {:<2}  {:>22}  {:>22}  {:>8}\n", condition_title(one.condition), one.matrix,
+    rows += fmt::format("  {:<20} {:<2}  {:>22}  {:>21}  {:>6}\n", condition_title(one.condition), one.matrix,
                         quartiles(one.within), quartiles(one.between), share(one.closer));
   }
   if (rows.empty()) return "";
   if (left_out > 0) {
     rows += item("  ", fmt::format("without {} sessions whose mean matrix is not positive definite", left_out));
   }
-  return fmt::format("\nimpedance width between whole matrices: median (quartiles)\n  {:<24}  {:>22}  {:>22}  {:>8}\n",
+  return fmt::format("\nimpedance width between whole matrices: median (quartiles)\n  {:<23}  {:>22}  {:>21}  {:>6}\n",
                      "condition, matrix", "sessions of a person", "people", "closer") +
          rows +
          "  closer: chance that two sessions of a person are closer than two people\n"
@@ -283,10 +283,10 @@ std::string people_text(const reliability::Difference& difference) {
 }
 
 std::string comparison_line(const OutcomeComparison& one) {
-  const std::string name = fmt::format("  {:<23}  {:>6}  ", one.outcome, people_text(one.difference));
+  const std::string name = fmt::format("  {:<23}  {:>5}  ", one.outcome, people_text(one.difference));
   if (one.verdict == Verdict::no_variation) return name + "no variation that could be compared\n";
   if (one.difference.support != Support::enough) return name + "too few people\n";
-  return name + fmt::format("{:>9}  {:>20}  {:>5}  {:>6}{}\n", digits(one.difference.value),
+  return name + fmt::format("{:>8}  {:>19}  {:>5}  {:>6}{}\n", digits(one.difference.value),
                             range(one.difference.interval95), digits(one.difference.effect.g, 2), p_text(one.p_holm),
                             one.verdict == Verdict::differs          ? " *"
                             : one.verdict == Verdict::too_few_people ? " ?"
@@ -316,6 +316,13 @@ std::string comparison_details(const OutcomeComparison& one, bool details) {
   return text;
 }
 
+/// With fewer digits where it would be wider than its column.
+std::string within(std::size_t width, double value, int count) {
+  std::string text = digits(value, count);
+  while (text.size() > width && count > 1) text = digits(value, --count);
+  return text;
+}
+
 }  // namespace
 
 std::string outcomes_text(const std::vector<store::OutcomeSummary>& outcomes) {
@@ -324,12 +331,12 @@ std::string outcomes_text(const std::vector<store::OutcomeSummary>& outcomes) {
   for (const store::OutcomeSummary& one : outcomes) {
     if (condition == nullptr || *condition != one.condition) {
       condition = &one.condition;
-      text += fmt::format("\n{}\n  {:<23}  {:>8}  {:>8}  {:>8}  {:>8}  {:<8}  {}\n", condition_title(one.condition),
+      text += fmt::format("\n{}\n  {:<23}  {:>8}  {:>7}  {:>8}  {:>8} {:<8} {}\n", condition_title(one.condition),
                           "outcome", "mean", "sd", "min", "max", "unit", "n");
     }
-    text += fmt::format("  {:<23}  {:>8}  {:>8}  {:>8}  {:>8}  {:<8}  {} ({})\n", one.outcome, digits(one.mean, 4),
-                        digits(one.standard_deviation), digits(one.minimum), digits(one.maximum), one.unit,
-                        one.participants, one.results);
+    text += fmt::format("  {:<23}  {:>8}  {:>7}  {:>8}  {:>8} {:<8} {} ({})\n", one.outcome, within(8, one.mean, 4),
+                        within(7, one.standard_deviation, 3), within(8, one.minimum, 3), within(8, one.maximum, 3),
+                        one.unit, one.participants, one.results);
   }
   return text +
          "\nn: participants (results). mean and sd over participants, each with the mean\n"
@@ -368,7 +375,7 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
         before->second != one.second) {
       const std::string what(word_of(comparison.by));
       text +=
-          fmt::format("\n{} {} − {}{}\n  {:<23}  {:>6}  {:>9}  {:>20}  {:>5}  {:>6}\n", what,
+          fmt::format("\n{} {} − {}{}\n  {:<23}  {:>5}  {:>8}  {:>19}  {:>5}  {:>6}\n", what,
                       condition_title(one.second), condition_title(one.first),
                       one.condition.empty() ? "" : ", " + one.condition, "outcome", "n", "change", "95 %", "g", "p");
     }
