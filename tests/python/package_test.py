@@ -495,11 +495,11 @@ class Package(unittest.TestCase):
                  "validate": lambda: mbk.validate("coverage", runs=100_000)}
         for name, call in calls.items():
             with self.subTest(name):
-                began = time.monotonic()
+                began = time.process_time()  # which a busy machine does not prolong
                 threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
                 with self.assertRaises(KeyboardInterrupt):
                     call()
-                self.assertLess(time.monotonic() - began, 5.0)
+                self.assertLess(time.process_time() - began, 2.0)
 
     def test_memory_stays_flat(self):
         t, x, reaction = joint(1500)
