@@ -223,7 +223,7 @@ FoldedTable folded_table(std::span<const std::string_view> lines, std::size_t co
   const std::size_t count = lines_of_table(lines);
   if (count < 2) return {};
   const Grid grid = grid_of(lines.first(count));
-  if (!grid.wider_than(columns)) return {};
+  if (!grid.wider_than(columns)) return {count, ""};
   std::string text = folded::folded(grid, columns);
   return text.empty() ? FoldedTable{} : FoldedTable{count, std::move(text)};
 }

@@ -7,10 +7,10 @@
 
 namespace mbk::app {
 
-/// A table that does not fit, in parts below one another.
+/// A table in parts below one another, where it does not fit.
 struct FoldedTable {
-  std::size_t lines = 0;  ///< of the text that it replaces; 0: there is no table, or it fits
-  std::string text;
+  std::size_t lines = 0;  ///< of the table; 0: there is none, or it cannot come in parts
+  std::string text;       ///< in place of them; empty: they fit as they are
 };
 
 /// The table that begins with the first of these lines, or the drawings beside one another below a caption. Columns are

@@ -109,13 +109,16 @@ std::string fitted(std::string_view text, std::size_t columns) {
     rest.clear();
   };
   const std::vector<std::string_view> lines = lines_of(text);
+  std::size_t fit = 0;  // of a table that fits, the end: none of its lines is looked at again
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (const FoldedTable table = folded_table(std::span(lines).subspan(k), columns); table.lines > 0) {
+    const FoldedTable table = k < fit ? FoldedTable{} : folded_table(std::span(lines).subspan(k), columns);
+    if (!table.text.empty()) {
       finish();
       out += table.text;
       k += table.lines - 1;
       continue;
     }
+    fit = std::max(fit, k + table.lines);
     const std::string_view given = lines[k];
     std::string line(given);
     if (goes_on(rest, hanging, given)) {
