@@ -38,11 +38,12 @@ class WorthPacking {
 class Stream {
  public:
   /// @param parts  between which the level may change
-  Stream(std::size_t bytes, std::size_t parts) : out_(compressBound(bytes) + kForChange * parts, '\0') {
+  Stream(std::size_t bytes, std::size_t parts) {
     // More memory than usual makes its blocks long.
     constexpr int kWindow = 15, kMemory = 9;
     if (deflateInit2(&stream_, level_, Z_DEFLATED, kWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
+    out_.resize(deflateBound(&stream_, bytes) + kForChange * parts);
     stream_.next_out = reinterpret_cast<Bytef*>(out_.data());
     stream_.avail_out = static_cast<uInt>(out_.size());
   }
