@@ -3,7 +3,7 @@
 
   bytes     100,000 draws of people (well below 10 ms each) and 2,000 simulated trials that are measured, by each engine
             with three lengths of chunks, 20 tasks killed at random in each: held against one process
-  cores     one task and two, in pairs, on warm files
+  cores     one task and two, in pairs, on warm files; beside them what two processes do that have nothing in common
   overhead  10,000 units (--units) of 0.1 to 0.2 s by Slurm and by local processes, and an array of as many tasks that
             do nothing
   rate      trials of 62.1 s a second and core, by an engine and by threads of one process
@@ -128,12 +128,12 @@ class Campaign:
     def trials(self):
         return ("validate", "recovery", "--runs", self.size["runs"], "--json", "--quiet")
 
-    def fresh_study(self):
+    def fresh_study(self, name="copy"):
         """A study of trials that were not measured yet."""
         template = self.folder / "measured"
         if not template.exists():
             studies.added_study(self.mbk, self.folder, self.size["trials"])
-        copy = self.folder / "copy"
+        copy = self.folder / name
         shutil.rmtree(copy, ignore_errors=True)
         shutil.copytree(template, copy, copy_function=os.link)
         for database in template.glob("study.sqlite*"):
@@ -178,6 +178,18 @@ class Campaign:
                 pairs.append(one / self.measured(engine, "--tasks", "2", *tasks))
             return pairs
 
+        def side_by_side(count):
+            fresh = [self.fresh_study(f"copy_{k}") for k in range(count)]
+            begin = time.monotonic()
+            running = [self.start(None, "study", "measure", "--study", one, "--quiet", "--threads", 1) for one in fresh]
+            if any(one.wait() not in JUDGED for one in running):
+                sys.exit("cluster.py: a process that measures a study by itself failed")
+            return time.monotonic() - begin
+
+        alone = self.record("cores, no engine", lambda: [2 * side_by_side(1) / side_by_side(2)
+                                                         for _ in range(self.size["pairs"])])
+        self.row("one process and two, each with its own study", "what the machine has",
+                 f"{statistics.median(alone):.2f} × (median of {', '.join(f'{one:.2f}' for one in alone)})")
         for engine in ENGINES:
             found = self.record(f"cores, {engine}", lambda engine=engine: ratios(engine))
             self.row(f"1 → 2 cores, {self.size['trials']} trials, {engine}", "≥ 1.85 ×",

@@ -2,8 +2,10 @@
 # sources of a module are compiled several at a time. Each still includes what it uses: clang-tidy and the preset sanitize
 # compile them one by one.
 option(MBK_UNITY "Compile several sources of a module at a time" ON)
-set(MBK_UNITY_BATCH 5)  # so that none takes more than 15 s
-set(MBK_UNITY_BATCH_OF_TESTS 8)  # the same: they are compiled with less optimisation
+# So that none takes more than 15 s: what is optimised little is compiled faster.
+set(MBK_UNITY_BATCH 7)
+set(MBK_UNITY_BATCH_OF_LOOPS 5)
+set(MBK_UNITY_BATCH_OF_TESTS 8)
 
 # mbk_unity(TARGET [SOURCE...]): the sources of TARGET are compiled several at a time, but for these.
 function(mbk_unity target)
@@ -30,13 +32,14 @@ endfunction()
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
-# program that is no part of the library. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources and
+# program that is no part of the library. LOOPS: it computes what a user waits for, so that it is optimised fully
+# (cmake/MbkPrecompile.cmake). TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources and
 # tests that take long to compile, and so are compiled by themselves.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "" "ALONE;DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "LOOPS;NOT_INSTALLED;TESTS_WAIT" "" "ALONE;DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -56,9 +59,15 @@ function(mbk_module name)
   list(TRANSFORM ARG_DEPENDS PREPEND mbk:: OUTPUT_VARIABLE dependencies)
   if(sources)
     add_library(mbk_${name} STATIC ${sources})
-    mbk_precompile(mbk_${name} library)
     set(public PUBLIC)
     mbk_unity(mbk_${name} ${ARG_ALONE})
+    if(ARG_LOOPS)
+      set_target_properties(mbk_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH_OF_LOOPS})
+      mbk_precompile(mbk_${name} loops)
+    else()
+      target_compile_options(mbk_${name} PRIVATE ${MBK_LITTLE_OPTIMISATION})
+      mbk_precompile(mbk_${name} library)
+    endif()
     target_link_libraries(mbk_${name} PRIVATE $<BUILD_INTERFACE:mbk_settings> ${private_libraries})
   else()
     add_library(mbk_${name} INTERFACE)
@@ -93,7 +102,7 @@ function(mbk_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE mbk_settings ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   # What is tested is as users have it; the tests themselves compile faster so.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${name} PRIVATE ${MBK_LITTLE_OPTIMISATION})
   mbk_unity(${name} ${ARG_ALONE})
   set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH_OF_TESTS})
   if(NOT ARG_OWN_FLAGS)

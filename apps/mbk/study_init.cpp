@@ -5,6 +5,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_options.h"
+#include "mbk/base/core/printable.h"
 
 namespace mbk::app {
 namespace {

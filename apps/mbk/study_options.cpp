@@ -12,6 +12,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
 #include "apps/mbk/word_options.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/measure/preprocess/perturbation_only.h"

@@ -9,6 +9,7 @@
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_jobs.h"
 #include "apps/mbk/study_listing.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/html.h"
 

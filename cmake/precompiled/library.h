@@ -33,3 +33,5 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "mbk/base/core/matrix_products.h"

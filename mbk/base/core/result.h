@@ -3,9 +3,6 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
-#include <utility>
-
-#include "mbk/base/core/printable.h"
 
 namespace mbk {
 
@@ -24,18 +21,10 @@ struct Error {
   std::string where;    ///< file, and place in it: "log.mat, variable 'logs'"; may be empty
 
   /// The same error with an outer place put before the inner one.
-  [[nodiscard]] Error in(std::string_view place) const {
-    Error outer = *this;
-    outer.where = printable(where.empty() ? std::string(place) : std::string(place) + ", " + where);
-    return outer;
-  }
+  [[nodiscard]] Error in(std::string_view place) const;
 
   /// One line: "where: message; remedy".
-  [[nodiscard]] std::string line() const {
-    std::string text = where.empty() ? message : where + ": " + message;
-    if (!remedy.empty()) text += "; " + remedy;
-    return text;
-  }
+  [[nodiscard]] std::string line() const;
 };
 
 /// Either a value or an Error.
@@ -44,19 +33,11 @@ using Result = tl::expected<Value, Error>;
 
 /// An Error ready to be returned from a function that returns `Result<…>`. Whatever it quotes becomes printable, so
 /// that an error is one line.
-[[nodiscard]] inline tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string remedy = "",
-                                                std::string where = "") {
-  return tl::unexpected<Error>(
-      Error{kind, printable(std::move(message)), printable(std::move(remedy)), printable(std::move(where))});
-}
+[[nodiscard]] tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string remedy = "",
+                                         std::string where = "");
 
-[[nodiscard]] inline tl::unexpected<Error> bad_data(std::string message, std::string remedy = "",
-                                                    std::string where = "") {
-  return fail(ErrorKind::data, std::move(message), std::move(remedy), std::move(where));
-}
+[[nodiscard]] tl::unexpected<Error> bad_data(std::string message, std::string remedy = "", std::string where = "");
 
-[[nodiscard]] inline tl::unexpected<Error> bad_usage(std::string message, std::string remedy = "") {
-  return fail(ErrorKind::usage, std::move(message), std::move(remedy));
-}
+[[nodiscard]] tl::unexpected<Error> bad_usage(std::string message, std::string remedy = "");
 
 }  // namespace mbk

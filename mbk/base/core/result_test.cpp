@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mbk/base/core/printable.h"
+
 namespace mbk {
 namespace {
 

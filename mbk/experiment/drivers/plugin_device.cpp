@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "mbk/base/core/option_limits.h"
+#include "mbk/base/core/printable.h"
 
 namespace mbk::drivers {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/core/printable.h"
+
 namespace mbk::recording {
 namespace {
 

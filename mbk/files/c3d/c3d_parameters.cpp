@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "mbk/base/core/printable.h"
+
 namespace mbk::recording {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/hdf5/links.h"
 #include "mbk/files/hdf5/superblock.h"
 #include "mbk/files/hdf5/values.h"

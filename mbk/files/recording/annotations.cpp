@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/recording/channel_table.h"
 

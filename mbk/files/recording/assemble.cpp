@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mbk/base/core/ordinal.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"

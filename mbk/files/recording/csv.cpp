@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/cells.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/contents/utf16.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/lines.h"

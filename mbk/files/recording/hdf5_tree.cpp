@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 
 namespace mbk::recording {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/lines.h"
 #include "mbk/files/contents/utf16.h"

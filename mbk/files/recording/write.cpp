@@ -6,6 +6,7 @@
 #include <array>
 #include <set>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"

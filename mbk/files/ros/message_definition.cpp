@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/base/core/trimmed.h"
 
 namespace mbk::recording {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/study/batch/engines.h"
 
 namespace mbk::batch {

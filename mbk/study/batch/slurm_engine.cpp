@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/batch/command_output.h"
 #include "mbk/study/batch/engines.h"

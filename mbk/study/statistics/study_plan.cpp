@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/random.h"

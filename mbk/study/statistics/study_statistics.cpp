@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/study/statistics/outcome_rows.h"
 

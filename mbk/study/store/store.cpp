@@ -11,6 +11,7 @@
 #include <map>
 #include <system_error>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"

@@ -6,6 +6,7 @@
 #include <set>
 #include <system_error>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"

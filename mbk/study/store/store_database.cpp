@@ -12,6 +12,7 @@
 #include <random>
 #include <span>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/files/contents/sha256.h"
 
 namespace mbk::store {

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 
+#include "mbk/base/core/printable.h"
 #include "mbk/base/core/trimmed.h"
 
 namespace mbk::store {
