@@ -243,7 +243,8 @@ class Fitter {
   template <class Same, class GoOn>
   [[nodiscard]] Result<void> go_on_as_one(std::vector<Search>& searches, Same&& are_same, GoOn&& go_on) const;
   [[nodiscard]] Result<std::vector<Search>> with_noise(std::vector<Search> searches, std::vector<Search> white) const;
-  [[nodiscard]] std::vector<Start> starts(const ContinuousFit& continuous, const Vector& rich) const;
+  [[nodiscard]] ContinuousFitOptions continuous_options() const;
+  [[nodiscard]] std::vector<Start> starts(const Vector& rich) const;
   [[nodiscard]] std::vector<Model> noise_models(const Model& at) const;
   void add_noise(Search& search) const;
   [[nodiscard]] static bool is_better(const Search& a, const Search& b);
@@ -612,14 +613,28 @@ Result<std::vector<Fitter::Search>> Fitter::with_noise(std::vector<Search> searc
   return searches;
 }
 
-std::vector<Fitter::Start> Fitter::starts(const ContinuousFit& continuous, const Vector& rich) const {
+ContinuousFitOptions Fitter::continuous_options() const {
+  ContinuousFitOptions options;
+  options.poles = n_;
+  options.zeros = options_.zeros;
+  options.start_poles = options_.start_poles;
+  options.free_start = options_.free_start;
+  options.refine = false;
+  options.threads = options_.threads;
+  return options;
+}
+
+/// @param rich  a long regression
+std::vector<Fitter::Start> Fitter::starts(const Vector& rich) const {
+  if (options_.start_denominator.size() > 0) return {{"given", stabilised(options_.start_denominator)}};
   std::vector<Start> all;
   const auto add = [&](std::string made_by, const Vector& f) {
     if (f.allFinite()) all.push_back({std::move(made_by), stabilised(f)});
   };
-  if (continuous.a.size() == n_ && continuous.a.allFinite()) {
+  const auto continuous = fit_continuous(experiments_, continuous_options());
+  if (continuous && continuous->a.size() == n_ && continuous->a.allFinite()) {
     Vector A(n_ + 1);
-    A << continuous.a, 1.0;
+    A << continuous->a, 1.0;
     add("continuous time", from_roots((numeric::polynomial_roots(A) * step_).array().exp()));
   }
   const Vector none;
@@ -742,24 +757,22 @@ Result<PredictionErrorFit> Fitter::run() {
   if (!step) return tl::unexpected(step.error());
   step_ = *step;
   for (const SignalPair& pair : experiments_) samples_ += pair.output.size();
-  ContinuousFitOptions continuous_options;
-  continuous_options.poles = n_;
-  continuous_options.zeros = options_.zeros;
-  continuous_options.start_poles = options_.start_poles;
-  continuous_options.free_start = options_.free_start;
-  continuous_options.refine = false;
-  continuous_options.threads = options_.threads;
-  const auto continuous = fit_continuous(experiments_, continuous_options);  // it also looks at the data
-  if (!continuous) return tl::unexpected(continuous.error());
+  if (auto ok = check_experiments(experiments_, continuous_options()); !ok) return tl::unexpected(ok.error());
+  const Vector& given = options_.start_denominator;
+  if (given.size() > 0 && given.size() != n_) {
+    return bad_usage(fmt::format("a start with {} poles for a model with {}", given.size(), n_));
+  }
+  if (!given.allFinite()) return bad_usage("a coefficient of the start is not a finite number");
   for (const SignalPair& pair : experiments_) {
     output_squares_ += (pair.output.array() - pair.output.mean()).square().sum();
     outputs_.push_back(pair.output);
   }
   constexpr Index kRich = 40, kSamplesEach = 30;
   const Index high = std::clamp(samples_ / kSamplesEach / std::ssize(experiments_), n_, kRich);
-  Vector rich = long_regression(high);
+  const bool needed = given.size() == 0 || options_.noise_model;
+  Vector rich = needed ? long_regression(high) : Vector();
   if (!rich.allFinite()) rich.setZero();
-  const std::vector<Start> first = starts(*continuous, rich);
+  const std::vector<Start> first = starts(rich);
   constexpr int kSharpened = 12;
   const auto sharp = each_of(first, [&](std::size_t k) { return sharpened(first[k], kSharpened); });
   if (!sharp) return tl::unexpected(sharp.error());

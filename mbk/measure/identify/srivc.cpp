@@ -314,6 +314,7 @@ class Fitter {
   Fitter(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options)
       : experiments_(experiments), options_(options), n_(options.poles), q_(options.zeros + 1) {}
 
+  [[nodiscard]] Result<void> check();
   Result<ContinuousFit> run();
 
  private:
@@ -332,7 +333,6 @@ class Fitter {
   /// over strides do where signals stand far from zero.
   enum class For { step_on_the_way, step, covariance };
 
-  [[nodiscard]] Result<void> check();
   [[nodiscard]] std::vector<double> start_poles() const;
   [[nodiscard]] Search search(double pole) const;
   void iterate(Search& found) const;
@@ -1028,6 +1028,10 @@ Result<ContinuousFit> Fitter::run() {
 
 Result<ContinuousFit> fit_continuous(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options) {
   return Fitter(experiments, options).run();
+}
+
+Result<void> check_experiments(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options) {
+  return Fitter(experiments, options).check();
 }
 
 Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& experiment) {
