@@ -219,6 +219,7 @@ class Fitter {
   [[nodiscard]] double squares(const Model& at) const;
   [[nodiscard]] Model moved(Model at, Parts parts, const Vector& step) const;
   [[nodiscard]] Vector coefficients(const Model& at, Parts parts) const;
+  [[nodiscard]] bool is_apart_from_the_edge(const Vector& f) const;
   /// @param refinements  steps beyond the tolerance, as far as rounding lets them
   void descend(Search& search, Parts parts, int passes, int refinements) const;
 
@@ -332,6 +333,14 @@ Vector Fitter::coefficients(const Model& at, Parts parts) const {
   return theta;
 }
 
+/// Whether the slowest motion dies away at all over the record, as far as rounding can tell. At the edge of the stable
+/// models it is the offset once more; steps mean nothing there.
+bool Fitter::is_apart_from_the_edge(const Vector& f) const {
+  constexpr double kLeast = 1e-6;
+  const double slowest = numeric::polynomial_roots(monic(f).reverse()).cwiseAbs().maxCoeff();
+  return (1.0 - slowest) * static_cast<double>(samples_) > kLeast;
+}
+
 /// Levenberg (1944) & Marquardt (1963), until a full step of Gauss & Newton would hardly move a coefficient, and then
 /// on to rounding. Output error, whose starts are sharpened, begins with a full step.
 void Fitter::descend(Search& search, Parts parts, int passes, int refinements) const {
@@ -357,7 +366,11 @@ void Fitter::descend(Search& search, Parts parts, int passes, int refinements) c
     const bool exact = now.squares < kExact * output_squares_;
     if (!exact && !std::isfinite(change)) return;
     start.converged = exact || change < options_.tolerance;
-    start.stable = start.converged || is_stable(moved(search.at, parts, full));
+    start.stable = start.converged ? is_apart_from_the_edge(search.at.f) : is_stable(moved(search.at, parts, full));
+    if (start.converged && !start.stable) {
+      start.converged = false;
+      return;
+    }
     if (start.converged) {
       if (change < kRounding || refinements-- == 0) return;
       damping = 0.0;
