@@ -2,6 +2,7 @@
 // compare.
 //   bench_transfer_function SIGNALS STEP TURNS                        SRIVC, 4 poles, 1 zero, one start
 //   bench_transfer_function SIGNALS STEP TURNS oe|bj POLES ZEROS      all that `mbk tf` does for such a model
+//   … F1 … FN                                                         the same from one start, its denominator
 // SIGNALS: doubles, all of the input, then all of the output
 #include <fmt/format.h>
 #include <time.h>
@@ -27,12 +28,14 @@ double cpu_ms() {
 }
 
 /// ms, R_T², the variance of the innovations, the orders of C and D, f and b of each turn.
-int time_prediction_error(const std::vector<mbk::SignalPair>& pairs, char** argv) {
+int time_prediction_error(const std::vector<mbk::SignalPair>& pairs, int argc, char** argv) {
   mbk::identify::PredictionErrorOptions options;
   options.noise_model = std::string_view(argv[4]) == "bj";
   options.poles = std::atoi(argv[5]);
   options.zeros = std::atoi(argv[6]);
   options.threads = 1;
+  options.start_denominator.resize(argc - 7);
+  for (int k = 7; k < argc; ++k) options.start_denominator[k - 7] = std::atof(argv[k]);
   for (int turn = 0; turn < std::atoi(argv[3]); ++turn) {
     const double begin = cpu_ms();
     const auto fit = mbk::identify::fit_prediction_error(pairs, options);
@@ -51,7 +54,7 @@ int time_prediction_error(const std::vector<mbk::SignalPair>& pairs, char** argv
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4 && argc != 7) return 2;
+  if (argc != 4 && argc < 7) return 2;
   mbk::app::prefer_large_pages();  // as mbk itself does
   std::ifstream file(argv[1], std::ios::binary | std::ios::ate);
   const auto count = static_cast<mbk::Index>(static_cast<std::size_t>(file.tellg()) / (2 * sizeof(double)));
@@ -66,7 +69,7 @@ int main(int argc, char** argv) {
   if (!file) return 3;
   pair.step = std::atof(argv[2]);
   pair.time = mbk::Vector::LinSpaced(count, 0.0, static_cast<double>(count - 1)) * *pair.step;
-  if (argc == 7) return time_prediction_error(pairs, argv);
+  if (argc > 4) return time_prediction_error(pairs, argc, argv);
   mbk::identify::ContinuousFitOptions options;
   options.poles = 4;
   options.zeros = 1;

@@ -114,29 +114,32 @@ template <class Lanes, int Left, int Right>
   for (Index i = 0; i < Left; ++i) {
     for (Index j = 0; j < Right; ++j) sum[i][j] = Lanes::at(sums + 8 * (i * across + j));
   }
-  for (Index c = 0; c < columns; c += Lanes::kWidth) {
-    V a[Left];
-    for (Index i = 0; i < Left; ++i) {
-      a[i] = Lanes::at(left.data + i * left.stride + c);
-      keep_in_register<Lanes>(a[i]);
-    }
-    for (Index j = 0; j < Right; ++j) {
-      V b = Lanes::at(right.data + j * right.stride + c);
-      keep_in_register<Lanes>(b);
-      for (Index i = 0; i < Left; ++i) sum[i][j] += a[i] * b;
+  for (Index c = 0; c < columns; c += kSegments, left.data += left.step, right.data += right.step) {
+    for (Index lane = 0; lane < kSegments; lane += Lanes::kWidth) {
+      V a[Left];
+      for (Index i = 0; i < Left; ++i) {
+        a[i] = Lanes::at(left.data + i * left.stride + lane);
+        keep_in_register<Lanes>(a[i]);
+      }
+      for (Index j = 0; j < Right; ++j) {
+        V b = Lanes::at(right.data + j * right.stride + lane);
+        keep_in_register<Lanes>(b);
+        for (Index i = 0; i < Left; ++i) sum[i][j] += a[i] * b;
+      }
     }
   }
   for (Index i = 0; i < Left; ++i) {
     for (Index j = 0; j < Right; ++j) Lanes::at(sums + 8 * (i * across + j)) = sum[i][j];
   }
 }
+/// @param j  the first on the right; before it there are whole tiles
 template <class Lanes, int Left>
-[[gnu::always_inline]] inline void tiles_across(Rows left, Rows right, Index across, Index columns, double* sums) {
-  Index j = 0;
+[[gnu::always_inline]] inline void tiles_across(Rows left, Rows right, Index j, Index across, Index columns,
+                                                double* sums) {
   for (; j + kTileRight <= across; j += kTileRight) {
-    tile<Lanes, Left, kTileRight>(left, {right.row(j), right.stride}, columns, sums + 8 * j, across);
+    tile<Lanes, Left, kTileRight>(left, right.from_row(j), columns, sums + 8 * j, across);
   }
-  const Rows rest{right.row(j), right.stride};
+  const Rows rest = right.from_row(j);
   switch (across - j) {
     case 1:
       return tile<Lanes, Left, 1>(left, rest, columns, sums + 8 * j, across);
@@ -148,23 +151,25 @@ template <class Lanes, int Left>
       return;
   }
 }
+/// @param upper  without tiles that have nothing on or above the diagonal
 template <class Lanes>
-[[gnu::always_inline]] inline void products_body(Rows left, Index down, Rows right, Index across, Index columns,
-                                                 double* sums) {
+[[gnu::always_inline]] inline void products_body(Rows left, Index down, Rows right, Index across, bool upper,
+                                                 Index columns, double* sums) {
   constexpr int kTile = kTileLeft<Lanes>;
+  const auto first = [&](Index i) { return upper ? i / kTileRight * kTileRight : 0; };
   Index i = 0;
   for (; i + kTile <= down; i += kTile) {
-    tiles_across<Lanes, kTile>({left.row(i), left.stride}, right, across, columns, sums + 8 * i * across);
+    tiles_across<Lanes, kTile>(left.from_row(i), right, first(i), across, columns, sums + 8 * i * across);
   }
-  const Rows rest{left.row(i), left.stride};
+  const Rows rest = left.from_row(i);
   double* const to = sums + 8 * i * across;
   switch (down - i) {
     case 1:
-      return tiles_across<Lanes, 1>(rest, right, across, columns, to);
+      return tiles_across<Lanes, 1>(rest, right, first(i), across, columns, to);
     case 2:
-      return tiles_across<Lanes, 2>(rest, right, across, columns, to);
+      return tiles_across<Lanes, 2>(rest, right, first(i), across, columns, to);
     case 3:
-      return tiles_across<Lanes, 3>(rest, right, across, columns, to);
+      return tiles_across<Lanes, 3>(rest, right, first(i), across, columns, to);
     default:
       return;
   }
@@ -206,7 +211,7 @@ struct Loops {
   std::array<Filter, kMaxFixed + 1> filter;  ///< by the number of states; the first: of any number
   void (*advance)(const double*, Index, Index, const double*, const double*, double*, Index);
   void (*combine)(const double*, Index, const double*, Index, const double*, Index, double*);
-  void (*products)(Rows, Index, Rows, Index, Index, double*);
+  void (*products)(Rows, Index, Rows, Index, bool, Index, double*);
   void (*squares)(Rows, Index, Index, double*);
 };
 
@@ -225,8 +230,9 @@ struct Loops {
                                const double* plus, Index columns, double* to) {                                     \
       combine_body<LANES>(weights, count, from, stride, plus, columns, to);                                         \
     }                                                                                                               \
-    TARGET static void products(Rows left, Index down, Rows right, Index across, Index columns, double* sums) {     \
-      products_body<LANES>(left, down, right, across, columns, sums);                                               \
+    TARGET static void products(Rows left, Index down, Rows right, Index across, bool upper, Index columns,         \
+                                double* sums) {                                                                     \
+      products_body<LANES>(left, down, right, across, upper, columns, sums);                                        \
     }                                                                                                               \
     TARGET static void squares(Rows rows, Index count, Index columns, double* sums) {                               \
       squares_body<LANES>(rows, count, columns, sums);                                                              \
@@ -292,7 +298,12 @@ Segments::Segments(const std::vector<const Vector*>& signals, Index overlap) {
   rows_ = std::make_unique_for_overwrite<Abreast[]>(signals.size() * static_cast<std::size_t>(count_));
   Abreast* row = rows_.get();
   for (const Vector* const signal : signals) {
-    for (Index i = 0; i < count_; ++i, ++row) {
+    const Index full = std::max<Index>(0, samples - (kSegments - 1) * length_);  // rows that all segments have
+    const double* from = signal->data();
+    for (Index i = 0; i < full; ++i, ++row, ++from) {
+      for (Index l = 0; l < kSegments; ++l) row->values[static_cast<std::size_t>(l)] = from[l * length_];
+    }
+    for (Index i = full; i < count_; ++i, ++row) {
       for (Index l = 0; l < kSegments; ++l) {
         const Index at = l * length_ + i;
         row->values[static_cast<std::size_t>(l)] = at < samples ? (*signal)[at] : 0.0;
@@ -301,8 +312,17 @@ Segments::Segments(const std::vector<const Vector*>& signals, Index overlap) {
   }
 }
 
+Index Segments::strides(Index samples) const {
+  const Index missing = kSegments * length_ - samples;  // all of them in the last segment
+  return std::max<Index>(0, length_ - missing) / kStride;
+}
+
+Rows Segments::strided(Index signal, Index stride) const {
+  return {at(signal, kStride * stride), kSegments, kStride * kSegments};
+}
+
 Matrix states_at_starts(const HeldStep& system, const Segments& signals, Index input) {
-  constexpr Index kAtOnce = 16;
+  constexpr Index kAtOnce = 32;
   const Index n = system.transition.rows(), length = signals.length(), chunks = length / kAtOnce;
   const auto advance = loops().advance;
   std::vector<Abreast> x(static_cast<std::size_t>(n)), next = x;
@@ -369,19 +389,6 @@ void SegmentFilter::run(const double* input, Index count, Rows states) {
          states.stride);
 }
 
-StridedSignals::StridedSignals(const Segments& signals, Index count, Index samples) {
-  const Index length = signals.length(), missing = kSegments * length - samples;  // all of them in the last segment
-  strides_ = std::max<Index>(0, length - missing) / kStride;
-  stride_ = kSegments * (strides_ + 1);  // not a power of two, for the cache's sake
-  rows_ = std::make_unique_for_overwrite<Abreast[]>(static_cast<std::size_t>(count * kStride * (strides_ + 1)));
-  for (Index row = 0; row < count * kStride; ++row) {
-    double* to = from(0).row(row);
-    for (Index k = 0; k < strides_; ++k, to += kSegments) {
-      std::copy_n(signals.row(row / kStride, kStride * k + row % kStride), kSegments, to);
-    }
-  }
-}
-
 namespace {
 
 /// n×16, where it is held row by row.
@@ -429,13 +436,16 @@ void combine(const Vector& weights, Rows from, const double* plus, Index columns
 
 void Products::add(Rows left, Rows right, Index columns) {
   if (sums_.empty()) return;
-  loops().products(left, left_, right, right_, columns, sums_.front().values.data());
+  loops().products(left, left_, right, right_, symmetric_, columns, sums_.front().values.data());
 }
 
 Matrix Products::total() const {
   Matrix total(left_, right_);
   for (Index i = 0; i < left_; ++i) {
-    for (Index j = 0; j < right_; ++j) total(i, j) = added_up(sums_[static_cast<std::size_t>(i * right_ + j)]);
+    for (Index j = 0; j < right_; ++j) {
+      const Index sum = symmetric_ && j < i ? j * right_ + i : i * right_ + j;
+      total(i, j) = added_up(sums_[static_cast<std::size_t>(sum)]);
+    }
   }
   return total;
 }

@@ -20,6 +20,18 @@ struct alignas(64) Abreast {
   std::array<double, kSegments> values;
 };
 
+/// Columns of a table whose rows are signals: row r begins at data + r·stride. Columns come in multiples of 16, of
+/// which each 16 are `step` apart.
+struct Rows {
+  double* data;
+  Index stride;
+  Index step = kSegments;
+  [[nodiscard]] double* row(Index r) const { return data + r * stride; }
+  [[nodiscard]] Rows from_row(Index r) const { return {row(r), stride, step}; }
+};
+
+inline constexpr Index kStride = 8;
+
 /// Signals of N samples as segments: value l of row i is sample l·m + i, m = ⌈N/16⌉, and 0 after the last.
 class Segments {
  public:
@@ -28,11 +40,18 @@ class Segments {
   explicit Segments(const std::vector<const Vector*>& signals, Index overlap = 0);
   [[nodiscard]] Index length() const { return length_; }  ///< m
   /// Row i of one of the signals; the following ones come after it.
-  [[nodiscard]] const double* row(Index signal, Index i) const {
+  [[nodiscard]] const double* row(Index signal, Index i) const { return at(signal, i); }
+  /// How many strides there are as far as all segments have samples, of `samples` in the record.
+  [[nodiscard]] Index strides(Index samples) const;
+  /// Every eighth sample by itself, from a stride on: column 16·k + l of row j is sample 8·(stride + k) + j of segment
+  /// l.
+  [[nodiscard]] Rows strided(Index signal, Index stride) const;
+
+ private:
+  [[nodiscard]] double* at(Index signal, Index i) const {
     return rows_[static_cast<std::size_t>(signal * count_ + i)].values.data();
   }
 
- private:
   Index length_ = 0, count_ = 0;  // count: of rows
   std::unique_ptr<Abreast[]> rows_;
 };
@@ -47,14 +66,6 @@ class Segments {
 /// Two filters one behind the other: the second one's input is weightsᵀx + through·u of the first.
 /// States are those of the first, then of the second, of which there are as many.
 [[nodiscard]] HeldStep cascaded(const HeldStep& first, const HeldStep& second, const Vector& weights, double through);
-
-/// Columns of a table whose rows are signals: row r begins at data + r·stride. Columns come in
-/// multiples of 16.
-struct Rows {
-  double* data;
-  Index stride;
-  [[nodiscard]] double* row(Index r) const { return data + r * stride; }
-};
 
 /// The filter over all segments at once.
 class SegmentFilter {
@@ -71,24 +82,6 @@ class SegmentFilter {
   std::vector<Abreast> state_;        // and the last input
   Index n_;
   bool begun_ = false;
-};
-
-inline constexpr Index kStride = 8;
-
-/// Every eighth sample of segments by itself: column 16·k + l of row 8·s + j is sample 8·k + j of segment l of signal
-/// s.
-class StridedSignals {
- public:
-  StridedSignals() = default;
-  /// @param count  of the signals    @param samples  of each; strides are taken as far as all segments have samples
-  StridedSignals(const Segments& signals, Index count, Index samples);
-  [[nodiscard]] Index strides() const { return strides_; }
-  /// All rows, from a stride on.
-  [[nodiscard]] Rows from(Index stride) const { return {rows_[0].values.data() + kSegments * stride, stride_}; }
-
- private:
-  Index strides_ = 0, stride_ = 0;
-  std::unique_ptr<Abreast[]> rows_;
 };
 
 /// The states of a filter over all segments at once, at every eighth sample only.
@@ -122,12 +115,19 @@ struct alignas(64) PartialSums {
 class Products {
  public:
   Products(Index left, Index right) : left_(left), right_(right), sums_(static_cast<std::size_t>(left * right)) {}
+  /// Those on the left are the first of those on the right, so that their products among themselves are there twice.
+  [[nodiscard]] static Products among(Index left, Index right) {
+    Products products(left, right);
+    products.symmetric_ = true;
+    return products;
+  }
   /// @param left, right  their first rows    @param columns a multiple of 16
   void add(Rows left, Rows right, Index columns);
   [[nodiscard]] Matrix total() const;  ///< left×right
 
  private:
   Index left_, right_;
+  bool symmetric_ = false;
   std::vector<PartialSums> sums_;
 };
 

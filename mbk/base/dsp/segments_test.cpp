@@ -144,7 +144,7 @@ TEST(StridedFilter, StandsWhereTheFilterIsAtEveryEighthSample) {
       const Matrix expected = one_after_the_other(a, kStep, u, Vector::Zero(n));
       const HeldStep filter = held_step(a, kStep);
       const Segments signals({&u});
-      const Index strides = StridedSignals(signals, 1, samples).strides();
+      const Index strides = signals.strides(samples);
       EXPECT_EQ(strides, samples < 16 ? 0 : (samples - 15 * signals.length()) / kStride);
       const StridedFilter strided(filter, states_at_starts(filter, signals, 0));
       EXPECT_LT(difference(strided, signals.row(0, 0), strides, signals.length(), expected),
@@ -162,14 +162,22 @@ TEST(StridedFilter, CarriesAFreeMotionOn) {
   EXPECT_LT(difference(strided, nullptr, 5, length, one_after_the_other(a, kStep, none, start)), 1e-12);
 }
 
-TEST(StridedSignals, AreTheSamplesThatAreEightApart) {
+TEST(Segments, GiveEveryEighthSampleByItself) {
   const Vector u = Vector::LinSpaced(395, 1.0, 395.0), y = -u;  // 25 of each segment but the last
-  const StridedSignals strided(Segments({&u, &y}), 2, u.size());
-  ASSERT_EQ(strided.strides(), 2);
-  EXPECT_EQ(strided.from(0).row(3)[0], 4.0);
-  EXPECT_EQ(strided.from(1).row(3)[0], 12.0);
-  EXPECT_EQ(strided.from(0).row(3)[kSegments + 2], 62.0);
-  EXPECT_EQ(strided.from(0).row(kStride + 7)[15], -383.0);
+  const Segments signals({&u, &y});
+  ASSERT_EQ(signals.strides(u.size()), 2);
+  const Rows input = signals.strided(0, 0), output = signals.strided(1, 0);
+  EXPECT_EQ(input.row(3)[0], 4.0);
+  EXPECT_EQ(signals.strided(0, 1).row(3)[0], 12.0);
+  EXPECT_EQ(input.row(3)[input.step + 2], 62.0);
+  EXPECT_EQ(output.row(7)[15], -383.0);
+  Products products(kStride, kStride);
+  products.add(input, output, 2 * kSegments);
+  double sum = 0.0;  // of samples 8·k + 3 and 8·k + 7
+  for (Index l = 0; l < kSegments; ++l) {
+    for (Index k = 0; k < 2; ++k) sum += u[25 * l + 8 * k + 3] * y[25 * l + 8 * k + 7];
+  }
+  EXPECT_DOUBLE_EQ(products.total()(3, 7), sum);
 }
 
 TEST(Segments, ProductsAndCombinationsAreThoseOfMatrices) {
@@ -185,6 +193,12 @@ TEST(Segments, ProductsAndCombinationsAreThoseOfMatrices) {
       const Matrix expected = table.topRows(left) * table.bottomRows(right).transpose() +
                               table.topRows(left).leftCols(16) * table.bottomRows(right).leftCols(16).transpose();
       EXPECT_LT((products.total() - expected).lpNorm<Eigen::Infinity>(), 1e-12) << left << "×" << right;
+      if (left <= right) {
+        Products among = Products::among(left, right);
+        among.add(rows, rows, kColumns);
+        const Matrix all = table.topRows(left) * table.topRows(right).transpose();
+        EXPECT_LT((among.total() - all).lpNorm<Eigen::Infinity>(), 1e-12) << left << "×" << right;
+      }
       Squares squares(left);
       squares.add(rows, kColumns);
       squares.add(rows, 16);

@@ -10,6 +10,7 @@ namespace mbk::identify {
 struct PredictionErrorOptions {
   Index poles = 2, zeros = 1;       ///< n ≥ 1 and 0 ≤ m ≤ n
   std::vector<double> start_poles;  ///< [rad/s], tried beside the starts that the method makes by itself
+  Vector start_denominator;         ///< f₁ … f_n of the only start; empty: those above
   bool free_start = true;           ///< an initial state and an offset of the output for each experiment
   bool noise_model = false;         ///< Box–Jenkins; otherwise output error
   Index max_noise_order = 8;        ///< of the noise model
@@ -49,7 +50,8 @@ struct PredictionErrorFit {
 /// output error; then as many c as d, or c alone, as the BIC of what is left says, then all at once; a noise model that
 /// does not settle gives way to the one of next BIC.
 /// @param experiments  each on the same even clock, with its delay taken out of the input
-/// @fails  usage: orders out of range; no experiment; an uneven clock; clocks that differ.
+/// @fails  usage: orders out of range; no experiment; an uneven clock; clocks that differ; a start of another order or
+///         with a value that is not finite.
 ///         data: too few samples; a value is not finite; input or output is constant.
 [[nodiscard]] Result<PredictionErrorFit> fit_prediction_error(const std::vector<SignalPair>& experiments,
                                                               const PredictionErrorOptions& options);

@@ -170,6 +170,23 @@ TEST(PredictionError, AgreesWithAPlainTwinOnDifferenceQuotients) {
   }
 }
 
+TEST(PredictionError, FromOneGivenStartEndsWhereAllStartsEnd) {
+  const SignalPair pair = noisy(3000, 5, 0.1);
+  PredictionErrorOptions options = four_poles(false);
+  const auto all = fit_prediction_error({pair}, options);
+  ASSERT_TRUE(all && all->converged && all->starts.size() > 1);
+  options.start_denominator = Truth().theta().head(4);
+  const auto one = fit_prediction_error({pair}, options);
+  ASSERT_TRUE(one && one->converged);
+  EXPECT_EQ(one->starts.size(), 1U);
+  EXPECT_NEAR(one->variance / all->variance, 1.0, 1e-12);
+  constexpr double kOfAnError = 1e-4;
+  const Vector error = all->covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((both(*one) - both(*all)).cwiseQuotient(error).lpNorm<Eigen::Infinity>(), kOfAnError);
+  options.start_denominator = Vector::Zero(3);
+  EXPECT_EQ(fit_prediction_error({pair}, options).error().kind, ErrorKind::usage);
+}
+
 TEST(PredictionError, FindsTheOrderOfTheNoise) {
   const auto white = fit_prediction_error({noisy(3000, 6, 0.1)}, four_poles(true));
   ASSERT_TRUE(white.has_value() && white->converged);

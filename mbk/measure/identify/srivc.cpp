@@ -11,6 +11,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/dsp/derivative_filter.h"
@@ -147,10 +148,6 @@ class Table {
   std::vector<dsp::Abreast> values_;
 };
 
-dsp::Rows rows_from(dsp::Rows rows, Index first) {
-  return {rows.row(first), rows.stride};
-}
-
 /// Columns of a block: samples that follow each other, or those of all segments at one step after another.
 struct Block {
   dsp::Rows rows;
@@ -276,16 +273,19 @@ Matrix free_motion(const Iterate& at, const SignalPair& pair) {
   return free;
 }
 
-/// Input and output at every eighth sample by itself, and the products of all these rows.
+/// Products of the samples of all strides: of the input's eight, then the output's.
 struct Strided {
-  dsp::StridedSignals signals;
-  Matrix products;
+  Index strides;
+  Matrix products{2 * dsp::kStride, 2 * dsp::kStride};
 
-  Strided(const dsp::Segments& segments, Index samples)
-      : signals(segments, 2, samples), products(2 * dsp::kStride, 2 * dsp::kStride) {
-    dsp::Products all(products.rows(), products.cols());
-    all.add(signals.from(0), signals.from(0), dsp::kSegments * signals.strides());
-    products = all.total();
+  Strided(const dsp::Segments& segments, Index samples) : strides(segments.strides(samples)) {
+    const dsp::Rows input = segments.strided(kInput, 0), output = segments.strided(kOutput, 0);
+    auto of_input = dsp::Products::among(dsp::kStride, dsp::kStride), of_output = of_input;
+    dsp::Products of_both(dsp::kStride, dsp::kStride);
+    of_input.add(input, input, dsp::kSegments * strides);
+    of_both.add(input, output, dsp::kSegments * strides);
+    of_output.add(output, output, dsp::kSegments * strides);
+    products << of_input.total(), of_both.total(), of_both.total().transpose(), of_output.total();
   }
 };
 
@@ -314,6 +314,7 @@ class Fitter {
   Fitter(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options)
       : experiments_(experiments), options_(options), n_(options.poles), q_(options.zeros + 1) {}
 
+  [[nodiscard]] Result<void> check();
   Result<ContinuousFit> run();
 
  private:
@@ -332,7 +333,6 @@ class Fitter {
   /// over strides do where signals stand far from zero.
   enum class For { step_on_the_way, step, covariance };
 
-  [[nodiscard]] Result<void> check() const;
   [[nodiscard]] std::vector<double> start_poles() const;
   [[nodiscard]] Search search(double pole) const;
   void iterate(Search& found) const;
@@ -370,7 +370,7 @@ class Fitter {
   [[nodiscard]] bool strides_pay(std::size_t experiment, const Layout& layout) const {
     constexpr Index kStridesForEach = 4;  // column of what a row is made of, by counts of instructions
     return experiment < strided_.size() &&
-           strided_[experiment].signals.strides() >= kStridesForEach * StrideLayout(layout, n_, layout.free).size;
+           strided_[experiment].strides >= kStridesForEach * StrideLayout(layout, n_, layout.free).size;
   }
   /// Products of rows, without the rows: moves on by all whole strides, and returns what they add.
   [[nodiscard]] Matrix products_of_strides(std::size_t experiment, const Iterate& at, const Layout& layout,
@@ -426,12 +426,12 @@ void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Ind
   const auto take_input = [&](Filter& filter, const double* signal, dsp::Rows to) {
     filter.run(signal, count, to);
     if (layout.of_input() > n_) dsp::combine(-at.a, to, signal, columns, to.row(n_));
-    if (layout.delay) dsp::combine(-at.b, rows_from(to, 1), none, columns, to.row(q_));
+    if (layout.delay) dsp::combine(-at.b, to.from_row(1), none, columns, to.row(q_));
   };
-  const dsp::Rows u = rows_from(now, layout.u()), free = rows_from(now, layout.free_at());
-  if (filters.clean_u) take_input(*filters.clean_u, from.clean_input, rows_from(now, n_));
+  const dsp::Rows u = now.from_row(layout.u()), free = now.from_row(layout.free_at());
+  if (filters.clean_u) take_input(*filters.clean_u, from.clean_input, now.from_row(n_));
   take_input(filters.u, from.input, u);
-  if (filters.y) filters.y->run(from.output, count, rows_from(now, layout.y()));
+  if (filters.y) filters.y->run(from.output, count, now.from_row(layout.y()));
   if (filters.free) {
     filters.free->run(none, count, free);
     std::fill_n(free.row(n_), columns, 1.0);
@@ -439,7 +439,7 @@ void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Ind
   dsp::combine(-at.b, u, from.output, columns, now.row(layout.e()));
   if (!filters.x) return;
   alignas(64) std::array<double, kBlock> clean;
-  dsp::combine(at.b, layout.reference ? rows_from(now, n_) : u, none, columns, clean.data());
+  dsp::combine(at.b, layout.reference ? now.from_row(n_) : u, none, columns, clean.data());
   if (free_weights != nullptr) dsp::combine(free_weights->head(n_), free, clean.data(), columns, clean.data());
   filters.x->run(clean.data(), count, now);
 }
@@ -513,7 +513,7 @@ void Fitter::blocks_of_segments(std::size_t experiment, const Iterate& at, const
 /// products follow from those of these states and samples, which are there once for eight samples.
 Matrix Fitter::products_of_strides(std::size_t experiment, const Iterate& at, const Layout& layout,
                                    Courses& from_here) const {
-  constexpr Index kAtOnce = 8;
+  constexpr Index kAtOnce = 16;
   const dsp::Segments& signals = stretched_[experiment];
   const Strided& strided = strided_[experiment];
   const StrideLayout base(layout, n_, from_here.free_is_known());
@@ -522,21 +522,21 @@ Matrix Fitter::products_of_strides(std::size_t experiment, const Iterate& at, co
   if (layout.free) free.emplace(from_here.free_to_x, from_here.free);
 
   Table table(base.input, (kAtOnce + 1) * dsp::kSegments);
-  const dsp::Rows states = table.from(0), y = rows_from(states, base.y);
+  const dsp::Rows states = table.from(0), y = states.from_row(base.y);
   if (layout.free) std::fill_n(states.row(base.one), kAtOnce * dsp::kSegments, 1.0);
   // Products of −y_f and y are needed where there are no instruments.
   const Index left = layout.instruments ? base.y : base.input;
-  dsp::Products among(left, base.input), with_samples(left, 2 * dsp::kStride), y_with_input(n_, dsp::kStride);
-  const Index all = strided.signals.strides();
+  auto among = dsp::Products::among(left, base.input);
+  dsp::Products with_input(base.input, dsp::kStride), with_output(left, dsp::kStride);
+  const Index all = strided.strides;
   for (Index k = 0; k < all; k += kAtOnce) {
     const Index count = std::min(kAtOnce, all - k), columns = count * dsp::kSegments;
     source.run(signals.row(kInput, k * dsp::kStride), count, states);
     output.run(signals.row(kOutput, k * dsp::kStride), count, y);
-    if (free) free->run(nullptr, count, rows_from(states, base.free));
-    const dsp::Rows samples = strided.signals.from(k);
+    if (free) free->run(nullptr, count, states.from_row(base.free));
     among.add(states, states, columns);
-    with_samples.add(states, samples, columns);
-    if (layout.instruments) y_with_input.add(y, samples, columns);
+    with_input.add(states, signals.strided(kInput, k), columns);
+    with_output.add(states, signals.strided(kOutput, k), columns);
   }
   from_here.step = all * dsp::kStride;
   from_here.source = source.state();
@@ -544,9 +544,9 @@ Matrix Fitter::products_of_strides(std::size_t experiment, const Iterate& at, co
   if (free) from_here.free = free->state();
 
   Matrix products = Matrix::Zero(base.size, base.size);
-  products.block(base.y, base.input, n_, dsp::kStride) = y_with_input.total();
   products.topLeftCorner(left, base.input) = among.total();
-  products.topRightCorner(left, 2 * dsp::kStride) = with_samples.total();
+  products.block(0, base.input, base.input, dsp::kStride) = with_input.total();
+  products.block(0, base.output, left, dsp::kStride) = with_output.total();
   products.bottomRightCorner(2 * dsp::kStride, 2 * dsp::kStride) = strided.products;
   products.triangularView<Eigen::StrictlyLower>() = products.transpose();
   return over_stride(at, layout, free_weights(at, layout, experiment), from_here, products);
@@ -572,7 +572,12 @@ Matrix Fitter::over_stride(const Iterate& at, const Layout& layout, const Vector
     states.col(samples) += by.from_next;
   };
   const Index left = layout.instruments ? layout.y() : layout.rows();
-  Matrix rows = Matrix::Zero(layout.rows(), base.size), gram = Matrix::Zero(layout.rows(), layout.rows());
+  const Index columns = (base.size + dsp::kSegments - 1) / dsp::kSegments * dsp::kSegments;
+  Table of_bases(base.size, columns), times_products(left, dsp::kStride * columns);
+  Table of_rows(layout.rows(), dsp::kStride * columns), none(1, columns);
+  for (Index k = 0; k < base.size; ++k) std::ranges::copy(products.col(k), of_bases.from(0).row(k));
+  Matrix rows = Matrix::Zero(layout.rows(), base.size);
+  Vector weights(base.size);
   Eigen::RowVectorXd modelled = Eigen::RowVectorXd::Zero(base.size), clean, last;  // B/A u; x̂
   for (Index j = 0; j < dsp::kStride; ++j) {
     if (j > 0) {
@@ -604,8 +609,17 @@ Matrix Fitter::over_stride(const Iterate& at, const Layout& layout, const Vector
       }
       rows.topRows(n_) = x;
     }
-    gram.topRows(left).noalias() += (rows.topRows(left) * products).eval() * rows.transpose();
+    const dsp::Rows here = of_rows.from(j * columns), product = times_products.from(j * columns);
+    for (Index r = 0; r < layout.rows(); ++r) {
+      weights = rows.row(r);
+      std::ranges::copy(weights, here.row(r));
+      if (r < left) dsp::combine(weights, of_bases.from(0), none.from(0).row(0), columns, product.row(r));
+    }
   }
+  dsp::Products sums(left, layout.rows());
+  sums.add(times_products.from(0), of_rows.from(0), dsp::kStride * columns);
+  Matrix gram = Matrix::Zero(layout.rows(), layout.rows());
+  gram.topRows(left) = sums.total();
   if (layout.instruments) gram.block(layout.e(), layout.y(), 1, n_).setZero();  // not all of it was added up
   gram.bottomLeftCorner(layout.rows() - left, left) = gram.topRightCorner(left, layout.rows() - left).transpose();
   return gram;
@@ -654,15 +668,16 @@ Sums Fitter::sums(const Iterate& at, const Layout& layout, const Vector& noise, 
     // [Z u e free]ᵀ[u e free −y], and ZᵀZ of what is not in u. Of e beside instruments the square is enough.
     const bool diagonal = layout.instruments && use != For::covariance;
     const Index left = layout.instruments && !layout.free ? layout.e() : y;
-    dsp::Products across(left, rows - u), within(diagonal ? 0 : own_size, own_size);
+    dsp::Products across(left, rows - u);
+    auto within = dsp::Products::among(diagonal ? 0 : own_size, own_size);
     dsp::Squares of_e(1), of_own(diagonal ? own_size : 0);
     Vector e(residuals == nullptr ? 0 : experiments_[k].time.size());
     Matrix gram = Matrix::Zero(rows, rows);
     const auto add = [&](const Block& block) {
-      across.add(block.rows, rows_from(block.rows, u), block.columns);
-      of_e.add(rows_from(block.rows, layout.e()), block.columns);
-      within.add(rows_from(block.rows, own), rows_from(block.rows, own), block.columns);
-      of_own.add(rows_from(block.rows, own), block.columns);
+      across.add(block.rows, block.rows.from_row(u), block.columns);
+      of_e.add(block.rows.from_row(layout.e()), block.columns);
+      within.add(block.rows.from_row(own), block.rows.from_row(own), block.columns);
+      of_own.add(block.rows.from_row(own), block.columns);
       if (residuals != nullptr) block.scatter(layout.e(), e);
     };
     Matrix strides = Matrix::Zero(rows, rows);
@@ -767,7 +782,7 @@ void Fitter::iterate(Search& found) const {
     settled = settled || (change < options_.tolerance && found.start.stable);
     least = std::min(least, change);
     if (!rests && !(settled && (!options_.refine || change < kRounding))) continue;
-    if (use == For::step) break;
+    if (use == For::step || !options_.refine) break;
     use = For::step;
     least = kFar;
     settled = false;
@@ -824,7 +839,24 @@ Fitter::Search Fitter::search(double pole) const {
   return found;
 }
 
-Result<void> Fitter::check() const {
+/// Sums of sixteen that do not wait for each other.
+template <class Term>
+double sum_of(const Vector& x, Term&& term) {
+  constexpr Index kAbreast = 16;
+  Eigen::Array<double, kAbreast, 1> sums = Eigen::Array<double, kAbreast, 1>::Zero();
+  const Index whole = x.size() / kAbreast * kAbreast;
+  for (Index i = 0; i < whole; i += kAbreast) sums += term(x.segment<kAbreast>(i).array());
+  return sums.sum() + term(x.tail(x.size() - whole).array()).sum();
+}
+double sum_of(const Vector& x) {
+  return sum_of(x, [](const auto& some) { return some; });
+}
+double squares_about_mean(const Vector& x) {
+  const double mean = sum_of(x) / static_cast<double>(x.size());
+  return sum_of(x, [mean](const auto& some) { return (some - mean).square(); });
+}
+
+Result<void> Fitter::check() {
   if (n_ < 1 || n_ > kMaxPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMaxPoles));
   if (q_ < 1 || q_ > n_ + 1) {
     return bad_usage(
@@ -835,12 +867,16 @@ Result<void> Fitter::check() const {
     if (!(pole > 0.0) || !std::isfinite(pole))
       return bad_usage(fmt::format("start pole {} rad/s is not above 0", pole));
   }
-  Index samples = 0;
+  double input_squares = 0.0;
   for (const SignalPair& pair : experiments_) {
-    samples += pair.time.size();
-    for (const Vector* signal : {&pair.time, &pair.input, &pair.output}) {
+    samples_ += pair.time.size();
+    const double of_input = squares_about_mean(pair.input), of_output = squares_about_mean(pair.output);
+    input_squares += of_input;
+    output_squares_ += of_output;
+    for (const auto& [signal, sum] : {std::pair(&pair.time, sum_of(pair.time)), std::pair(&pair.input, of_input),
+                                      std::pair(&pair.output, of_output)}) {
       if (signal->size() != pair.time.size()) return bad_usage("time, input and output differ in length");
-      if (std::isfinite(signal->sum())) continue;
+      if (std::isfinite(sum)) continue;
       if (const Index bad = first_non_finite(*signal); bad >= 0) {
         return bad_data(fmt::format("sample {} of a signal is not a finite number", bad + 1),
                         "cut it out by --from and --to");
@@ -854,10 +890,12 @@ Result<void> Fitter::check() const {
     }
   }
   const Index unknown = n_ + q_ + (options_.free_start ? (n_ + 1) * static_cast<Index>(experiments_.size()) : 0);
-  if (samples < 2 * unknown + 10) {
-    return bad_data(fmt::format("{} samples are too few for {} unknowns", samples, unknown),
+  if (samples_ < 2 * unknown + 10) {
+    return bad_data(fmt::format("{} samples are too few for {} unknowns", samples_, unknown),
                     "record longer, or take fewer poles");
   }
+  if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
+  if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");
   return {};
 }
 
@@ -941,11 +979,7 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
 
 Result<ContinuousFit> Fitter::run() {
   if (auto ok = check(); !ok) return tl::unexpected(ok.error());
-  double input_squares = 0.0;
   for (const SignalPair& pair : experiments_) {
-    output_squares_ += (pair.output.array() - pair.output.mean()).square().sum();
-    input_squares += (pair.input.array() - pair.input.mean()).square().sum();
-    samples_ += pair.time.size();
     if (!pair.step) {
       stretched_.emplace_back();
       continue;
@@ -961,8 +995,6 @@ Result<ContinuousFit> Fitter::run() {
       strided_.emplace_back(stretched_.back(), pair.time.size());
     }
   }
-  if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
-  if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");
 
   const std::vector<double> poles = start_poles();
   std::vector<Search> searches(poles.size());
@@ -996,6 +1028,10 @@ Result<ContinuousFit> Fitter::run() {
 
 Result<ContinuousFit> fit_continuous(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options) {
   return Fitter(experiments, options).run();
+}
+
+Result<void> check_experiments(const std::vector<SignalPair>& experiments, const ContinuousFitOptions& options) {
+  return Fitter(experiments, options).check();
 }
 
 Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& experiment) {

@@ -60,6 +60,11 @@ struct ContinuousFit {
 [[nodiscard]] Result<ContinuousFit> fit_continuous(const std::vector<SignalPair>& experiments,
                                                    const ContinuousFitOptions& options);
 
+/// As fit_continuous looks at experiments and options before it begins.
+/// @fails  as it does
+[[nodiscard]] Result<void> check_experiments(const std::vector<SignalPair>& experiments,
+                                             const ContinuousFitOptions& options);
+
 /// Response of a continuous-time model from rest to the experiment's input (without its delay), exactly for its hold.
 /// @param a a₀ … a_{n−1}    @param b b₀ … b_m    @returns as many values as there are samples
 [[nodiscard]] Vector simulate_continuous(const Vector& a, const Vector& b, const SignalPair& experiment);

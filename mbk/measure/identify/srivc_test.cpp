@@ -146,6 +146,23 @@ TEST(Srivc, IsTheSameByStridesOfAnEvenClockAndSampleBySample) {
   }
 }
 
+TEST(Srivc, WithoutRefinementIsAsNearAsItsTolerance) {
+  SignalPair pair = experiment(31, 0.01);  // long enough for strides to pay
+  pair.output = simulate_continuous(RaoGarnier().a, RaoGarnier().b, pair);
+  numeric::Random random(7);
+  for (double& y : pair.output) y += random.normal();
+  ContinuousFitOptions options = order_4_1();
+  options.start_poles = {20.0};
+  options.only_given_starts = true;
+  const auto refined = fit_continuous({pair}, options);
+  options.refine = false;
+  const auto settled = fit_continuous({pair}, options);
+  ASSERT_TRUE(refined && refined->converged && settled && settled->converged);
+  EXPECT_LT(settled->starts[0].iterations, refined->starts[0].iterations);
+  const Vector theta = both(*refined);
+  EXPECT_LT((both(*settled) - theta).cwiseQuotient(theta).lpNorm<Eigen::Infinity>(), options.tolerance);
+}
+
 TEST(Srivc, RefusesAModelThatIsUnstable) {
   // y grows by itself: e^{0.05 t} behind 1/(s − 0.05).
   SignalPair pair = experiment(20, 0.01);
