@@ -31,8 +31,24 @@ class DiskPages {
   /// Takes the signals of a trial.
   void take(PreparedTrial& trial);
 
+  /// Numbers that come piece by piece and go to the file at once, without having been where they are to stand.
+  struct Coming {
+    double* first = nullptr;  ///< where they are to stand
+    Index count = 0;          ///< as many as can come
+    Index come = 0;
+    std::size_t offset = 0;  ///< of the first whole page in the file
+    bool on_disk = false;    ///< what has come of the whole pages is in the file alone
+  };
+  [[nodiscard]] Coming expect(double* first, Index count);
+  /// From then on those that have come are to be read by `arrived` alone.
+  void add(Coming& coming, const double* from, Index count);
+  /// All that have come stand where they are to stand. No more may come.
+  /// @throws std::bad_alloc  where they cannot be brought back from the file
+  void arrived(Coming& coming);
+
  private:
   [[nodiscard]] bool open();
+  [[nodiscard]] bool read_back(void* to, std::size_t count, std::size_t offset) const;
 
   int descriptor_ = -1;
   bool failed_ = false;
