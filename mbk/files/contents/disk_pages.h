@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -63,6 +65,28 @@ inline void let_go(const Eigen::Ref<const Vector>& numbers) {
 }
 /// Of the signals of a trial.
 void let_go(const PreparedTrial& trial);
+
+/// Calls use(part, begin) with one piece of a column after another, and lets go of each. A short column is one piece.
+/// @param overlap  numbers that a piece has in common with the next
+template <class Use>
+void in_pieces(const Eigen::Ref<const Vector>& numbers, Index overlap, const Use& use) {
+  constexpr Index kAtOnce = 1 << 19;
+  for (Index begin = 0; begin + overlap < numbers.size(); begin += kAtOnce) {
+    const auto part = numbers.segment(begin, std::min(kAtOnce + overlap, numbers.size() - begin));
+    use(part, begin);
+    let_go(part);
+  }
+}
+
+/// For a walk along a column: lets go of what lies before the number that it has reached.
+[[nodiscard]] inline std::function<void(Index)> let_go_behind(const Eigen::Ref<const Vector>& numbers) {
+  return [first = numbers.data(), count = numbers.size(), done = Index{0}](Index reached) mutable {
+    constexpr Index kAtOnce = 1 << 18;
+    if (reached < count && reached - done < kAtOnce) return;
+    let_go(first + done, reached - done);
+    done = reached;
+  };
+}
 
 /// Lets go of what lies behind a walk along columns.
 class InPassing {

@@ -392,7 +392,6 @@ EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) 
     }
   };
   const std::vector<Rows> pieces = pieces_between_gaps(*exchange.clock);
-  recording::let_go(*exchange.clock);
   Series shown = decimated_in_passing(*exchange.clock, curl ? 2 : 1, running, pieces, Decimation::extremes);
   curve.time = shown.time.array() - (*exchange.clock)[0];
   curve.absorbed = shown.values.col(0);
