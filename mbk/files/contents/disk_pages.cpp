@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <new>
+#include <utility>
 
 namespace mbk::recording {
 namespace {
@@ -86,6 +88,60 @@ Index DiskPages::take(double* first, Index count) {
   any_taken = true;
   size_ += pages.size();
   return static_cast<Index>((pages.end - Pages::address_of(first)) / sizeof(double));
+}
+
+DiskPages::Coming DiskPages::expect(double* first, Index count) {
+  const Pages pages(first, count);
+  Coming coming{first, count, 0, size_, !pages.empty() && open()};
+  if (coming.on_disk) size_ += pages.size();
+  return coming;
+}
+
+void DiskPages::add(Coming& coming, const double* from, Index count) {
+  const Pages pages(coming.first, coming.count);
+  const std::uintptr_t begin = Pages::address_of(coming.first + coming.come);
+  const std::uintptr_t end = begin + static_cast<std::size_t>(count) * sizeof(double);
+  const std::uintptr_t first = std::clamp(pages.begin, begin, end), last = std::clamp(pages.end, begin, end);
+  if (coming.on_disk && first < last &&
+      !write_all(descriptor_, reinterpret_cast<const char*>(from) + (first - begin), last - first,
+                 coming.offset + (first - pages.begin))) {
+    failed_ = true;
+    arrived(coming);
+  }
+  // What stands on no whole page, or everything.
+  double* const to = coming.first + coming.come;
+  const Index before = coming.on_disk ? static_cast<Index>((first - begin) / sizeof(double)) : count;
+  std::copy_n(from, before, to);
+  if (coming.on_disk) {
+    const auto behind = static_cast<Index>((last - begin) / sizeof(double));
+    std::copy_n(from + behind, count - behind, to + behind);
+  }
+  coming.come += count;
+}
+
+void DiskPages::arrived(Coming& coming) {
+  if (!std::exchange(coming.on_disk, false)) return;
+  const Pages pages(coming.first, coming.count);
+  const std::uintptr_t end = std::clamp(Pages::address_of(coming.first + coming.come), pages.begin, pages.end);
+  const std::size_t written = end - pages.begin;
+  std::size_t whole = written / page_size() * page_size();
+  if (whole > 0 && ::mmap(at(pages.begin), whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, descriptor_,
+                          static_cast<off_t>(coming.offset)) == MAP_FAILED) {
+    whole = 0;
+  }
+  any_taken = any_taken || whole > 0;
+  if (!read_back(at(pages.begin + whole), written - whole, coming.offset + whole)) throw std::bad_alloc();
+}
+
+bool DiskPages::read_back(void* to, std::size_t count, std::size_t offset) const {
+  for (std::size_t done = 0; done < count;) {
+    const ssize_t got =
+        ::pread(descriptor_, static_cast<char*>(to) + done, count - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    done += static_cast<std::size_t>(got);
+  }
+  return true;
 }
 
 void DiskPages::take(PreparedTrial& trial) {

@@ -1,7 +1,10 @@
 #include "mbk/files/contents/disk_pages.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <string>
 
@@ -92,6 +95,41 @@ TEST(DiskPages, NumbersStayInMemoryWhereNoFileCanBe) {
   EXPECT_EQ(DiskPages().take(values.data(), kCount), 0);
   EXPECT_EQ(values, numbers());
   ASSERT_EQ(before == nullptr ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", kept.c_str(), 1), 0);
+}
+
+/// The numbers in pieces of which none is whole pages, as if each came from elsewhere.
+Vector as_they_come(DiskPages& disk) {
+  constexpr Index kPiece = 12'345;
+  const Vector all = numbers();
+  Vector place(kCount + kPiece);  // more may come than do
+  DiskPages::Coming coming = disk.expect(place.data(), place.size());
+  for (Index begin = 0; begin < kCount; begin += kPiece) {
+    disk.add(coming, all.data() + begin, std::min(kPiece, kCount - begin));
+  }
+  disk.arrived(coming);
+  return place.head(kCount);
+}
+
+TEST(DiskPages, NumbersThatComeInPiecesStandWhereTheyAreExpected) {
+  DiskPages disk;
+  EXPECT_EQ(as_they_come(disk), numbers());
+  EXPECT_EQ(as_they_come(disk), numbers());  // behind others in the file
+}
+
+TEST(DiskPages, NumbersThatComeStayInMemoryFromWhereTheDiskIsFull) {
+  // As a disk that is full: no file may be longer.
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const rlim_t most : {rlim_t{0}, rlim_t{1'000'003}}) {
+    const rlimit limit{most, before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    DiskPages disk;
+    EXPECT_EQ(as_they_come(disk), numbers()) << most;
+    EXPECT_EQ(as_they_come(disk), numbers()) << most;
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 TEST(DiskPages, AFewNumbersAreNoPage) {

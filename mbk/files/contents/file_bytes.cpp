@@ -132,6 +132,7 @@ FileInPassing::FileInPassing(FileInPassing&& other) noexcept
       read_(other.read_),
       forgotten_(other.forgotten_),
       data_(std::exchange(other.data_, nullptr)),
+      spare_(other.spare_),
       sum_(std::move(other.sum_)),
       ahead_(std::move(other.ahead_)) {}
 
@@ -142,6 +143,7 @@ FileInPassing::~FileInPassing() {
 }
 
 void FileInPassing::read_ahead() {
+  use_spare();
   const auto read = [descriptor = descriptor_, to = data_ + read_, count = std::min(kPiece, size_ - read_),
                      sum = sum_.get()]() -> Result<void> {
     if (auto ok = read_bytes(descriptor, to, count); !ok) return ok;
@@ -164,8 +166,17 @@ Result<void> FileInPassing::read_on() {
 void FileInPassing::forget(std::size_t before) {
   const std::size_t end = before / kPiece * kPiece;
   if (end <= forgotten_) return;
-  ::madvise(data_ + forgotten_, end - forgotten_, MADV_DONTNEED);
+  // The memory of the last one serves the next that is read: it need not be cleared again.
+  char* const from = spare_ != nullptr ? spare_ : data_ + forgotten_;
+  spare_ = data_ + end - kPiece;
+  ::madvise(from, static_cast<std::size_t>(spare_ - from), MADV_DONTNEED);
   forgotten_ = end;
+}
+
+void FileInPassing::use_spare() {
+  if (spare_ == nullptr || size_ - read_ < kPiece) return;
+  constexpr int kHow = MREMAP_MAYMOVE | MREMAP_FIXED | MREMAP_DONTUNMAP;
+  if (::mremap(spare_, kPiece, kPiece, kHow, data_ + read_) != MAP_FAILED) spare_ = nullptr;
 }
 
 }  // namespace mbk::recording

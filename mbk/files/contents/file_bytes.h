@@ -68,10 +68,12 @@ class FileInPassing {
   FileInPassing(int descriptor, std::size_t size, char* data) : descriptor_(descriptor), size_(size), data_(data) {}
   /// Reads the next piece and adds it to the sum, beside whoever works on what is there.
   void read_ahead();
+  void use_spare();
 
   int descriptor_;
   std::size_t size_, read_ = 0, forgotten_ = kPiece;
-  char* data_;  ///< as much room as the file needs, of which only what is written to takes memory
+  char* data_;             ///< as much room as the file needs, of which only what is written to takes memory
+  char* spare_ = nullptr;  ///< a piece that was forgotten, in memory
   std::unique_ptr<Sha256> sum_ = std::make_unique<Sha256>();
   std::future<Result<void>> ahead_;  ///< of the piece behind what was read
 };

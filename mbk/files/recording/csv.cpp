@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -14,11 +13,11 @@
 
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/cells.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/csv_text.h"
 #include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/table_columns.h"
 
 namespace mbk::recording {
 namespace {
@@ -106,13 +105,21 @@ class Table {
     if (auto ok = find_columns(*line); !ok) return ok;
     make_room(text);
 
-    for (; line; line = next_) {
+    while (line) {
       text.forget(static_cast<std::size_t>(line->text.data() - text.so_far().data()));
-      next_ = lines.next();
+      const char* const end = text.so_far().data() + text.so_far().size();
+      if (const Rows plain = take_plain_rows(line->text.data(), end); plain.count > 0) {
+        lines.go_on_at(line->number + plain.count, plain.end);
+        line = lines.next();
+        continue;
+      }
+      const auto next = lines.next();
       if (!text.status()) return text.status();
-      if (auto ok = add(*line, !next_, text.so_far().data() + text.so_far().size()); !ok) return ok;
+      if (auto ok = add(*line, !next, text.so_far().data() + text.so_far().size()); !ok) return ok;
+      line = next;
     }
-    if (rows_ == 0) {
+    if (!text.status()) return text.status();
+    if (rows_.rows() == 0) {
       return bad_data(fmt::format("the only line of numbers, line {}, is incomplete", last_line_),
                       "nothing complete was recorded");
     }
@@ -158,7 +165,6 @@ class Table {
   /// @param end  of the text that is there
   Result<void> add(const CsvLine& line, bool last, const char* end) {
     last_line_ = line.number;
-    if (rows_ == numbers_.front().size()) make_rows(rows_ + rows_ / 4 + 1);
     Row row = decimal_commas_ ? Row{0, true, false} : take_plain(line.text, end);
     if (row.odd || (row.count != columns_ && line.text.find('"') != line.text.npos)) row = part_odd(line.text);
     const bool trailing = trailing_ && row.count == columns_ + 1 && row.last_is_empty;
@@ -179,8 +185,7 @@ class Table {
       contents.notes.push_back(fmt::format(
           "line {} has no line end: if the recording was cut off there, its last number may be cut too", line.number));
     }
-    ++rows_;
-    if (rows_ >= on_disk_from_) put_on_disk();
+    rows_.next_row();
     return {};
   }
 
@@ -191,6 +196,38 @@ class Table {
                              "export it with semicolons between the columns"
                            : "every line must have a cell for every column",
                     place(line.number));
+  }
+
+  /// Lines that were taken.
+  struct Rows {
+    std::size_t count = 0;
+    const char* end = nullptr;  ///< behind them
+  };
+
+  /// Takes lines as nearly all are, whole ones of plain numbers alone, as many as there are one after another.
+  /// @param end  of the text that is there
+  Rows take_plain_rows(const char* at, const char* end) {
+    Rows rows{0, at};
+    if (head_.separator == kBlanks || decimal_commas_ || trailing_) return rows;
+    while (const char* const behind = take_plain_row(rows.end, end)) {
+      rows_.next_row();
+      ++rows.count;
+      rows.end = behind;
+    }
+    return rows;
+  }
+
+  /// @returns  the begin of the next line; nullptr where this one is not as nearly all are
+  const char* take_plain_row(const char* at, const char* end) {
+    for (std::size_t c = 0; c < columns_; ++c) {
+      const NumberAhead ahead = plain_number_ahead(at, end);
+      at += ahead.length;
+      if (ahead.length == 0 || at == end) return nullptr;
+      rows_[c] = ahead.value;
+      if (c + 1 < columns_ && *at++ != head_.separator) return nullptr;
+    }
+    if (*at == '\r') ++at;
+    return at != end && *at == '\n' ? at + 1 : nullptr;
   }
 
   /// A line, as far as it is known.
@@ -209,7 +246,7 @@ class Table {
       row.last_is_empty = value && std::isnan(*value) && without_quotes(cell).empty();
       if (row.count > columns_) return row.count <= columns_ + 64;
       row.odd = row.odd || !value;
-      numbers_[row.count - 1][rows_] = value.value_or(kNone);
+      rows_[row.count - 1] = value.value_or(kNone);
       return true;
     };
     if (head_.separator == kBlanks) {
@@ -278,8 +315,8 @@ class Table {
       } else if (one.kind == Odd::words && !kinds_[c].obstacle) {
         kinds_[c].obstacle = not_a_number(line.number, c + 1, one.cell, decimal_commas_);
       }
-      numbers_[c][rows_] = one.value;
     }
+    for (std::size_t c = 0; c < odd_.size(); ++c) rows_[c] = odd_[c].value;
     return {};
   }
 
@@ -294,8 +331,8 @@ class Table {
     bool points = std::ranges::any_of(odd_, has_point);
     for (std::size_t c = 0; c < columns_ && !points; ++c) {
       if (kinds_[c].instants > 0) continue;
-      points = std::any_of(numbers_[c].data(), numbers_[c].data() + rows_,
-                           [](double value) { return std::isfinite(value) && value != std::trunc(value); });
+      points = std::ranges::any_of(rows_.column(c),
+                                   [](double value) { return std::isfinite(value) && value != std::trunc(value); });
     }
     if (points) {
       return bad_data(fmt::format("'{}' has a comma where other numbers have decimal points", printable(comma_cell_)),
@@ -319,26 +356,7 @@ class Table {
     return kDay * column.midnights + instant.seconds;
   }
 
-  /// The rows so far of a long table, again and again, while those behind them are read.
-  void put_on_disk() {
-    constexpr Index kAtOnce = 1 << 17;
-    on_disk_from_ = rows_ + kAtOnce;
-    if (numbers_.front().size() <= kLong) return;
-    wait_for_disk();
-    // With both, a system that has no thread left does it when it is waited for.
-    writing_ = std::async(std::launch::async | std::launch::deferred, [this, rows = rows_] {
-      for (std::size_t c = 0; c < columns_; ++c) {
-        on_disk_[c] += disk_.take(numbers_[c].data() + on_disk_[c], rows - on_disk_[c]);
-      }
-    });
-  }
-
-  void wait_for_disk() {
-    if (writing_.valid()) writing_.get();
-  }
-
   Result<void> finish() {
-    wait_for_disk();
     if (decimal_commas_ && !comma_is_sure_) {
       return bad_data(fmt::format("'{}' and all others like it may have a decimal comma or one between thousands",
                                   printable(comma_cell_)),
@@ -353,16 +371,15 @@ class Table {
     for (std::size_t c = 0; c < columns_; ++c) {
       Array& array = contents.arrays[c];
       if (!head_.names.empty()) array.name = printable(head_.names[c]);
-      numbers_[c].conservativeResize(rows_);
       if (auto ok = settle_unit(c); !ok) return ok;
       if (kinds_[c].obstacle) {
         array.obstacle = std::move(kinds_[c].obstacle);
         if (first == nullptr) first = &*array.obstacle;
         aside.push_back(array.name.empty() ? std::to_string(c + 1) : fmt::format("{} '{}'", c + 1, array.name));
-        numbers_[c] = Vector();
+        static_cast<void>(rows_.take(c));
       } else {
         any = true;
-        array.values = SharedMatrix::of_column(std::move(numbers_[c]));
+        array.values = SharedMatrix::of_column(rows_.take(c));
       }
     }
     if (!any) return tl::unexpected(*first);
@@ -387,8 +404,8 @@ class Table {
       array.unit = head_.units[c];
       return {};
     }
-    const auto empty = numbers_[c].array().isNaN().count();
-    if (column.mixed || column.instants + empty != rows_) {
+    const auto empty = rows_.column(c).array().isNaN().count();
+    if (column.mixed || column.instants + empty != rows_.rows()) {
       if (!column.obstacle) {
         column.obstacle =
             bad_data(fmt::format("{} holds times and other numbers, or times with and without a date", called),
@@ -431,31 +448,18 @@ class Table {
     const double parts = 1.02 * static_cast<double>(text.size()) / static_cast<double>(there.size());
     const auto expected = text.is_complete() ? ends : static_cast<std::size_t>(static_cast<double>(ends) * parts);
     contents.arrays.resize(columns_);
-    numbers_.resize(columns_);
-    make_rows(static_cast<Index>(std::min(expected, text.size() / columns_) + 1));
-  }
-
-  void make_rows(Index rows) {
-    wait_for_disk();
-    for (Vector& column : numbers_) column.conservativeResize(rows);
-    on_disk_.assign(columns_, 0);  // the longer ones stand elsewhere
+    rows_.expect(static_cast<Index>(columns_), static_cast<Index>(std::min(expected, text.size() / columns_) + 1));
   }
 
   CsvHead head_;
   std::size_t columns_ = 0;
   std::vector<Column> kinds_;
-  std::vector<Vector> numbers_;  ///< column by column, with room for more rows
-  std::vector<Odd> odd_;         ///< the line that is worked on, where it is not as most are
-  std::vector<Index> on_disk_;   ///< of each column, the numbers at its begin whose memory is a file's
-  Index on_disk_from_ = 0;       ///< rows at which it is time for more
-  DiskPages disk_;
-  std::future<void> writing_;  ///< of them; it ends before what it writes is gone
-  bool trailing_ = false;      ///< every line ends with a separator
+  std::vector<Odd> odd_;   ///< the line that is worked on, where it is not as most are
+  bool trailing_ = false;  ///< every line ends with a separator
   bool decimal_commas_ = false, comma_is_sure_ = false;
   std::string comma_cell_;  ///< the first that has one
-  Index rows_ = 0;          ///< complete ones so far
+  TableColumns rows_;       ///< complete ones so far, and the one that is worked on
   std::size_t last_line_ = 0;
-  std::optional<CsvLine> next_;
 };
 
 Result<Contents> decode_text(CsvText text) {

@@ -83,6 +83,12 @@ class CsvLines {
     return line;
   }
 
+  /// @param number  of the line that begins there
+  void go_on_at(std::size_t number, const char* begin) {
+    number_ = number - 1;
+    begin_ = static_cast<std::size_t>(begin - text_.so_far().data());
+  }
+
  private:
   CsvText& text_;
   std::size_t begin_ = 0, number_ = 0;

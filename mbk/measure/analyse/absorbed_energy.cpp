@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <future>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -392,7 +393,6 @@ EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) 
     }
   };
   const std::vector<Rows> pieces = pieces_between_gaps(*exchange.clock);
-  recording::let_go(*exchange.clock);
   Series shown = decimated_in_passing(*exchange.clock, curl ? 2 : 1, running, pieces, Decimation::extremes);
   curve.time = shown.time.array() - (*exchange.clock)[0];
   curve.absorbed = shown.values.col(0);
@@ -435,16 +435,20 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
   auto made = exchange_of(recording, trial);
   if (!made) return tl::unexpected(made.error());
   const auto exchange = std::make_shared<const Exchange>(std::move(*made));
+  std::optional<Curl> curl;
+  if (model != nullptr && trial.axes == 2 && model->K.rows() == 2 && model->K.allFinite()) {
+    curl = Curl{impedance::antisymmetric_part(model->K), centre_of(*model, *exchange)};
+  }
+  // Of a long recording by a thread of its own, where the system has one left.
+  const auto when =
+      exchange->samples() > recording::kLong ? std::launch::async | std::launch::deferred : std::launch::deferred;
+  auto curve = std::async(when, [&exchange, &curl] { return curve_of(*exchange, curl); });
   Intervals intervals(*exchange);
   const auto [parts, blocks] = divide(exchange, intervals, trial, options.block_s);
   if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());
 
   Energy energy;
   energy.account = account_of(blocks, has_perturbations(trial), options.first_share, options.replicates, options.seed);
-  std::optional<Curl> curl;
-  if (model != nullptr && trial.axes == 2 && model->K.rows() == 2 && model->K.allFinite()) {
-    curl = Curl{impedance::antisymmetric_part(model->K), centre_of(*model, *exchange)};
-  }
   const Afterwards found =
       walk_again(*exchange, intervals, options.first_share * energy.account.squared_velocity, curl);
   energy.from_s = exchange->time(exchange->window.first);
@@ -459,7 +463,7 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
     energy.curl = CurlWork{curl->k_a, found.curl, kNaN};
     if (energy.account.absorbed != 0.0) energy.curl->share = energy.curl->absorbed / energy.account.absorbed;
   }
-  energy.curve = curve_of(*exchange, curl);
+  energy.curve = curve.get();
   return energy;
 }
 

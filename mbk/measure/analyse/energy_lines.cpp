@@ -37,10 +37,11 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
   const Segment &first = trial.segments.front(), &last = trial.segments.back();
   const Index begin = first.first_sample, end = last.first_sample + (last.size() - 1) * trial.preparation.every + 1;
   if (begin < 0 || end > recording.samples() || end - begin < 2) return std::nullopt;
-  const auto time = recording.time.segment(begin, end - begin);
-  const auto steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
-  const bool unbroken = steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5;
-  recording::let_go(time);
+  bool unbroken = true;
+  recording::in_pieces(recording.time.segment(begin, end - begin), 1, [&](const auto& time, Index) {
+    const auto steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
+    unbroken = unbroken && steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5;
+  });
   if (!unbroken) return std::nullopt;
   Window window;
   window.rate = trial.recording_rate;
@@ -51,8 +52,9 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
     if (all.size() == 0) return std::nullopt;
     *values = all.part(begin, end - begin);
     for (Index axis = 0; axis < values->cols(); ++axis) {
-      const bool finite = values->col(axis).allFinite();
-      recording::let_go(values->col(axis));
+      bool finite = true;
+      recording::in_pieces(values->col(axis), 0,
+                           [&](const auto& piece, Index) { finite = finite && piece.allFinite(); });
       if (!finite) return std::nullopt;
     }
   }
@@ -62,8 +64,11 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
 double total_variance(const Columns& signal) {
   double sum = 0.0;
   for (Index axis = 0; axis < signal.cols(); ++axis) {
-    sum += (signal.col(axis).array() - signal.col(axis).mean()).square().sum();
-    recording::let_go(signal.col(axis));
+    double total = 0.0;
+    recording::in_pieces(signal.col(axis), 0, [&](const auto& piece, Index) { total += piece.sum(); });
+    const double mean = total / static_cast<double>(signal.rows());
+    recording::in_pieces(signal.col(axis), 0,
+                         [&](const auto& piece, Index) { sum += (piece.array() - mean).square().sum(); });
   }
   return sum / static_cast<double>(signal.rows());
 }

@@ -62,10 +62,10 @@ double prominence(const dsp::Spectrum& spectrum, Index line) {
 /// The clearest line of one axis.
 AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<const Vector>& reference, double rate) {
   AssumptionTest result{Assumption::no_tremor};
-  const auto of_force = dsp::welch(force, Hertz(rate), Hertz(kResolution));
-  recording::let_go(force);
-  const auto of_reference = dsp::welch(reference, Hertz(rate), Hertz(kResolution));
-  recording::let_go(reference);
+  const auto spectrum_of = [rate](const Eigen::Ref<const Vector>& signal) {
+    return dsp::welch(signal, Hertz(rate), Hertz(kResolution), recording::let_go_behind(signal));
+  };
+  const auto of_force = spectrum_of(force), of_reference = spectrum_of(reference);
   if (!of_force || !of_reference) return result;
   const double width = of_force->frequency[1] - of_force->frequency[0];
   const double segments = static_cast<double>(force.size()) / rate * width;
@@ -96,8 +96,8 @@ AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<c
 }
 
 bool is_finite(const Eigen::Ref<const Vector>& signal) {
-  const bool finite = first_non_finite(signal) < 0;
-  recording::let_go(signal);
+  bool finite = true;
+  recording::in_pieces(signal, 0, [&](const auto& piece, Index) { finite = finite && first_non_finite(piece) < 0; });
   return finite;
 }
 
@@ -116,9 +116,10 @@ std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> reco
     const Index begin = std::max<Index>(0, std::llround(trial.preparation.from_s * rate)),
                 end = std::min<Index>(recording.samples(), std::llround(trial.preparation.to_s * rate) + 1);
     if (static_cast<double>(end - begin) < kShortest * rate) continue;
-    const auto time = recording.time.segment(begin, end - begin);
-    const double longest = (time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff();
-    recording::let_go(time);
+    double longest = -std::numeric_limits<double>::infinity();
+    recording::in_pieces(recording.time.segment(begin, end - begin), 1, [&](const auto& time, Index) {
+      longest = std::max(longest, (time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff());
+    });
     if (longest * rate > 1.5) continue;
     for (Index axis = 0; axis < trial.axes; ++axis) {
       const auto of_force = force.col(axis).segment(begin, end - begin),

@@ -112,6 +112,7 @@ class Tester {
       force_.row(k) = r_.Y.row(i);
     }
     measured_.position.rowwise() -= measured_.position.colwise().mean().eval();
+    let_go(r_);
   }
 
   [[nodiscard]] static Matrix cosines(Index rows, Index count) {
@@ -152,6 +153,7 @@ class Tester {
     explained_ = measured_;
     if (r_.reference.size() == 0) return;
     const Matrix X = reference_around();
+    let_go(r_);  // from here on there are rows of their own
     const Index half = rows() / 2, rest = rows() - half;
     Matrix motion(rows(), 4 * n_);
     motion << measured_.jerk, measured_.acceleration, measured_.velocity, measured_.position;
@@ -393,9 +395,7 @@ class Tester {
 std::vector<AssumptionTest> test_assumptions(const Regression& r, const Matrix& coefficients, const Matrix& errors,
                                              double band, const std::vector<RowRange>& ranges) {
   if (!(band > 0.0) || !coefficients.allFinite() || !(errors.array() > 0.0).all()) return {};
-  const Tester tester(r, coefficients, errors, band, ranges);
-  let_go(r);  // it has rows of its own
-  return tester.run();
+  return Tester(r, coefficients, errors, band, ranges).run();
 }
 
 }  // namespace mbk::identify

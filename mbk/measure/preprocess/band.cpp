@@ -22,8 +22,8 @@ Result<dsp::Spectrum> spectrum_of(const Columns& signals, const std::vector<Cut>
   dsp::Spectrum sum;
   for (const Cut& cut : cuts) {
     for (Index axis = 0; axis < signals.cols(); ++axis) {
-      auto spectrum = dsp::welch(signals.col(axis).segment(cut.begin, cut.end - cut.begin), sample_rate, resolution);
-      recording::let_go(signals.col(axis));
+      const auto signal = signals.col(axis).segment(cut.begin, cut.end - cut.begin);
+      auto spectrum = dsp::welch(signal, sample_rate, resolution, recording::let_go_behind(signal));
       if (!spectrum) return tl::unexpected(spectrum.error());
       if (sum.density.size() == 0) {
         sum = std::move(*spectrum);
