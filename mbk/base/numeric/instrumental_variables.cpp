@@ -119,21 +119,26 @@ Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std:
   Vector strength = Vector::Zero(m);
   const Index kinds = std::ssize(all);
   taken.conservativeResize(Eigen::NoChange, kinds);
-  const std::vector<Matrix> omegas = long_run_covariances(kinds, R.cols(), ranges, lags, [&](const RowRange& range) {
-    const auto rows = R.middleRows(range.begin, range.size());
-    const Matrix left =
-        residuals_of({Z.middleRows(range.begin, range.size()), rows}, Matrix::Zero(range.size(), kinds), taken);
-    Matrix scores(range.size(), kinds * R.cols());
-    for (Index kind = 0; kind < kinds; ++kind) {
-      scores.middleCols(kind * R.cols(), R.cols()) = rows.array().colwise() * left.col(kind).array();
-    }
-    return scores;
-  });
+  // Scores of the excluded instruments' coefficients, A r_t e_t with A of (RᵀR)⁻¹: their Ω is the covariance.
+  const Matrix to_coefficients = -(unit_R.asDiagonal() * inverse.leftCols(excluded));
+  Matrix left, weighted;
+  const std::vector<Matrix> covariances =
+      long_run_covariances(kinds, excluded, ranges, lags, [&](const RowRange& range) {
+        const auto rows = R.middleRows(range.begin, range.size());
+        left = residuals_of({Z.middleRows(range.begin, range.size()), rows}, Matrix::Zero(range.size(), kinds), taken);
+        weighted = residuals_of({rows}, Matrix::Zero(range.size(), excluded), to_coefficients);
+        ScoreProducts products;
+        for (Index kind = 0; kind < kinds; ++kind) {
+          for (Index i = 0; i < excluded; ++i) {
+            products.left.push_back(weighted.col(i).data());
+            products.right.push_back(left.col(kind).data());
+          }
+        }
+        return products;
+      });
   for (std::size_t kind = 0; kind < all.size(); ++kind) {
-    const Matrix omega = unit_R.asDiagonal() * omegas[kind] * unit_R.asDiagonal();
-    const Matrix V = (inverse * omega * inverse).topLeftCorner(excluded, excluded);
     const Vector slope = all[kind].coefficients.head(excluded);
-    const double wald = slope.dot(CompleteOrthogonal(V).solve(slope));
+    const double wald = slope.dot(CompleteOrthogonal(covariances[kind]).solve(slope));
     strength[all[kind].regressor] = std::isfinite(wald) && wald > 0.0 ? wald / freedom : 0.0;
   }
   return strength;

@@ -13,6 +13,7 @@
 #include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
+#include "mbk/base/numeric/long_run_covariances.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/identify/fit_checks.h"
@@ -41,6 +42,11 @@ struct Estimate {
   int rank = 0;
   Matrix residuals = {};  ///< Y − Z θ of every row, where they were asked for
 };
+
+bool is_tied(const Estimate& estimate) {
+  const Matrix& S = estimate.structure;
+  return S.rows() != S.cols() || !S.isIdentity(0.0);
+}
 
 /// What is fitted, and from which rows.
 class Fitter {
@@ -72,6 +78,8 @@ class Fitter {
   [[nodiscard]] const Matrix& residuals(Method method);
   /// @param estimate  whose residuals are there
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
+  /// The same as products of instruments and residuals, where no coefficients are tied.
+  void add_scores(Method method, const RowRange& range, numeric::ScoreProducts& products) const;
   /// What the instruments explain of the residual of a method of full rank, axis by axis; of all such in one pass.
   [[nodiscard]] const Vector& coherent_fraction(Method method);
   void describe(Identification& result) const;
@@ -202,6 +210,16 @@ Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& r
   return numeric::regression_scores(instruments(method), estimate.residuals, estimate.structure, range);
 }
 
+void Fitter::add_scores(Method method, const RowRange& range, numeric::ScoreProducts& products) const {
+  const Matrix &R = instruments(method), &residuals = estimates_[static_cast<std::size_t>(method)]->residuals;
+  for (Index axis = 0; axis < residuals.cols(); ++axis) {
+    for (Index i = 0; i < R.cols(); ++i) {
+      products.left.push_back(R.col(i).data() + range.begin);
+      products.right.push_back(residuals.col(axis).data() + range.begin);
+    }
+  }
+}
+
 const Matrix& Fitter::residuals(Method method) {
   Estimate& one = *estimates_[static_cast<std::size_t>(method)];
   if (one.residuals.size() == 0) {
@@ -292,11 +310,20 @@ const Matrix& Fitter::long_run(Method method) {
   }
   const Index k = iv->bread.rows();
   for (const Method one : {kLs, kIv}) (void)residuals(one);
-  omega_of_both_ = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
-    Matrix both(range.size(), 2 * k);
-    both << scores(kIv, *iv, range), scores(kLs, *ls, range);
-    return both;
-  });
+  if (is_tied(*ls)) {
+    omega_of_both_ = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
+      Matrix both(range.size(), 2 * k);
+      both << scores(kIv, *iv, range), scores(kLs, *ls, range);
+      return both;
+    });
+  } else {
+    const auto products_of = [&](const RowRange& range) {
+      numeric::ScoreProducts products;
+      for (const Method one : {kIv, kLs}) add_scores(one, range, products);
+      return products;
+    };
+    omega_of_both_ = numeric::long_run_covariances(1, 2 * k, ranges_, lags_, products_of).front();
+  }
   omegas_[static_cast<std::size_t>(kIv)] = omega_of_both_.topLeftCorner(k, k);
   omegas_[static_cast<std::size_t>(kLs)] = omega_of_both_.bottomRightCorner(k, k);
   return wanted;

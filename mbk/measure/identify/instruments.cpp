@@ -113,7 +113,7 @@ Vector strength_of(const Regression& r, const Matrix& R, const std::vector<RowRa
 /// most.
 double memory_of(const Eigen::Ref<const Vector>& e, double power) {
   constexpr double kForgotten = 0.1;
-  constexpr Index kAtOnce = 72;
+  constexpr Index kAtOnce = 27;
   double memory = 1.0;
   for (Index first = 1; first < e.size() / 4; first += kAtOnce) {
     const Vector sums = numeric::lagged_products(e, first, std::min(kAtOnce, e.size() / 4 - first));
