@@ -121,12 +121,14 @@ Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std:
   taken.conservativeResize(Eigen::NoChange, kinds);
   // Scores of the excluded instruments' coefficients, A r_t e_t with A of (RᵀR)⁻¹: their Ω is the covariance.
   const Matrix to_coefficients = -(unit_R.asDiagonal() * inverse.leftCols(excluded));
-  Matrix left, weighted;
+  Matrix left, weighted, nothing;
   const std::vector<Matrix> covariances =
       long_run_covariances(kinds, excluded, ranges, lags, [&](const RowRange& range) {
-        const auto rows = R.middleRows(range.begin, range.size());
-        left = residuals_of({Z.middleRows(range.begin, range.size()), rows}, Matrix::Zero(range.size(), kinds), taken);
-        weighted = residuals_of({rows}, Matrix::Zero(range.size(), excluded), to_coefficients);
+        const Index count = range.size();
+        const auto rows = R.middleRows(range.begin, count);
+        if (nothing.rows() < count) nothing = Matrix::Zero(count, excluded);
+        left = residuals_of({Z.middleRows(range.begin, count), rows}, nothing.topLeftCorner(count, kinds), taken);
+        weighted = residuals_of({rows}, nothing.topRows(count), to_coefficients);
         ScoreProducts products;
         for (Index kind = 0; kind < kinds; ++kind) {
           for (Index i = 0; i < excluded; ++i) {

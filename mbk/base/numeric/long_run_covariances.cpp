@@ -130,9 +130,10 @@ class Windows {
   std::vector<GramSum> grams_;
 };
 
+/// Behind so many rows the `lags` + 1 that are asked for again cost little.
 Index rows_at_once(Index lags) {
   constexpr Index kAtLeast = 1024;
-  return std::max(kAtLeast, 2 * (lags + 1));
+  return std::max(kAtLeast, 4 * (lags + 1));
 }
 
 }  // namespace
