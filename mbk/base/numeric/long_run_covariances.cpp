@@ -8,7 +8,7 @@
 namespace mbk::numeric {
 namespace {
 
-constexpr Index kTogether = 256;  // rows whose windows stay in the first cache
+constexpr Index kTogether = 512;  // rows whose windows stay in the first cache
 constexpr std::array<double, kTogether> kNothing{};
 
 /// v becomes [v₀, v₀ + v₁, …] + sum, and sum the last of these.

@@ -292,11 +292,9 @@ class Checker {
 }  // namespace
 
 Spread spread_of(const numeric::MatrixPart& Z, const numeric::MatrixPart& Y) {
-  const Index m = Z.cols() - 1;
-  const Matrix gram = numeric::gram_of({Z});
-  const Vector sum = gram.col(m).head(m);  // by the column of ones
-  const Matrix squares = gram.topLeftCorner(m, m) - sum * sum.transpose() / static_cast<double>(Z.rows());
-  Spread spread{squares / static_cast<double>(std::max<Index>(Z.rows() - 1, 1)), Vector(Y.cols())};
+  const auto motion = Z.leftCols(Z.cols() - 1);
+  const Matrix centred = motion.rowwise() - motion.colwise().mean();
+  Spread spread{numeric::gram_of({centred}) / static_cast<double>(std::max<Index>(Z.rows() - 1, 1)), Vector(Y.cols())};
   for (Index j = 0; j < Y.cols(); ++j) spread.force[j] = numeric::variance(Y.col(j));
   return spread;
 }
