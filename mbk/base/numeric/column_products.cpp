@@ -110,10 +110,25 @@ auto products_run() {
   return has_x86_64_v4() ? products_v4 : has_x86_64_v3() ? products_v3 : products_any;
 }
 
-Matrix products(const Tiled& left, const Tiled& right, bool upper) {
+Matrix products(const Tiled& left, const Tiled& right) {
   Matrix all = Matrix::Zero(left.padded(), right.padded());
-  products_run()({left.data(), left.padded(), right.data(), right.padded(), left.rows(), upper}, all.data());
+  products_run()({left.data(), left.padded(), right.data(), right.padded(), left.rows(), false}, all.data());
   return all;
+}
+
+/// Products of all pairs of columns, added to those on and above the diagonal.
+void add_products(const Tiled& columns, Matrix& sums) {
+  const Index padded = columns.padded();
+  products_run()({columns.data(), padded, columns.data(), padded, columns.rows(), true}, sums.data());
+}
+
+Index in_whole_tiles(Index columns) {
+  return (columns + kTile - 1) / kTile * kTile;
+}
+
+/// The symmetric matrix whose upper triangle is there.
+Matrix mirrored(const Matrix& sums, Index columns) {
+  return Matrix(sums.topLeftCorner(columns, columns)).selfadjointView<Eigen::Upper>();
 }
 
 /// Outputs y, regressors z, coefficients θ (count×outputs), and where the residuals of each output go.
@@ -208,12 +223,24 @@ void take_residuals(const Tiled& Z, const MatrixPart& Y, const Matrix& theta, In
 
 Matrix gram_of(const std::vector<MatrixPart>& side_by_side) {
   const Tiled columns(side_by_side);
-  const Matrix all = products(columns, columns, true);
-  return Matrix(all.topLeftCorner(columns.count(), columns.count())).selfadjointView<Eigen::Upper>();
+  Matrix sums = Matrix::Zero(columns.padded(), columns.padded());
+  add_products(columns, sums);
+  return mirrored(sums, columns.count());
+}
+
+GramSum::GramSum(Index columns)
+    : columns_(columns), sums_(Matrix::Zero(in_whole_tiles(columns), in_whole_tiles(columns))) {}
+
+void GramSum::add(const MatrixPart& block) {
+  add_products(Tiled({block}), sums_);
+}
+
+Matrix GramSum::gram() const {
+  return mirrored(sums_, columns_);
 }
 
 Matrix products_of(const MatrixPart& A, const MatrixPart& B) {
-  return products(Tiled({A}), Tiled({B}), false).topLeftCorner(A.cols(), B.cols());
+  return products(Tiled({A}), Tiled({B})).topLeftCorner(A.cols(), B.cols());
 }
 
 Matrix projected_residuals(const MatrixPart& Z, const MatrixPart& Y, const Matrix& theta) {

@@ -14,6 +14,19 @@ using MatrixPart = Eigen::Ref<const Matrix>;
 /// [A B …]ᵀ[A B …] of columns of equal length.
 [[nodiscard]] Matrix gram_of(const std::vector<MatrixPart>& side_by_side);
 
+/// AᵀA of a matrix whose rows come block by block.
+class GramSum {
+ public:
+  explicit GramSum(Index columns);
+  /// @param block rows×columns
+  void add(const MatrixPart& block);
+  [[nodiscard]] Matrix gram() const;
+
+ private:
+  Index columns_;
+  Matrix sums_;  ///< in whole tiles, without what is below the diagonal
+};
+
 /// AᵀB.
 [[nodiscard]] Matrix products_of(const MatrixPart& A, const MatrixPart& B);
 

@@ -26,6 +26,19 @@ TEST(ColumnProducts, AreThoseOfThePlainProductForAnyShape) {
   }
 }
 
+TEST(ColumnProducts, AddUpOverBlocks) {
+  for (const Index columns : {1, 3, 6, 14}) {
+    const Matrix A = Matrix::Random(777, columns);
+    GramSum sum(columns);
+    Index begin = 0;
+    for (const Index rows : {1, 0, 256, 500, 20}) {
+      sum.add(A.middleRows(begin, rows));
+      begin += rows;
+    }
+    EXPECT_LE((sum.gram() - A.transpose() * A).cwiseAbs().maxCoeff(), kTolerance * 777.0);
+  }
+}
+
 TEST(ColumnProducts, LeaveTheResidualsOfThePlainProduct) {
   for (const Index rows : {1, 7, 8, 300, 1001}) {
     for (const Index outputs : {1, 2, 3, 4, 8}) {

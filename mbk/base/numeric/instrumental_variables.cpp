@@ -16,34 +16,34 @@
 namespace mbk::numeric {
 namespace {
 
-/// What makes the columns unit length; 0 columns stay.
-Vector scaling(const MatrixPart& columns) {
-  const Vector length = columns.colwise().norm();
-  return (length.array() > 0.0).select(length.cwiseInverse(), 1.0);
-}
-
-Result<void> check(const MatrixPart& Z, const MatrixPart& R, const MatrixPart& Y) {
-  if (Z.rows() != R.rows() || Z.rows() != Y.rows() || Z.cols() != R.cols()) {
-    return bad_usage(fmt::format("regressors {}×{}, instruments {}×{} and outputs {}×{} do not go together", Z.rows(),
-                                 Z.cols(), R.rows(), R.cols(), Y.rows(), Y.cols()));
-  }
-  if (Z.rows() < Z.cols()) {
-    return bad_data(fmt::format("{} samples are too few for {} coefficients", Z.rows(), Z.cols()), "record longer");
-  }
-  return {};
+/// What makes columns unit length, whose squares are given; 0 columns stay.
+Vector scaling(const Vector& squares) {
+  return (squares.array() > 0.0).select(squares.cwiseSqrt().cwiseInverse(), 1.0);
 }
 
 }  // namespace
 
 Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const MatrixPart& R, const MatrixPart& Y,
                                                    const Matrix& S) {
-  if (auto ok = check(Z, R, Y); !ok) return tl::unexpected(ok.error());
-  const Index p = Z.cols(), q = Y.cols();
+  if (Z.rows() != R.rows() || Z.rows() != Y.rows() || Z.cols() != R.cols()) {
+    return bad_usage(fmt::format("regressors {}×{}, instruments {}×{} and outputs {}×{} do not go together", Z.rows(),
+                                 Z.cols(), R.rows(), R.cols(), Y.rows(), Y.cols()));
+  }
+  return fit_instrumental_variables(gram_of({R, Z, Y}), Z.cols(), Z.rows(), S);
+}
+
+Result<InstrumentalFit> fit_instrumental_variables(const Matrix& gram, Index p, Index N, const Matrix& S) {
+  const Index q = gram.cols() - 2 * p;
+  if (p < 1 || q < 1 || gram.rows() != gram.cols()) {
+    return bad_usage(fmt::format("products {}×{} are not those of {} instruments, as many regressors and outputs",
+                                 gram.rows(), gram.cols(), p));
+  }
+  if (N < p) return bad_data(fmt::format("{} samples are too few for {} coefficients", N, p), "record longer");
   InstrumentalFit fit;
   fit.structure = S.size() > 0 ? S : Matrix(Matrix::Identity(p * q, p * q));
-  const Vector unit_Z = scaling(Z), unit_R = scaling(R);
-  const Matrix cross = unit_R.asDiagonal() * products_of(R, Z) * unit_Z.asDiagonal();
-  const Matrix right = unit_R.asDiagonal() * products_of(R, Y);
+  const Vector unit_R = scaling(gram.diagonal().head(p)), unit_Z = scaling(gram.diagonal().segment(p, p));
+  const Matrix cross = unit_R.asDiagonal() * gram.block(0, p, p, p) * unit_Z.asDiagonal();
+  const Matrix right = unit_R.asDiagonal() * gram.topRightCorner(p, q);
   if (!cross.allFinite() || !right.allFinite()) {  // as every value that is not finite makes them
     return bad_data("a value of the regression is not finite, or too large to be squared");
   }
@@ -82,12 +82,13 @@ Matrix newey_west_covariance(const InstrumentalFit& fit, const Matrix& R, const 
   return fit.inverse * omega * fit.inverse.transpose();
 }
 
-Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std::vector<RowRange>& ranges, Index lags) {
+Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std::vector<RowRange>& ranges, Index lags,
+                            const Matrix& given) {
   const Index m = Z.cols() - 1, excluded = R.cols() - 1;
   const auto freedom = static_cast<double>(excluded - m + 1);
   // All that is needed but the residuals follows from products of columns, each scaled to unit length.
-  const Matrix gram = gram_of({R, Z});
-  const Vector unit = (gram.diagonal().array() > 0.0).select(gram.diagonal().cwiseSqrt().cwiseInverse(), 1.0);
+  const Matrix gram = given.size() > 0 ? given : gram_of({R, Z});
+  const Vector unit = scaling(gram.diagonal());
   const Vector unit_R = unit.head(R.cols()), unit_Z = unit.tail(Z.cols());
   const Matrix RR = unit_R.asDiagonal() * gram.topLeftCorner(R.cols(), R.cols()) * unit_R.asDiagonal();
   const Matrix RZ = unit_R.asDiagonal() * gram.topRightCorner(R.cols(), Z.cols()) * unit_Z.asDiagonal();
@@ -119,21 +120,28 @@ Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std:
   Vector strength = Vector::Zero(m);
   const Index kinds = std::ssize(all);
   taken.conservativeResize(Eigen::NoChange, kinds);
-  const std::vector<Matrix> omegas = long_run_covariances(kinds, R.cols(), ranges, lags, [&](const RowRange& range) {
-    const auto rows = R.middleRows(range.begin, range.size());
-    const Matrix left =
-        residuals_of({Z.middleRows(range.begin, range.size()), rows}, Matrix::Zero(range.size(), kinds), taken);
-    Matrix scores(range.size(), kinds * R.cols());
-    for (Index kind = 0; kind < kinds; ++kind) {
-      scores.middleCols(kind * R.cols(), R.cols()) = rows.array().colwise() * left.col(kind).array();
-    }
-    return scores;
-  });
+  // Scores of the excluded instruments' coefficients, A r_t e_t with A of (RᵀR)⁻¹: their Ω is the covariance.
+  const Matrix to_coefficients = -(unit_R.asDiagonal() * inverse.leftCols(excluded));
+  Matrix left, weighted, nothing;
+  const std::vector<Matrix> covariances =
+      long_run_covariances(kinds, excluded, ranges, lags, [&](const RowRange& range) {
+        const Index count = range.size();
+        const auto rows = R.middleRows(range.begin, count);
+        if (nothing.rows() < count) nothing = Matrix::Zero(count, excluded);
+        left = residuals_of({Z.middleRows(range.begin, count), rows}, nothing.topLeftCorner(count, kinds), taken);
+        weighted = residuals_of({rows}, nothing.topRows(count), to_coefficients);
+        ScoreProducts products;
+        for (Index kind = 0; kind < kinds; ++kind) {
+          for (Index i = 0; i < excluded; ++i) {
+            products.left.push_back(weighted.col(i).data());
+            products.right.push_back(left.col(kind).data());
+          }
+        }
+        return products;
+      });
   for (std::size_t kind = 0; kind < all.size(); ++kind) {
-    const Matrix omega = unit_R.asDiagonal() * omegas[kind] * unit_R.asDiagonal();
-    const Matrix V = (inverse * omega * inverse).topLeftCorner(excluded, excluded);
     const Vector slope = all[kind].coefficients.head(excluded);
-    const double wald = slope.dot(CompleteOrthogonal(V).solve(slope));
+    const double wald = slope.dot(CompleteOrthogonal(covariances[kind]).solve(slope));
     strength[all[kind].regressor] = std::isfinite(wald) && wald > 0.0 ? wald / freedom : 0.0;
   }
   return strength;

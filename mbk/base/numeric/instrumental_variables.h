@@ -23,6 +23,11 @@ struct InstrumentalFit {
 [[nodiscard]] Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const MatrixPart& R,
                                                                  const MatrixPart& Y, const Matrix& S = {});
 
+/// The same from products of columns.
+/// @param gram [R Z Y]ᵀ[R Z Y], (2p + q)×(2p + q)    @param p regressors    @param N samples behind it
+[[nodiscard]] Result<InstrumentalFit> fit_instrumental_variables(const Matrix& gram, Index p, Index N,
+                                                                 const Matrix& S = {});
+
 /// Covariance of φ that holds for coloured and correlated residuals: A Ω Aᵀ, Ω the long-run covariance of the scores of
 /// R (least_squares.h).
 [[nodiscard]] Matrix newey_west_covariance(const InstrumentalFit& fit, const Matrix& R, const Matrix& residuals,
@@ -34,8 +39,9 @@ struct InstrumentalFit {
 /// freedom, excluded instruments − regressors + 1. Below 10 the instruments are weak: the estimate is then drawn
 /// towards least squares and its intervals mean little.
 /// @param Z N×p, R N×r with r ≥ p; the last column of both is the constant
+/// @param gram [R Z]ᵀ[R Z], where it is there already; empty otherwise
 /// @returns p − 1 statistics; 0 where the instruments cannot tell the regressor from the others
 [[nodiscard]] Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std::vector<RowRange>& ranges,
-                                          Index lags);
+                                          Index lags, const Matrix& gram = {});
 
 }  // namespace mbk::numeric

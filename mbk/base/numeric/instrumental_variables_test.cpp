@@ -65,6 +65,21 @@ TEST(InstrumentalVariables, AreExactWithoutNoise) {
   EXPECT_EQ(bound->free.size(), 5);
 }
 
+TEST(InstrumentalVariables, AreTheSameFromProductsThatAreThere) {
+  const Data data(300);
+  const Matrix Y = data.outputs(1.0);
+  for (const Matrix& S : {Matrix(), tied()}) {
+    const auto by_rows = fit_instrumental_variables(data.Z, data.R, Y, S);
+    const auto by_products = fit_instrumental_variables(gram_of({data.R, data.Z, Y}), 3, 300, S);
+    ASSERT_TRUE(by_rows && by_products);
+    EXPECT_EQ(by_rows->coefficients, by_products->coefficients);
+    EXPECT_EQ(by_rows->inverse, by_products->inverse);
+  }
+  const Matrix both = gram_of({data.R, data.Z});
+  const std::vector<RowRange> all = {{0, 300}};
+  EXPECT_EQ(first_stage_strength(data.Z, data.R, all, 5, both), first_stage_strength(data.Z, data.R, all, 5));
+}
+
 TEST(InstrumentalVariables, SolveTheirEquationsTiedAndFree) {
   const Data data(300);
   const Matrix Y = data.outputs(2.0);
@@ -189,6 +204,10 @@ TEST(InstrumentalVariables, RefuseWhatDoesNotGoTogether) {
   EXPECT_FALSE(fit_instrumental_variables(data.Z, data.R, Y.topRows(19)));
   EXPECT_FALSE(fit_instrumental_variables(data.Z.topRows(2), data.R.topRows(2), Y.topRows(2)));
   EXPECT_FALSE(fit_instrumental_variables(Matrix(0, 3), Matrix(0, 3), Matrix(0, 2)));
+  const Matrix gram = gram_of({data.R, data.Z, Y});
+  EXPECT_FALSE(fit_instrumental_variables(gram, 4, 20));             // no outputs
+  EXPECT_FALSE(fit_instrumental_variables(gram, 3, 2));              // too few samples
+  EXPECT_FALSE(fit_instrumental_variables(gram.topRows(7), 3, 20));  // not square
   for (int k = 0; k < 3; ++k) {
     Matrix Z = data.Z, R = data.R, outputs = Y;
     (k == 0 ? Z : k == 1 ? R : outputs)(7, 1) = kNaN;

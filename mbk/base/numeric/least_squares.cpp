@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "mbk/base/numeric/dense.h"
-#include "mbk/base/numeric/long_run_covariances.h"
 
 namespace mbk::numeric {
 
@@ -89,62 +88,6 @@ Result<LinearFit> fit_least_squares(const MatrixPart& Z, const MatrixPart& Y, co
   const Matrix inverse = scale.cwiseInverse().asDiagonal() * solver.pseudo_inverse();
   fit.inverse_gram = inverse * inverse.transpose();
   return fit;
-}
-
-namespace {
-
-/// Sums over a window that moves along `Count` columns: sum += enters − leaves, row by row.
-template <int Count>
-void move_window(const Matrix& scores, Index first, Index rows, Index before, Vector& sums, Matrix& windows) {
-  double *to[Count], sum[Count];
-  for (int j = 0; j < Count; ++j) {
-    const auto column = scores.col(first + j);
-    windows.col(first + j).head(rows) = column.segment(before, rows) - column.head(rows);
-    to[j] = windows.col(first + j).data();
-    sum[j] = sums[first + j];
-  }
-  for (Index i = 0; i < rows; ++i) {
-    for (int j = 0; j < Count; ++j) to[j][i] = sum[j] += to[j][i];
-  }
-  for (int j = 0; j < Count; ++j) sums[first + j] = sum[j];
-}
-
-}  // namespace
-
-std::vector<Matrix> long_run_covariances(Index kinds, Index k, const std::vector<RowRange>& ranges, Index lags,
-                                         const std::function<Matrix(const RowRange&)>& scores_of) {
-  std::vector<Matrix> omegas(static_cast<std::size_t>(kinds), Matrix::Zero(k, k));
-  constexpr Index kAtLeast = 512;
-  const Index columns = kinds * k, before = lags + 1, block = std::max(kAtLeast, before);
-  // scores: those that are to leave the window, and a block
-  Matrix scores(before + block, columns), windows(block, columns);
-  for (const RowRange& range : ranges) {
-    scores.topRows(before).setZero();
-    Vector sums = Vector::Zero(columns);
-    const Index end = range.size() + lags;  // the window [t − lags, t], clipped to the range
-    for (Index t = 0; t < end; t += block) {
-      const Index rows = std::min(block, end - t), given = std::clamp<Index>(range.size() - t, 0, rows);
-      if (given > 0) {
-        scores.middleRows(before, given) = scores_of({range.begin + t, range.begin + t + given});
-      }
-      scores.middleRows(before + given, rows - given).setZero();
-      Index column = 0;
-      for (; column + 7 <= columns; column += 7) move_window<7>(scores, column, rows, before, sums, windows);
-      for (; column + 4 <= columns; column += 4) move_window<4>(scores, column, rows, before, sums, windows);
-      for (; column < columns; ++column) move_window<1>(scores, column, rows, before, sums, windows);
-      for (Index kind = 0; kind < kinds; ++kind) {
-        omegas[static_cast<std::size_t>(kind)] += gram_of({windows.block(0, kind * k, rows, k)});
-      }
-      if (rows == block) scores.topRows(before) = scores.middleRows(block, before);  // a block is no shorter
-    }
-  }
-  for (Matrix& omega : omegas) omega /= static_cast<double>(before);
-  return omegas;
-}
-
-Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index lags,
-                           const std::function<Matrix(const RowRange&)>& scores_of) {
-  return long_run_covariances(1, k, ranges, lags, scores_of).front();
 }
 
 Matrix regression_scores(const MatrixPart& R, const MatrixPart& residuals, const Matrix& structure,

@@ -24,6 +24,18 @@ TEST(Statistics, VarianceKeepsItsDigitsFarFromZero) {
   EXPECT_NEAR(variance((Vector(3) << 1e9 + 1, 1e9 + 2, 1e9 + 3).finished()), 1.0, 1e-9);
 }
 
+TEST(Statistics, VarianceIsThatOfThePlainSumForAnyLength) {
+  for (const Index count : {2, 3, 15, 16, 31, 32, 33, 1000, 4099}) {
+    const Vector values = Vector::Random(count).array() + 3.0;
+    double mean = 0.0, squares = 0.0;
+    for (const double value : values) mean += value / static_cast<double>(count);
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    const double want = squares / static_cast<double>(count - 1);
+    EXPECT_NEAR(variance(values), want, 1e-12 * want) << count << " values";
+    EXPECT_NEAR(variance(values.tail(count - 1)), variance(Vector(values.tail(count - 1))), 1e-14) << count;
+  }
+}
+
 TEST(Statistics, VarianceAccountedForIgnoresAnOffsetAndMayBeNegative) {
   const Vector force = (Vector(4) << 1, -1, 1, -1).finished();
   EXPECT_DOUBLE_EQ(variance_accounted_for(force, Vector::Constant(4, 7.0)), 100.0);

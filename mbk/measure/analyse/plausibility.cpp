@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/analyse/advice.h"
 #include "mbk/measure/analyse/axis_maps.h"
@@ -95,7 +96,7 @@ std::optional<Warning> check_columns(const Recording& recording, int axes) {
   const std::vector<Column> columns = columns_of(recording, axes);
   std::vector<double> squares;  // Σ (x − x̄)²
   for (const Column& column : columns) {
-    squares.push_back((column.values->array() - column.values->mean()).square().sum());
+    squares.push_back(numeric::variance(*column.values) * static_cast<double>(column.values->size() - 1));
     recording::let_go(*column.values);
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {

@@ -13,6 +13,7 @@
 #include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
+#include "mbk/base/numeric/long_run_covariances.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/identify/fit_checks.h"
@@ -41,6 +42,11 @@ struct Estimate {
   int rank = 0;
   Matrix residuals = {};  ///< Y − Z θ of every row, where they were asked for
 };
+
+bool is_tied(const Estimate& estimate) {
+  const Matrix& S = estimate.structure;
+  return S.rows() != S.cols() || !S.isIdentity(0.0);
+}
 
 /// What is fitted, and from which rows.
 class Fitter {
@@ -72,6 +78,8 @@ class Fitter {
   [[nodiscard]] const Matrix& residuals(Method method);
   /// @param estimate  whose residuals are there
   [[nodiscard]] Matrix scores(Method method, const Estimate& estimate, const RowRange& range) const;
+  /// The same as products of instruments and residuals, where no coefficients are tied.
+  void add_scores(Method method, const RowRange& range, numeric::ScoreProducts& products) const;
   /// What the instruments explain of the residual of a method of full rank, axis by axis; of all such in one pass.
   [[nodiscard]] const Vector& coherent_fraction(Method method);
   void describe(Identification& result) const;
@@ -184,8 +192,9 @@ Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ra
     if (!fit) return tl::unexpected(fit.error());
     return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse_gram), fit->rank};
   }
-  const SelectedRows R(instruments_->R, ranges, step);
-  auto fit = numeric::fit_instrumental_variables(*Z, *R, *Y, S_);
+  const bool every_row = step == 1 && (&ranges == &ranges_ || !all_ || r_.validation.empty());
+  auto fit = every_row ? numeric::fit_instrumental_variables(instruments_->gram, r_.Z.cols(), samples_, S_)
+                       : numeric::fit_instrumental_variables(*Z, *SelectedRows(instruments_->R, ranges, step), *Y, S_);
   if (!fit) return tl::unexpected(fit.error());
   return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse), fit->rank};
 }
@@ -200,6 +209,16 @@ impedance::Model Fitter::model_from(const Estimate& estimate) const {
 
 Matrix Fitter::scores(Method method, const Estimate& estimate, const RowRange& range) const {
   return numeric::regression_scores(instruments(method), estimate.residuals, estimate.structure, range);
+}
+
+void Fitter::add_scores(Method method, const RowRange& range, numeric::ScoreProducts& products) const {
+  const Matrix &R = instruments(method), &residuals = estimates_[static_cast<std::size_t>(method)]->residuals;
+  for (Index axis = 0; axis < residuals.cols(); ++axis) {
+    for (Index i = 0; i < R.cols(); ++i) {
+      products.left.push_back(R.col(i).data() + range.begin);
+      products.right.push_back(residuals.col(axis).data() + range.begin);
+    }
+  }
 }
 
 const Matrix& Fitter::residuals(Method method) {
@@ -292,11 +311,20 @@ const Matrix& Fitter::long_run(Method method) {
   }
   const Index k = iv->bread.rows();
   for (const Method one : {kLs, kIv}) (void)residuals(one);
-  omega_of_both_ = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
-    Matrix both(range.size(), 2 * k);
-    both << scores(kIv, *iv, range), scores(kLs, *ls, range);
-    return both;
-  });
+  if (is_tied(*ls)) {
+    omega_of_both_ = numeric::long_run_covariance(2 * k, ranges_, lags_, [&](const RowRange& range) {
+      Matrix both(range.size(), 2 * k);
+      both << scores(kIv, *iv, range), scores(kLs, *ls, range);
+      return both;
+    });
+  } else {
+    const auto products_of = [&](const RowRange& range) {
+      numeric::ScoreProducts products;
+      for (const Method one : {kIv, kLs}) add_scores(one, range, products);
+      return products;
+    };
+    omega_of_both_ = numeric::long_run_covariances(1, 2 * k, ranges_, lags_, products_of).front();
+  }
   omegas_[static_cast<std::size_t>(kIv)] = omega_of_both_.topLeftCorner(k, k);
   omegas_[static_cast<std::size_t>(kLs)] = omega_of_both_.bottomRightCorner(k, k);
   return wanted;

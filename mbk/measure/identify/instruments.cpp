@@ -104,16 +104,19 @@ Matrix with_constant(const Matrix& motion, const std::vector<RowRange>& ranges) 
   return R;
 }
 
-Vector strength_of(const Regression& r, const Matrix& R, const std::vector<RowRange>& ranges, Index lags) {
-  const SelectedRows Z(r.Z, ranges), by(R, ranges);
-  return numeric::first_stage_strength(*Z, *by, packed(ranges), lags);
+/// How strong they are, and what they are multiplied with.
+void complete(const Regression& r, const std::vector<RowRange>& ranges, Index lags, Instruments& made) {
+  const SelectedRows R(made.R, ranges), Z(r.Z, ranges), Y(r.Y, ranges);
+  made.gram = numeric::gram_of({*R, *Z, *Y});
+  const Index both = R->cols() + Z->cols();
+  made.strength = numeric::first_stage_strength(*Z, *R, packed(ranges), lags, made.gram.topLeftCorner(both, both));
 }
 
 /// 1 + 2 Σ r[l] over the lags before the autocorrelation first falls below a tenth, of a quarter of the samples at
 /// most.
 double memory_of(const Eigen::Ref<const Vector>& e, double power) {
   constexpr double kForgotten = 0.1;
-  constexpr Index kAtOnce = 72;
+  constexpr Index kAtOnce = 27;
   double memory = 1.0;
   for (Index first = 1; first < e.size() / 4; first += kAtOnce) {
     const Vector sums = numeric::lagged_products(e, first, std::min(kAtOnce, e.size() / 4 - first));
@@ -143,13 +146,13 @@ Instruments from_force(const Regression& r, const std::vector<RowRange>& ranges,
     if (!fit || !fit->coefficients.allFinite()) break;
     total = fit->coefficients;
   }
-  result.strength = strength_of(r, result.R, ranges, lags);
+  complete(r, ranges, lags, result);
   return result;
 }
 
 Instruments from_position(const Regression& r, const std::vector<RowRange>& ranges, Index lags) {
   Instruments result{with_constant(r.reference, ranges), ReferenceQuantity::position, {}};
-  result.strength = strength_of(r, result.R, ranges, lags);
+  complete(r, ranges, lags, result);
   return result;
 }
 

@@ -13,6 +13,7 @@ struct Instruments {
   Matrix R;
   ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
   Vector strength;                                      ///< 3n, conditional first-stage F of ẍ, ẋ, x
+  Matrix gram = {};                                     ///< [R Z Y]ᵀ[R Z Y] of the rows that count
 };
 
 /// From a position reference: [r̈ ṙ r 1], filtered as the motion is. From a force: the derivatives of

@@ -115,12 +115,19 @@ class Tester {
     let_go(r_);
   }
 
+  /// cos jφ of j = 1 … count, φ over half a turn; from the first by cos (j+1)φ = 2 cos φ cos jφ − cos (j−1)φ.
   [[nodiscard]] static Matrix cosines(Index rows, Index count) {
     Matrix waves(rows, count);
-    for (Index j = 0; j < count; ++j) {
-      for (Index k = 0; k < rows; ++k) {
-        waves(k, j) = std::cos(std::numbers::pi * static_cast<double>(j + 1) * (static_cast<double>(k) + 0.5) /
-                               static_cast<double>(rows));
+    if (count == 0) return waves;
+    for (Index k = 0; k < rows; ++k) {
+      waves(k, 0) = std::cos(std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(rows));
+    }
+    for (Index j = 1; j < count; ++j) {
+      waves.col(j) = 2.0 * waves.col(0).cwiseProduct(waves.col(j - 1));
+      if (j == 1) {
+        waves.col(j).array() -= 1.0;
+      } else {
+        waves.col(j) -= waves.col(j - 2);
       }
     }
     return waves;
@@ -158,14 +165,17 @@ class Tester {
     Matrix motion(rows(), 4 * n_);
     motion << measured_.jerk, measured_.acceleration, measured_.velocity, measured_.position;
     const auto response = [&](Index from, Index count) {
-      const Matrix part = X.middleRows(from, count);
-      Matrix gram = part.transpose() * part;
+      const auto part = X.middleRows(from, count);
+      Matrix gram = numeric::gram_of({part});
       gram.diagonal().array() += kRidge * gram.trace() / static_cast<double>(gram.rows());
-      return Matrix(numeric::PivotedCholesky(gram).solve(part.transpose() * motion.middleRows(from, count)));
+      return Matrix(numeric::PivotedCholesky(gram).solve(numeric::products_of(part, motion.middleRows(from, count))));
+    };
+    const auto answer = [&](const auto& reference, const Matrix& coefficients) {
+      return numeric::residuals_of({reference}, Matrix::Zero(reference.rows(), 4 * n_), -coefficients);
     };
     Matrix explained(rows(), 4 * n_);
-    explained.topRows(half) = X.topRows(half) * response(half, rest);
-    explained.bottomRows(rest) = X.bottomRows(rest) * response(0, half);
+    explained.topRows(half) = answer(X.topRows(half), response(half, rest));
+    explained.bottomRows(rest) = answer(X.bottomRows(rest), response(0, half));
     for (Index axis = 0; axis < n_; ++axis) {
       const double moved = numeric::variance(measured_.position.col(axis));
       const double left = numeric::variance(measured_.position.col(axis) - explained.col(3 * n_ + axis));
@@ -234,8 +244,8 @@ class Tester {
     if (!(scale.minCoeff() > 0.0) || rows() < 4 * p) return std::nullopt;
     A = A * scale.cwiseInverse().asDiagonal();
     R = R * scale.cwiseInverse().asDiagonal();
-    const auto solved = [](const Matrix& of, const Matrix& by, const Vector& to) {
-      return Vector(numeric::Lu(by.transpose() * of).solve(by.transpose() * to));
+    const auto solved = [](const numeric::MatrixPart& of, const numeric::MatrixPart& by, const Vector& to) {
+      return Vector(numeric::Lu(numeric::products_of(by, of)).solve(numeric::products_of(by, to)));
     };
     Vector b = solved(A, R, y);
     Matrix Aw, Rw;
@@ -254,11 +264,11 @@ class Tester {
     AxisFit result;
     result.freedom = count - static_cast<double>(p);
     if (!(result.freedom > 0.0)) return std::nullopt;
-    const Matrix bread = numeric::inverse(Rw.transpose() * Aw);
+    const Matrix bread = numeric::inverse(numeric::products_of(Rw, Aw));
     const Vector residual = yw - Aw * b;
     const Vector b0 = solved(Aw.leftCols(base), Rw.leftCols(base), yw);
     Rw.array().colwise() *= residual.array();  // the scores
-    const Matrix V = count / result.freedom * bread * (Rw.transpose() * Rw) * bread.transpose();
+    const Matrix V = count / result.freedom * bread * numeric::gram_of({Rw}) * bread.transpose();
     const Vector tested = b.tail(last);
     result.statistic =
         tested.dot(numeric::PivotedCholesky(V.bottomRightCorner(last, last)).solve(tested)) / static_cast<double>(last);

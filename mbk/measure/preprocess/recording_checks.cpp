@@ -47,31 +47,61 @@ Result<void> check_length(Index samples, const Inspection& inspection) {
   return {};
 }
 
+namespace {
+
+/// The step of time to a sample.
+Result<void> check_step(const Clock& clock, const Inspection& inspection, Index i) {
+  const double interval = clock.seconds(i) - clock.seconds(i - 1);
+  const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, clock.seconds(i)); };
+  if (!(interval > 0.0)) {
+    const auto fault = [&] {
+      if (std::isnan(clock.seconds(i - 1))) return fmt::format("time is not a number at sample {}", i);
+      if (std::isnan(interval)) return fmt::format("time is not a number at sample {}", i + 1);
+      return fmt::format("time {} {}", interval == 0.0 ? "repeats" : "runs backwards", at());
+    };
+    return bad_data(fault(), "choose a window without it with --from and --to");
+  }
+  if (std::ranges::binary_search(inspection.gaps, i - 1, {}, &Gap::sample)) {
+    return bad_data(fmt::format("a gap of {:.4g} s in time {}, where samples are {:.4g} s apart", interval, at(),
+                                inspection.interval_median),
+                    "choose a window without it with --from and --to, or put the samples on an even clock with "
+                    "--resample HZ");
+  }
+  return {};
+}
+
+bool has_gap(const Inspection& inspection, Index begin, Index end) {
+  const auto first = std::ranges::lower_bound(inspection.gaps, begin, {}, &Gap::sample);
+  return first != inspection.gaps.end() && first->sample < end;
+}
+
+}  // namespace
+
 Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,
                          std::vector<Warning>& warnings) {
+  constexpr Index kTogether = 512;
   const double median = inspection.interval_median;
   double sum = 0.0, largest = 0.0;
   Index count = 0;
+  Eigen::ArrayXd intervals(kTogether);
   for (const Cut& cut : plan.cuts) {
-    for (Index i = cut.begin + 1; i < cut.end; ++i, ++count) {
-      const double interval = clock.seconds(i) - clock.seconds(i - 1);
-      const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, clock.seconds(i)); };
-      if (!(interval > 0.0)) {
-        const auto fault = [&] {
-          if (std::isnan(clock.seconds(i - 1))) return fmt::format("time is not a number at sample {}", i);
-          if (std::isnan(interval)) return fmt::format("time is not a number at sample {}", i + 1);
-          return fmt::format("time {} {}", interval == 0.0 ? "repeats" : "runs backwards", at());
-        };
-        return bad_data(fault(), "choose a window without it with --from and --to");
+    for (Index begin = cut.begin + 1; begin < cut.end; begin += kTogether) {
+      const Index end = std::min(begin + kTogether, cut.end), size = end - begin;
+      double before = clock.seconds(begin - 1);
+      for (Index i = begin; i < end; ++i) {
+        const double now = clock.seconds(i);
+        intervals[i - begin] = now - before;
+        before = now;
       }
-      if (std::ranges::binary_search(inspection.gaps, i - 1, {}, &Gap::sample)) {
-        return bad_data(
-            fmt::format("a gap of {:.4g} s in time {}, where samples are {:.4g} s apart", interval, at(), median),
-            "choose a window without it with --from and --to, or put the samples on an even clock with "
-            "--resample HZ");
+      const auto here = intervals.head(size);
+      if (!(here > 0.0).all() || has_gap(inspection, begin - 1, end - 1)) {
+        for (Index i = begin; i < end; ++i) {
+          if (auto ok = check_step(clock, inspection, i); !ok) return ok;
+        }
       }
-      sum += (interval - median) * (interval - median);
-      largest = std::max(largest, std::abs(interval - median));
+      sum += (here - median).square().sum();
+      largest = std::max(largest, (here - median).abs().maxCoeff());
+      count += size;
     }
   }
   const double jitter = count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include "mbk/files/contents/disk_pages.h"
 
@@ -15,6 +18,16 @@ bool differs(const Columns& reference, Index a, Index b) {
     if (reference(a, k) != reference(b, k)) return true;
   }
   return false;
+}
+
+/// How many of the rows [begin, end), which are no more than 512, differ from the one before.
+Index changed_rows(const Columns& reference, Index begin, Index end) {
+  std::array<std::int64_t, 512> changed{};
+  for (Index k = 0; k < reference.cols(); ++k) {
+    const double* const values = reference.col(k).data() + begin;
+    for (Index i = 0; i < end - begin; ++i) changed[static_cast<std::size_t>(i)] |= values[i] != values[i - 1] ? 1 : 0;
+  }
+  return std::accumulate(changed.begin(), changed.end(), Index{0});
 }
 
 /// Maximal runs [begin, end) within [first, last) in which the reference differs from its value at `rest`.
@@ -126,11 +139,12 @@ std::pair<Index, Index> steady_range(const Columns& reference, Index from, Index
 
 ProtocolFinding detect_protocol(const Columns& reference) {
   if (reference.rows() < 2) return {Protocol::free, "no reference was recorded"};
+  constexpr Index kTogether = 512;
   Index changes = 0;
   recording::InPassing passing({reference});
-  for (Index i = 1; i < reference.rows(); ++i) {
-    passing.reached(i);
-    changes += differs(reference, i, i - 1) ? 1 : 0;
+  for (Index begin = 1; begin < reference.rows(); begin += kTogether) {
+    passing.reached(begin);
+    changes += changed_rows(reference, begin, std::min(begin + kTogether, reference.rows()));
   }
   passing.let_go_before(reference.rows());
   if (changes == 0) return {Protocol::free, "the reference never changes"};
