@@ -114,15 +114,18 @@ template <class Lanes, int Left, int Right>
   for (Index i = 0; i < Left; ++i) {
     for (Index j = 0; j < Right; ++j) sum[i][j] = Lanes::at(sums + 8 * (i * across + j));
   }
-  for (Index c = 0; c < columns; c += kSegments, left.data += left.step, right.data += right.step) {
+  const double *from_left[Left], *from_right[Right];
+  for (Index i = 0; i < Left; ++i) from_left[i] = left.row(i);
+  for (Index j = 0; j < Right; ++j) from_right[j] = right.row(j);
+  for (Index c = 0, l = 0, r = 0; c < columns; c += kSegments, l += left.step, r += right.step) {
     for (Index lane = 0; lane < kSegments; lane += Lanes::kWidth) {
       V a[Left];
       for (Index i = 0; i < Left; ++i) {
-        a[i] = Lanes::at(left.data + i * left.stride + lane);
+        a[i] = Lanes::at(from_left[i] + l + lane);
         keep_in_register<Lanes>(a[i]);
       }
       for (Index j = 0; j < Right; ++j) {
-        V b = Lanes::at(right.data + j * right.stride + lane);
+        V b = Lanes::at(from_right[j] + r + lane);
         keep_in_register<Lanes>(b);
         for (Index i = 0; i < Left; ++i) sum[i][j] += a[i] * b;
       }
