@@ -53,6 +53,7 @@ BENCHMARKS = [
     Benchmark("pipeline", "pipeline.py", full=("--turns", "21", *BIN), short=("--turns", "3", *BIN)),
     Benchmark("python_layer", "python_layer.py", full=("--turns", "11", *BIN), short=("--turns", "2", *BIN)),
     Benchmark("many_files", "many_files.py", full=BIN, short=("--files", "4", "--runs", "1", *BIN)),
+    Benchmark("long_recording", "long_recording.py", full=BIN, short=("--longest", "10", "--runs", "1", *BIN)),
     Benchmark("study", "study.py", full=BIN, short=("--trials", "4", "--results", "100", *BIN)),
     Benchmark("stages", "stages.cpp", "bench_stages", short=("--benchmark_min_time=0.02",)),
     Benchmark("simulation", "simulation.py", full=("--runs", "9", *BIN), short=("--runs", "2", *BIN)),
