@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Work on many processes, by each engine: the same bytes, and what it costs. The figures of docs/guide/cluster.md.
 
-  bytes     100,000 draws of people (well below 10 ms each) and 2,000 simulated trials that are measured, by each engine
-            with three lengths of chunks, 20 tasks killed at random in each: held against one process
+  bytes     100,000 draws of people (well below 10 ms each), 2,000 trials of 12 s that are simulated and written as
+            recordings, and 2,000 of 62 s that are simulated and measured, by each engine with three lengths of chunks,
+            20 tasks killed at random in each: held against one process. --of chooses one of the three
   cores     one task and two, in pairs, on warm files; beside them what two processes do that have nothing in common
   overhead  10,000 units (--units) of 0.1 to 0.2 s by Slurm and by local processes, and an array of as many tasks that
             do nothing
@@ -14,7 +15,8 @@ cores, overhead and rate compare times of this machine: nothing else may run. Sl
 (tests/cluster/private_slurm.py). What was measured stands in --state; a part that stands there is not measured again,
 so that a campaign that was interrupted goes on. Exit code 1: a result differs, or a finished chunk was lost.
 
-usage: cluster.py [--part bytes cores …] [--short] [--units N] [--bin build/release/bin] [--state FILE] [--again]
+usage: cluster.py [--part bytes cores …] [--of draws …] [--short] [--units N] [--bin build/release/bin] [--state FILE]
+                  [--again]
 """
 
 import argparse
@@ -25,6 +27,7 @@ import math
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import statistics
@@ -41,12 +44,15 @@ import study as studies  # noqa: E402
 from processes import ended_by_kill, workers_of  # noqa: E402
 
 ENGINES = ("local", "slurm", "mpi")
+WORKS = ("draws", "written", "measured")
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 JUDGED = (0, 1, 4, 6)  # exit codes of commands that did what they were asked
-FULL = {"draws": 100_000, "draw_chunks": (1000, 3000, 10_000), "runs": 1000, "run_chunks": (10, 25, 60), "kills": 20,
+FULL = {"draws": 100_000, "draw_chunks": (1000, 3000, 10_000), "runs": 1000, "run_chunks": (10, 25, 60), "written": 2000,
+        "written_chunks": (20, 60, 150), "kills": 20,
         "pairs": 3, "trials": 1000, "units": 10_000, "unit_chunk": 100, "merge": 1_000_000, "resumes": 5}
-SHORT = {"draws": 3000, "draw_chunks": (200, 500, 1000), "runs": 10, "run_chunks": (1, 2, 5), "kills": 3, "pairs": 1,
-         "trials": 20, "units": 100, "unit_chunk": 10, "merge": 50_000, "resumes": 1}
+SHORT = {"draws": 3000, "draw_chunks": (200, 500, 1000), "runs": 10, "run_chunks": (1, 2, 5), "written": 12,
+         "written_chunks": (1, 2, 5), "kills": 3, "pairs": 1, "trials": 20,
+         "units": 100, "unit_chunk": 10, "merge": 50_000, "resumes": 1}
 
 
 class Took:
@@ -128,6 +134,30 @@ class Campaign:
     def trials(self):
         return ("validate", "recovery", "--runs", self.size["runs"], "--json", "--quiet")
 
+    def written(self):
+        scenario = self.folder / "short.toml"
+        if not scenario.exists():
+            ready = subprocess.run([self.mbk, "simulate", "--show", "relaxed_sinusoidal"], check=True,
+                                   capture_output=True, text=True).stdout
+            text, changed = re.subn(r"(?m)^duration_s = .*$", "duration_s = 12", ready)
+            if changed != 1:
+                sys.exit("cluster.py: the ready scenario relaxed_sinusoidal has no duration_s")
+            scenario.write_text(text, encoding="utf-8")
+        return ("simulate", scenario, "--seeds", self.size["written"], "--out", self.folder / "written/trial.h5",
+                "--quiet")
+
+    def sum_of_written(self, took):
+        """Of the recordings in the folder `written`, which goes, and of what was printed."""
+        folder = self.folder / "written"
+        files = sorted(folder.iterdir())
+        if len(files) != self.size["written"]:
+            sys.exit(f"cluster.py: {len(files)} recordings in place of {self.size['written']}")
+        whole = hashlib.sha256(took.out)
+        for file in files:
+            whole.update(file.name.encode() + hashlib.sha256(file.read_bytes()).digest())
+        shutil.rmtree(folder)
+        return whole.hexdigest()
+
     def fresh_study(self, name="copy"):
         """A study of trials that were not measured yet."""
         template = self.folder / "measured"
@@ -147,23 +177,28 @@ class Campaign:
     # --- the parts
 
     def bytes(self):
-        for name, arguments, chunks in ((f"{self.size['draws']:,} draws", self.draws(), self.size["draw_chunks"]),
-                                        (f"{2 * self.size['runs']:,} simulated trials", self.trials(),
-                                         self.size["run_chunks"])):
-            def of_one_process(arguments=arguments):
-                took = self.run(None, *arguments)
-                return {"sha256": took.sum, "seconds": took.seconds}
+        plain = lambda took: took.sum  # noqa: E731
+        works = {"draws": (f"{self.size['draws']:,} draws", self.draws, self.size["draw_chunks"], plain),
+                 "written": (f"{self.size['written']:,} trials of 12 s, written", self.written,
+                             self.size["written_chunks"], self.sum_of_written),
+                 "measured": (f"{2 * self.size['runs']:,} simulated trials", self.trials, self.size["run_chunks"],
+                              plain)}
+        for work in self.options.of:
+            name, make_arguments, chunks, sum_of = works[work]
+            arguments = make_arguments()
 
-            one = self.record(f"bytes, {name}, one process", of_one_process)
+            def done(engine, *more, **kills):
+                (self.folder / "written").mkdir(exist_ok=True)
+                took = self.run(engine, *arguments, *more, **kills)
+                return {"sha256": sum_of(took), "seconds": took.seconds, "killed": took.killed}
+
+            one = self.record(f"bytes, {name}, one process", lambda: done(None))
             self.row(name, "", f"one process: {one['seconds']:.0f} s")
             for engine in ENGINES:
                 for units in chunks:
-                    def of_engine(engine=engine, units=units, arguments=arguments, one=one):
-                        took = self.run(engine, *arguments, "--chunk-units", units, "--settle", "1",
-                                        kills=self.size["kills"], expected_s=one["seconds"])
-                        return {"sha256": took.sum, "seconds": took.seconds, "killed": took.killed}
-
-                    found = self.record(f"bytes, {name}, {engine}, {units}", of_engine)
+                    found = self.record(f"bytes, {name}, {engine}, {units}",
+                                        lambda: done(engine, "--chunk-units", units, "--settle", "1",
+                                                     kills=self.size["kills"], expected_s=one["seconds"]))
                     same = found["sha256"] == one["sha256"]
                     self.row(f"  {engine}, chunks of {units}", "same bytes",
                              f"{'same bytes' if same else 'OTHER BYTES'}, {found['killed']} killed, "
@@ -286,6 +321,7 @@ PARTS = ("bytes", "cores", "overhead", "rate", "merge", "resume")
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--part", nargs="+", choices=PARTS, default=PARTS)
+    parser.add_argument("--of", nargs="+", choices=WORKS, default=WORKS, help="what the bytes are of")
     parser.add_argument("--short", action="store_true", help="a few of each, to see that it runs")
     parser.add_argument("--units", type=int, help="of overhead (10,000); fewer make its share larger, never smaller")
     parser.add_argument("--again", action="store_true", help="measure what stands in --state once more")
