@@ -118,6 +118,7 @@ Vector first_stage_strength(const MatrixPart& Z, const MatrixPart& R, const std:
     all.push_back(std::move(one));
   }
   Vector strength = Vector::Zero(m);
+  if (all.empty()) return strength;
   const Index kinds = std::ssize(all);
   taken.conservativeResize(Eigen::NoChange, kinds);
   // Scores of the excluded instruments' coefficients, A r_t e_t with A of (RᵀR)⁻¹: their Ω is the covariance.

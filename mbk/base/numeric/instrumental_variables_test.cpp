@@ -299,6 +299,13 @@ TEST(FirstStageStrength, IsNoneWhereInstrumentsAreMissing) {
   EXPECT_EQ(first_stage_strength(data.Z, data.R, {{0, 500}}, 5), Vector::Zero(2));
 }
 
+TEST(FirstStageStrength, IsNoneWhereEachRegressorStandsTwice) {
+  const FirstStage data(500, Matrix::Random(5, 2), 0.0, 7);
+  Matrix Z(500, 5);
+  Z << data.Z.col(0), data.Z.col(0), data.Z.col(1), data.Z.col(1), data.Z.col(2);
+  EXPECT_EQ(first_stage_strength(Z, data.R, {{0, 500}}, 5), Vector::Zero(4));
+}
+
 TEST(FirstStageStrength, GrowsWithTheShareThatTheInstrumentsExplain) {
   double before = 0.0;
   for (const double slope : {0.02, 0.1, 0.5, 2.0}) {

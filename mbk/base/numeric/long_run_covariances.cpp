@@ -80,7 +80,7 @@ MBK_X86_64_V4 void move_v4(Moving* columns, std::size_t count, Index rows) {
 class Windows {
  public:
   Windows(Index kinds, Index k, Index lags)
-      : before_(lags + 1), windows_(kTogether, kinds * k), moving_(static_cast<std::size_t>(kinds * k)) {
+      : k_(k), before_(lags + 1), windows_(kTogether, kinds * k), moving_(static_cast<std::size_t>(kinds * k)) {
     for (Index kind = 0; kind < kinds; ++kind) grams_.emplace_back(k);
   }
 
@@ -109,9 +109,8 @@ class Windows {
       }
       const auto run = has_x86_64_v4() ? move_v4 : has_x86_64_v3() ? move_v3 : move_any;
       run(moving_.data(), moving_.size(), end - t);
-      const Index k = windows_.cols() / std::ssize(grams_);
       for (Index kind = 0; kind < std::ssize(grams_); ++kind) {
-        grams_[static_cast<std::size_t>(kind)].add(windows_.block(0, kind * k, end - t, k));
+        grams_[static_cast<std::size_t>(kind)].add(windows_.block(0, kind * k_, end - t, k_));
       }
       t = end;
     }
@@ -124,7 +123,7 @@ class Windows {
   }
 
  private:
-  Index before_;
+  Index k_, before_;
   Matrix windows_;
   std::vector<Moving> moving_;
   std::vector<GramSum> grams_;

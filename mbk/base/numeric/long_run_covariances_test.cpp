@@ -59,6 +59,11 @@ TEST(LongRunCovariances, AreThoseOfTheSumOverLags) {
   }
 }
 
+TEST(LongRunCovariances, OfNoKindAreNone) {
+  const auto nothing = [](const RowRange&) { return ScoreProducts{}; };
+  EXPECT_TRUE(long_run_covariances(0, 2, {{0, 100}}, 5, nothing).empty());
+}
+
 TEST(LongRunCovariances, AskForEachScoreOnceAndInOrder) {
   const std::vector<RowRange> ranges = {{0, 5000}, {5001, 5100}};
   for (const Index lags : {0, 40, 3000}) {
