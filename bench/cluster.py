@@ -147,11 +147,15 @@ class Campaign:
                 "--quiet")
 
     def sum_of_written(self, took):
-        """Of the recordings in the folder `written`, which goes, and of what was printed."""
+        """Of the recordings in the folder `written`, which goes, and of what was printed. A task that is killed while it
+        writes leaves a file with a temporary name, which is no recording."""
         folder = self.folder / "written"
-        files = sorted(folder.iterdir())
+        files = sorted(folder.glob("*.h5"))
         if len(files) != self.size["written"]:
-            sys.exit(f"cluster.py: {len(files)} recordings in place of {self.size['written']}")
+            sys.exit(f"cluster.py: {len(files)} recordings in place of {self.size['written']}: {files[:3]} …")
+        left = {path.name for path in folder.iterdir()} - {path.name for path in files}
+        if left:
+            print(f"  left by tasks that were killed: {', '.join(sorted(left))}", flush=True)
         whole = hashlib.sha256(took.out)
         for file in files:
             whole.update(file.name.encode() + hashlib.sha256(file.read_bytes()).digest())
