@@ -47,12 +47,12 @@ ENGINES = ("local", "slurm", "mpi")
 WORKS = ("draws", "written", "measured")
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 JUDGED = (0, 1, 4, 6)  # exit codes of commands that did what they were asked
-FULL = {"draws": 100_000, "draw_chunks": (1000, 3000, 10_000), "runs": 1000, "run_chunks": (10, 25, 60), "written": 2000,
-        "written_chunks": (20, 60, 150), "kills": 20,
-        "pairs": 3, "trials": 1000, "units": 10_000, "unit_chunk": 100, "merge": 1_000_000, "resumes": 5}
-SHORT = {"draws": 3000, "draw_chunks": (200, 500, 1000), "runs": 10, "run_chunks": (1, 2, 5), "written": 12,
-         "written_chunks": (1, 2, 5), "kills": 3, "pairs": 1, "trials": 20,
-         "units": 100, "unit_chunk": 10, "merge": 50_000, "resumes": 1}
+FULL = {"draws": 100_000, "draw_chunks": (1000, 3000, 10_000), "written": 2000, "written_chunks": (20, 60, 150),
+        "runs": 1000, "run_chunks": (10, 25, 60), "kills": 20, "pairs": 3, "trials": 1000, "units": 10_000,
+        "unit_chunk": 100, "merge": 1_000_000, "resumes": 5}
+SHORT = {"draws": 3000, "draw_chunks": (200, 500, 1000), "written": 12, "written_chunks": (1, 2, 5),
+         "runs": 10, "run_chunks": (1, 2, 5), "kills": 3, "pairs": 1, "trials": 20, "units": 100,
+         "unit_chunk": 10, "merge": 50_000, "resumes": 1}
 
 
 class Took:
@@ -143,12 +143,13 @@ class Campaign:
             if changed != 1:
                 sys.exit("cluster.py: the ready scenario relaxed_sinusoidal has no duration_s")
             scenario.write_text(text, encoding="utf-8")
+        (self.folder / "written").mkdir(exist_ok=True)
         return ("simulate", scenario, "--seeds", self.size["written"], "--out", self.folder / "written/trial.h5",
                 "--quiet")
 
     def sum_of_written(self, took):
-        """Of the recordings in the folder `written`, which goes, and of what was printed. A task that is killed while it
-        writes leaves a file with a temporary name, which is no recording."""
+        """Of the recordings in the folder `written`, which is empty then, and of what was printed. A task that is killed
+        while it writes leaves a file with a temporary name, which is no recording."""
         folder = self.folder / "written"
         files = sorted(folder.glob("*.h5"))
         if len(files) != self.size["written"]:
@@ -160,6 +161,7 @@ class Campaign:
         for file in files:
             whole.update(file.name.encode() + hashlib.sha256(file.read_bytes()).digest())
         shutil.rmtree(folder)
+        folder.mkdir()
         return whole.hexdigest()
 
     def fresh_study(self, name="copy"):
@@ -181,20 +183,18 @@ class Campaign:
     # --- the parts
 
     def bytes(self):
-        plain = lambda took: took.sum  # noqa: E731
-        works = {"draws": (f"{self.size['draws']:,} draws", self.draws, self.size["draw_chunks"], plain),
+        works = {"draws": (f"{self.size['draws']:,} draws", self.draws, self.size["draw_chunks"]),
                  "written": (f"{self.size['written']:,} trials of 12 s, written", self.written,
-                             self.size["written_chunks"], self.sum_of_written),
-                 "measured": (f"{2 * self.size['runs']:,} simulated trials", self.trials, self.size["run_chunks"],
-                              plain)}
+                             self.size["written_chunks"]),
+                 "measured": (f"{2 * self.size['runs']:,} simulated trials", self.trials, self.size["run_chunks"])}
         for work in self.options.of:
-            name, make_arguments, chunks, sum_of = works[work]
+            name, make_arguments, chunks = works[work]
             arguments = make_arguments()
 
             def done(engine, *more, **kills):
-                (self.folder / "written").mkdir(exist_ok=True)
                 took = self.run(engine, *arguments, *more, **kills)
-                return {"sha256": sum_of(took), "seconds": took.seconds, "killed": took.killed}
+                both = took.sum if work != "written" else self.sum_of_written(took)
+                return {"sha256": both, "seconds": took.seconds, "killed": took.killed}
 
             one = self.record(f"bytes, {name}, one process", lambda: done(None))
             self.row(name, "", f"one process: {one['seconds']:.0f} s")

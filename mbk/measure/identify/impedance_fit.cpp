@@ -192,7 +192,7 @@ Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ra
     if (!fit) return tl::unexpected(fit.error());
     return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse_gram), fit->rank};
   }
-  const bool every_row = step == 1 && (&ranges == &ranges_ || !all_ || r_.validation.empty());
+  const bool every_row = Y->rows() == samples_;
   auto fit = every_row ? numeric::fit_instrumental_variables(instruments_->gram, r_.Z.cols(), samples_, S_)
                        : numeric::fit_instrumental_variables(*Z, *SelectedRows(instruments_->R, ranges, step), *Y, S_);
   if (!fit) return tl::unexpected(fit.error());

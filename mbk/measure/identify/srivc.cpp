@@ -20,6 +20,7 @@
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/polynomial_roots.h"
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/explained_by_past.h"
 
 namespace mbk::identify {
@@ -839,23 +840,6 @@ Fitter::Search Fitter::search(double pole) const {
   return found;
 }
 
-/// Sums of sixteen that do not wait for each other.
-template <class Term>
-double sum_of(const Vector& x, Term&& term) {
-  constexpr Index kAbreast = 16;
-  Eigen::Array<double, kAbreast, 1> sums = Eigen::Array<double, kAbreast, 1>::Zero();
-  const Index whole = x.size() / kAbreast * kAbreast;
-  for (Index i = 0; i < whole; i += kAbreast) sums += term(x.segment<kAbreast>(i).array());
-  return sums.sum() + term(x.tail(x.size() - whole).array()).sum();
-}
-double sum_of(const Vector& x) {
-  return sum_of(x, [](const auto& some) { return some; });
-}
-double squares_about_mean(const Vector& x) {
-  const double mean = sum_of(x) / static_cast<double>(x.size());
-  return sum_of(x, [mean](const auto& some) { return (some - mean).square(); });
-}
-
 Result<void> Fitter::check() {
   if (n_ < 1 || n_ > kMaxPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMaxPoles));
   if (q_ < 1 || q_ > n_ + 1) {
@@ -870,10 +854,11 @@ Result<void> Fitter::check() {
   double input_squares = 0.0;
   for (const SignalPair& pair : experiments_) {
     samples_ += pair.time.size();
-    const double of_input = squares_about_mean(pair.input), of_output = squares_about_mean(pair.output);
+    const auto squares = [](const Vector& x) { return numeric::variance(x) * static_cast<double>(x.size() - 1); };
+    const double of_input = squares(pair.input), of_output = squares(pair.output);
     input_squares += of_input;
     output_squares_ += of_output;
-    for (const auto& [signal, sum] : {std::pair(&pair.time, sum_of(pair.time)), std::pair(&pair.input, of_input),
+    for (const auto& [signal, sum] : {std::pair(&pair.time, pair.time.sum()), std::pair(&pair.input, of_input),
                                       std::pair(&pair.output, of_output)}) {
       if (signal->size() != pair.time.size()) return bad_usage("time, input and output differ in length");
       if (std::isfinite(sum)) continue;

@@ -20,9 +20,11 @@ bool differs(const Columns& reference, Index a, Index b) {
   return false;
 }
 
-/// How many of the rows [begin, end), which are no more than 512, differ from the one before.
+constexpr Index kTogether = 512;  ///< rows
+
+/// How many of the rows [begin, end), which are no more than kTogether, differ from the one before.
 Index changed_rows(const Columns& reference, Index begin, Index end) {
-  std::array<std::int64_t, 512> changed{};
+  std::array<std::int64_t, kTogether> changed{};
   for (Index k = 0; k < reference.cols(); ++k) {
     const double* const values = reference.col(k).data() + begin;
     for (Index i = 0; i < end - begin; ++i) changed[static_cast<std::size_t>(i)] |= values[i] != values[i - 1] ? 1 : 0;
@@ -139,7 +141,6 @@ std::pair<Index, Index> steady_range(const Columns& reference, Index from, Index
 
 ProtocolFinding detect_protocol(const Columns& reference) {
   if (reference.rows() < 2) return {Protocol::free, "no reference was recorded"};
-  constexpr Index kTogether = 512;
   Index changes = 0;
   recording::InPassing passing({reference});
   for (Index begin = 1; begin < reference.rows(); begin += kTogether) {
