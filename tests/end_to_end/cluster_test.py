@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """--engine: the same bytes from processes, from a job array of a real Slurm, from ranks of Open MPI, whatever ends."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -327,6 +328,33 @@ class Slurm(Engines, JobCase):
 class Mpi(Engines, JobCase):
     engine = ("--engine", "mpi", "--tasks", "1")
     environment = MPI
+
+    def stop_one_that_has_not_begun(self, began):
+        """Whether a process of a chunk could be stopped before it had a shard."""
+        seen = set(workers_of(self.folder))
+        while began.poll() is None:
+            for worker in set(workers_of(self.folder)) - seen:
+                seen.add(worker)
+                with contextlib.suppress(ProcessLookupError, FileNotFoundError, ValueError):
+                    os.kill(worker, signal.SIGSTOP)
+                    words = pathlib.Path(f"/proc/{worker}/cmdline").read_bytes().split(b"\0")
+                    chunk = words[words.index(b"--chunk") + 1].decode()
+                    if not any(self.folder.rglob(f"shards/{chunk}.*")):
+                        return True
+                    os.kill(worker, signal.SIGCONT)
+        return False
+
+    def test_a_process_that_hangs_before_it_has_begun_is_replaced(self):
+        for _ in range(5):
+            began = self.begin(*VALIDATE, *SHORT, "--silence", "1")
+            self.wait_for(lambda: self.shards() or began.poll() is not None)
+            stopped = self.stop_one_that_has_not_begun(began)
+            out, err = began.communicate(timeout=120)
+            self.assertEqual(began.returncode, self.judged, err)
+            self.assertEqual(out.decode(), self.table)
+            if stopped:
+                return
+        self.fail("no process could be stopped before it had begun")
 
     def test_oversubscribed(self):
         ran = self.mbk(*VALIDATE, *SHORT, "--engine", "mpi", "--tasks", "7", "--engine-option=--oversubscribe",

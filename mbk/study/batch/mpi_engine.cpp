@@ -38,7 +38,7 @@ class MpiEngine : public Engine {
   Result<std::map<std::int64_t, Alive>> alive() override {
     if (process_) {
       code_ = process_->wait(0.0);
-      note_begun();
+      note_shards();
       if (code_) {
         process_.reset();
         handed_out_.clear();
@@ -48,7 +48,14 @@ class MpiEngine : public Engine {
       if (auto ok = start(std::exchange(waiting_, {})); !ok) return tl::unexpected(ok.error());
     }
     std::map<std::int64_t, Alive> all;
-    for (const std::int64_t chunk : handed_out_) all[chunk] = {begun_.contains(chunk), ""};
+    // The first rank gives the chunks away in this order, as soon as the ranks are there: so those that are not whole
+    // are in somebody's hands, as many as there are ranks to work, whether or not a process has come to begin its
+    // shard.
+    int in_hand = begun_.empty() ? 0 : tasks_;
+    for (const std::int64_t chunk : handed_out_) {
+      const bool held = !whole_.contains(chunk) && in_hand-- > 0;
+      all[chunk] = {held || begun_.contains(chunk), ""};
+    }
     for (const std::int64_t chunk : waiting_) all[chunk] = {};
     return all;
   }
@@ -83,12 +90,13 @@ class MpiEngine : public Engine {
  private:
   static constexpr double kEndsWithin = 10.0;  // [s]
 
-  /// The chunks of which this run has begun a shard.
-  void note_begun() {
+  /// The chunks of which this run has begun a shard, and those that are done.
+  void note_shards() {
     const auto files = list_shards(folder_);
     if (!files) return;
     for (const ShardFile& file : *files) {
       if (!before_.contains(file.path.stem())) begun_.insert(file.chunk);
+      if (file.state == ShardFile::State::whole) whole_.insert(file.chunk);
     }
   }
 
@@ -98,6 +106,7 @@ class MpiEngine : public Engine {
     ++runs_;
     before_.clear();
     begun_.clear();
+    whole_.clear();
     const auto files = list_shards(folder_);
     if (!files) return tl::unexpected(files.error());
     for (const ShardFile& file : *files) before_.insert(file.path.stem());
@@ -127,7 +136,7 @@ class MpiEngine : public Engine {
   int tasks_, runs_ = 0;
   std::optional<ChildProcess> process_;
   std::optional<int> code_;
-  std::set<std::int64_t> handed_out_, waiting_, begun_;
+  std::set<std::int64_t> handed_out_, waiting_, begun_, whole_;
   std::set<fs::path> before_;  ///< names of shards, without their ends, that were there when it began
 };
 
