@@ -6,9 +6,9 @@
 # it, whatever the command line of that file says: so each level has a holder of its own.
 option(MBK_PRECOMPILE "Precompile the outside headers that most files include" ON)
 
-# The compiler optimises fully (-O3) what has loops that a user waits for: modules with LOOPS. The rest compiles in three
-# quarters of the time so.
-set(MBK_LITTLE_OPTIMISATION $<$<CONFIG:Release>:-O1>)
+# The compiler optimises fully (-O3) what has loops that a user waits for: modules with LOOPS, whose commands would
+# execute a fifth to twice as many instructions at -O2. The rest compiles in two thirds of the time so.
+set(MBK_LITTLE_OPTIMISATION $<$<CONFIG:Release>:-Og>)
 
 set(MBK_PRECOMPILED_FOLDER ${CMAKE_CURRENT_LIST_DIR}/precompiled)
 
