@@ -1,6 +1,6 @@
 # The outside headers that most files include, read once for each way of compiling instead of once for each file:
-# cmake/precompiled/library.h, with GoogleTest tests.h, with CLI11 commands.h. Every file still includes what it uses,
-# which clang-tidy, that compiles without them, confirms. docs/guide/build.md shows what it saves.
+# cmake/precompiled/library.h, with GoogleTest tests.h. Every file still includes what it uses, which clang-tidy, that
+# compiles without them, confirms. docs/guide/build.md shows what it saves.
 #
 # What is precompiled keeps the level of optimisation that it was compiled with, and hands it to every file that takes
 # it, whatever the command line of that file says: so each level has a holder of its own.
@@ -22,11 +22,7 @@ if(MBK_PRECOMPILE)
   add_library(mbk_precompiled_loops STATIC ${MBK_PRECOMPILED_FOLDER}/library.cpp)
   target_precompile_headers(mbk_precompiled_loops PRIVATE ${MBK_PRECOMPILED_FOLDER}/library.h)
 
-  add_library(mbk_precompiled_commands STATIC ${MBK_PRECOMPILED_FOLDER}/library.cpp)
-  target_compile_options(mbk_precompiled_commands PRIVATE ${MBK_LITTLE_OPTIMISATION})
-  target_link_libraries(mbk_precompiled_commands PRIVATE CLI11::CLI11)
-  target_precompile_headers(mbk_precompiled_commands PRIVATE ${MBK_PRECOMPILED_FOLDER}/commands.h)
-  set(holders mbk_precompiled_library mbk_precompiled_loops mbk_precompiled_commands)
+  set(holders mbk_precompiled_library mbk_precompiled_loops)
 
   if(MBK_BUILD_TESTS)
     add_executable(mbk_precompiled_tests ${MBK_PRECOMPILED_FOLDER}/program.cpp)
@@ -42,7 +38,7 @@ if(MBK_PRECOMPILE)
   endforeach()
 endif()
 
-# mbk_precompile(TARGET library|loops|commands|tests): TARGET is compiled with those headers. What they need it is
+# mbk_precompile(TARGET library|loops|tests): TARGET is compiled with those headers. What they need it is
 # given, for a module need not link it by itself; nobody who links TARGET is.
 function(mbk_precompile target kind)
   if(MBK_PRECOMPILE)

@@ -37,22 +37,22 @@ std::optional<std::map<std::string, std::string>> arm_metadata(const std::string
 
 }  // namespace
 
-void add_analyse_options(CLI::App& command, AnalyseArguments& arguments) {
+void add_analyse_options(Command command, AnalyseArguments& arguments) {
   add_choice(
       command, "--domain", arguments.domain,
       "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not known), in "
       "the posture of the recording")
-      ->group("Model");
+      .group("Model");
   command
       .add_option("--arm", arguments.arm,
                   "the person's arm, where the recording does not hold it: place of the shoulder in the robot's frame, "
                   "lengths of upper arm and forearm (to the grip), in metres; the elbow is to the right unless ',left' "
                   "follows")
-      ->type_name("X,Y,UPPER,FORE")
-      ->check([](const std::string& given) {
+      .type_name("X,Y,UPPER,FORE")
+      .check([](const std::string& given) {
         return arm_metadata(given) ? "" : fmt::format("{} is not X,Y,UPPER,FORE in metres", quoted(given));
       })
-      ->group("Model");
+      .group("Model");
 }
 
 void add_arm(const AnalyseArguments& arguments, Recording& recording) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "mbk/base/core/words.h"
 #include "mbk/model/trial/recording.h"
 
@@ -26,7 +26,7 @@ struct AnalyseArguments {
 };
 
 /// Adds --domain and --arm.
-void add_analyse_options(CLI::App& command, AnalyseArguments& arguments);
+void add_analyse_options(Command command, AnalyseArguments& arguments);
 
 /// With --arm the recording's metadata hold that arm.
 void add_arm(const AnalyseArguments& arguments, Recording& recording);

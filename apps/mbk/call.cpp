@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <mutex>
@@ -14,13 +13,14 @@
 #include <unordered_map>
 
 #include "apps/mbk/caller.h"
+#include "apps/mbk/command.h"
 #include "apps/mbk/command_list.h"
 #include "apps/mbk/command_tree.h"
 #include "apps/mbk/commands.h"
 #include "apps/mbk/commands_json.h"
+#include "apps/mbk/help.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/reading_options.h"
-#include "apps/mbk/usage_error.h"
 #include "mbk/base/core/edit_distance.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/in_memory.h"
@@ -43,20 +43,21 @@ std::vector<std::string> split(std::string_view text) {
 
 /// A command line that was parsed.
 struct Prepared {
-  CLI::App app;
+  Parser parser;
   Actions actions;
   bool json = false;
 };
 
-/// The command below `app` that `path` names; nullptr where there is none, or where it has commands of its own.
-CLI::App* find_command(CLI::App& app, std::span<const std::string> path) {
-  CLI::App* at = &app;
+/// The command below `app` that `path` names; nothing where there is none, or where it has commands of its own.
+std::optional<Command> find_command(Command app, std::span<const std::string> path) {
+  Command at = app;
   for (const std::string& word : path) {
-    const auto named = at->get_subcommands([&](const CLI::App* below) { return below->check_name(word); });
-    if (named.empty()) return nullptr;
-    at = named.front();
+    const auto below = at.commands();
+    const auto named = std::ranges::find(below, word, &Command::name);
+    if (named == below.end()) return std::nullopt;
+    at = *named;
   }
-  return at->get_subcommands({}).empty() ? at : nullptr;
+  return at.commands().empty() ? std::optional(at) : std::nullopt;
 }
 
 /// What was asked for, one thing a line: the same text, the same parsed command line.
@@ -78,21 +79,21 @@ std::string key_of(const Call& call, std::span<const std::string> words) {
 }
 
 /// With the name that was perhaps meant.
-tl::unexpected<Error> no_option(const CLI::App& command, const std::string& name) {
-  const std::string meant = meant_word("--" + name, option_names(command));
-  return bad_usage(fmt::format("'{}' is no option of {}", name, command.get_name()),
+tl::unexpected<Error> no_option(Command command, const std::string& name) {
+  const std::string meant = meant_word("--" + name, command.option_names());
+  return bad_usage(fmt::format("'{}' is no option of {}", name, command.name()),
                    meant.empty() ? "" : fmt::format("'{}' is one", meant.substr(2)));
 }
 
 /// As it would be typed, word by word.
-std::vector<std::string> typed_option(const CLI::App& command, const CallOption& given) {
+std::vector<std::string> typed_option(Command command, const CallOption& given) {
   const std::string name = "--" + given.name;
   if (given.values.empty()) return {name};
-  const CLI::Option* const option = command.get_option_no_throw(name);
-  const bool flag = option != nullptr && option->get_items_expected_max() == 0;
+  const auto option = command.find_option(name);
+  const bool flag = option && option->is_flag();
   if (flag && given.values.front() == "false") return {};
   if (flag && given.values.front() == "true") return {name};
-  const bool in_one = option != nullptr && option->get_allow_extra_args() && option->get_items_expected_max() > 1;
+  const bool in_one = option && option->takes_following();
   std::vector<std::string> words;
   for (std::size_t k = 0; k < given.values.size(); ++k) {
     words.push_back(k > 0 && in_one ? given.values[k] : name + "=" + given.values[k]);
@@ -102,11 +103,10 @@ std::vector<std::string> typed_option(const CLI::App& command, const CallOption&
 
 /// What would be typed behind the command.
 /// @fails  usage: no option of the command
-Result<std::vector<std::string>> typed_words(const CLI::App& command, const Call& call,
-                                             const std::vector<std::string>& words) {
+Result<std::vector<std::string>> typed_words(Command command, const Call& call, const std::vector<std::string>& words) {
   std::vector<std::string> typed;
   for (const CallOption& option : call.options) {
-    if (command.get_option_no_throw("--" + option.name) == nullptr) return no_option(command, option.name);
+    if (!command.find_option("--" + option.name)) return no_option(command, option.name);
     const std::vector<std::string> more = typed_option(command, option);
     typed.insert(typed.end(), more.begin(), more.end());
   }
@@ -126,32 +126,26 @@ bool holds_zero(const Call& call) {
 }
 
 /// @fails  usage: what the parser says
-Result<void> parse(CLI::App& app, std::vector<std::string> typed, const std::string& help) {
-  std::ranges::reverse(typed);  // the parser takes them from the end
-  try {
-    app.parse(std::move(typed));
-  } catch (const CLI::Success&) {  // a page of help, or of ranges
-    return bad_usage("that option answers with a text for people", help);
-  } catch (const CLI::ParseError& error) {
-    return bad_usage(usage_message(app, error), help);
-  }
-  return {};
+Result<void> parse(const Parser& parser, std::vector<std::string> typed, const std::string& help) {
+  const auto taken = parser.parse(std::move(typed));
+  if (taken) return {};
+  return bad_usage(taken.error().answer ? "that option answers with a text for people" : taken.error().usage, help);
 }
 
 /// @fails  usage: no such command; what the parser says
 Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vector<std::string>& words) {
   const std::vector<std::string> path = split(call.command);
   const std::string first = path.empty() ? "" : path.front();
-  CLI::App probe;
-  const Actions unused = add_commands(first, probe, "");
-  const CLI::App* const command = path.empty() ? nullptr : find_command(probe, path);
-  if (command == nullptr || !can_be_called(first)) {
+  const Parser probe;
+  const Actions unused = add_commands(first, probe.command(), "");
+  const auto command = path.empty() ? std::nullopt : find_command(probe.command(), path);
+  if (!command || !can_be_called(first)) {
     return bad_usage(fmt::format("'{}' is no command that can be called", call.command), "see 'mbk --help'");
   }
   auto behind = typed_words(*command, call, words);
   if (!behind) return tl::unexpected(behind.error());
   const bool said = std::ranges::any_of(call.options, [](const CallOption& o) { return o.name == "json"; });
-  const bool can = command->get_option_no_throw("--json") != nullptr;
+  const bool can = command->find_option("--json").has_value();
   std::vector<std::string> typed = path;
   if (can && !said) typed.emplace_back("--json");
   typed.insert(typed.end(), behind->begin(), behind->end());
@@ -162,8 +156,9 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
   std::string program = "mbk";
   argv.push_back(program.data());
   for (std::string& word : typed) argv.push_back(word.data());
-  prepared->actions = add_commands(first, prepared->app, command_line(static_cast<int>(argv.size()), argv.data()));
-  if (auto ok = parse(prepared->app, typed, fmt::format("see 'mbk {} --help'", call.command)); !ok) {
+  prepared->actions =
+      add_commands(first, prepared->parser.command(), command_line(static_cast<int>(argv.size()), argv.data()));
+  if (auto ok = parse(prepared->parser, typed, fmt::format("see 'mbk {} --help'", call.command)); !ok) {
     return tl::unexpected(ok.error());
   }
   return std::shared_ptr<const Prepared>(std::move(prepared));
@@ -266,7 +261,7 @@ Result<Answer> call(const Call& call) {
     if (!prepared) return tl::unexpected(prepared.error());
     Caller caller(call);
     const Requester::Scope scope(&caller);
-    const int code = run_chosen((*prepared)->app, (*prepared)->actions);
+    const int code = run_chosen((*prepared)->parser.command(), (*prepared)->actions);
     if (caller.stopped()) throw Stopped();
     bool wrote = false;
     Answer answer = caller.take(code, wrote);
@@ -304,13 +299,13 @@ std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answe
 Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call& call) {
   ReadingArguments reading;
   SensorArguments sensor;
-  CLI::App command("", "read");
-  add_reading_options(command, reading);
-  add_sensor_options(command, sensor);
+  const Parser parser("read");
+  add_reading_options(parser.command(), reading);
+  add_sensor_options(parser.command(), sensor);
   if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
-  auto typed = typed_words(command, call, all_words(call));
+  auto typed = typed_words(parser.command(), call, all_words(call));
   if (!typed) return tl::unexpected(typed.error());
-  if (auto ok = parse(command, std::move(*typed), ""); !ok) return tl::unexpected(ok.error());
+  if (auto ok = parse(parser, std::move(*typed), ""); !ok) return tl::unexpected(ok.error());
   return guarded([&]() -> Result<std::vector<std::shared_ptr<const recording::InMemory>>> {
     Caller caller(call);
     const Requester::Scope scope(&caller);
@@ -332,11 +327,10 @@ bool can_be_called(std::string_view command) {
 }
 
 std::string describe_commands() {
-  CLI::App app;
-  app.name("mbk");
-  add_help(app);
-  const Actions unused = add_commands("", app, "");
-  return commands_json(describe(app), std::string(version()));
+  const Parser parser("mbk");
+  add_help(parser.command());
+  const Actions unused = add_commands("", parser.command(), "");
+  return commands_json(describe(parser.command()), std::string(version()));
 }
 
 }  // namespace mbk::app

@@ -2,28 +2,25 @@
 
 #include <algorithm>
 #include <functional>
-#include <memory>
 #include <utility>
 #include <vector>
-
-#include "apps/mbk/help.h"
 
 namespace mbk::app {
 namespace {
 
-using Commands = std::vector<std::pair<std::string_view, std::function<Action(CLI::App&)>>>;
+using Commands = std::vector<std::pair<std::string_view, std::function<Action(Command)>>>;
 
 /// Every command, in the order in which --help lists them.
 Commands all_commands(const std::string& typed) {
   return {
-      {"measure", [typed](CLI::App& app) { return add_measure(app, typed); }},
+      {"measure", [typed](Command app) { return add_measure(app, typed); }},
       {"identify", add_identify},
-      {"explore", [typed](CLI::App& app) { return add_explore(app, typed); }},
+      {"explore", [typed](Command app) { return add_explore(app, typed); }},
       {"movement", add_movement},
-      {"tf", [typed](CLI::App& app) { return add_tf(app, typed); }},
+      {"tf", [typed](Command app) { return add_tf(app, typed); }},
       {"ellipse", add_ellipse},
       {"passivity", add_passivity},
-      {"compare", [typed](CLI::App& app) { return add_compare(app, typed); }},
+      {"compare", [typed](Command app) { return add_compare(app, typed); }},
       {"info", add_info},
       {"new", add_new},
       {"convert", add_convert},
@@ -45,7 +42,7 @@ Commands all_commands(const std::string& typed) {
 
 }  // namespace
 
-Actions add_commands(std::string_view first, CLI::App& app, const std::string& typed) {
+Actions add_commands(std::string_view first, Command app, const std::string& typed) {
   const Commands all = all_commands(typed);
   const bool one = first != "completion" && first != "manual" &&
                    std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });
@@ -55,11 +52,6 @@ Actions add_commands(std::string_view first, CLI::App& app, const std::string& t
     if (!one || name == first) made.emplace_back(name, add(app));
   }
   return made;
-}
-
-void add_help(CLI::App& app) {
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.set_help_all_flag("--help-all", "print every option, in sections, with all there is to say");
 }
 
 }  // namespace mbk::app

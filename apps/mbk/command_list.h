@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <string_view>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/commands.h"
 
 namespace mbk::app {
@@ -12,9 +12,6 @@ namespace mbk::app {
 /// commands are half of what it takes to start: where `first` names a command, only that one is made, unless it is one
 /// that speaks of all; for "--version", none.
 /// @param first  the first word on the command line    @param typed  all of it, which a report repeats
-[[nodiscard]] Actions add_commands(std::string_view first, CLI::App& app, const std::string& typed);
-
-/// --help and --help-all as HelpFormatter writes them, here and in commands that are added from then on.
-void add_help(CLI::App& app);
+[[nodiscard]] Actions add_commands(std::string_view first, Command app, const std::string& typed);
 
 }  // namespace mbk::app

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <regex>
 
 #include "apps/mbk/commands.h"
-#include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 
 namespace mbk::app {
@@ -38,7 +38,7 @@ std::vector<std::string> extensions_of(const std::string& description) {
 Values values_of(CLI::Option& option, const std::string& placeholder, const std::string& description) {
   static const std::regex kWithExtension(R"([A-Z_]+\.([a-z][a-z0-9]*))");
   Values values{.words = words_of(placeholder), .extensions = {}};
-  for (const std::string& word : suggestions(option)) {
+  for (const std::string& word : Option(option).words()) {
     if (std::ranges::find(values.words, word) == values.words.end()) values.words.push_back(word);
   }
   if (std::smatch match; std::regex_match(placeholder, match, kWithExtension)) values.extensions = {match[1]};
@@ -104,13 +104,9 @@ CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
 
 }  // namespace
 
-CLI::App* add_command(CLI::App& parent, const std::string& name, const std::string& summary) {
-  return parent.add_subcommand(name, summary);
-}
-
-int run_chosen(const CLI::App& parent, const Actions& actions) {
+int run_chosen(Command parent, const Actions& actions) {
   for (const auto& [name, action] : actions) {
-    if (parent.got_subcommand(name)) return action();
+    if (parent.has_typed(name)) return action();
   }
   return kWrongUsage;
 }
@@ -119,14 +115,14 @@ std::string CommandText::joined(const char* separator) const {
   return fmt::format("{}", fmt::join(path, separator));
 }
 
-std::vector<std::string> names_below(CLI::App& app) {
+std::vector<std::string> names_below(Command app) {
   std::vector<std::string> names;
-  add_names_below(app, names);
+  add_names_below(app.cli(), names);
   return names;
 }
 
-CommandText describe(CLI::App& app) {
-  return describe_command(app, {});
+CommandText describe(Command app) {
+  return describe_command(app.cli(), {});
 }
 
 }  // namespace mbk::app

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "apps/mbk/command.h"
 
 namespace mbk::app {
 
@@ -35,12 +36,12 @@ struct CommandText {
 };
 
 /// The name of every command below this one, each before those below it; no help is made for that.
-[[nodiscard]] std::vector<std::string> names_below(CLI::App& app);
+[[nodiscard]] std::vector<std::string> names_below(Command app);
 
 /// Everything that --help says on every level, as values. Fixed values come from a placeholder with words in small
 /// letters between bars ("HZ|none": none), from suggests() and, for files, from extensions: in the placeholder
 /// ("REC.mat") or in the description of a positional argument (".mat or .csv").
-[[nodiscard]] CommandText describe(CLI::App& app);
+[[nodiscard]] CommandText describe(Command app);
 
 /// `visit` for this command, then for each below it.
 template <class Visit>

@@ -207,10 +207,10 @@ int run(const CompareArguments& arguments, const std::string& typed) {
 
 }  // namespace
 
-Action add_compare(CLI::App& app, const std::string& typed) {
+Action add_compare(Command app, const std::string& typed) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* command = add_command(app, "compare", "what changed between results: how far M, B and K are apart");
-  command->footer(
+  const Command command = app.add_command("compare", "what changed between results: how far M, B and K are apart");
+  command.footer(
       "Examples:\n"
       "  mbk compare relaxed.json rigid.json\n"
       "      what 'mbk measure --json --out relaxed.json' and so on wrote\n"
@@ -223,14 +223,14 @@ Action add_compare(CLI::App& app, const std::string& typed) {
       "whatever axes and units, at hand or joints. Beside it how many times the second is the first, least\n"
       "and most, and along which direction from x. A matrix that is not positive definite has no width\n"
       "(exit code 4). Of more than two, each is compared with the first.");
-  add_measure_options(*command, *arguments);
-  command->get_option("FILE")->description("results of 'mbk measure --json', recordings, or folders of results");
+  add_measure_options(command, *arguments);
+  command.get_option("FILE").description("results of 'mbk measure --json', recordings, or folders of results");
   // They join files or add what a width does not show.
   for (const char* name : {"--parts", "--pool", "--bootstrap", "--seed", "--decimate-check", "--threads"}) {
-    command->remove_option(command->get_option(name));
+    command.remove_option(name);
   }
-  add_output_options(*command, arguments->output, "mbk.compare/1");
-  add_report_options(*command, arguments->report);
+  add_output_options(command, arguments->output, "mbk.compare/1");
+  add_report_options(command, arguments->report);
   return [arguments, typed] { return run(*arguments, typed); };
 }
 

@@ -21,7 +21,7 @@ struct CompletionArguments {
   Output output;
 };
 
-int run(const CompletionArguments& arguments, CLI::App& root) {
+int run(const CompletionArguments& arguments, Command root) {
   const CommandText text = describe(root);
   const std::string script = arguments.shell == Shell::bash  ? bash_completion(text)
                              : arguments.shell == Shell::zsh ? zsh_completion(text)
@@ -39,10 +39,10 @@ std::string single_quoted(const std::string& text) {
   return out + "'";
 }
 
-Action add_completion(CLI::App& app) {
+Action add_completion(Command app) {
   auto arguments = std::make_shared<CompletionArguments>();
-  CLI::App* command = add_command(app, "completion", "a script that lets the shell complete commands and options");
-  command->footer(
+  const Command command = app.add_command("completion", "a script that lets the shell complete commands and options");
+  command.footer(
       "Examples:\n"
       "  mbk completion bash --out ~/.local/share/bash-completion/completions/mbk\n"
       "      or, for one shell alone: source <(mbk completion bash)\n"
@@ -50,9 +50,9 @@ Action add_completion(CLI::App& app) {
       "      with fpath+=~/.zfunc before compinit in ~/.zshrc\n"
       "  mbk completion fish --out ~/.config/fish/completions/mbk.fish\n\n"
       "Where mbk came as a package, or by 'cmake --install', the scripts are in place.");
-  add_choice(*command, "SHELL", arguments->shell, "bash, zsh or fish")->type_name("TEXT")->required();
-  arguments->output.add_options(*command);
-  return [arguments, &app] { return run(*arguments, app); };
+  add_choice(command, "SHELL", arguments->shell, "bash, zsh or fish").type_name("TEXT").required();
+  arguments->output.add_options(command);
+  return [arguments, app] { return run(*arguments, app); };
 }
 
 }  // namespace mbk::app

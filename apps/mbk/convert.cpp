@@ -177,10 +177,10 @@ int run(ConvertArguments arguments) {
 
 }  // namespace
 
-Action add_convert(CLI::App& app) {
+Action add_convert(Command app) {
   auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* command = add_command(app, "convert", "a recording in another format: HDF5, MAT, CSV, MCAP, BIDS");
-  command->footer(
+  const Command command = app.add_command("convert", "a recording in another format: HDF5, MAT, CSV, MCAP, BIDS");
+  command.footer(
       "Examples:\n"
       "  mbk convert log.mat log.h5\n"
       "      the end of the second name says the format: .h5 (or .hdf5), .mat (v5), .csv or .mcap (for\n"
@@ -198,21 +198,21 @@ Action add_convert(CLI::App& app) {
       "unit\n\n"
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
       "What was ignored in reading, or has no place in the new format, is said on standard error.");
-  add_reading_options(*command, arguments->reading);
-  add_sensor_options(*command, arguments->sensor);
-  command->get_option("FILE")->description("the recording to read (several with --parts), and last the one to write");
-  command->add_option("--format", arguments->format, "of the file to write; otherwise by the end of its name")
-      ->type_name(fmt::format("{}", fmt::join(kWordList<recording::Format>, "|")))
-      ->check(not_empty());
+  add_reading_options(command, arguments->reading);
+  add_sensor_options(command, arguments->sensor);
+  command.get_option("FILE").description("the recording to read (several with --parts), and last the one to write");
+  command.add_option("--format", arguments->format, "of the file to write; otherwise by the end of its name")
+      .type_name(fmt::format("{}", fmt::join(kWordList<recording::Format>, "|")))
+      .check(not_empty());
   command
-      ->add_option("--bids", arguments->bids,
-                   "the last FILE is the folder of a BIDS data set: what the recording is in it, as "
-                   "sub-LABEL[_ses-LABEL]_task-LABEL[_tracksys-LABEL][_acq-LABEL][_run-NUMBER]")
-      ->type_name("NAME")
-      ->check(not_empty());
-  command->add_flag("--overwrite", arguments->overwrite, "replace the file to write where it is there");
-  add_readers_option(*command, arguments->readers);
-  command->add_flag("--quiet", arguments->quiet, "only say what is lost");
+      .add_option("--bids", arguments->bids,
+                  "the last FILE is the folder of a BIDS data set: what the recording is in it, as "
+                  "sub-LABEL[_ses-LABEL]_task-LABEL[_tracksys-LABEL][_acq-LABEL][_run-NUMBER]")
+      .type_name("NAME")
+      .check(not_empty());
+  command.add_flag("--overwrite", arguments->overwrite, "replace the file to write where it is there");
+  add_readers_option(command, arguments->readers);
+  command.add_flag("--quiet", arguments->quiet, "only say what is lost");
   return [arguments] { return run(*arguments); };
 }
 

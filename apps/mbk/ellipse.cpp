@@ -47,17 +47,17 @@ int run(const EllipseArguments& arguments) {
 
 }  // namespace
 
-Action add_ellipse(CLI::App& app) {
+Action add_ellipse(Command app) {
   auto arguments = std::make_shared<EllipseArguments>();
-  CLI::App* command = add_command(app, "ellipse", "impedance ellipses of a stored result, with 95 % intervals");
-  command->footer(
+  const Command command = app.add_command("ellipse", "impedance ellipses of a stored result, with 95 % intervals");
+  command.footer(
       "Example:\n"
       "  mbk ellipse result.json\n"
       "      what 'mbk measure log.mat --json --out result.json' wrote\n\n"
       "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x; symmetric parts only.");
-  command->add_option("RESULT.json", arguments->file, "a file that 'mbk measure --json' wrote")->required();
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1");
-  arguments->output.add_options(*command);
+  command.add_option("RESULT.json", arguments->file, "a file that 'mbk measure --json' wrote").required();
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1");
+  arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }
 

@@ -154,46 +154,46 @@ Result<JobFolder> job_of(const EngineArguments& arguments, const Request& reques
 
 }  // namespace
 
-void add_engine_options(CLI::App& command, EngineArguments& arguments) {
+void add_engine_options(Command command, EngineArguments& arguments) {
   constexpr const char* kGroup = "Many processes and machines";
-  const auto add = [&](CLI::Option* option) { option->group(kGroup); };
+  const auto add = [&](Option option) { option.group(kGroup); };
   add(add_choice(
       command, "--engine", arguments.kind,
       "processes on this machine (local), a job array (slurm), mpirun (mpi); without it: within this process"));
   add(command
           .add_option("--tasks", arguments.tasks, "processes at a time (as many as there are cores; slurm: no limit)")
-          ->type_name("N")
-          ->check(whole_number(1, 100'000)));
+          .type_name("N")
+          .check(whole_number(1, 100'000)));
   add(command
           .add_option(
               "--job-folder", arguments.folder,
               "where the work is noted, on a disk that every machine sees; a job that stands there is gone on with")
-          ->type_name("FOLDER")
-          ->check(not_empty()));
+          .type_name("FOLDER")
+          .check(not_empty()));
   add(command.add_option("--chunk-seconds", arguments.chunk_s, "a process does so much at a time (by measured cost)")
-          ->type_name("S")
-          ->check(positive()));
+          .type_name("S")
+          .check(positive()));
   add(command.add_option("--chunk-units", arguments.chunk_units, "the same in recordings or runs")
-          ->type_name("N")
-          ->check(whole_number(1, 100'000'000)));
+          .type_name("N")
+          .check(whole_number(1, 100'000'000)));
   add(command.add_option("--memory-mb", arguments.memory_mb, "of each task of Slurm (by what was measured)")
-          ->type_name("MB")
-          ->check(whole_number(1, 10'000'000)));
+          .type_name("MB")
+          .check(whole_number(1, 10'000'000)));
   add(command
           .add_option("--silence", arguments.silence_s,
                       "a process that shows no sign of life for so long is taken for dead (300)")
-          ->type_name("S")
-          ->check(positive()));
+          .type_name("S")
+          .check(positive()));
   add(command
           .add_option("--settle", arguments.settle_s,
                       "so long after a task's end its file may take to come into sight (10)")
-          ->type_name("S")
-          ->check(positive()));
-  add(command.add_option("--partition", arguments.partition, "of Slurm (SBATCH_PARTITION)")->type_name("NAME"));
-  add(command.add_option("--account", arguments.account, "of Slurm (SBATCH_ACCOUNT)")->type_name("NAME"));
+          .type_name("S")
+          .check(positive()));
+  add(command.add_option("--partition", arguments.partition, "of Slurm (SBATCH_PARTITION)").type_name("NAME"));
+  add(command.add_option("--account", arguments.account, "of Slurm (SBATCH_ACCOUNT)").type_name("NAME"));
   add(command.add_option("--engine-option", arguments.extra, "passed on to sbatch or mpirun; may be repeated")
-          ->type_name("OPTION")
-          ->allow_extra_args(false));
+          .type_name("OPTION")
+          .allow_extra_args(false));
   add(command.add_flag("--detach", arguments.detach,
                        "of Slurm: hand the tasks out and end; the same command later collects what they did"));
   add(command.add_flag("--progress-json", arguments.progress_json,

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "mbk/study/batch/engine.h"
 #include "mbk/study/batch/run.h"
 #include "mbk/study/batch/work.h"
@@ -28,7 +28,7 @@ struct EngineArguments {
 };
 
 /// Adds --engine and what belongs to it.
-void add_engine_options(CLI::App& command, EngineArguments& arguments);
+void add_engine_options(Command command, EngineArguments& arguments);
 
 /// What a command wants to have done.
 struct Request {

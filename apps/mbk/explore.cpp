@@ -33,7 +33,7 @@ struct ExploreArguments : ExploringArguments {
 };
 
 /// A result for each recording.
-int run_each(const CLI::App& command, const ExploreArguments& arguments) {
+int run_each(Command command, const ExploreArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
     return report_error(ok.error());
   }
@@ -103,10 +103,10 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
 
 }  // namespace
 
-Action add_explore(CLI::App& app, const std::string& typed) {
+Action add_explore(Command app, const std::string& typed) {
   auto arguments = std::make_shared<ExploreArguments>();
-  CLI::App* command = add_command(app, "explore", "what the limb does before anyone assumes M, B and K");
-  command->footer(
+  const Command command = app.add_command("explore", "what the limb does before anyone assumes M, B and K");
+  command.footer(
       "Examples:\n"
       "  mbk explore log.mat\n"
       "      how the force answers motion at each frequency: dynamic stiffness −F/X and coherence\n"
@@ -122,26 +122,26 @@ Action add_explore(CLI::App& app, const std::string& typed) {
       "realisations: they tell nonlinear distortion from noise, and two axes from each other.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_exploring_options(*command, *arguments);
-  CLI::Option* const each =
-      command->add_flag("--each", arguments->each, "a result for each recording, in place of one of all together");
-  command->add_option("--threads", arguments->threads, "with --each: recordings at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024))
-      ->needs(each);
-  add_output_options(*command, arguments->output, "mbk.explore/1, with --each mbk.explorations/1");
-  add_report_options(*command, arguments->report);
-  add_charts_option(*command, arguments->beside);
-  add_engine_options(*command, arguments->engine);
-  command->get_option("--report")->excludes(each);
-  command->get_option("--charts")->excludes(each);
-  command->get_option("--engine")->needs(each);
+  add_exploring_options(command, *arguments);
+  const Option each =
+      command.add_flag("--each", arguments->each, "a result for each recording, in place of one of all together");
+  command.add_option("--threads", arguments->threads, "with --each: recordings at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024))
+      .needs(each);
+  add_output_options(command, arguments->output, "mbk.explore/1, with --each mbk.explorations/1");
+  add_report_options(command, arguments->report);
+  add_charts_option(command, arguments->beside);
+  add_engine_options(command, arguments->engine);
+  command.get_option("--report").excludes(each);
+  command.get_option("--charts").excludes(each);
+  command.get_option("--engine").needs(each);
   return [command, arguments, typed] {
     ExploreArguments named = *arguments;
     auto files = named_files(named.reading.files);
     if (!files) return report_error(files.error());
     named.reading.files = std::move(*files);
-    return named.each ? run_each(*command, named) : run_explore(std::move(named), typed);
+    return named.each ? run_each(command, named) : run_explore(std::move(named), typed);
   };
 }
 

@@ -53,32 +53,32 @@ Result<measurement::ExploreOptions> exploring_options(ExploringArguments& argume
   return options;
 }
 
-void add_exploring_options(CLI::App& command, ExploringArguments& arguments) {
+void add_exploring_options(Command command, ExploringArguments& arguments) {
   add_reading_options(command, arguments.reading);
   command
       .add_option("--input", arguments.input,
                   "another response than that of force to motion: from this channel, column, row or variable")
-      ->type_name("NAME")
-      ->check(not_empty());
-  command.add_option("--output", arguments.output_signal, "to this, likewise")->type_name("NAME")->check(not_empty());
+      .type_name("NAME")
+      .check(not_empty());
+  command.add_option("--output", arguments.output_signal, "to this, likewise").type_name("NAME").check(not_empty());
   command.add_option("--reference", arguments.reference, "what drives both, likewise")
-      ->type_name("NAME")
-      ->check(not_empty());
+      .type_name("NAME")
+      .check(not_empty());
   add_sensor_options(command, arguments.sensor);
   add_choice_or_auto(command, "--protocol", arguments.protocol,
                      "how the limb was perturbed; auto looks at the reference and says what it saw")
-      ->group("Analysed interval");
+      .group("Analysed interval");
   add_window_options(command, arguments.window);
   command
       .add_option("--resample", arguments.resample_hz,
                   "put an uneven clock right first, by straight lines; never done unasked")
-      ->type_name("HZ")
-      ->check(positive());
+      .type_name("HZ")
+      .check(positive());
   command
       .add_option("--force-delay-ms", arguments.force_delay_ms,
                   "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)")
-      ->type_name("MS")
-      ->check(number_within(1000.0));
+      .type_name("MS")
+      .check(number_within(1000.0));
   add_choice(command, "--only", arguments.only, "nothing but this part (all of them)");
   const char* const group = "Frequency response";
   add_choice_or_auto(
@@ -86,65 +86,64 @@ void add_exploring_options(CLI::App& command, ExploringArguments& arguments) {
       "robust: periods and realisations of a periodic perturbation, noise and nonlinear distortion "
       "apart; fast: periods of one; local-polynomial: any perturbation, without leakage; welch: averaged "
       "spectra; auto: the first of these that the data allow, and says why (auto)")
-      ->group(group);
+      .group(group);
   command
       .add_option("--period", arguments.response.period_s,
                   "of the perturbation, s; otherwise found in the reference or the motion")
-      ->type_name("S")
-      ->check(positive())
-      ->group(group);
+      .type_name("S")
+      .check(positive())
+      .group(group);
   command
       .add_option("--segment", arguments.response.segment_s,
                   "length of the segments that welch averages; local polynomials reach over its inverse, s (2)")
-      ->type_name("S")
-      ->check(positive())
-      ->group(group);
-  command
-      .add_option("--max-frequency", arguments.response.max_frequency_hz, "highest frequency that is shown, Hz (50)")
-      ->type_name("HZ")
-      ->check(positive())
-      ->group(group);
+      .type_name("S")
+      .check(positive())
+      .group(group);
+  command.add_option("--max-frequency", arguments.response.max_frequency_hz, "highest frequency that is shown, Hz (50)")
+      .type_name("HZ")
+      .check(positive())
+      .group(group);
   command
       .add_option("--plateau-from", arguments.plateau_from_ms,
                   "begin of the window in which the force is averaged, ms after the onset (when the hand rests; 140 "
                   "in a reach)")
-      ->type_name("MS")
-      ->check(not_negative())
-      ->group("Ramps and holds");
+      .type_name("MS")
+      .check(not_negative())
+      .group("Ramps and holds");
   command.add_option("--plateau-to", arguments.plateau_to_ms, "its end, ms after the onset (300; 200 in a reach)")
-      ->type_name("MS")
-      ->check(positive())
-      ->group("Ramps and holds");
+      .type_name("MS")
+      .check(positive())
+      .group("Ramps and holds");
   command
       .add_option("--trigger", arguments.trigger,
                   "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
                   "(trigger)")
-      ->type_name("EVENT")
-      ->check(not_empty())
-      ->group("Ramps and holds");
+      .type_name("EVENT")
+      .check(not_empty())
+      .group("Ramps and holds");
   const char* const in_time = "Change over time";
   command
       .add_option("--after-onset", arguments.after_onset_ms,
                   "M, B and K from so long after each step or pulse of the reference, before the person can "
                   "answer, ms; 100 to 150")
-      ->type_name("MS")
-      ->check(positive())
-      ->group(in_time);
-  CLI::Option* const schedule =
+      .type_name("MS")
+      .check(positive())
+      .group(in_time);
+  const Option schedule =
       command
           .add_option("--schedule", arguments.schedule,
                       "follow M, B and K over this channel, such as an angle or a co-contraction, not over time")
-          ->type_name("NAME")
-          ->check(not_empty())
-          ->group(in_time);
+          .type_name("NAME")
+          .check(not_empty())
+          .group(in_time);
   command
       .add_option("--align", arguments.align,
                   "count time from this event, repetition by repetition, or from the onsets of the reference "
                   "(reference)")
-      ->type_name("EVENT")
-      ->check(not_empty())
-      ->excludes(schedule)
-      ->group(in_time);
+      .type_name("EVENT")
+      .check(not_empty())
+      .excludes(schedule)
+      .group(in_time);
 }
 
 }  // namespace mbk::app

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
 #include "mbk/measure/measurement/explore.h"
@@ -27,7 +27,7 @@ struct ExploringArguments {
 };
 
 /// Adds FILE… and every option that a result depends on.
-void add_exploring_options(CLI::App& command, ExploringArguments& arguments);
+void add_exploring_options(Command command, ExploringArguments& arguments);
 
 /// @param arguments  whose channels then name the signals too, where others than motion and force were asked for
 /// @fails  usage: options that do not belong together.

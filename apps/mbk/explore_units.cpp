@@ -101,19 +101,16 @@ std::vector<double> weights_of(const RecordingReader& reader) {
 
 }  // namespace
 
-std::vector<std::string> exploring_words(const CLI::App& command) {
-  CLI::App probe;
+std::vector<std::string> exploring_words(Command command) {
+  const Parser probe;
   ExploringArguments arguments;
-  add_exploring_options(probe, arguments);
+  add_exploring_options(probe.command(), arguments);
   std::vector<std::string> words;
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_name();
-    if (name == "FILE" || option->count() == 0 || probe.get_option_no_throw(name) == nullptr) continue;
-    if (option->get_items_expected_max() == 0) words.push_back(name);
-    for (const std::string& value :
-         option->get_items_expected_max() == 0 ? std::vector<std::string>() : option->results()) {
-      words.push_back(name + '=' + value);
-    }
+  for (const Option option : command.options()) {
+    const std::string name = option.name();
+    if (name == "FILE" || !option.is_given() || !probe.command().find_option(name)) continue;
+    if (option.is_flag()) words.push_back(name);
+    for (const std::string& value : option.values()) words.push_back(name + '=' + value);
   }
   return words;
 }
@@ -185,15 +182,11 @@ Result<batch::UnitFunction> explore_units(const Json& specification) {
   fs::current_path(specification.at("folder").get<std::string>(), error);
   if (error) return bad_data(error.message(), "every machine must see the folder in which the job was begun");
   ExploringArguments arguments;
-  CLI::App app;
-  add_exploring_options(app, arguments);
-  app.remove_option(app.get_option("FILE"));
-  auto words = specification.at("words").get<std::vector<std::string>>();
-  std::ranges::reverse(words);  // the parser takes them from the end
-  try {
-    app.parse(std::move(words));
-  } catch (const CLI::ParseError& wrong) {
-    return bad_data(wrong.what(), "begin the job again");
+  const Parser parser;
+  add_exploring_options(parser.command(), arguments);
+  parser.command().remove_option("FILE");
+  if (auto ok = parser.parse(specification.at("words").get<std::vector<std::string>>()); !ok) {
+    return bad_data(ok.error().what, "begin the job again");
   }
   const auto options = exploring_options(arguments);
   if (!options) return tl::unexpected(options.error());

@@ -29,7 +29,7 @@ struct ExploredRecord {
 };
 
 /// The options of a command that a result depends on, without FILE.
-[[nodiscard]] std::vector<std::string> exploring_words(const CLI::App& command);
+[[nodiscard]] std::vector<std::string> exploring_words(Command command);
 
 /// In the order of the recordings.   @fails  usage: the options; a file that holds trials without the one asked for.
 [[nodiscard]] Result<std::vector<ExploredRecord>> explored_here(const ExploringEach& each, unsigned threads);

@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -16,6 +18,17 @@
 
 namespace mbk::app {
 namespace help {
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter();
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
+  std::string make_option_desc(const CLI::Option* option) const override;
+  std::string make_subcommand(const CLI::App* command) const override;
+
+ private:
+  std::size_t columns_;
+};
 
 constexpr std::size_t kNameColumns = 30, kNarrowNameColumns = 24, kNarrow = 80;
 constexpr std::ptrdiff_t kScreenLines = 40;
@@ -100,26 +113,23 @@ std::string short_footer(const std::string& footer, std::ptrdiff_t room) {
   return text;
 }
 
-}  // namespace help
-
 HelpFormatter::HelpFormatter() : columns_(terminal_at(STDOUT_FILENO).columns) {
-  column_width(help::name_columns(columns_));
+  column_width(name_columns(columns_));
 }
 
 std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
-  return report::wrapped(option->get_description(), columns_ - help::name_columns(columns_));
+  return report::wrapped(option->get_description(), columns_ - name_columns(columns_));
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
   std::stringstream out;
-  const std::size_t names = help::name_columns(columns_);
+  const std::size_t names = name_columns(columns_);
   CLI::detail::format_help(out, command->get_display_name(true),
                            report::wrapped(command->get_description(), columns_ - names), names);
   return out.str();
 }
 
 std::string HelpFormatter::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
-  using namespace help;
   std::string whole = fitted(Formatter::make_help(app, name, CLI::AppFormatMode::Normal), columns_);
   if (mode == CLI::AppFormatMode::All || lines_in(whole) <= kScreenLines) return whole;
   std::string text = make_description(app) + make_usage(app, name) + "\n";
@@ -147,6 +157,13 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name, CLI:
   text = fitted(text, columns_);
   return text + short_footer(fitted(app->get_footer() + "\n", columns_), kScreenLines - lines_in(text + rest)) +
          fitted(rest, columns_);
+}
+
+}  // namespace help
+
+void add_help(Command app) {
+  app.cli().formatter(std::make_shared<help::HelpFormatter>());
+  app.cli().set_help_all_flag("--help-all", "print every option, in sections, with all there is to say");
 }
 
 }  // namespace mbk::app

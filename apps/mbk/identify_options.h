@@ -1,12 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "apps/mbk/command.h"
 #include "mbk/measure/identify/impedance_fit.h"
 
 namespace mbk::app {
 
 /// Adds --method, --structure, --parameters-from, --handle-mass, --hac-lag, --bootstrap, --seed, --decimate-check.
-void add_identify_options(CLI::App& command, identify::Options& options);
+void add_identify_options(Command command, identify::Options& options);
 
 }  // namespace mbk::app

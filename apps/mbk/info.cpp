@@ -112,10 +112,10 @@ int run(const InfoArguments& arguments) {
 
 }  // namespace
 
-Action add_info(CLI::App& app) {
+Action add_info(Command app) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* command = add_command(app, "info", "what is in a recording: channels, rate, gaps, problems");
-  command->footer(
+  const Command command = app.add_command("info", "what is in a recording: channels, rate, gaps, problems");
+  command.footer(
       "Examples:\n"
       "  mbk info log.mat\n"
       "      where no channel is recognised, the variables or columns of the file are listed\n"
@@ -124,9 +124,9 @@ Action add_info(CLI::App& app) {
       "      every trial by its number, and the first in full; --trial 3 shows another\n"
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
-  add_reading_options(*command, arguments->reading);
-  add_sensor_options(*command, arguments->sensor);
-  add_output_options(*command, arguments->output, "mbk.info/1");
+  add_reading_options(command, arguments->reading);
+  add_sensor_options(command, arguments->sensor);
+  add_output_options(command, arguments->output, "mbk.info/1");
   return [arguments] { return run(*arguments); };
 }
 

@@ -2,28 +2,25 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <exception>
-#include <functional>
-#include <memory>
 #include <new>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/command_list.h"
 #include "apps/mbk/commands.h"
+#include "apps/mbk/help.h"
 #include "apps/mbk/last_words.h"
 #include "apps/mbk/memory.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/process.h"
-#include "apps/mbk/usage_error.h"
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/core/words.h"
@@ -31,11 +28,8 @@
 namespace {
 
 /// "mbk: what is wrong; which help to read".
-std::string one_line(const CLI::App* app, const CLI::Error& error) {
-  const auto* const of_words = dynamic_cast<const CLI::ParseError*>(&error);
-  const std::string wrong = of_words != nullptr ? mbk::app::usage_message(*app, *of_words) : error.what();
-  return fmt::format("mbk: {}{} see '{} --help'\n", wrong, wrong.ends_with('?') ? "" : ";",
-                     mbk::app::typed_command(*app));
+std::string one_line(const mbk::app::NotTaken& why) {
+  return fmt::format("mbk: {}{} see '{} --help'\n", why.usage, why.usage.ends_with('?') ? "" : ";", why.command);
 }
 
 /// On standard error where there is no memory to make a line in. What cannot be written is lost: the exit code tells.
@@ -80,30 +74,31 @@ int run(int argc, char** argv) {
                                    simd, fmt::join(mbk::kWordList<mbk::Simd>, ", ")));
     return mbk::app::kWrongUsage;
   }
-  CLI::App app{
+  const mbk::app::Parser parser(
+      "mbk",
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
       "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n\n"
       "  mbk measure log.mat    the main job: recording → M, B, K, x0, ellipses\n"
       "  mbk info log.mat       what is in a recording, and what is wrong with it\n"
-      "  mbk measure --help     every command explains itself; --help-all says everything\n"};
-  app.name("mbk");
-  app.set_version_flag("--version", fmt::format("mbk {}", mbk::version()));
-  app.require_subcommand(1);
+      "  mbk measure --help     every command explains itself; --help-all says everything\n");
+  const mbk::app::Command app = parser.command();
+  app.add_text_flag(
+      "--version", [] { return fmt::format("mbk {}", mbk::version()); },
+      "Display program version information and exit");
+  app.require_subcommand();
   mbk::app::add_help(app);
-  app.failure_message(one_line);
 
   const std::string_view first = argc > 1 ? argv[1] : "";
   const mbk::app::Actions commands = mbk::app::add_commands(first, app, mbk::app::command_line(argc, argv));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    std::ostringstream out, wrong;
-    for (auto* stream : {&out, &wrong}) stream->exceptions(std::ios::badbit);  // where there is no memory
-    const int code = app.exit(error, out, wrong);
-    mbk::app::say_text(wrong.str());
-    if (auto ok = mbk::app::Output().show(out.str()); !ok) return mbk::app::report_error(ok.error());
-    return code == 0 ? mbk::app::kFine : mbk::app::kWrongUsage;
+  if (const auto taken = parser.parse({argv + std::min(argc, 1), argv + argc}); !taken) {
+    const mbk::app::NotTaken& why = taken.error();
+    if (!why.answer) {
+      mbk::app::say_text(one_line(why));
+      return mbk::app::kWrongUsage;
+    }
+    if (auto ok = mbk::app::Output().show(*why.answer); !ok) return mbk::app::report_error(ok.error());
+    return mbk::app::kFine;
   }
   return mbk::app::run_chosen(app, commands);
 }

@@ -49,7 +49,7 @@ int write_pages(const CommandText& root, const std::filesystem::path& folder, bo
   return written ? kFine : report_error(written.error());
 }
 
-int run(const ManualArguments& arguments, CLI::App& app) {
+int run(const ManualArguments& arguments, Command app) {
   const CommandText root = describe(app);
   if (arguments.json) {
     if (auto ok = Output().write(commands_json(root, std::string(version()))); !ok) return report_error(ok.error());
@@ -73,10 +73,10 @@ int run(const ManualArguments& arguments, CLI::App& app) {
 
 }  // namespace
 
-Action add_manual(CLI::App& app) {
+Action add_manual(Command app) {
   auto arguments = std::make_shared<ManualArguments>();
-  CLI::App* command = add_command(app, "manual", "the manual page of a command, for man");
-  command->footer(
+  const Command command = app.add_command("manual", "the manual page of a command, for man");
+  command.footer(
       "Examples:\n"
       "  mbk manual measure | man -l -\n"
       "  mbk manual springs field | man -l -\n"
@@ -85,18 +85,18 @@ Action add_manual(CLI::App& app) {
       "  mbk manual --json\n"
       "      every command with its options, for programs that call mbk\n\n"
       "Where mbk came as a package, or by 'cmake --install', the pages are in place.");
-  CLI::Option* const named =
-      command->add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
-          ->check(suggests(names_below(app)));
-  CLI::Option* const pages =
-      command->add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
-          ->type_name("FOLDER")
-          ->check(not_empty());
-  command->add_flag("--overwrite", arguments->overwrite, "replace pages that are there")->needs(pages);
-  command->add_flag("--json", arguments->json, "every command with its options, for programs: schema mbk.commands/1")
-      ->excludes(named)
-      ->excludes(pages);
-  return [arguments, &app] { return run(*arguments, app); };
+  const Option named =
+      command.add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
+          .check(suggests(names_below(app)));
+  const Option pages =
+      command.add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
+          .type_name("FOLDER")
+          .check(not_empty());
+  command.add_flag("--overwrite", arguments->overwrite, "replace pages that are there").needs(pages);
+  command.add_flag("--json", arguments->json, "every command with its options, for programs: schema mbk.commands/1")
+      .excludes(named)
+      .excludes(pages);
+  return [arguments, app] { return run(*arguments, app); };
 }
 
 }  // namespace mbk::app

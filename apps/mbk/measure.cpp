@@ -196,23 +196,23 @@ int run(const MeasureCommandArguments& given, const std::string& typed, bool wit
   return code;
 }
 
-Action add(CLI::App& app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
+Action add(Command app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
            bool with_findings) {
   auto arguments = std::make_shared<MeasureCommandArguments>();
-  CLI::App* command = add_command(app, name, summary);
-  command->footer(footer);
-  add_measure_options(*command, *arguments);
-  add_analyse_options(*command, arguments->analyse);
-  add_output_options(*command, arguments->output, "mbk.result/2");
-  if (with_findings) add_report_options(*command, arguments->report);
-  add_summary_option(*command, arguments->beside);
-  add_charts_option(*command, arguments->beside);
+  const Command command = app.add_command(name, summary);
+  command.footer(footer);
+  add_measure_options(command, *arguments);
+  add_analyse_options(command, arguments->analyse);
+  add_output_options(command, arguments->output, "mbk.result/2");
+  if (with_findings) add_report_options(command, arguments->report);
+  add_summary_option(command, arguments->beside);
+  add_charts_option(command, arguments->beside);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
 }
 
 }  // namespace
 
-Action add_measure(CLI::App& app, const std::string& typed) {
+Action add_measure(Command app, const std::string& typed) {
   return add(app, "measure", "recording → M, B, K, x0 with intervals, ellipses, warnings",
              "Examples:\n"
              "  mbk measure log.mat\n"
@@ -234,7 +234,7 @@ Action add_measure(CLI::App& app, const std::string& typed) {
              typed, true);
 }
 
-Action add_identify(CLI::App& app) {
+Action add_identify(Command app) {
   return add(app, "identify", "only the model: M, B, K, x0 with intervals and fit",
              "Examples:\n"
              "  mbk identify log.mat --json\n"

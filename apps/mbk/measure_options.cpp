@@ -14,43 +14,42 @@ namespace mbk::app {
 
 namespace {
 
-void add_range_options(CLI::App& command, std::set<PlausibleQuantity>& ignored) {
+void add_range_options(Command command, std::set<PlausibleQuantity>& ignored) {
   const char* const group = "Plausibility";
   const std::vector<std::string> names(kWordList<PlausibleQuantity>.begin(), kWordList<PlausibleQuantity>.end());
   command
-      .add_option_function<std::vector<std::string>>(
+      .add_option_function(
           "--ignore-range",
           [&ignored](const std::vector<std::string>& given) {
             for (const std::string& name : given) ignored.insert(*value_of<PlausibleQuantity>(name));
           },
           "plausible ranges that are not checked, by name, as in --ignore-range stiffness,motion")
-      ->type_name("NAMES")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(one_of(names))
-      ->group(group);
+      .type_name("NAMES")
+      .delimiter(',')
+      .allow_extra_args(false)
+      .check(one_of(names))
+      .group(group);
   command
-      .add_flag_callback(
-          "--ranges", [] { throw CLI::CallForVersion(report::ranges_text(), 0); },
-          "print the ranges that a hand or a joint must keep to, with where they come from")
-      ->group(group);
+      .add_text_flag("--ranges", report::ranges_text,
+                     "print the ranges that a hand or a joint must keep to, with where they come from")
+      .group(group);
 }
 
 }  // namespace
 
-void add_measure_options(CLI::App& command, MeasureArguments& arguments) {
+void add_measure_options(Command command, MeasureArguments& arguments) {
   add_reading_options(command, arguments.reading);
   add_sensor_options(command, arguments.sensor);
   add_protocol_options(command, arguments.preprocess);
   command.add_flag("--pool", arguments.pool, "one fit over all FILEs; otherwise one result each and a summary")
-      ->group("Analysed interval");
+      .group("Analysed interval");
   add_signal_options(command, arguments.preprocess);
   add_identify_options(command, arguments.identify);
   add_range_options(command, arguments.ignored_ranges);
   command.add_option("--threads", arguments.threads, "files measured at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024))
-      ->group("Model");
+      .type_name("N")
+      .check(whole_number(1, 1024))
+      .group("Model");
 }
 
 Result<measurement::Options> measurement_options(const MeasureArguments& arguments, const AnalyseArguments& analyse,

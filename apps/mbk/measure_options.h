@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <set>
 
 #include "apps/mbk/analyse_options.h"
+#include "apps/mbk/command.h"
 #include "apps/mbk/identify_options.h"
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/preprocess_options.h"
@@ -25,7 +25,7 @@ struct MeasureArguments {
 };
 
 /// Adds the options of reading, sensor, preprocessing and identification, --pool and --threads.
-void add_measure_options(CLI::App& command, MeasureArguments& arguments);
+void add_measure_options(Command command, MeasureArguments& arguments);
 
 /// @param draws_arm  the arm is needed for a picture, too
 /// @fails  usage: options that do not belong together. As robot_of.

@@ -56,38 +56,38 @@ int run_movement(const MovementArguments& arguments) {
 
 }  // namespace movement_command
 
-Action add_movement(CLI::App& app) {
+Action add_movement(Command app) {
   using namespace movement_command;
   auto arguments = std::make_shared<MovementArguments>();
-  CLI::App* command =
-      add_command(app, "movement", "quality of reaches: smoothness, path, speed, endpoint, work, force");
-  command->footer(
+  const Command command =
+      app.add_command("movement", "quality of reaches: smoothness, path, speed, endpoint, work, force");
+  command.footer(
       "Examples:\n"
       "  mbk movement reaches.csv\n"
       "      each reach from rest to rest: SPARC, LDLJ, peaks of speed, path ratio\n"
       "  mbk movement before.csv after.csv --json\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, arguments->reading);
-  add_sensor_options(*command, arguments->sensor);
+  add_reading_options(command, arguments->reading);
+  add_sensor_options(command, arguments->sensor);
   const char* const interval = "Analysed interval";
-  command->add_option("--from", arguments->from_s, "first second of the recording that counts")
-      ->type_name("S")
-      ->check(not_negative())
-      ->group(interval);
-  command->add_option("--to", arguments->to_s, "last second that counts")
-      ->type_name("S")
-      ->check(positive())
-      ->group(interval);
+  command.add_option("--from", arguments->from_s, "first second of the recording that counts")
+      .type_name("S")
+      .check(not_negative())
+      .group(interval);
+  command.add_option("--to", arguments->to_s, "last second that counts")
+      .type_name("S")
+      .check(positive())
+      .group(interval);
   command
-      ->add_option("--resample", arguments->resample_hz,
-                   "put an uneven clock right first, by straight lines; never done unasked")
-      ->type_name("HZ")
-      ->check(positive());
-  command->add_option("--cutoff", arguments->cutoff_hz, "of the Savitzky–Golay filter behind the speed, Hz (20)")
-      ->type_name("HZ")
-      ->check(positive());
-  add_output_options(*command, arguments->output, "mbk.movement/1");
+      .add_option("--resample", arguments->resample_hz,
+                  "put an uneven clock right first, by straight lines; never done unasked")
+      .type_name("HZ")
+      .check(positive());
+  command.add_option("--cutoff", arguments->cutoff_hz, "of the Savitzky–Golay filter behind the speed, Hz (20)")
+      .type_name("HZ")
+      .check(positive());
+  add_output_options(command, arguments->output, "mbk.movement/1");
   return [arguments] { return run_movement(*arguments); };
 }
 

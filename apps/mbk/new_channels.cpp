@@ -97,10 +97,10 @@ int run(const NewChannelsArguments& arguments) {
 
 }  // namespace
 
-Action add_new_channels(CLI::App& group) {
+Action add_new_channels(Command group) {
   auto arguments = std::make_shared<NewChannelsArguments>();
-  CLI::App* command = add_command(group, "channels", "which column of a file is what: the option --channels for it");
-  command->footer(
+  const Command command = group.add_command("channels", "which column of a file is what: the option --channels for it");
+  command.footer(
       "Examples:\n"
       "  mbk new channels log.csv\n"
       "      lists the columns, guesses by their names, asks, and draws the first seconds\n"
@@ -109,15 +109,14 @@ Action add_new_channels(CLI::App& group) {
       "  echo time=1:ms,x=2:mm,F=5 | mbk new channels log.csv --out channels.txt\n\n"
       "What is asked and drawn goes to standard error, the option alone to standard output. The map is printed only\n"
       "after the file was read with it.");
-  command
-      ->add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
-      ->required();
-  command->add_option("--rate", arguments->rate_hz, "sample rate, where the file holds no time")
-      ->type_name("HZ")
-      ->check(positive());
-  command->add_option("--seconds", arguments->seconds, "so much is drawn (3)")->type_name("S")->check(positive());
-  command->add_flag("--yes", arguments->yes, "ask nothing: take what is guessed");
-  arguments->output.add_options(*command);
+  command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
+      .required();
+  command.add_option("--rate", arguments->rate_hz, "sample rate, where the file holds no time")
+      .type_name("HZ")
+      .check(positive());
+  command.add_option("--seconds", arguments->seconds, "so much is drawn (3)").type_name("S").check(positive());
+  command.add_flag("--yes", arguments->yes, "ask nothing: take what is guessed");
+  arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }
 

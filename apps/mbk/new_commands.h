@@ -13,11 +13,11 @@ struct NewFileArguments {
 };
 
 /// --out, whose default stands in `arguments`, --overwrite and --yes.
-void add_new_file_options(CLI::App& command, NewFileArguments& arguments);
+void add_new_file_options(Command command, NewFileArguments& arguments);
 
 /// The parts of 'mbk new'. Each adds itself to the group.
-Action add_new_channels(CLI::App& group);
-Action add_new_experiment(CLI::App& group);
-Action add_new_robot(CLI::App& group);
+Action add_new_channels(Command group);
+Action add_new_experiment(Command group);
+Action add_new_robot(Command group);
 
 }  // namespace mbk::app

@@ -44,7 +44,7 @@ Result<std::string> robot_section(const Questions& questions) {
     return given.find_first_not_of("0123456789.") == std::string::npos ? "" : quoted(given) + " is no IPv4 address";
   });
   if (!address) return address;
-  const auto port = questions.ask("Its port", "25000", [](std::string given) { return whole_number(1, 65535)(given); });
+  const auto port = questions.ask("Its port", "25000", whole_number(1, 65535).wrong);
   if (!port) return port;
   return fmt::format(
       "# Check it before anyone sits down: mbk robot check FILE --live 5\n"
@@ -80,8 +80,7 @@ Result<std::string> experiment_text(const Questions& questions) {
         return given.find_first_of("\"\\") == std::string::npos ? "" : "without quotes and backslashes";
       });
   if (!condition) return condition;
-  const auto repetitions =
-      questions.ask("Trials of it", "3", [](std::string given) { return whole_number(1, 100)(given); });
+  const auto repetitions = questions.ask("Trials of it", "3", whole_number(1, 100).wrong);
   if (!repetitions) return repetitions;
   std::string text = fmt::format(
       "# An experiment for 'mbk run'. examples/experiments/study.toml has every key with its default, the limits of\n"
@@ -114,18 +113,18 @@ int run(const NewFileArguments& arguments) {
 
 }  // namespace
 
-Action add_new_experiment(CLI::App& group) {
+Action add_new_experiment(Command group) {
   auto arguments = std::make_shared<NewFileArguments>();
   arguments->out = "experiment.toml";
-  CLI::App* command = add_command(group, "experiment", "an experiment for 'mbk run', from a few answers");
-  command->footer(
+  const Command command = group.add_command("experiment", "an experiment for 'mbk run', from a few answers");
+  command.footer(
       "Examples:\n"
       "  mbk new experiment --out mine.toml\n"
       "      asks for robot, perturbation, condition and trials\n"
       "  mbk new experiment --yes && mbk run experiment.toml --dry-run\n"
       "  printf 'udp\\n192.168.1.10\\n25000\\npulses\\n10\\nrigid\\n5\\n' | mbk new experiment --out rigid.toml\n\n"
       "The file is written only after it was read as 'mbk run' reads it, and has comments.");
-  add_new_file_options(*command, *arguments);
+  add_new_file_options(command, *arguments);
   return [arguments] { return run(*arguments); };
 }
 

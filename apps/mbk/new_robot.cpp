@@ -109,10 +109,10 @@ int run(const NewRobotArguments& arguments) {
 
 }  // namespace
 
-Action add_new_robot(CLI::App& group) {
+Action add_new_robot(Command group) {
   auto arguments = std::make_shared<NewRobotArguments>();
-  CLI::App* command = add_command(group, "robot", "the description of a robot, from a few answers or a URDF");
-  command->footer(
+  const Command command = group.add_command("robot", "the description of a robot, from a few answers or a URDF");
+  command.footer(
       "Examples:\n"
       "  mbk new robot --out robot.toml\n"
       "      two links in a plane, or one axis: asks for lengths, ranges and inertia\n"
@@ -120,8 +120,8 @@ Action add_new_robot(CLI::App& group) {
       "      looks at the URDF, and asks for the plane of the hand and for gravity\n"
       "  mbk new robot --yes && mbk robot describe robot.toml\n\n"
       "The file is written only after it was read as 'mbk robot describe' reads it.");
-  command->add_option("ARM.urdf", arguments->urdf, "a robot's URDF, where there is one");
-  add_new_file_options(*command, *arguments);
+  command.add_option("ARM.urdf", arguments->urdf, "a robot's URDF, where there is one");
+  add_new_file_options(command, *arguments);
   return [arguments] { return run(*arguments); };
 }
 

@@ -37,11 +37,11 @@ int report_error(const Error& error) {
   return kBadData;
 }
 
-void Output::add_options(CLI::App& command) {
-  CLI::Option* const out = command.add_option("--out", file, "write to this file instead of standard output")
-                               ->type_name("FILE")
-                               ->check(not_empty());
-  command.add_flag("--overwrite", overwrite, "replace that file where it is there")->needs(out);
+void Output::add_options(Command command) {
+  const Option out = command.add_option("--out", file, "write to this file instead of standard output")
+                         .type_name("FILE")
+                         .check(not_empty());
+  command.add_flag("--overwrite", overwrite, "replace that file where it is there").needs(out);
 }
 
 Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,

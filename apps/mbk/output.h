@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "mbk/base/core/result.h"
 
 namespace mbk::app {
@@ -25,7 +25,7 @@ struct Output {
   bool overwrite = false;
 
   /// Adds --out and --overwrite.
-  void add_options(CLI::App& command);
+  void add_options(Command command);
 
   /// What can be said before the work begins, as `check_new_file`.
   [[nodiscard]] Result<void> check(const std::vector<std::filesystem::path>& inputs) const;

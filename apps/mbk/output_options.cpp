@@ -10,51 +10,50 @@ namespace mbk::app {
 namespace output_options {
 
 /// --overwrite speaks of every file that the command may write.
-void replaces_too(CLI::App& command) {
+void replaces_too(Command command) {
   std::vector<std::string> names;
   for (const char* const name : {"--out", "--report", "--summary", "--charts"}) {
-    if (command.get_option_no_throw(name) != nullptr) names.emplace_back(name);
+    if (command.find_option(name)) names.emplace_back(name);
   }
-  CLI::Option* const overwrite = command.get_option("--overwrite");
-  overwrite->remove_needs(command.get_option("--out"));
-  overwrite->description(fmt::format("replace the files of {} where they are there", fmt::join(names, ", ")));
+  const Option overwrite = command.get_option("--overwrite");
+  overwrite.remove_needs(command.get_option("--out"));
+  overwrite.description(fmt::format("replace the files of {} where they are there", fmt::join(names, ", ")));
 }
 
 }  // namespace output_options
 
 using output_options::replaces_too;
 
-void add_output_options(CLI::App& command, OutputArguments& arguments, const std::string& schema) {
+void add_output_options(Command command, OutputArguments& arguments, const std::string& schema) {
   command.add_flag("--json", arguments.json, fmt::format("for machines: schema {}, SI units, every digit", schema));
   arguments.to.add_options(command);
   command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
 }
 
-void add_report_options(CLI::App& command, ReportArguments& arguments) {
-  CLI::Option* const report =
-      command
-          .add_option("--report", arguments.file,
-                      "also write everything, with plots, as one HTML file to read, print or pass on")
-          ->type_name("FILE")
-          ->check(not_empty());
+void add_report_options(Command command, ReportArguments& arguments) {
+  const Option report = command
+                            .add_option("--report", arguments.file,
+                                        "also write everything, with plots, as one HTML file to read, print or pass on")
+                            .type_name("FILE")
+                            .check(not_empty());
   command
       .add_option(
           "--report-note", arguments.note,
           "a line below the report's title, such as a date and a name; mbk adds no date of its own, so that the "
           "same inputs give the same report")
-      ->type_name("TEXT")
-      ->check(not_empty())
-      ->needs(report);
+      .type_name("TEXT")
+      .check(not_empty())
+      .needs(report);
   replaces_too(command);
 }
 
-void add_summary_option(CLI::App& command, FilesBeside& beside) {
+void add_summary_option(Command command, FilesBeside& beside) {
   command
       .add_option(
           "--summary", beside.summary,
           "also write a table with one row a trial and units in its header, as FILE.csv or, for LaTeX, FILE.tex")
-      ->type_name("FILE")
-      ->check([](const std::string& file) {
+      .type_name("FILE")
+      .check([](const std::string& file) {
         return file.ends_with(".csv") || file.ends_with(".tex")
                    ? ""
                    : fmt::format("{} ends in neither .csv nor .tex", quoted(file));
@@ -62,10 +61,10 @@ void add_summary_option(CLI::App& command, FilesBeside& beside) {
   replaces_too(command);
 }
 
-void add_charts_option(CLI::App& command, FilesBeside& beside) {
+void add_charts_option(Command command, FilesBeside& beside) {
   command.add_option("--charts", beside.charts, "also write the charts as SVG files into this folder")
-      ->type_name("FOLDER")
-      ->check(not_empty());
+      .type_name("FOLDER")
+      .check(not_empty());
   replaces_too(command);
 }
 

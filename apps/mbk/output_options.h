@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/output.h"
 
 namespace mbk::app {
@@ -31,16 +31,16 @@ struct FilesBeside {
 };
 
 /// Adds --json, --out, --overwrite, --quiet.
-void add_output_options(CLI::App& command, OutputArguments& arguments, const std::string& schema);
+void add_output_options(Command command, OutputArguments& arguments, const std::string& schema);
 
 /// Adds --report and --report-note; --overwrite then speaks of the report too.
-void add_report_options(CLI::App& command, ReportArguments& arguments);
+void add_report_options(Command command, ReportArguments& arguments);
 
 /// Adds --summary; --overwrite then speaks of it too.
-void add_summary_option(CLI::App& command, FilesBeside& beside);
+void add_summary_option(Command command, FilesBeside& beside);
 
 /// Adds --charts; --overwrite then speaks of them too.
-void add_charts_option(CLI::App& command, FilesBeside& beside);
+void add_charts_option(Command command, FilesBeside& beside);
 
 /// What can be said of --out, --report, --summary and --overwrite before the work begins; of --charts see ChartFiles.
 [[nodiscard]] Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output,

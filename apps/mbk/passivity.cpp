@@ -165,10 +165,10 @@ int run(const PassivityArguments& arguments) {
 
 }  // namespace
 
-Action add_passivity(CLI::App& app) {
+Action add_passivity(Command app) {
   auto arguments = std::make_shared<PassivityArguments>();
-  CLI::App* command = add_command(app, "passivity", "what energy the limb absorbed, and what its model predicts");
-  command->footer(
+  const Command command = app.add_command("passivity", "what energy the limb absorbed, and what its model predicts");
+  command.footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"
       "      the energy of the trial with its interval, every condition of the model, energy over time\n"
@@ -181,15 +181,15 @@ Action add_passivity(CLI::App& app) {
       "in which the perturbation moves all axes and explains force and motion: passive, active,\n"
       "undecided, or none where no model is usable.\n"
       "Neither is a promise that a machine is stable with this person.");
-  add_measure_options(*command, *arguments);
+  add_measure_options(command, *arguments);
   command
-      ->add_option("--band", arguments->band,
-                   "frequencies for which the model is asked; otherwise those at which "
-                   "the perturbation explains position and force")
-      ->type_name("LOW:HIGH")
-      ->check(not_empty())
-      ->group("Analysed interval");
-  add_output_options(*command, arguments->output, "mbk.passivity/2");
+      .add_option("--band", arguments->band,
+                  "frequencies for which the model is asked; otherwise those at which "
+                  "the perturbation explains position and force")
+      .type_name("LOW:HIGH")
+      .check(not_empty())
+      .group("Analysed interval");
+  add_output_options(command, arguments->output, "mbk.passivity/2");
   return [arguments] { return run(*arguments); };
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "apps/mbk/command.h"
 #include "mbk/base/core/result.h"
 #include "mbk/measure/preprocess/options.h"
 
@@ -45,16 +45,16 @@ struct PreprocessArguments {
 };
 
 /// Adds --from, --split, --to.
-void add_window_options(CLI::App& command, WindowArguments& arguments);
+void add_window_options(Command command, WindowArguments& arguments);
 
 /// Adds --sg-window, --sg-order, --cutoff, --extension, --padding, --every, --resample.
-void add_filter_options(CLI::App& command, FilterArguments& arguments);
+void add_filter_options(Command command, FilterArguments& arguments);
 
 /// Adds --mode, --procedure, --protocol and the window.
-void add_protocol_options(CLI::App& command, PreprocessArguments& arguments);
+void add_protocol_options(Command command, PreprocessArguments& arguments);
 
 /// Adds the filters, --acceleration, --force-source and --robot.
-void add_signal_options(CLI::App& command, PreprocessArguments& arguments);
+void add_signal_options(Command command, PreprocessArguments& arguments);
 
 /// @fails  usage: the limits are not in order.
 [[nodiscard]] Result<preprocess::WindowLimits> window_limits(const WindowArguments& arguments);

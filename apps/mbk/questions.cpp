@@ -49,14 +49,14 @@ CheckAnswer word_of_these(std::vector<std::string> words) {
 }
 
 CheckAnswer positive_number() {
-  return [check = positive()](std::string given) { return check(given); };
+  return positive().wrong;
 }
 
 CheckAnswer numbers_with_commas(std::size_t count) {
   return [count](const std::string& given) -> std::string {
     std::istringstream stream(given);
     std::size_t numbers = 0;
-    const CLI::Validator number = number_within(1e6);
+    const CheckAnswer number = number_within(1e6).wrong;
     for (std::string one; std::getline(stream, one, ',');) {
       std::string word(trimmed(one));
       if (const std::string wrong = number(word); !wrong.empty()) return wrong;

@@ -4,7 +4,7 @@
 
 namespace mbk::app {
 
-void add_readers_option(CLI::App& command, std::optional<Readers>& readers) {
+void add_readers_option(Command command, std::optional<Readers>& readers) {
   add_choice(command, "--readable-by", readers, "who may read the recording (owner)");
 }
 

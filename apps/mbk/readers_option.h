@@ -1,13 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
+#include "apps/mbk/command.h"
 #include "mbk/model/trial/readers.h"
 
 namespace mbk::app {
 
 /// Adds --readable-by owner|group|all, of a recording that a command writes.
-void add_readers_option(CLI::App& command, std::optional<Readers>& readers);
+void add_readers_option(Command command, std::optional<Readers>& readers);
 
 }  // namespace mbk::app

@@ -61,13 +61,13 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 
 }  // namespace
 
-void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
+void add_reading_options(Command command, ReadingArguments& arguments) {
   command
       .add_option(
           "FILE", arguments.files,
           "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d, .xdf, .kinarm, .zip of a KINARM exam, .npy, .npz, .sto, "
           ".mot, .trc, or the folder of a BIDS data set")
-      ->required();
+      .required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
@@ -75,20 +75,20 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
                   "matrices; x=Arm.angle is a channel of a stream; x=2:mm converts, Fx=-10 flips. Channels: time, x, "
                   "y, Fx, Fy, xr, yr, q1 to q8, tau1 to "
                   "tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, a; for mbk tf: input, output")
-      ->type_name("MAP")
-      ->check(not_empty());
+      .type_name("MAP")
+      .check(not_empty());
   command.add_option("--variable", arguments.variable, "which variable of a MAT file, where several could be meant")
-      ->type_name("NAME")
-      ->check(not_empty());
+      .type_name("NAME")
+      .check(not_empty());
   command
       .add_option("--trial", arguments.trial,
                   "which trial of a file or folder that holds several, by its number or name; otherwise all of them")
-      ->type_name("N|NAME")
-      ->check(not_empty());
+      .type_name("N|NAME")
+      .check(not_empty());
   command
       .add_option("--side", arguments.arm, "whose hand is the hand, where a KINARM exam recorded both: right or left")
-      ->type_name("right|left")
-      ->check([](const std::string& arm) {
+      .type_name("right|left")
+      .check([](const std::string& arm) {
         return arm == "right" || arm == "left" ? "" : fmt::format("{} is neither right nor left", quoted(arm));
       });
   command
@@ -96,14 +96,14 @@ void add_reading_options(CLI::App& command, ReadingArguments& arguments) {
           "--clock", arguments.clock,
           "the stream or topic whose time stamps the recording has, where its channels come from several: those "
           "of the others are interpolated linearly")
-      ->type_name("STREAM")
-      ->check(not_empty());
+      .type_name("STREAM")
+      .check(not_empty());
   command.add_option("--rate", arguments.rate_hz, "sample rate, where the file holds no time")
-      ->type_name("HZ")
-      ->check(positive());
+      .type_name("HZ")
+      .check(positive());
   command.add_option("--axes", arguments.axes, "1 or 2; otherwise by the channels that are there")
-      ->type_name("N")
-      ->check([](const std::string& n) {
+      .type_name("N")
+      .check([](const std::string& n) {
         return n == "1" || n == "2" ? "" : fmt::format("{} is neither 1 nor 2", quoted(n));
       });
   command.add_flag("--parts", arguments.parts, "the FILEs are numbered parts of one record: join them");

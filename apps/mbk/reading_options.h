@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/sensor_options.h"
 #include "mbk/base/core/result.h"
 #include "mbk/files/recording/read.h"
@@ -33,7 +33,7 @@ struct ReadingArguments {
 };
 
 /// Adds FILE… and how to read it: --channels, --variable, --rate, --axes, --parts.
-void add_reading_options(CLI::App& command, ReadingArguments& arguments);
+void add_reading_options(Command command, ReadingArguments& arguments);
 
 /// Reads the FILEs one by one, also from several threads at once: only what is being worked on has to be in memory.
 class RecordingReader {

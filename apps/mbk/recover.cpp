@@ -59,10 +59,10 @@ int run(const RecoverArguments& arguments) {
 
 }  // namespace
 
-Action add_recover(CLI::App& app) {
+Action add_recover(Command app) {
   auto arguments = std::make_shared<RecoverArguments>();
-  CLI::App* command = add_command(app, "recover", "make the recording of a session that was cut off");
-  command->footer(
+  const Command command = app.add_command("recover", "make the recording of a session that was cut off");
+  command.footer(
       "Examples:\n"
       "  mbk recover p07_relaxed.h5.journal\n"
       "      writes p07_relaxed.h5 and then removes the journal\n"
@@ -73,14 +73,11 @@ Action add_recover(CLI::App& app) {
       "never removed.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost (what is left is then\n"
       "in the recording).");
-  command->add_option("JOURNAL", arguments->journal, "NAME.h5.journal, beside where the recording should be")
-      ->required();
-  command->add_option("--out", arguments->out, "the recording to write (NAME.h5)")
-      ->type_name("REC")
-      ->check(not_empty());
-  command->add_flag("--overwrite", arguments->options.overwrite, "replace a recording that is there");
-  command->add_flag("--keep", arguments->options.keep, "leave the journal where it is");
-  add_readers_option(*command, arguments->options.readers);
+  command.add_option("JOURNAL", arguments->journal, "NAME.h5.journal, beside where the recording should be").required();
+  command.add_option("--out", arguments->out, "the recording to write (NAME.h5)").type_name("REC").check(not_empty());
+  command.add_flag("--overwrite", arguments->options.overwrite, "replace a recording that is there");
+  command.add_flag("--keep", arguments->options.keep, "leave the journal where it is");
+  add_readers_option(command, arguments->options.readers);
   return [arguments] { return run(*arguments); };
 }
 

@@ -136,10 +136,10 @@ int run(const ReproduceArguments& arguments) {
 
 }  // namespace
 
-Action add_reproduce(CLI::App& app) {
+Action add_reproduce(Command app) {
   auto arguments = std::make_shared<ReproduceArguments>();
-  CLI::App* command = add_command(app, "reproduce", "the thesis mbk grew from, table by table and figure by figure");
-  command->footer(
+  const Command command = app.add_command("reproduce", "the thesis mbk grew from, table by table and figure by figure");
+  command.footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
       "University of Alberta, 2013) that can be reproduced, beside the printed numbers: recomputed from\n"
       "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the errata\n"
@@ -150,24 +150,23 @@ Action add_reproduce(CLI::App& app) {
       "  mbk reproduce --only table-3.6 --only erratum-1 --out excess\n\n"
       "Exit codes: 0 every printed number that follows from others agrees or is a known erratum, 1 one\n"
       "differs, 2 wrong usage, 3 bad data.");
-  CLI::Option* const out =
-      command->add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
-          ->type_name("FOLDER")
-          ->check(not_empty());
-  command->add_option("--only", arguments->only, "only this exhibit; may be given several times (see --list)")
-      ->type_name("ID");
-  command->add_flag("--list", arguments->list, "name the exhibits and stop")->excludes(out);
-  command->add_option("--seed", arguments->seed, "of everything simulated; the same seed gives the same numbers (1)")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000'000));
-  command->add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024));
-  command->add_flag("--without-printed", arguments->without_printed,
-                    "leave the printed numbers out; ours stay the same");
-  command->add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/2");
-  command->add_flag("--overwrite", arguments->overwrite, "replace files that are there");
-  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  const Option out = command.add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
+                         .type_name("FOLDER")
+                         .check(not_empty());
+  command.add_option("--only", arguments->only, "only this exhibit; may be given several times (see --list)")
+      .type_name("ID");
+  command.add_flag("--list", arguments->list, "name the exhibits and stop").excludes(out);
+  command.add_option("--seed", arguments->seed, "of everything simulated; the same seed gives the same numbers (1)")
+      .type_name("N")
+      .check(whole_number(1, 1'000'000'000));
+  command.add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024));
+  command.add_flag("--without-printed", arguments->without_printed,
+                   "leave the printed numbers out; ours stay the same");
+  command.add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/2");
+  command.add_flag("--overwrite", arguments->overwrite, "replace files that are there");
+  command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };
 }
 

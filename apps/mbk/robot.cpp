@@ -74,47 +74,43 @@ int run_workspace(const RobotArguments& arguments) {
   return kFine;
 }
 
-Action add_workspace(CLI::App& group) {
+Action add_workspace(Command group) {
   auto arguments = std::make_shared<RobotArguments>();
-  CLI::App* command = add_command(group, "workspace", "where the hand can be, and the robot at one place");
-  command->footer(
+  const Command command = group.add_command("workspace", "where the hand can be, and the robot at one place");
+  command.footer(
       "Examples:\n"
       "  mbk robot workspace\n"
       "  mbk robot workspace --at 300,50\n"
       "  mbk robot workspace --at 300,50 --out workspace.svg\n\n"
       "x and y are those of the robot's base: θ₁ turns the first link from x, θ₂ the last from −y.\n"
       "A place that the robot cannot reach is refused with the limit that forbids it (exit code 2).");
-  command->add_option("--at", arguments->at, "also the joint angles, Jacobian, inertia and margins with the hand here")
-      ->type_name("X,Y[mm]");
-  command->add_option("--d1-mm", arguments->d1_mm, "length of the first link (254)")
-      ->type_name("MM")
-      ->check(positive());
-  command->add_option("--d2-mm", arguments->d2_mm, "length of the last link (266.7)")
-      ->type_name("MM")
-      ->check(positive());
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.workspace/1");
-  arguments->output.add_options(*command);
-  command->get_option("--out")->description("write to this file instead; a name in .svg gets the drawing");
+  command.add_option("--at", arguments->at, "also the joint angles, Jacobian, inertia and margins with the hand here")
+      .type_name("X,Y[mm]");
+  command.add_option("--d1-mm", arguments->d1_mm, "length of the first link (254)").type_name("MM").check(positive());
+  command.add_option("--d2-mm", arguments->d2_mm, "length of the last link (266.7)").type_name("MM").check(positive());
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.workspace/1");
+  arguments->output.add_options(command);
+  command.get_option("--out").description("write to this file instead; a name in .svg gets the drawing");
   return [arguments] { return run_workspace(*arguments); };
 }
 
 }  // namespace
 
-Action add_robot(CLI::App& app) {
-  CLI::App* group = add_command(app, "robot", "its workspace, its inertia and friction, force without a sensor");
-  group->footer(
+Action add_robot(Command app) {
+  const Command group = app.add_command("robot", "its workspace, its inertia and friction, force without a sensor");
+  group.footer(
       "Examples:\n"
       "  mbk robot workspace --at 300,50\n"
       "  mbk robot describe my_robot.toml\n"
       "  mbk robot check my_experiment.toml --live\n"
       "  mbk robot identify free_motion.h5\n");
-  group->require_subcommand(1);
-  const Actions actions = {{"workspace", add_workspace(*group)},
-                           {"describe", add_robot_describe(*group)},
-                           {"identify", add_robot_identify(*group)},
-                           {"force", add_robot_force(*group)},
-                           {"check", add_robot_check(*group)}};
-  return [group, actions] { return run_chosen(*group, actions); };
+  group.require_subcommand();
+  const Actions actions = {{"workspace", add_workspace(group)},
+                           {"describe", add_robot_describe(group)},
+                           {"identify", add_robot_identify(group)},
+                           {"force", add_robot_force(group)},
+                           {"check", add_robot_check(group)}};
+  return [group, actions] { return run_chosen(group, actions); };
 }
 
 }  // namespace mbk::app

@@ -120,10 +120,10 @@ int run(const RobotCheckArguments& arguments) {
 
 }  // namespace
 
-Action add_robot_check(CLI::App& group) {
+Action add_robot_check(Command group) {
   auto arguments = std::make_shared<RobotCheckArguments>();
-  CLI::App* command = add_command(group, "check", "whether a robot is described, wired and reached as it should be");
-  command->footer(
+  const Command command = group.add_command("check", "whether a robot is described, wired and reached as it should be");
+  command.footer(
       "Examples:\n"
       "  mbk robot check my_experiment.toml\n"
       "      geometry, limits, wiring and device as understood, and what cannot be meant\n"
@@ -136,43 +136,40 @@ Action add_robot_check(CLI::App& group) {
       "Do all of it before anyone sits down at a new robot. The keys of [device] and the rules of the\n"
       "link stand in docs/guide/devices.md, a bridge to begin with in docs/guide/your_own_robot.md.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not all tested.");
-  CLI::Option* const file =
+  const Option file =
       command
-          ->add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
-          ->check(suggests(ready_scenario_names()));
-  command->add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
-      ->type_name("S")
-      ->expected(0, 1)
-      ->default_str("2")
-      ->option_text("S")
-      ->check(positive())
-      ->needs(file);
-  CLI::Option* const link =
-      command
-          ->add_option("--link", arguments->link,
-                       "a robot's program behind UDP, every rule that it has to keep (port 25000)")
-          ->type_name("ADDRESS")
-          ->check(not_empty());
+          .add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
+          .check(suggests(ready_scenario_names()));
+  command.add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
+      .type_name("S")
+      .expected(0, 1)
+      .default_str("2")
+      .option_text("S")
+      .check(positive())
+      .needs(file);
+  const Option link = command
+                          .add_option("--link", arguments->link,
+                                      "a robot's program behind UDP, every rule that it has to keep (port 25000)")
+                          .type_name("ADDRESS")
+                          .check(not_empty());
   command
-      ->add_flag("--motors", arguments->motors,
-                 "also the rules for which its motors go on, with command 0: nobody at the robot, a hand on its stop "
-                 "button")
-      ->needs(link);
-  command->add_option("--local-port", arguments->local_port, "where --link listens; 0: any that is free (0)")
-      ->type_name("N")
-      ->check(whole_number(0, 65535))
-      ->needs(link);
+      .add_flag("--motors", arguments->motors,
+                "also the rules for which its motors go on, with command 0: nobody at the robot, a hand on its stop "
+                "button")
+      .needs(link);
+  command.add_option("--local-port", arguments->local_port, "where --link listens; 0: any that is free (0)")
+      .type_name("N")
+      .check(whole_number(0, 65535))
+      .needs(link);
   command
-      ->add_option("--rt", arguments->timing, "wake a loop for so long as a session does, and say how late it was (10)")
-      ->type_name("S")
-      ->expected(0, 1)
-      ->default_str("10")
-      ->option_text("S")
-      ->check(positive());
-  command->add_option("--rate", arguments->rate_hz, "of --link and --rt, Hz (1000)")
-      ->type_name("HZ")
-      ->check(positive());
-  add_output_options(*command, arguments->output, "mbk.robot_check/1");
+      .add_option("--rt", arguments->timing, "wake a loop for so long as a session does, and say how late it was (10)")
+      .type_name("S")
+      .expected(0, 1)
+      .default_str("10")
+      .option_text("S")
+      .check(positive());
+  command.add_option("--rate", arguments->rate_hz, "of --link and --rt, Hz (1000)").type_name("HZ").check(positive());
+  add_output_options(command, arguments->output, "mbk.robot_check/1");
   return [arguments] { return run(*arguments); };
 }
 

@@ -5,9 +5,9 @@
 /// The commands of `mbk robot`, one file each.
 namespace mbk::app {
 
-Action add_robot_describe(CLI::App& group);
-Action add_robot_identify(CLI::App& group);
-Action add_robot_force(CLI::App& group);
-Action add_robot_check(CLI::App& group);
+Action add_robot_describe(Command group);
+Action add_robot_identify(Command group);
+Action add_robot_force(Command group);
+Action add_robot_check(Command group);
 
 }  // namespace mbk::app

@@ -30,19 +30,19 @@ int run(const RobotDescribeArguments& arguments) {
 
 }  // namespace
 
-Action add_robot_describe(CLI::App& group) {
+Action add_robot_describe(Command group) {
   auto arguments = std::make_shared<RobotDescribeArguments>();
-  CLI::App* command = add_command(group, "describe", "what mbk understands of a robot's description or URDF");
-  command->footer(
+  const Command command = group.add_command("describe", "what mbk understands of a robot's description or URDF");
+  command.footer(
       "Examples:\n"
       "  mbk robot describe my_robot.toml\n"
       "  mbk robot describe arm.urdf\n"
       "      the whole chain, from the root of the URDF to its only leaf\n\n"
       "Look at the limits, and at where the hand is with every joint at zero, before you record.\n"
       "The keys of a description stand in docs/guide/robot_dynamics.md.");
-  command->add_option("FILE", arguments->file, "description of a robot: .toml, or a .urdf alone")->required();
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.robot_description/1");
-  arguments->output.add_options(*command);
+  command.add_option("FILE", arguments->file, "description of a robot: .toml, or a .urdf alone").required();
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.robot_description/1");
+  arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }
 

@@ -65,10 +65,10 @@ int run(const RobotForceArguments& arguments) {
 
 }  // namespace
 
-Action add_robot_force(CLI::App& group) {
+Action add_robot_force(Command group) {
   auto arguments = std::make_shared<RobotForceArguments>();
-  CLI::App* command = add_command(group, "force", "the force at the hand without a force sensor");
-  command->footer(
+  const Command command = group.add_command("force", "the force at the hand without a force sensor");
+  command.footer(
       "Examples:\n"
       "  mbk robot force log.h5 --robot robot.json\n"
       "      how large it is, how sure, and beside the force sensor where there is one\n"
@@ -77,22 +77,22 @@ Action add_robot_force(CLI::App& group) {
       "'mbk measure --force-source virtual' does the same on its way.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, arguments->reading);
+  add_reading_options(command, arguments->reading);
   command
-      ->add_option("--robot", arguments->robot,
-                   "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
-      ->type_name("FILE")
-      ->check(not_empty());
-  add_choice(*command, "--force-source", arguments->source, {ForceSource::virtual_sensor, ForceSource::observer},
+      .add_option("--robot", arguments->robot,
+                  "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
+      .type_name("FILE")
+      .check(not_empty());
+  add_choice(command, "--force-source", arguments->source, {ForceSource::virtual_sensor, ForceSource::observer},
              "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
              "(virtual)");
-  add_choice(*command, "--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)");
-  add_window_options(*command, arguments->window);
-  add_filter_options(*command, arguments->filters);
-  command->remove_option(command->get_option("--split"));  // nothing is held out here
-  command->remove_option(command->get_option("--every"));
-  add_output_options(*command, arguments->output, "mbk.force/1");
-  command->get_option("--out")->description("write a recording with the force to this file: .h5, .mat or .csv");
+  add_choice(command, "--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)");
+  add_window_options(command, arguments->window);
+  add_filter_options(command, arguments->filters);
+  command.remove_option("--split");  // nothing is held out here
+  command.remove_option("--every");
+  add_output_options(command, arguments->output, "mbk.force/1");
+  command.get_option("--out").description("write a recording with the force to this file: .h5, .mat or .csv");
   return [arguments] { return run(*arguments); };
 }
 

@@ -168,10 +168,10 @@ int run(const RobotIdentifyArguments& arguments) {
 
 }  // namespace
 
-Action add_robot_identify(CLI::App& group) {
+Action add_robot_identify(Command group) {
   auto arguments = std::make_shared<RobotIdentifyArguments>();
-  CLI::App* command = add_command(group, "identify", "the robot's own inertia and friction, from its motion alone");
-  command->footer(
+  const Command command = group.add_command("identify", "the robot's own inertia and friction, from its motion alone");
+  command.footer(
       "Examples:\n"
       "  mbk simulate free_motion --out free.h5\n"
       "  mbk robot identify free.h5\n"
@@ -187,73 +187,73 @@ Action add_robot_identify(CLI::App& group) {
       "will measure. Torque and motion are filtered alike; what the data cannot distinguish is reported.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, arguments->reading);
-  CLI::Option* held_out =
-      command->add_option("--held-out", arguments->held_out, "recordings that only judge the fit")->type_name("FILE");
-  accept_former_name(*command, *held_out, "--held-back");
+  add_reading_options(command, arguments->reading);
+  const Option held_out =
+      command.add_option("--held-out", arguments->held_out, "recordings that only judge the fit").type_name("FILE");
+  command.accept_former_name(held_out, "--held-back");
   command
-      ->add_option("--robot", arguments->robot,
-                   "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
-      ->type_name("FILE")
-      ->check(not_empty());
-  add_window_options(*command, arguments->window);
-  add_filter_options(*command, arguments->filters);
+      .add_option("--robot", arguments->robot,
+                  "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
+      .type_name("FILE")
+      .check(not_empty());
+  add_window_options(command, arguments->window);
+  add_filter_options(command, arguments->filters);
   const char* const model = "Model";
   command
-      ->add_option("--terms", arguments->terms,
-                   "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
-                   "(viscous,coulomb,offset)")
-      ->type_name("LIST")
-      ->check(not_empty())
-      ->group(model);
+      .add_option("--terms", arguments->terms,
+                  "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
+                  "(viscous,coulomb,offset)")
+      .type_name("LIST")
+      .check(not_empty())
+      .group(model);
   command
-      ->add_option("--fix", arguments->fixed,
-                   "coefficients that are known: they keep the value of the robot's description, as in "
-                   "--fix link_1.mass_x,link_2.mass_x for links that are symmetric")
-      ->type_name("LIST")
-      ->check(not_empty())
-      ->group(model);
+      .add_option("--fix", arguments->fixed,
+                  "coefficients that are known: they keep the value of the robot's description, as in "
+                  "--fix link_1.mass_x,link_2.mass_x for links that are symmetric")
+      .type_name("LIST")
+      .check(not_empty())
+      .group(model);
   command
-      ->add_option("--friction-smoothing", arguments->smoothing,
-                   "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
-                   "(0.02)")
-      ->type_name("V")
-      ->check(not_negative())
-      ->group(model);
-  command->add_option("--stribeck-velocity", arguments->stribeck_velocity, "rad/s or m/s; auto finds it (0.05)")
-      ->type_name("V|auto")
-      ->check(not_empty())
-      ->group(model);
+      .add_option("--friction-smoothing", arguments->smoothing,
+                  "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
+                  "(0.02)")
+      .type_name("V")
+      .check(not_negative())
+      .group(model);
+  command.add_option("--stribeck-velocity", arguments->stribeck_velocity, "rad/s or m/s; auto finds it (0.05)")
+      .type_name("V|auto")
+      .check(not_empty())
+      .group(model);
   command
-      ->add_option(
+      .add_option(
           "--motor-delay", arguments->delay,
           "by which the motors act after the torque that is recorded; a torque that is held for a sample counts "
           "as half of one (auto: found)")
-      ->type_name("MS|auto")
-      ->check(not_empty())
-      ->group(model);
-  add_choice(*command, "--method", arguments->method,
+      .type_name("MS|auto")
+      .check(not_empty())
+      .group(model);
+  add_choice(command, "--method", arguments->method,
              "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
              "noise of the motion does not bias")
-      ->group(model);
+      .group(model);
   command
-      ->add_flag("--consistent", arguments->consistent,
-                 "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
-                 "and drives that do not feed the motion; what the data leave open stays near the description")
-      ->group(model);
+      .add_flag("--consistent", arguments->consistent,
+                "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
+                "and drives that do not feed the motion; what the data leave open stays near the description")
+      .group(model);
   command
-      ->add_option("--motion-cutoff", arguments->motion_cutoff_hz,
-                   "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
-                   "reference, or without one the band of the torque")
-      ->type_name("HZ")
-      ->check(positive())
-      ->group(model);
+      .add_option("--motion-cutoff", arguments->motion_cutoff_hz,
+                  "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
+                  "reference, or without one the band of the torque")
+      .type_name("HZ")
+      .check(positive())
+      .group(model);
   command
-      ->add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
-      ->type_name("S")
-      ->check(positive())
-      ->group(model);
-  add_output_options(*command, arguments->output, "mbk.robot/1");
+      .add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
+      .type_name("S")
+      .check(positive())
+      .group(model);
+  add_output_options(command, arguments->output, "mbk.robot/1");
   return [arguments] { return run(*arguments); };
 }
 

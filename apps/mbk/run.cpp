@@ -317,10 +317,10 @@ int run(const RunArguments& arguments) {
 
 }  // namespace
 
-Action add_run(CLI::App& app) {
+Action add_run(Command app) {
   auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = add_command(app, "run", "run an experiment at 1 kHz: perturb, record, measure");
-  command->footer(
+  const Command command = app.add_command("run", "run an experiment at 1 kHz: perturb, record, measure");
+  command.footer(
       "Examples:\n"
       "  mbk run relaxed_sinusoidal --out relaxed.h5\n"
       "      a simulated robot and participant, in real time; needs nothing\n"
@@ -338,27 +338,27 @@ Action add_run(CLI::App& app) {
       "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost, 4 computed but not usable,\n"
       "5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
-  command->add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
-      ->required()
-      ->check(suggests(ready_scenario_names()));
-  command->add_option("--out", arguments->out, "the recording to write (NAME.h5); several trials get suffixes")
-      ->type_name("REC")
-      ->check(not_empty());
-  command->add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
-      ->type_name("NAME");
-  command->add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the experiment's")
-      ->type_name("N")
-      ->check(whole_number(0, std::numeric_limits<long>::max()));
-  command->add_option("--participant", arguments->person, "number of the person, instead of the file's")
-      ->type_name("N")
-      ->check(whole_number(1, 999'999));
-  command->add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
-  command->add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second")->type_name("X");
-  add_readers_option(*command, arguments->readers);
-  command->add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
-  command->add_flag("!--no-measure", arguments->measure, "record only");
-  command->add_flag("--quiet", arguments->quiet, "no status line");
-  add_console_options(*command, arguments->console);
+  command.add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
+      .required()
+      .check(suggests(ready_scenario_names()));
+  command.add_option("--out", arguments->out, "the recording to write (NAME.h5); several trials get suffixes")
+      .type_name("REC")
+      .check(not_empty());
+  command.add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
+      .type_name("NAME");
+  command.add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the experiment's")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<long>::max()));
+  command.add_option("--participant", arguments->person, "number of the person, instead of the file's")
+      .type_name("N")
+      .check(whole_number(1, 999'999));
+  command.add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
+  command.add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second").type_name("X");
+  add_readers_option(command, arguments->readers);
+  command.add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
+  command.add_flag("!--no-measure", arguments->measure, "record only");
+  command.add_flag("--quiet", arguments->quiet, "no status line");
+  add_console_options(command, arguments->console);
   return [arguments] { return run(*arguments); };
 }
 

@@ -13,19 +13,19 @@
 
 namespace mbk::app {
 
-void add_console_options(CLI::App& command, ConsoleArguments& arguments) {
+void add_console_options(Command command, ConsoleArguments& arguments) {
   command.add_flag_callback(
       "--console", [&arguments] { arguments.wanted = true; },
       "serve a page to watch and stop it, on this machine only; the default at a terminal");
   command.add_flag_callback(
       "--no-console", [&arguments] { arguments.wanted = false; }, "no such page");
   command.add_option("--port", arguments.port, "of the console, instead of any that is free")
-      ->type_name("N")
-      ->check(whole_number(0, 65535));
+      .type_name("N")
+      .check(whole_number(0, 65535));
   command.add_flag("--wait", arguments.wait, "the console starts each trial; nothing moves before");
   command.add_option("--texts", arguments.texts, "of the participant's page: en, de, or a .toml file with your own")
-      ->type_name("TEXTS")
-      ->check(not_empty());
+      .type_name("TEXTS")
+      .check(not_empty());
 }
 
 std::string time_text(const realtime::CycleRecord& record) {

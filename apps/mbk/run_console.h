@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "apps/mbk/command.h"
 #include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/console/console.h"
 #include "mbk/experiment/console/page_operator.h"
@@ -18,7 +18,7 @@ struct ConsoleArguments {
   std::string texts;           ///< of the participant's page: ready ones, or a file; empty: "en"
 };
 
-void add_console_options(CLI::App& command, ConsoleArguments& arguments);
+void add_console_options(Command command, ConsoleArguments& arguments);
 
 /// "median 4.3 µs, p99.9 …, worst …"
 [[nodiscard]] std::string time_text(const realtime::CycleRecord& record);

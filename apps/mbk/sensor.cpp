@@ -63,10 +63,10 @@ int run_calibrate(const SensorCalibrateArguments& arguments) {
   return kFine;
 }
 
-Action add_sensor_calibrate(CLI::App& sensor) {
+Action add_sensor_calibrate(Command sensor) {
   auto arguments = std::make_shared<SensorCalibrateArguments>();
-  CLI::App* command = add_command(sensor, "calibrate", "slope, zero, crosstalk and noise from known loads");
-  command->footer(
+  const Command command = sensor.add_command("calibrate", "slope, zero, crosstalk and noise from known loads");
+  command.footer(
       "Examples:\n"
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10\n"
       "      columns Fx, Fy in N and Vx, Vy in V, one row a load; repeats and both signs are welcome\n"
@@ -76,37 +76,37 @@ Action add_sensor_calibrate(CLI::App& sensor) {
       "      a reference sensor's Fx, Fy over time beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
       "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
   ReadingArguments& reading = arguments->reading;
-  add_reading_options(*command, reading);
-  command->get_option("--axes")->description("1: each axis separately; otherwise crosstalk is fitted too");
-  command->get_option("FILE")->description("tables of loads or recordings: .csv, .h5 or .mat");
-  command->add_option("--lever-arm-mm", arguments->lever_arm_mm, "from the gauges to the load, kept for --sensor")
-      ->type_name("MM")
-      ->check(positive());
-  CLI::Option* const bits =
-      command->add_option("--bits", arguments->bits, "of the converter; otherwise its step is looked for in the data")
-          ->type_name("N")
-          ->check(whole_number(2, 32));
-  CLI::Option* const range = command->add_option("--range", arguments->range, "of the converter, ± volts")
-                                 ->type_name("V")
-                                 ->check(positive())
-                                 ->needs(bits);
-  bits->needs(range);
+  add_reading_options(command, reading);
+  command.get_option("--axes").description("1: each axis separately; otherwise crosstalk is fitted too");
+  command.get_option("FILE").description("tables of loads or recordings: .csv, .h5 or .mat");
+  command.add_option("--lever-arm-mm", arguments->lever_arm_mm, "from the gauges to the load, kept for --sensor")
+      .type_name("MM")
+      .check(positive());
+  const Option bits =
+      command.add_option("--bits", arguments->bits, "of the converter; otherwise its step is looked for in the data")
+          .type_name("N")
+          .check(whole_number(2, 32));
+  const Option range = command.add_option("--range", arguments->range, "of the converter, ± volts")
+                           .type_name("V")
+                           .check(positive())
+                           .needs(bits);
+  bits.needs(range);
   add_sensor_frame(
-      *command, arguments->frame,
+      command, arguments->frame,
       "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
       "link where q2 is there");
   command
-      ->add_option("--longest-delay-ms", arguments->longest_delay_ms,
-                   "by which the voltage may come after a reference, either way (50; 0: none)")
-      ->type_name("MS")
-      ->check(not_negative());
+      .add_option("--longest-delay-ms", arguments->longest_delay_ms,
+                  "by which the voltage may come after a reference, either way (50; 0: none)")
+      .type_name("MS")
+      .check(not_negative());
   command
-      ->add_option("--hac-lag", arguments->hac_lag_s,
-                   "reach of the residual's correlation in the standard errors, s (1)")
-      ->type_name("S")
-      ->check(not_negative());
-  command->add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor/1, which --sensor reads");
-  arguments->output.to.add_options(*command);
+      .add_option("--hac-lag", arguments->hac_lag_s,
+                  "reach of the residual's correlation in the standard errors, s (1)")
+      .type_name("S")
+      .check(not_negative());
+  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor/1, which --sensor reads");
+  arguments->output.to.add_options(command);
   return [arguments] { return run_calibrate(*arguments); };
 }
 
@@ -140,10 +140,10 @@ int run_delay(const SensorDelayArguments& arguments) {
   return found->usable() ? kFine : kNotUsable;
 }
 
-Action add_delay(CLI::App& sensor) {
+Action add_delay(Command sensor) {
   auto arguments = std::make_shared<SensorDelayArguments>();
-  CLI::App* command = add_command(sensor, "delay", "by how much the force is read late, from a known mass");
-  command->footer(
+  const Command command = sensor.add_command("delay", "by how much the force is read late, from a known mass");
+  command.footer(
       "Fix a known mass to the handle, let the robot move it about for half a minute (a multisine up\n"
       "to some hertz), and record as in a trial. No hand may touch it.\n\n"
       "Examples:\n"
@@ -153,30 +153,30 @@ Action add_delay(CLI::App& sensor) {
       "      a trial with the delay that was found\n\n"
       "Exit codes: 0 the delay is found, 2 wrong usage, 3 bad or unreadable data, 4 it is not to be\n"
       "used: something else than that mass is at the handle, or its motion is too slow or short.");
-  add_reading_options(*command, arguments->reading);
-  command->add_option("--mass", arguments->mass, "beyond the force sensor, the handle's own included, kg")
-      ->type_name("KG")
-      ->check(positive())
-      ->required();
-  add_window_options(*command, arguments->window);
-  add_filter_options(*command, arguments->filters);
-  command->add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor_delay/1");
-  arguments->output.to.add_options(*command);
+  add_reading_options(command, arguments->reading);
+  command.add_option("--mass", arguments->mass, "beyond the force sensor, the handle's own included, kg")
+      .type_name("KG")
+      .check(positive())
+      .required();
+  add_window_options(command, arguments->window);
+  add_filter_options(command, arguments->filters);
+  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor_delay/1");
+  arguments->output.to.add_options(command);
   return [arguments] { return run_delay(*arguments); };
 }
 
 }  // namespace
 
-Action add_sensor(CLI::App& app) {
-  CLI::App* command = add_command(app, "sensor", "slope, zero and delay of a force sensor of your own");
-  command->require_subcommand(1);
-  command->footer(
+Action add_sensor(Command app) {
+  const Command command = app.add_command("sensor", "slope, zero and delay of a force sensor of your own");
+  command.require_subcommand();
+  command.footer(
       "Examples:\n"
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --json --out cell.json\n"
       "  mbk measure --sensor cell.json trial.csv\n"
       "  mbk sensor delay mass.h5 --mass 1.194");
-  const Actions actions = {{"calibrate", add_sensor_calibrate(*command)}, {"delay", add_delay(*command)}};
-  return [command, actions] { return run_chosen(*command, actions); };
+  const Actions actions = {{"calibrate", add_sensor_calibrate(command)}, {"delay", add_delay(command)}};
+  return [command, actions] { return run_chosen(command, actions); };
 }
 
 }  // namespace mbk::app

@@ -49,43 +49,43 @@ Result<void> read_zero(const std::string& text, calibration::SensorUse& use) {
 
 }  // namespace
 
-CLI::Option* add_sensor_frame(CLI::App& command, calibration::SensorFrame& frame, const char* description) {
+Option add_sensor_frame(Command command, calibration::SensorFrame& frame, const char* description) {
   return add_choice(command, "--sensor-frame", frame, description);
 }
 
-void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
+void add_sensor_options(Command command, SensorArguments& arguments) {
   const char* const group = "Force sensor";
-  CLI::Option* const sensor =
+  const Option sensor =
       command
           .add_option("--sensor", arguments.file,
                       "calibration that makes the force of the recording's voltages Vx, Vy; 'mbk sensor calibrate "
                       "--json' writes it")
-          ->type_name("FILE.json")
-          ->check(not_empty())
-          ->group(group);
+          .type_name("FILE.json")
+          .check(not_empty())
+          .group(group);
   command
       .add_option("--lever-arm-mm", arguments.lever_arm_mm,
                   "from the gauges to the hand; the slope is scaled with it, the zero is not (as in the calibration)")
-      ->type_name("MM")
-      ->check(positive())
-      ->needs(sensor)
-      ->group(group);
+      .type_name("MM")
+      .check(positive())
+      .needs(sensor)
+      .group(group);
   command
       .add_option("--sensor-zero", arguments.zero,
                   "voltage of no force in these recordings: auto:S is the mean of the first S seconds (as in the "
                   "calibration)")
-      ->type_name("VX,VY|auto:S")
-      ->check(not_empty())
-      ->needs(sensor)
-      ->group(group);
+      .type_name("VX,VY|auto:S")
+      .check(not_empty())
+      .needs(sensor)
+      .group(group);
   add_sensor_frame(command, arguments.frame,
                    "link: the sensor turns with the last link, at q2; base: it does not; auto: link where q2 is there")
-      ->needs(sensor)
-      ->group(group);
+      .needs(sensor)
+      .group(group);
   add_choice(command, "--sensor-delay", arguments.delay,
              "undo: move the force earlier by the delay that the calibration saw (keep)")
-      ->needs(sensor)
-      ->group(group);
+      .needs(sensor)
+      .group(group);
 }
 
 Result<std::optional<calibration::SensorUse>> sensor_use(const SensorArguments& arguments) {

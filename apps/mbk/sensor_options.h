@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "apps/mbk/command.h"
 #include "mbk/base/core/words.h"
 #include "mbk/measure/calibration/sensor_force.h"
 
@@ -30,10 +30,10 @@ struct SensorArguments {
 };
 
 /// Adds --sensor, --lever-arm-mm, --sensor-zero, --sensor-frame and --sensor-delay.
-void add_sensor_options(CLI::App& command, SensorArguments& arguments);
+void add_sensor_options(Command command, SensorArguments& arguments);
 
 /// Adds --sensor-frame alone.
-CLI::Option* add_sensor_frame(CLI::App& command, calibration::SensorFrame& frame, const char* description);
+Option add_sensor_frame(Command command, calibration::SensorFrame& frame, const char* description);
 
 /// The calibration file, read, with how it is to be used; nothing where --sensor is not given.
 [[nodiscard]] Result<std::optional<calibration::SensorUse>> sensor_use(const SensorArguments& arguments);

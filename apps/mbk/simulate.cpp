@@ -274,11 +274,11 @@ Result<batch::UnitFunction> simulate_units(const nlohmann::json& specification) 
   return units_of(std::move(arguments));
 }
 
-Action add_simulate(CLI::App& app) {
+Action add_simulate(Command app) {
   auto arguments = std::make_shared<SimulateArguments>();
   auto shown = std::make_shared<std::string>();
-  CLI::App* command = add_command(app, "simulate", "a simulated trial: a recording with the truth in it");
-  command->footer(
+  const Command command = app.add_command("simulate", "a simulated trial: a recording with the truth in it");
+  command.footer(
       "Examples:\n"
       "  mbk simulate --list\n"
       "      the ready scenarios, one for each experiment of the thesis\n"
@@ -296,35 +296,34 @@ Action add_simulate(CLI::App& app) {
       "The recording holds the truth (truth_M, truth_B, truth_K, …) as metadata, which 'mbk info' shows and\n"
       "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
       "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
-  command->add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a ready scenario")
-      ->check(suggests(ready_scenario_names()));
+  command.add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a ready scenario")
+      .check(suggests(ready_scenario_names()));
   command
-      ->add_option("--out", arguments->out,
-                   "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
-      ->type_name("REC")
-      ->check(not_empty());
-  command->add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
-      ->type_name("NAME");
-  command->add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the scenario's")
-      ->type_name("N")
-      ->check(whole_number(0, std::numeric_limits<long>::max()));
-  command->add_option("--seeds", arguments->seeds, "so many recordings, with seeds from there on (1)")
-      ->type_name("N")
-      ->check(whole_number(1, 100'000));
-  command->add_option("--threads", arguments->threads, "recordings at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024));
-  command->add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
-  command->add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
-  add_readers_option(*command, arguments->readers);
-  add_engine_options(*command, arguments->engine);
-  command->add_flag("--list", arguments->list, "the ready scenarios");
-  command->add_flag("--facts", arguments->facts,
-                    "what the perturbation demands: peaks, speed, band; simulates nothing");
-  command->add_option("--show", *shown, "print a ready scenario")
-      ->type_name("NAME")
-      ->check(suggests(ready_scenario_names()));
-  command->add_flag("--quiet", arguments->quiet, "no progress and no summary");
+      .add_option("--out", arguments->out,
+                  "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
+      .type_name("REC")
+      .check(not_empty());
+  command.add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
+      .type_name("NAME");
+  command.add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the scenario's")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<long>::max()));
+  command.add_option("--seeds", arguments->seeds, "so many recordings, with seeds from there on (1)")
+      .type_name("N")
+      .check(whole_number(1, 100'000));
+  command.add_option("--threads", arguments->threads, "recordings at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024));
+  command.add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
+  command.add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
+  add_readers_option(command, arguments->readers);
+  add_engine_options(command, arguments->engine);
+  command.add_flag("--list", arguments->list, "the ready scenarios");
+  command.add_flag("--facts", arguments->facts, "what the perturbation demands: peaks, speed, band; simulates nothing");
+  command.add_option("--show", *shown, "print a ready scenario")
+      .type_name("NAME")
+      .check(suggests(ready_scenario_names()));
+  command.add_flag("--quiet", arguments->quiet, "no progress and no summary");
   return [arguments, shown] {
     if (arguments->list) return list();
     if (!shown->empty()) return show(*shown);

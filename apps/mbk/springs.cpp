@@ -194,10 +194,10 @@ int run_calibrate(const CalibrateArguments& arguments) {
   return kFine;
 }
 
-Action add_field(CLI::App& springs) {
+Action add_field(Command springs) {
   auto arguments = std::make_shared<FieldArguments>();
-  CLI::App* command = add_command(springs, "field", "equilibrium and stiffness of an array of springs");
-  command->footer(
+  const Command command = springs.add_command("field", "equilibrium and stiffness of an array of springs");
+  command.footer(
       "Examples:\n"
       "  mbk springs field rig.toml\n"
       "      the [[rig.spring]] of a scenario file; --trial chooses among several\n"
@@ -205,113 +205,113 @@ Action add_field(CLI::App& springs) {
       "      --spring k=150,l=80,anchor=215:0 --grid-step 0.15\n\n"
       "Places are x:y in mm in the robot's base frame; a hole is where the spring hangs in the disc, from\n"
       "the hand. K is minus the gradient of the force at the place where the force is zero.");
-  CLI::Option* const scenario =
-      command->add_option("SCENARIO.toml", arguments->scenario, "a scenario with [[rig.spring]], or a ready one's name")
-          ->check(suggests(ready_scenario_names()));
-  command->add_option("--trial", arguments->trial, "which [[trial]] of it")->type_name("NAME")->needs(scenario);
-  command->add_option("--spring", arguments->springs, "k in N/m, rest length l in mm, anchor, and hole; once for each")
-      ->type_name("k=K,l=L,anchor=X:Y[,hole=X:Y]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->excludes(scenario);
-  command->add_option("--radius", arguments->radius_mm, "circle in mm in which K is compared with the force (30)")
-      ->type_name("MM")
-      ->check(positive());
-  command->add_option("--start", arguments->start, "where the search for the equilibrium begins, mm")->type_name("X:Y");
-  command->add_option("--rotation", arguments->rotation_deg, "of the disc, degrees anticlockwise (0)")
-      ->type_name("DEG");
+  const Option scenario =
+      command.add_option("SCENARIO.toml", arguments->scenario, "a scenario with [[rig.spring]], or a ready one's name")
+          .check(suggests(ready_scenario_names()));
+  command.add_option("--trial", arguments->trial, "which [[trial]] of it").type_name("NAME").needs(scenario);
+  command.add_option("--spring", arguments->springs, "k in N/m, rest length l in mm, anchor, and hole; once for each")
+      .type_name("k=K,l=L,anchor=X:Y[,hole=X:Y]")
+      .expected(1)
+      .take_all()
+      .excludes(scenario);
+  command.add_option("--radius", arguments->radius_mm, "circle in mm in which K is compared with the force (30)")
+      .type_name("MM")
+      .check(positive());
+  command.add_option("--start", arguments->start, "where the search for the equilibrium begins, mm").type_name("X:Y");
+  command.add_option("--rotation", arguments->rotation_deg, "of the disc, degrees anticlockwise (0)").type_name("DEG");
   command
-      ->add_option("--grid-step", arguments->grid_step_mm,
-                   "also the published procedure, on a grid of so many mm (0.15 in Dyck 2013)")
-      ->type_name("MM")
-      ->check(positive());
-  command->add_flag("--push", arguments->push, "springs shorter than at rest push; otherwise they go slack");
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.springs/1");
-  arguments->output.add_options(*command);
+      .add_option("--grid-step", arguments->grid_step_mm,
+                  "also the published procedure, on a grid of so many mm (0.15 in Dyck 2013)")
+      .type_name("MM")
+      .check(positive());
+  command.add_flag("--push", arguments->push, "springs shorter than at rest push; otherwise they go slack");
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.springs/1");
+  arguments->output.add_options(command);
   return [arguments] { return run_field(*arguments); };
 }
 
-Action add_find(CLI::App& springs) {
+Action add_find(Command springs) {
   auto arguments = std::make_shared<FindArguments>();
-  CLI::App* command = add_command(springs, "find", "springs for a target stiffness and equilibrium");
-  command->footer(
+  const Command command = springs.add_command("find", "springs for a target stiffness and equilibrium");
+  command.footer(
       "Examples:\n"
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
       "  mbk springs find --stiffness 300,300,0 --disc --payload 1.031 --spring-stiffness 30:250\n\n"
       "Of all springs within the bounds that give exactly this K there, it finds those whose force is the\n"
       "straightest over the travel. The output has them as --spring options and as TOML.");
-  command->add_option("--stiffness", arguments->stiffness, "target kxx, kyy and ks in N/m")
-      ->type_name("KXX,KYY,KS")
-      ->required();
-  command->add_option("--at", arguments->at, "target equilibrium, mm (the middle of the frame)")->type_name("X:Y");
-  command->add_option("--frame", arguments->frame, "middle of the frame, mm (390:0)")->type_name("X:Y");
+  command.add_option("--stiffness", arguments->stiffness, "target kxx, kyy and ks in N/m")
+      .type_name("KXX,KYY,KS")
+      .required();
+  command.add_option("--at", arguments->at, "target equilibrium, mm (the middle of the frame)").type_name("X:Y");
+  command.add_option("--frame", arguments->frame, "middle of the frame, mm (390:0)").type_name("X:Y");
   command
-      ->add_option("--eye", arguments->eyes,
-                   "a screw eye, mm; once for each of up to 12 (the published frame: corners and middles of the sides "
-                   "of 350 by 366 mm)")
-      ->type_name("X:Y")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_flag("--disc", arguments->disc,
-                    "hang each spring in the facing hole of the published disc, 2.25 cm across; otherwise all at its "
-                    "middle");
-  command->add_option("--spring-stiffness", arguments->spring_stiffness, "springs that can be had, N/m (20:400)")
-      ->type_name("FROM:TO");
-  command->add_option("--spring-length", arguments->spring_length, "their rest lengths, mm (60:160)")
-      ->type_name("FROM:TO");
-  command->add_option("--travel", arguments->travel_mm, "radius in mm in which all stay in tension (30)")
-      ->type_name("MM")
-      ->check(positive());
-  CLI::Option* min_extension = command
-                                   ->add_option("--min-extension", arguments->min_extension_mm,
-                                                "by how much each stays longer than at rest in there, mm (2)")
-                                   ->type_name("MM")
-                                   ->check(not_negative());
-  accept_former_name(*command, *min_extension, "--least-extension");
-  CLI::Option* max_springs =
-      command->add_option("--max-springs", arguments->max_springs, "no more springs than this (8)")
-          ->type_name("N")
-          ->check(whole_number(3, 12));
-  accept_former_name(*command, *max_springs, "--most-springs");
-  command->add_option("--payload", arguments->payload_kg, "mass in kg, to see the natural frequencies")
-      ->type_name("KG")
-      ->check(positive());
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.springs/1");
-  arguments->output.add_options(*command);
+      .add_option("--eye", arguments->eyes,
+                  "a screw eye, mm; once for each of up to 12 (the published frame: corners and middles of the sides "
+                  "of 350 by 366 mm)")
+      .type_name("X:Y")
+      .expected(1)
+      .take_all();
+  command.add_flag("--disc", arguments->disc,
+                   "hang each spring in the facing hole of the published disc, 2.25 cm across; otherwise all at its "
+                   "middle");
+  command.add_option("--spring-stiffness", arguments->spring_stiffness, "springs that can be had, N/m (20:400)")
+      .type_name("FROM:TO");
+  command.add_option("--spring-length", arguments->spring_length, "their rest lengths, mm (60:160)")
+      .type_name("FROM:TO");
+  command.add_option("--travel", arguments->travel_mm, "radius in mm in which all stay in tension (30)")
+      .type_name("MM")
+      .check(positive());
+  const Option min_extension = command
+                                   .add_option("--min-extension", arguments->min_extension_mm,
+                                               "by how much each stays longer than at rest in there, mm (2)")
+                                   .type_name("MM")
+                                   .check(not_negative());
+  command.accept_former_name(min_extension, "--least-extension");
+  const Option max_springs =
+      command.add_option("--max-springs", arguments->max_springs, "no more springs than this (8)")
+          .type_name("N")
+          .check(whole_number(3, 12));
+  command.accept_former_name(max_springs, "--most-springs");
+  command.add_option("--payload", arguments->payload_kg, "mass in kg, to see the natural frequencies")
+      .type_name("KG")
+      .check(positive());
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.springs/1");
+  arguments->output.add_options(command);
   return [arguments] { return run_find(*arguments); };
 }
 
-Action add_springs_calibrate(CLI::App& springs) {
+Action add_springs_calibrate(Command springs) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = add_command(springs, "calibrate", "spring constants from slow stretches");
-  command->footer(
+  const Command command = springs.add_command("calibrate", "spring constants from slow stretches");
+  command.footer(
       "Examples:\n"
       "  mbk springs calibrate spring_1.csv spring_2.csv\n"
       "      columns time, position and reaction; units as in position_mm\n"
       "  mbk springs calibrate --channels time=1,x=2:mm,F=-3 gauge.csv\n"
       "      F is what the spring exerts on the machine: it falls as x grows; -3 turns a gauge of tension\n\n"
       "The hooks of a spring bend at first. Where that shows, the constant is the slope beyond it.");
-  add_reading_options(*command, arguments->reading);
-  command->add_option("--hac-lag", arguments->hac_lag_s, "reach of the noise's correlation for the intervals, s (1)")
-      ->type_name("S")
-      ->check(not_negative());
-  command->add_flag("--json", arguments->output.json, "for machines: schema mbk.springs/1");
-  arguments->output.to.add_options(*command);
+  add_reading_options(command, arguments->reading);
+  command.add_option("--hac-lag", arguments->hac_lag_s, "reach of the noise's correlation for the intervals, s (1)")
+      .type_name("S")
+      .check(not_negative());
+  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.springs/1");
+  arguments->output.to.add_options(command);
   return [arguments] { return run_calibrate(*arguments); };
 }
 
 }  // namespace
 
-Action add_springs(CLI::App& app) {
-  CLI::App* command = add_command(app, "springs", "spring arrays for tests: their field, their design, their springs");
-  command->require_subcommand(1);
-  command->footer(
+Action add_springs(Command app) {
+  const Command command =
+      app.add_command("springs", "spring arrays for tests: their field, their design, their springs");
+  command.require_subcommand();
+  command.footer(
       "Examples:\n"
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
       "  mbk springs field --help");
   const Actions actions = {
-      {"field", add_field(*command)}, {"find", add_find(*command)}, {"calibrate", add_springs_calibrate(*command)}};
-  return [command, actions] { return run_chosen(*command, actions); };
+      {"field", add_field(command)}, {"find", add_find(command)}, {"calibrate", add_springs_calibrate(command)}};
+  return [command, actions] { return run_chosen(command, actions); };
 }
 
 }  // namespace mbk::app

@@ -345,19 +345,19 @@ int run_import(const AddArguments& arguments) {
   return std::max(code, add_all(arguments, rows));
 }
 
-void add_fact_options(CLI::App& command, KnownFacts& facts) {
+void add_fact_options(Command command, KnownFacts& facts) {
   constexpr long kLargest = 999999999;
   command.add_option("--session", facts.session, "which of the participant's sessions (as recorded, or 1)")
-      ->type_name("N")
-      ->check(whole_number(1, kLargest));
+      .type_name("N")
+      .check(whole_number(1, kLargest));
   command
       .add_option("--condition", facts.condition,
                   "what was asked of the participant: relaxed (as recorded, or none); name nobody")
-      ->type_name("WORD")
-      ->check(not_empty());
+      .type_name("WORD")
+      .check(not_empty());
 }
 
-void add_common_options(CLI::App& command, AddArguments& arguments) {
+void add_common_options(Command command, AddArguments& arguments) {
   command.add_flag("--strip", arguments.strip,
                    "of a recording whose metadata may identify a person store a copy (HDF5) without those entries; "
                    "otherwise it is refused");
@@ -367,10 +367,10 @@ void add_common_options(CLI::App& command, AddArguments& arguments) {
 
 }  // namespace
 
-Action add_study_add(CLI::App& group) {
+Action add_study_add(Command group) {
   auto arguments = std::make_shared<AddArguments>();
-  CLI::App* command = add_command(group, "add", "recordings of one participant, session and condition");
-  command->footer(
+  const Command command = group.add_command("add", "recordings of one participant, session and condition");
+  command.footer(
       "Examples:\n"
       "  mbk study add p07_relaxed.h5 --participant 7 --session 2 --condition relaxed\n"
       "  mbk study add trial_*.mat --participant 7\n"
@@ -379,23 +379,24 @@ Action add_study_add(CLI::App& group) {
       "      a recording of 'mbk run' says itself whose it is\n\n"
       "A file is copied into the study's folder; of its name only the end (.h5) is kept. One that is there\n"
       "already is not stored twice. The study's default options (mbk study defaults) say how it is read.");
-  command->add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d")->required();
+  command.add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d").required();
   constexpr long kLargest = 999999999;
-  command->add_option("--participant", arguments->facts.participant, "a number, never a name")
-      ->type_name("N")
-      ->check(whole_number(1, kLargest));
-  add_fact_options(*command, arguments->facts);
-  command->add_option("--trial", arguments->facts.trial, "its number within participant, session and condition")
-      ->type_name("N")
-      ->check(whole_number(1, kLargest));
-  add_common_options(*command, *arguments);
+  command.add_option("--participant", arguments->facts.participant, "a number, never a name")
+      .type_name("N")
+      .check(whole_number(1, kLargest));
+  add_fact_options(command, arguments->facts);
+  command.add_option("--trial", arguments->facts.trial, "its number within participant, session and condition")
+      .type_name("N")
+      .check(whole_number(1, kLargest));
+  add_common_options(command, *arguments);
   return [arguments] { return run_add(*arguments); };
 }
 
-Action add_study_import(CLI::App& group) {
+Action add_study_import(Command group) {
   auto arguments = std::make_shared<AddArguments>();
-  CLI::App* command = add_command(group, "import", "many recordings: whose they are from names, a sheet or metadata");
-  command->footer(
+  const Command command =
+      group.add_command("import", "many recordings: whose they are from names, a sheet or metadata");
+  command.footer(
       "Examples:\n"
       "  mbk study import recordings/*.h5\n"
       "      of 'mbk run': their metadata say participant and condition\n"
@@ -407,17 +408,17 @@ Action add_study_import(CLI::App& group) {
       "      a BIDS data set (Motion): sub-07_ses-2_task-relaxed_run-1 is participant 7, session 2, condition\n"
       "      relaxed, trial 1\n\n"
       "What neither name, sheet nor options say is taken from the recording's metadata.");
-  command->add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d");
-  CLI::Option* const pattern =
-      command->add_option("--pattern", arguments->pattern, "what the names of the files say; nothing else is kept")
-          ->type_name("PATTERN")
-          ->check(not_empty());
-  command->add_option("--sheet", arguments->sheet, "a CSV table that names the files, relative to its own folder")
-      ->type_name("SHEET.csv")
-      ->check(not_empty())
-      ->excludes(pattern);
-  add_fact_options(*command, arguments->facts);
-  add_common_options(*command, *arguments);
+  command.add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d");
+  const Option pattern =
+      command.add_option("--pattern", arguments->pattern, "what the names of the files say; nothing else is kept")
+          .type_name("PATTERN")
+          .check(not_empty());
+  command.add_option("--sheet", arguments->sheet, "a CSV table that names the files, relative to its own folder")
+      .type_name("SHEET.csv")
+      .check(not_empty())
+      .excludes(pattern);
+  add_fact_options(command, arguments->facts);
+  add_common_options(command, *arguments);
   return [arguments] { return run_import(*arguments); };
 }
 

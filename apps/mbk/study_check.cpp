@@ -216,54 +216,54 @@ int run_backup(const CheckArguments& arguments) {
   return kFine;
 }
 
-void add_why_option(CLI::App& command, std::string& why) {
+void add_why_option(Command command, std::string& why) {
   command.add_option("--why", why, "the reason, which stays in the log: name nobody")
-      ->type_name("TEXT")
-      ->required()
-      ->check(not_empty());
+      .type_name("TEXT")
+      .required()
+      .check(not_empty());
 }
 
 }  // namespace
 
-Action add_study_exclude(CLI::App& group) {
+Action add_study_exclude(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = add_command(group, "exclude", "leave a recording out of summaries, with the reason");
-  command->footer(
+  const Command command = group.add_command("exclude", "leave a recording out of summaries, with the reason");
+  command.footer(
       "Examples:\n"
       "  mbk study exclude 12 --why \"hand slipped off the handle\"\n"
       "  mbk study exclude 12 --undo --why \"it was trial 13\"\n\n"
       "Nothing is erased. The recording stays in lists and exports, with the reason.");
-  command->add_option("N", arguments->number, "its number, as 'mbk study list' shows it")
-      ->required()
-      ->check(whole_number(1, 999999999));
-  add_why_option(*command, arguments->why);
-  command->add_flag("--undo", arguments->undo, "let it count again");
-  add_study_and_role(*command, arguments->study);
+  command.add_option("N", arguments->number, "its number, as 'mbk study list' shows it")
+      .required()
+      .check(whole_number(1, 999999999));
+  add_why_option(command, arguments->why);
+  command.add_flag("--undo", arguments->undo, "let it count again");
+  add_study_and_role(command, arguments->study);
   return [arguments] { return run_exclude(*arguments); };
 }
 
-Action add_study_forget(CLI::App& group) {
+Action add_study_forget(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = add_command(group, "forget", "erase a participant's recordings and results");
-  command->footer(
+  const Command command = group.add_command("forget", "erase a participant's recordings and results");
+  command.footer(
       "Examples:\n"
       "  mbk study forget --participant 7 --why \"consent withdrawn\"\n\n"
       "Recordings and results are removed, and what they took in the database is overwritten with zeros. The log\n"
       "keeps that they were there and that they were forgotten, without data. Not promised: that a disk keeps no\n"
       "trace of removed files. Backups are not touched.");
-  command->add_option("--participant", arguments->number, "whose")
-      ->type_name("N")
-      ->required()
-      ->check(whole_number(1, 999999999));
-  add_why_option(*command, arguments->why);
-  add_study_and_role(*command, arguments->study);
+  command.add_option("--participant", arguments->number, "whose")
+      .type_name("N")
+      .required()
+      .check(whole_number(1, 999999999));
+  add_why_option(command, arguments->why);
+  add_study_and_role(command, arguments->study);
   return [arguments] { return run_forget(*arguments); };
 }
 
-Action add_study_check(CLI::App& group) {
+Action add_study_check(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = add_command(group, "check", "whether everything is as it was stored, and comes out again");
-  command->footer(
+  const Command command = group.add_command("check", "whether everything is as it was stored, and comes out again");
+  command.footer(
       "Examples:\n"
       "  mbk study check\n"
       "      every file's hash, the database, the log, and every result of this version measured again\n"
@@ -271,21 +271,21 @@ Action add_study_check(CLI::App& group) {
       "      nothing is measured again\n\n"
       "What an interrupted process left half-written is removed and said.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 something is missing or not as it was stored.");
-  command->add_flag("--quick", arguments->quick, "do not measure again");
-  command->add_flag("--remove-leftovers", arguments->remove_leftovers,
-                    "also remove whole files that no recording refers to");
-  command->add_option("--threads", arguments->threads, "recordings measured at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024));
-  add_study_option(*command, arguments->study);
-  add_output_options(*command, arguments->output, "mbk.study_check/1");
+  command.add_flag("--quick", arguments->quick, "do not measure again");
+  command.add_flag("--remove-leftovers", arguments->remove_leftovers,
+                   "also remove whole files that no recording refers to");
+  command.add_option("--threads", arguments->threads, "recordings measured at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024));
+  add_study_option(command, arguments->study);
+  add_output_options(command, arguments->output, "mbk.study_check/1");
   return [arguments] { return run_check(*arguments); };
 }
 
-Action add_study_log(CLI::App& group) {
+Action add_study_log(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = add_command(group, "log", "who did what, when and why");
-  command->footer(
+  const Command command = group.add_command("log", "who did what, when and why");
+  command.footer(
       "Examples:\n"
       "  mbk study log\n"
       "      the last line is the head: note it where nobody can change both\n"
@@ -295,31 +295,31 @@ Action add_study_log(CLI::App& group) {
       "can write the file can write the whole log anew, or cut its end: only a head that was noted elsewhere, or a\n"
       "backup, shows that. Reading a study is not logged.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 the log is not as it was written.");
-  CLI::Option* const verify = command->add_flag("--verify", arguments->verify, "recompute every hash");
-  command->add_option("--head", arguments->head, "a head that was noted: 64 hexadecimal digits")
-      ->type_name("HASH")
-      ->check([](const std::string& given) {
+  const Option verify = command.add_flag("--verify", arguments->verify, "recompute every hash");
+  command.add_option("--head", arguments->head, "a head that was noted: 64 hexadecimal digits")
+      .type_name("HASH")
+      .check([](const std::string& given) {
         const bool fits = given.size() == 64 && given.find_first_not_of("0123456789abcdef") == std::string::npos;
         return fits ? "" : fmt::format("{} is not 64 hexadecimal digits", quoted(given));
       })
-      ->needs(verify);
-  add_study_option(*command, arguments->study);
-  add_output_options(*command, arguments->output, "mbk.study_log/1");
+      .needs(verify);
+  add_study_option(command, arguments->study);
+  add_output_options(command, arguments->output, "mbk.study_log/1");
   return [arguments] { return run_log(*arguments); };
 }
 
-Action add_study_backup(CLI::App& group) {
+Action add_study_backup(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = add_command(group, "backup", "a copy of the whole study, checked");
-  command->footer(
+  const Command command = group.add_command("backup", "a copy of the whole study, checked");
+  command.footer(
       "Examples:\n"
       "  mbk study backup /media/backup/arms-2026-05-04\n"
       "  mbk study backup ../arms-before --link\n"
       "      on the same disk without taking room: against mistakes, not against a broken disk\n\n"
       "It can be made while others work. To restore, copy the folder back.");
-  command->add_option("FOLDER", arguments->to, "which is not there yet")->required();
-  command->add_flag("--link", arguments->link, "recordings become further names of the same files, where possible");
-  add_study_option(*command, arguments->study);
+  command.add_option("FOLDER", arguments->to, "which is not there yet").required();
+  command.add_flag("--link", arguments->link, "recordings become further names of the same files, where possible");
+  add_study_option(command, arguments->study);
   return [arguments] { return run_backup(*arguments); };
 }
 

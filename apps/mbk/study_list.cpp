@@ -166,10 +166,10 @@ int run_export(const ListArguments& arguments) {
 
 }  // namespace
 
-void add_analysis_option(CLI::App& command, AnalysisArguments& arguments) {
+void add_analysis_option(Command command, AnalysisArguments& arguments) {
   command.add_option("--analysis", arguments.analysis, "by its number (the one of the newest result)")
-      ->type_name("N")
-      ->check(whole_number(1, 999999999));
+      .type_name("N")
+      .check(whole_number(1, 999999999));
 }
 
 std::string study_head_text(const StudyList& list) {
@@ -190,43 +190,43 @@ Result<StudyList> listed_study(const AnalysisArguments& arguments, std::optional
   return store::list_study(*study, arguments.analysis);
 }
 
-Action add_study_list(CLI::App& group) {
+Action add_study_list(Command group) {
   auto arguments = std::make_shared<ListArguments>();
-  CLI::App* command = add_command(group, "list", "its recordings, and whether each has a usable result");
-  command->footer(
+  const Command command = group.add_command("list", "its recordings, and whether each has a usable result");
+  command.footer(
       "Examples:\n"
       "  mbk study list\n"
       "  mbk study list --study arms --json\n"
       "  mbk study list --analysis 1\n"
       "      under other options than the newest");
-  add_study_option(*command, arguments->study);
-  add_analysis_option(*command, *arguments);
-  add_output_options(*command, arguments->output, "mbk.study_list/1");
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  add_output_options(command, arguments->output, "mbk.study_list/1");
   return [arguments] { return run_list(*arguments); };
 }
 
-Action add_study_show(CLI::App& group) {
+Action add_study_show(Command group) {
   auto arguments = std::make_shared<ListArguments>();
-  CLI::App* command = add_command(group, "show", "one recording with its results");
-  command->footer(
+  const Command command = group.add_command("show", "one recording with its results");
+  command.footer(
       "Examples:\n"
       "  mbk study show 12\n"
       "  mbk study show 12 --result --out result.json\n"
       "      the whole result, which 'mbk ellipse', 'mbk passivity' and 'mbk compare' read");
-  command->add_option("N", arguments->recording, "its number, as 'mbk study list' shows it")
-      ->required()
-      ->check(whole_number(1, 999999999));
-  add_study_option(*command, arguments->study);
-  command->add_flag("--result", arguments->document, "the result as 'mbk measure --json' writes it (mbk.result/2)");
-  add_analysis_option(*command, *arguments);
-  add_output_options(*command, arguments->output, "mbk.study_show/1");
+  command.add_option("N", arguments->recording, "its number, as 'mbk study list' shows it")
+      .required()
+      .check(whole_number(1, 999999999));
+  add_study_option(command, arguments->study);
+  command.add_flag("--result", arguments->document, "the result as 'mbk measure --json' writes it (mbk.result/2)");
+  add_analysis_option(command, *arguments);
+  add_output_options(command, arguments->output, "mbk.study_show/1");
   return [arguments] { return run_show(*arguments); };
 }
 
-Action add_study_export(CLI::App& group) {
+Action add_study_export(Command group) {
   auto arguments = std::make_shared<ListArguments>();
-  CLI::App* command = add_command(group, "export", "every number, for R, pandas, a paper");
-  command->footer(
+  const Command command = group.add_command("export", "every number, for R, pandas, a paper");
+  command.footer(
       "Examples:\n"
       "  mbk study export --out outcomes.csv\n"
       "      one row for each number: participant, session, condition, trial, outcome, value, standard_error\n"
@@ -237,19 +237,18 @@ Action add_study_export(CLI::App& group) {
       "      the recordings as a BIDS data set (Motion), but for excluded ones; condition is the task, trial the "
       "run\n\n"
       "Results that are not usable and excluded recordings are in it with their state: select state == 'usable'.");
-  add_study_option(*command, arguments->study);
-  add_analysis_option(*command, *arguments);
-  CLI::Option* const format =
-      add_choice(*command, "--format", arguments->format, "csv: a tidy table; json: schema mbk.study_export/1 (csv)");
-  arguments->output.to.add_options(*command);
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  const Option format =
+      add_choice(command, "--format", arguments->format, "csv: a tidy table; json: schema mbk.study_export/1 (csv)");
+  arguments->output.to.add_options(command);
   command
-      ->add_option(
-          "--bids", arguments->bids,
-          "instead of numbers the recordings, in a new folder as BIDS Motion; forces are channels of type MISC")
-      ->type_name("FOLDER")
-      ->check(not_empty())
-      ->excludes(format)
-      ->excludes(command->get_option("--out"));
+      .add_option("--bids", arguments->bids,
+                  "instead of numbers the recordings, in a new folder as BIDS Motion; forces are channels of type MISC")
+      .type_name("FOLDER")
+      .check(not_empty())
+      .excludes(format)
+      .excludes(command.get_option("--out"));
   return [arguments] { return run_export(*arguments); };
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/study_options.h"
 #include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/store/study_list.h"
@@ -25,13 +25,13 @@ struct ComparingArguments {
 };
 
 /// Adds --compare and --group.
-void add_comparing_options(CLI::App& command, ComparingArguments& arguments);
+void add_comparing_options(Command command, ComparingArguments& arguments);
 
 /// @fails  usage: no such comparison; a group that is none, or that nothing compares.
 [[nodiscard]] Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments);
 
 /// Adds --analysis.
-void add_analysis_option(CLI::App& command, AnalysisArguments& arguments);
+void add_analysis_option(Command command, AnalysisArguments& arguments);
 
 /// Opens the study into `study` and lists it.
 [[nodiscard]] Result<store::StudyList> listed_study(const AnalysisArguments& arguments,

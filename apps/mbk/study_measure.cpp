@@ -253,7 +253,7 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
   }
 }
 
-int run(const CLI::App& command, const StudyMeasureArguments& arguments) {
+int run(Command command, const StudyMeasureArguments& arguments) {
   auto study = open_study(arguments.study);
   if (!study) return report_error(study.error());
   auto options = default_options(*study);
@@ -274,10 +274,10 @@ int run(const CLI::App& command, const StudyMeasureArguments& arguments) {
 
 }  // namespace
 
-Action add_study_measure(CLI::App& group) {
+Action add_study_measure(Command group) {
   auto arguments = std::make_shared<StudyMeasureArguments>();
-  CLI::App* command = add_command(group, "measure", "what is new, or whose options or version changed");
-  command->footer(
+  const Command command = group.add_command("measure", "what is new, or whose options or version changed");
+  command.footer(
       "Examples:\n"
       "  mbk study measure\n"
       "      with the study's default options (mbk study defaults)\n"
@@ -290,13 +290,13 @@ Action add_study_measure(CLI::App& group) {
       "result is stored under the recording's hash, the options and the version of mbk. An interrupted run is\n"
       "taken up where it ended; the results are the same for any number of threads.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 a recording could not be measured, 4 none of the new results is usable.");
-  add_study_and_role(*command, arguments->study);
-  command->add_flag("--again-failed", arguments->again_failed, "try again what could not be measured");
-  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
-  add_measuring_options(*command, arguments->measuring);
-  add_engine_options(*command, arguments->engine);
-  command->get_option("--threads")->description("recordings measured at a time (as many as there are cores)");
-  return [command, arguments] { return run(*command, *arguments); };
+  add_study_and_role(command, arguments->study);
+  command.add_flag("--again-failed", arguments->again_failed, "try again what could not be measured");
+  command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  add_measuring_options(command, arguments->measuring);
+  add_engine_options(command, arguments->engine);
+  command.get_option("--threads").description("recordings measured at a time (as many as there are cores)");
+  return [command, arguments] { return run(command, *arguments); };
 }
 
 }  // namespace mbk::app

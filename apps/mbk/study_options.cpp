@@ -32,12 +32,12 @@ const std::vector<std::string>& options_with_files() {
 /// The names of all options of measuring.
 const std::vector<std::string>& measuring_names() {
   static const std::vector<std::string> kNames = [] {
-    CLI::App probe;
+    const Parser probe;
     MeasuringArguments arguments;
-    add_measuring_options(probe, arguments);
+    add_measuring_options(probe.command(), arguments);
     std::vector<std::string> names;
-    for (const CLI::Option* option : probe.get_options()) {
-      const std::string name = option->get_name();
+    for (const Option option : probe.command().options()) {
+      const std::string name = option.name();
       if (name != "--help" && name != "--ranges" && name != "--threads") names.push_back(name);
     }
     return names;
@@ -75,18 +75,15 @@ GivenOptions canonical(GivenOptions given) {
 
 /// @fails  usage: what the parser says
 Result<void> parse(const GivenOptions& given, MeasuringArguments& arguments) {
-  CLI::App app;
-  add_measuring_options(app, arguments);
-  std::vector<std::string> words;  // the parser takes them from the end
+  const Parser parser;
+  add_measuring_options(parser.command(), arguments);
+  std::vector<std::string> words;
   for (const auto& [name, values] : given) {
     if (values.empty()) words.push_back(name);
     for (const std::string& value : values) words.push_back(name + '=' + value);
   }
-  std::ranges::reverse(words);
-  try {
-    app.parse(std::move(words));
-  } catch (const CLI::ParseError& error) {
-    return bad_usage(error.what(), "see 'mbk study measure --help'");
+  if (auto ok = parser.parse(std::move(words)); !ok) {
+    return bad_usage(ok.error().what, "see 'mbk study measure --help'");
   }
   return {};
 }
@@ -137,17 +134,17 @@ Result<Measurement> measured(const Measuring& measuring, Recording& recording, c
 
 }  // namespace
 
-void add_study_option(CLI::App& command, StudyArguments& arguments) {
+void add_study_option(Command command, StudyArguments& arguments) {
   command.add_option("--study", arguments.folder, "the study; otherwise the one that the current folder is in")
-      ->type_name("FOLDER")
-      ->check(not_empty());
+      .type_name("FOLDER")
+      .check(not_empty());
 }
 
-void add_choice_of_role(CLI::App& command, StudyArguments& arguments) {
+void add_choice_of_role(Command command, StudyArguments& arguments) {
   add_choice(command, "--role", arguments.role, "who does this, as the log says it: a role, never a name (analyst)");
 }
 
-void add_study_and_role(CLI::App& command, StudyArguments& arguments) {
+void add_study_and_role(Command command, StudyArguments& arguments) {
   add_study_option(command, arguments);
   add_choice_of_role(command, arguments);
 }
@@ -162,20 +159,20 @@ Result<store::Store> open_study(const StudyArguments& arguments) {
   return store::Store::open(*folder);
 }
 
-void add_measuring_options(CLI::App& command, MeasuringArguments& arguments) {
+void add_measuring_options(Command command, MeasuringArguments& arguments) {
   add_measure_options(command, arguments);
   add_analyse_options(command, arguments.analyse);
   for (const char* name : {"FILE", "--parts", "--trial", "--pool"}) {
-    command.remove_option(command.get_option(name));
+    command.remove_option(name);
   }
 }
 
-GivenOptions given_options(const CLI::App& command) {
+GivenOptions given_options(Command command) {
   GivenOptions given;
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || std::ranges::find(measuring_names(), name) == measuring_names().end()) continue;
-    given[name] = option->get_items_expected_max() == 0 ? std::vector<std::string>() : option->results();
+  for (const Option option : command.options()) {
+    const std::string name = option.name();
+    if (!option.is_given() || std::ranges::find(measuring_names(), name) == measuring_names().end()) continue;
+    given[name] = option.values();
   }
   return given;
 }

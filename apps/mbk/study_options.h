@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -8,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/mbk/command.h"
 #include "apps/mbk/commands.h"
 #include "apps/mbk/measure_options.h"
 #include "mbk/study/store/store.h"
@@ -22,11 +22,11 @@ struct StudyArguments {
 };
 
 /// Adds --study.
-void add_study_option(CLI::App& command, StudyArguments& arguments);
+void add_study_option(Command command, StudyArguments& arguments);
 /// Adds --role.
-void add_choice_of_role(CLI::App& command, StudyArguments& arguments);
+void add_choice_of_role(Command command, StudyArguments& arguments);
 /// Adds --study and --role, for commands that the log tells of.
-void add_study_and_role(CLI::App& command, StudyArguments& arguments);
+void add_study_and_role(Command command, StudyArguments& arguments);
 
 /// The study of --study, or the one that the current folder is in.
 [[nodiscard]] Result<store::Store> open_study(const StudyArguments& arguments);
@@ -40,10 +40,10 @@ struct MeasuringArguments : MeasureArguments {
 };
 
 /// Adds the options of `mbk measure` that say how one recording is measured, and --threads.
-void add_measuring_options(CLI::App& command, MeasuringArguments& arguments);
+void add_measuring_options(Command command, MeasuringArguments& arguments);
 
 /// Those of them that were given to `command`.
-[[nodiscard]] GivenOptions given_options(const CLI::App& command);
+[[nodiscard]] GivenOptions given_options(Command command);
 
 /// As they are stored: a JSON object, sorted by name.
 [[nodiscard]] std::string options_to_json(const GivenOptions& given);

@@ -81,10 +81,10 @@ int run_plan(const PlanArguments& arguments) {
 
 }  // namespace
 
-Action add_study_plan(CLI::App& group) {
+Action add_study_plan(Command group) {
   auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* command = add_command(group, "plan", "how many people, sessions and trials the next study takes");
-  command->footer(
+  const Command command = group.add_command("plan", "how many people, sessions and trials the next study takes");
+  command.footer(
       "Examples:\n"
       "  mbk study plan --outcome K_xx --difference 50\n"
       "      two groups, with this study as the pilot; intervals say how sure it is of that\n"
@@ -92,44 +92,43 @@ Action add_study_plan(CLI::App& group) {
       "  mbk study plan --outcome K_xx --mdc 40 --sessions 3 --trials 6\n"
       "  mbk study plan --sd-people 60 --sd-sessions 15 --sd-trials 25 --difference 50 --simulate 4000\n"
       "      variances from elsewhere; power is counted in simulated studies as well");
-  add_study_option(*command, arguments->study);
-  add_analysis_option(*command, *arguments);
-  command->add_option("--outcome", arguments->outcome, "of this study, which is the pilot")->type_name("NAME");
-  command->add_option("--condition", arguments->conditions, "of the pilot: one, or two that are compared")
-      ->type_name("NAME")
-      ->expected(1, 2);
-  command->add_option("--sd-people", arguments->sd_people, "standard deviation between people, instead of a pilot")
-      ->check(not_negative());
-  command->add_option("--sd-sessions", arguments->sd_sessions, "between sessions of one person (0)")
-      ->check(not_negative());
-  command->add_option("--sd-trials", arguments->sd_trials, "between trials of one session")->check(not_negative());
-  command->add_option("--difference", arguments->goal.difference, "of two means, that is to be found [unit]")
-      ->check(positive());
-  command->add_flag("--paired", arguments->paired, "in the same people, not between two groups");
-  command->add_option("--mdc", arguments->goal.change, "change of one person that is to be detected [unit]")
-      ->check(positive());
-  command->add_option("--power", arguments->goal.power, "chance to find the difference (0.8)")->check(positive());
-  command->add_option("--level", arguments->goal.level, "chance to find one that is not there (0.05)")
-      ->check(positive());
-  command->add_option("--people", arguments->goal.people, "that there will be, in each group; says their power")
-      ->type_name("N")
-      ->check(whole_number(2, 1000000));
-  command->add_option("--sessions", arguments->goal.most_sessions, "plans up to so many (1)")
-      ->type_name("N")
-      ->check(whole_number(1, 100));
-  command->add_option("--trials", arguments->goal.most_trials, "in each session, plans up to so many (10)")
-      ->type_name("N")
-      ->check(whole_number(1, 1000));
-  command->add_option("--draws", arguments->draws, "pilots drawn for the intervals (400)")
-      ->type_name("N")
-      ->check(whole_number(100, 100000));
-  command->add_option("--simulate", arguments->goal.simulated_studies, "studies in which power is counted (0)")
-      ->type_name("N")
-      ->check(whole_number(100, 1000000));
-  command->add_option("--seed", arguments->goal.seed, "of what is drawn (1)")
-      ->type_name("N")
-      ->check(whole_number(0, 4294967295));
-  add_output_options(*command, arguments->output, "mbk.study_plan/1");
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  command.add_option("--outcome", arguments->outcome, "of this study, which is the pilot").type_name("NAME");
+  command.add_option("--condition", arguments->conditions, "of the pilot: one, or two that are compared")
+      .type_name("NAME")
+      .expected(1, 2);
+  command.add_option("--sd-people", arguments->sd_people, "standard deviation between people, instead of a pilot")
+      .check(not_negative());
+  command.add_option("--sd-sessions", arguments->sd_sessions, "between sessions of one person (0)")
+      .check(not_negative());
+  command.add_option("--sd-trials", arguments->sd_trials, "between trials of one session").check(not_negative());
+  command.add_option("--difference", arguments->goal.difference, "of two means, that is to be found [unit]")
+      .check(positive());
+  command.add_flag("--paired", arguments->paired, "in the same people, not between two groups");
+  command.add_option("--mdc", arguments->goal.change, "change of one person that is to be detected [unit]")
+      .check(positive());
+  command.add_option("--power", arguments->goal.power, "chance to find the difference (0.8)").check(positive());
+  command.add_option("--level", arguments->goal.level, "chance to find one that is not there (0.05)").check(positive());
+  command.add_option("--people", arguments->goal.people, "that there will be, in each group; says their power")
+      .type_name("N")
+      .check(whole_number(2, 1000000));
+  command.add_option("--sessions", arguments->goal.most_sessions, "plans up to so many (1)")
+      .type_name("N")
+      .check(whole_number(1, 100));
+  command.add_option("--trials", arguments->goal.most_trials, "in each session, plans up to so many (10)")
+      .type_name("N")
+      .check(whole_number(1, 1000));
+  command.add_option("--draws", arguments->draws, "pilots drawn for the intervals (400)")
+      .type_name("N")
+      .check(whole_number(100, 100000));
+  command.add_option("--simulate", arguments->goal.simulated_studies, "studies in which power is counted (0)")
+      .type_name("N")
+      .check(whole_number(100, 1000000));
+  command.add_option("--seed", arguments->goal.seed, "of what is drawn (1)")
+      .type_name("N")
+      .check(whole_number(0, 4294967295));
+  add_output_options(command, arguments->output, "mbk.study_plan/1");
   return [arguments] { return run_plan(*arguments); };
 }
 

@@ -83,10 +83,10 @@ int run_report(const StudyReportArguments& arguments) {
 
 }  // namespace
 
-Action add_study_report(CLI::App& group) {
+Action add_study_report(Command group) {
   auto arguments = std::make_shared<StudyReportArguments>();
-  CLI::App* command = add_command(group, "report", "one HTML page of the study, or of one participant");
-  command->footer(
+  const Command command = group.add_command("report", "one HTML page of the study, or of one participant");
+  command.footer(
       "Examples:\n"
       "  mbk study report --out study.html\n"
       "      reliability, participants, sessions, ellipses, what does not count and why, jobs of --engine\n"
@@ -95,20 +95,20 @@ Action add_study_report(CLI::App& group) {
       "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"
       "A page is one file that needs no network; it prints on A4, and its data can be saved from it. It holds\n"
       "health data: pass it on as such. The page of a participant holds no numbers of other people.");
-  add_study_option(*command, arguments->study);
-  add_analysis_option(*command, *arguments);
-  CLI::Option* const participant = command->add_option("--participant", arguments->participant, "a page of this one")
-                                       ->type_name("N")
-                                       ->check(whole_number(1, 999999999));
-  command->add_option("--outcome", arguments->outcome, "is shown first (stiffness_area, or a stiffness)")
-      ->type_name("NAME")
-      ->check(not_empty());
-  add_comparing_options(*command, arguments->comparing);
-  command->get_option("--compare")->excludes(participant);
-  command->add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none of its own")
-      ->type_name("TEXT");
-  add_output_options(*command, arguments->output, "mbk.study_report/1, mbk.participant_report/1");
-  command->get_option("--out")->required()->description("the page to write");
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  const Option participant = command.add_option("--participant", arguments->participant, "a page of this one")
+                                 .type_name("N")
+                                 .check(whole_number(1, 999999999));
+  command.add_option("--outcome", arguments->outcome, "is shown first (stiffness_area, or a stiffness)")
+      .type_name("NAME")
+      .check(not_empty());
+  add_comparing_options(command, arguments->comparing);
+  command.get_option("--compare").excludes(participant);
+  command.add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none of its own")
+      .type_name("TEXT");
+  add_output_options(command, arguments->output, "mbk.study_report/1, mbk.participant_report/1");
+  command.get_option("--out").required().description("the page to write");
   return [arguments] { return run_report(*arguments); };
 }
 

@@ -73,21 +73,21 @@ int run(const StatusArguments& arguments) {
 
 }  // namespace
 
-Action add_study_status(CLI::App& group) {
+Action add_study_status(Command group) {
   auto arguments = std::make_shared<StatusArguments>();
-  CLI::App* command = add_command(group, "status", "how far the jobs are that --engine began");
-  command->footer(
+  const Command command = group.add_command("status", "how far the jobs are that --engine began");
+  command.footer(
       "Examples:\n"
       "  mbk study status\n"
       "  mbk study status --json\n"
       "      with the time that each finished task waited and worked, and why tasks were lost\n"
       "  mbk study status --job mbk-jobs/validate-recovery-0123456789ab/stage-0\n"
       "      a job of another command");
-  add_study_option(*command, arguments->study);
-  command->add_option("--job", arguments->job, "the folder of one job, in a study or elsewhere")
-      ->type_name("FOLDER")
-      ->check(not_empty());
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.study_status/1");
+  add_study_option(command, arguments->study);
+  command.add_option("--job", arguments->job, "the folder of one job, in a study or elsewhere")
+      .type_name("FOLDER")
+      .check(not_empty());
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.study_status/1");
   return [arguments] { return run(*arguments); };
 }
 

@@ -90,10 +90,10 @@ Result<statistics::StatisticsOptions> statistics_options(const ComparingArgument
   return options;
 }
 
-void add_comparing_options(CLI::App& command, ComparingArguments& arguments) {
+void add_comparing_options(Command command, ComparingArguments& arguments) {
   command.add_option("--compare", arguments.compare, "condition, group or session, and which of them (all)")
-      ->type_name("WHAT");
-  command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12")->type_name("NAME=N,...");
+      .type_name("WHAT");
+  command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12").type_name("NAME=N,...");
 }
 namespace {
 
@@ -165,10 +165,10 @@ int run_summary(const SummaryArguments& arguments) {
 
 }  // namespace
 
-Action add_study_summary(CLI::App& group) {
+Action add_study_summary(Command group) {
   auto arguments = std::make_shared<SummaryArguments>();
-  CLI::App* command = add_command(group, "summary", "each outcome: its size, how reliable it is, what differs");
-  command->footer(
+  const Command command = group.add_command("summary", "each outcome: its size, how reliable it is, what differs");
+  command.footer(
       "Examples:\n"
       "  mbk study summary\n"
       "  mbk study summary --outcome K_xx\n"
@@ -184,23 +184,23 @@ Action add_study_summary(CLI::App& group) {
       "      on the cluster; the intervals are the same to the last bit\n"
       "  mbk study summary --json --out summary.json\n\n"
       "Only usable results of recordings that are not excluded count; how many do not is said.");
-  add_study_option(*command, arguments->study);
-  add_analysis_option(*command, *arguments);
-  command->add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
-      ->type_name("NAME...");
-  add_comparing_options(*command, arguments->comparing);
-  CLI::Option* const bootstrap =
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  command.add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
+      .type_name("NAME...");
+  add_comparing_options(command, arguments->comparing);
+  const Option bootstrap =
       command
-          ->add_option("--bootstrap", arguments->draws,
-                       "also intervals of reliability and differences by drawing people again, so many times")
-          ->type_name("N")
-          ->check(whole_number(1000, 100'000));
-  command->add_option("--seed", arguments->seed, "of these draws (1)")
-      ->type_name("N")
-      ->check(whole_number(0, std::numeric_limits<long>::max()))
-      ->needs(bootstrap);
-  add_output_options(*command, arguments->output, "mbk.study_summary/1");
-  add_engine_options(*command, arguments->engine);
+          .add_option("--bootstrap", arguments->draws,
+                      "also intervals of reliability and differences by drawing people again, so many times")
+          .type_name("N")
+          .check(whole_number(1000, 100'000));
+  command.add_option("--seed", arguments->seed, "of these draws (1)")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<long>::max()))
+      .needs(bootstrap);
+  add_output_options(command, arguments->output, "mbk.study_summary/1");
+  add_engine_options(command, arguments->engine);
   return [arguments] { return run_summary(*arguments); };
 }
 

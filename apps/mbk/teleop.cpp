@@ -122,10 +122,11 @@ int run(const TeleopArguments& arguments) {
 
 }  // namespace
 
-Action add_teleop(CLI::App& app) {
+Action add_teleop(Command app) {
   auto arguments = std::make_shared<TeleopArguments>();
-  CLI::App* command = add_command(app, "teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
-  command->footer(
+  const Command command =
+      app.add_command("teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
+  command.footer(
       "Examples:\n"
       "  mbk teleop design.toml\n"
       "      Llewellyn's conditions, where they are violated, and how much an operator may lack\n"
@@ -139,34 +140,34 @@ Action add_teleop(CLI::App& app) {
       "  mbk teleop design.toml --simulate\n"
       "      both arms over the line in time, and the worst hand and environment where one is unstable\n\n"
       "Complete designs stand in examples/teleop; docs/guide/teleoperation.md has every key.");
-  command->add_option("DESIGN.toml", arguments->design, "an [architecture] or a [two_port]")->required();
+  command.add_option("DESIGN.toml", arguments->design, "an [architecture] or a [two_port]").required();
   command
-      ->add_option("--operator", arguments->operator_result,
-                   "result of the operator's arm: a is minus the lower bound of its smallest passivity index")
-      ->type_name("RESULT.json")
-      ->check(not_empty());
+      .add_option("--operator", arguments->operator_result,
+                  "result of the operator's arm: a is minus the lower bound of its smallest passivity index")
+      .type_name("RESULT.json")
+      .check(not_empty());
   command
-      ->add_option("--parameter", arguments->parameter,
-                   "find all values of one parameter, in SI units, that are stable, as in slave.k=0:1000")
-      ->type_name("NAME=LOW:HIGH")
-      ->check(not_empty());
+      .add_option("--parameter", arguments->parameter,
+                  "find all values of one parameter, in SI units, that are stable, as in slave.k=0:1000")
+      .type_name("NAME=LOW:HIGH")
+      .check(not_empty());
   command
-      ->add_option("--excess", arguments->excess,
-                   "find them for operators with these excesses of passivity in N·s/m, as in 0:10 or 0:10:21")
-      ->type_name("LOW:HIGH[:STEPS]")
-      ->check(not_empty());
-  command->add_flag("--simulate", arguments->simulate, "run the design in time, with the arms of its [simulation]");
+      .add_option("--excess", arguments->excess,
+                  "find them for operators with these excesses of passivity in N·s/m, as in 0:10 or 0:10:21")
+      .type_name("LOW:HIGH[:STEPS]")
+      .check(not_empty());
+  command.add_flag("--simulate", arguments->simulate, "run the design in time, with the arms of its [simulation]");
   command
-      ->add_option("--charts", arguments->charts,
-                   "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg, _excess.svg, _simulated-1.svg, …")
-      ->type_name("PREFIX")
-      ->check(not_empty());
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.teleop/1");
-  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
-  arguments->output.add_options(*command);
-  CLI::Option* const overwrite = command->get_option("--overwrite");
-  overwrite->remove_needs(command->get_option("--out"));
-  overwrite->description("replace the files of --out and --charts where they are there");
+      .add_option("--charts", arguments->charts,
+                  "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg, _excess.svg, _simulated-1.svg, …")
+      .type_name("PREFIX")
+      .check(not_empty());
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.teleop/1");
+  command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  arguments->output.add_options(command);
+  const Option overwrite = command.get_option("--overwrite");
+  overwrite.remove_needs(command.get_option("--out"));
+  overwrite.description("replace the files of --out and --charts where they are there");
   return [arguments] { return run(*arguments); };
 }
 

@@ -233,10 +233,10 @@ int run(const TfArguments& given, const std::string& typed) {
 
 }  // namespace
 
-Action add_tf(CLI::App& app, const std::string& typed) {
+Action add_tf(Command app, const std::string& typed) {
   auto arguments = std::make_shared<TfArguments>();
-  CLI::App* command = add_command(app, "tf", "a transfer function from one signal to another");
-  command->footer(
+  const Command command = app.add_command("tf", "a transfer function from one signal to another");
+  command.footer(
       "Examples:\n"
       "  mbk tf arm.csv --input torque_Nm --output acceleration --poles 6 --zeros 5\n"
       "  mbk tf log.mat --input Fx --output x --orders 1:4\n"
@@ -250,105 +250,101 @@ Action add_tf(CLI::App& app, const std::string& typed) {
       "model, is refused.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_reading_options(*command, arguments->reading);
+  add_reading_options(command, arguments->reading);
   command
-      ->add_option("--input", arguments->input,
-                   "the cause: a channel, or a column's number or name, a row or a variable of the file (input)")
-      ->type_name("NAME")
-      ->check(not_empty());
-  command->add_option("--output", arguments->output_signal, "the effect, likewise (output)")
-      ->type_name("NAME")
-      ->check(not_empty());
-  command->add_option("--reference", arguments->reference, "what drives the loop, likewise, for clsrivc")
-      ->type_name("NAME")
-      ->check(not_empty());
-  CLI::Option* held_out =
-      command->add_option("--held-out", arguments->held_out, "recordings that only judge the fit")->type_name("FILE");
-  accept_former_name(*command, *held_out, "--held-back");
-  add_window_options(*command, arguments->window);
+      .add_option("--input", arguments->input,
+                  "the cause: a channel, or a column's number or name, a row or a variable of the file (input)")
+      .type_name("NAME")
+      .check(not_empty());
+  command.add_option("--output", arguments->output_signal, "the effect, likewise (output)")
+      .type_name("NAME")
+      .check(not_empty());
+  command.add_option("--reference", arguments->reference, "what drives the loop, likewise, for clsrivc")
+      .type_name("NAME")
+      .check(not_empty());
+  const Option held_out =
+      command.add_option("--held-out", arguments->held_out, "recordings that only judge the fit").type_name("FILE");
+  command.accept_former_name(held_out, "--held-back");
+  add_window_options(command, arguments->window);
   command
-      ->add_option("--resample", arguments->resample_hz,
-                   "put an uneven clock right first, by straight lines; never done unasked, and srivc does without")
-      ->type_name("HZ")
-      ->check(positive());
+      .add_option("--resample", arguments->resample_hz,
+                  "put an uneven clock right first, by straight lines; never done unasked, and srivc does without")
+      .type_name("HZ")
+      .check(positive());
   command
-      ->add_option("--sample-rate", arguments->sample_rate,
-                   "leave samples out, behind a low-pass (oe and bj: down to 50 to 100; the others: recorded)")
-      ->type_name("HZ|recorded")
-      ->check(not_empty());
+      .add_option("--sample-rate", arguments->sample_rate,
+                  "leave samples out, behind a low-pass (oe and bj: down to 50 to 100; the others: recorded)")
+      .type_name("HZ|recorded")
+      .check(not_empty());
   const char* const model = "Model";
-  command->add_option("--poles", arguments->poles, "how many")
-      ->type_name("N")
-      ->check(whole_number(1, 20))
-      ->group(model);
-  command->add_option("--zeros", arguments->zeros, "how many (one fewer than poles)")
-      ->type_name("N")
-      ->check(whole_number(0, 20))
-      ->group(model);
+  command.add_option("--poles", arguments->poles, "how many").type_name("N").check(whole_number(1, 20)).group(model);
+  command.add_option("--zeros", arguments->zeros, "how many (one fewer than poles)")
+      .type_name("N")
+      .check(whole_number(0, 20))
+      .group(model);
   command
-      ->add_option("--orders", arguments->orders,
-                   "choose among models: 2:5 for 2 to 5 poles with fewer zeros, or a list POLES/ZEROS")
-      ->type_name("FROM:TO|LIST")
-      ->check(not_empty())
-      ->group(model);
-  add_choice(*command, "--invert", arguments->invert,
+      .add_option("--orders", arguments->orders,
+                  "choose among models: 2:5 for 2 to 5 poles with fewer zeros, or a list POLES/ZEROS")
+      .type_name("FROM:TO|LIST")
+      .check(not_empty())
+      .group(model);
+  add_choice(command, "--invert", arguments->invert,
              "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
              "impedance")
-      ->group(model);
-  add_choice(*command, "--method", arguments->method,
+      .group(model);
+  add_choice(command, "--method", arguments->method,
              "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
              "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
              "bj: Box-Jenkins, with a model of the noise")
-      ->group(model);
-  add_choice_or_auto(*command, "--hold", arguments->hold,
+      .group(model);
+  add_choice_or_auto(command, "--hold", arguments->hold,
                      "the input between its samples, for continuous time: zero keeps each value, first moves in "
                      "straight lines; auto sees it in the input's steps (auto)")
-      ->group(model);
-  command->add_option("--delay", arguments->delay, "seconds by which the effect lags; auto finds it (0)")
-      ->type_name("S|auto")
-      ->check(not_empty())
-      ->group(model);
-  CLI::Option* max_delay =
-      command->add_option("--max-delay", arguments->max_delay_s, "how far --delay auto looks, s (0.1)")
-          ->type_name("S")
-          ->check(positive())
-          ->group(model);
-  accept_former_name(*command, *max_delay, "--most-delay");
+      .group(model);
+  command.add_option("--delay", arguments->delay, "seconds by which the effect lags; auto finds it (0)")
+      .type_name("S|auto")
+      .check(not_empty())
+      .group(model);
+  const Option max_delay =
+      command.add_option("--max-delay", arguments->max_delay_s, "how far --delay auto looks, s (0.1)")
+          .type_name("S")
+          .check(positive())
+          .group(model);
+  command.accept_former_name(max_delay, "--most-delay");
   command
-      ->add_option("--start-pole", arguments->start_poles_hz,
-                   "a frequency at which the search begins, tried beside six over the band")
-      ->type_name("HZ")
-      ->check(positive())
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->group(model);
+      .add_option("--start-pole", arguments->start_poles_hz,
+                  "a frequency at which the search begins, tried beside six over the band")
+      .type_name("HZ")
+      .check(positive())
+      .expected(1)
+      .take_all()
+      .group(model);
   command
-      ->add_flag("--from-rest", arguments->from_rest,
-                 "the system is at rest at zero where a segment begins; otherwise an initial state and an offset are "
-                 "found for each")
-      ->group(model);
-  command->add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc and bj (8)")
-      ->type_name("N")
-      ->check(whole_number(1, 50))
-      ->group(model);
+      .add_flag("--from-rest", arguments->from_rest,
+                "the system is at rest at zero where a segment begins; otherwise an initial state and an offset are "
+                "found for each")
+      .group(model);
+  command.add_option("--noise-order", arguments->noise_order, "greatest order of the noise model of rivc and bj (8)")
+      .type_name("N")
+      .check(whole_number(1, 50))
+      .group(model);
   command
-      ->add_option("--hac-lag", arguments->hac_lag_s,
-                   "reach of the residual's correlation in the standard errors; 0 takes it as white (1)")
-      ->type_name("S")
-      ->check(not_negative())
-      ->group(model);
-  command->add_option("--threads", arguments->threads, "starts tried at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024))
-      ->group(model);
-  add_output_options(*command, arguments->output, "mbk.tf/1");
-  add_report_options(*command, arguments->report);
-  command
-      ->add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
-      ->type_name("PREFIX")
-      ->check(not_empty());
-  command->get_option("--overwrite")
-      ->description("replace the files of --out, --report and --charts where they are there");
+      .add_option("--hac-lag", arguments->hac_lag_s,
+                  "reach of the residual's correlation in the standard errors; 0 takes it as white (1)")
+      .type_name("S")
+      .check(not_negative())
+      .group(model);
+  command.add_option("--threads", arguments->threads, "starts tried at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024))
+      .group(model);
+  add_output_options(command, arguments->output, "mbk.tf/1");
+  add_report_options(command, arguments->report);
+  command.add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
+      .type_name("PREFIX")
+      .check(not_empty());
+  command.get_option("--overwrite")
+      .description("replace the files of --out, --report and --charts where they are there");
   return [arguments, typed] { return run(*arguments, typed); };
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -13,16 +14,14 @@ namespace mbk::app {
 namespace {
 
 /// The innermost command that was typed.
-const CLI::App& chosen(const CLI::App& app) {
-  const auto parts = app.get_subcommands();
-  return parts.empty() ? app : chosen(*parts.front());
+Command chosen(Command app) {
+  const auto parts = app.cli().get_subcommands();
+  return parts.empty() ? app : chosen(Command(*parts.front()));
 }
 
-std::vector<std::string> part_names(const CLI::App& command) {
+std::vector<std::string> part_names(Command command) {
   std::vector<std::string> names;
-  for (const CLI::App* part : command.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(part->get_name());
-  }
+  for (const Command part : command.commands()) names.push_back(part.name());
   return names;
 }
 
@@ -32,11 +31,11 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 }
 
 /// Of a word that no option or argument takes.
-std::string unknown_word(const CLI::App& command, const std::string& word) {
+std::string unknown_word(Command command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
   const std::string title = typed_command(command);
   if (name.size() > 1 && name.front() == '-') {
-    return fmt::format("'{}' is no option of '{}'{}", name, title, did_you_mean(name, option_names(command)));
+    return fmt::format("'{}' is no option of '{}'{}", name, title, did_you_mean(name, command.option_names()));
   }
   if (const std::vector<std::string> parts = part_names(command); !parts.empty()) {
     const std::string meant = did_you_mean(word, parts);
@@ -74,28 +73,20 @@ std::string count_message(const std::string& said) {
 
 }  // namespace
 
-std::vector<std::string> option_names(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-  }
-  return names;
-}
-
-std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App& command = chosen(app);
+std::string usage_message(Command app, const CLI::ParseError& error) {
+  const Command command = chosen(app);
   const std::string said = error.what();
   const auto is = [&](CLI::ExitCodes kind) { return error.get_exit_code() == static_cast<int>(kind); };
-  std::vector<std::string> left = command.remaining();
-  if (left.empty()) left = app.remaining(true);
+  std::vector<std::string> left = command.cli().remaining();
+  if (left.empty()) left = app.cli().remaining(true);
   const std::vector<std::string> parts = part_names(command);
-  const bool wants_part = !parts.empty() && command.get_require_subcommand_min() > 0;
+  const bool wants_part = !parts.empty() && command.cli().get_require_subcommand_min() > 0;
   if (is(CLI::ExitCodes::ExtrasError) || (is(CLI::ExitCodes::RequiredError) && wants_part && !left.empty())) {
     return left.empty() ? said : unknown_word(command, left.front());
   }
   if (is(CLI::ExitCodes::RequiredError) && wants_part) {
-    return &command == &app ? "no command" : fmt::format("no command; there are {}", fmt::join(parts, ", "));
+    return &command.cli() == &app.cli() ? "no command"
+                                        : fmt::format("no command; there are {}", fmt::join(parts, ", "));
   }
   if (is(CLI::ExitCodes::ArgumentMismatch)) return count_message(said);
   if (const auto both = is(CLI::ExitCodes::ExcludesError) ? split_at(said, " excludes ") : std::nullopt) {
@@ -107,8 +98,8 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   return said;
 }
 
-std::string typed_command(const CLI::App& app) {
-  const CLI::App& command = chosen(app);
+std::string typed_command(Command app) {
+  const CLI::App& command = chosen(app).cli();
   std::string name = command.get_name();
   for (const CLI::App* above = command.get_parent(); above != nullptr; above = above->get_parent()) {
     if (!above->get_name().empty()) name = above->get_name() + " " + name;

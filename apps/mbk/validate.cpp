@@ -292,11 +292,11 @@ Result<void> with_validation_units(const nlohmann::json& specification, const ba
   return table ? bad_data("the study has no such part") : Result<void>(tl::unexpected(table.error()));
 }
 
-Action add_validate(CLI::App& app) {
+Action add_validate(Command app) {
   auto arguments = std::make_shared<ValidateArguments>();
-  CLI::App* command = add_command(app, "validate", "a method against known truth, as a table");
+  const Command command = app.add_command("validate", "a method against known truth, as a table");
   // Made where it is asked for: the numbers of runs are computed.
-  command->footer([] {
+  command.footer([] {
     return "Studies:\n" + study_lines() + "\nRuns by default, and those that it takes to meet every row:\n" +
            runs_lines() +
            "\nExamples:\n"
@@ -317,47 +317,44 @@ Action add_validate(CLI::App& app) {
   std::vector<std::string> words = study_names();
   words.emplace_back(kAll);
   command
-      ->add_option("STUDY", arguments->study,
-                   fmt::format("one of {}; or all; with nothing at all they are listed, with options alone it is {}",
-                               names, arguments->study))
-      ->check([names](const std::string& study) {
+      .add_option("STUDY", arguments->study,
+                  fmt::format("one of {}; or all; with nothing at all they are listed, with options alone it is {}",
+                              names, arguments->study))
+      .check([names](const std::string& study) {
         return study == kAll || find_study(study) != nullptr
                    ? ""
                    : fmt::format("'{}' is no study; there are: {}", study, names);
       })
-      ->check(suggests(words));
-  command->add_option("--runs", arguments->runs, "how many seeds (as many as the study needs)")
-      ->type_name("N")
-      ->check(whole_number(1, 1'000'000));
-  command->add_option("--seed", arguments->seed, "the same seed gives the same table (1)")
-      ->type_name("N")
-      ->check(whole_number(0, std::numeric_limits<long>::max()));
-  command->add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
-      ->type_name("N")
-      ->check(whole_number(1, 1024));
-  add_choice(*command, "--link", arguments->link,
+      .check(suggests(words));
+  command.add_option("--runs", arguments->runs, "how many seeds (as many as the study needs)")
+      .type_name("N")
+      .check(whole_number(1, 1'000'000));
+  command.add_option("--seed", arguments->seed, "the same seed gives the same table (1)")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<long>::max()));
+  command.add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024));
+  add_choice(command, "--link", arguments->link,
              "of 'faults': function, or udp for a robot in a process of its own (function)")
-      ->type_name("LINK");
-  command->add_option("--fault", arguments->faults, "of 'faults --link udp': only this one; may be repeated")
-      ->type_name("NAME")
-      ->check(suggests(fault_names()));
-  command->add_option("--condition", arguments->conditions, "of 'misspecification': only this one; may be repeated")
-      ->type_name("NAME");
-  command->add_flag("--page", arguments->page,
-                    "of 'faults': writes docs/guide/safety.md, from the tables of both links");
-  command->add_flag("--json", arguments->json, "for machines: schema mbk.validation/2");
-  CLI::Option* const charts = command
-                                  ->add_option("--charts", arguments->charts,
-                                               "also write the charts of the study as SVG files into this folder")
-                                  ->type_name("FOLDER")
-                                  ->check(not_empty());
-  command->add_flag("--overwrite", arguments->overwrite, "replace those files where they are there")->needs(charts);
-  command->add_flag("--quiet", arguments->quiet, "no progress on standard error");
-  add_engine_options(*command, arguments->engine);
-  return [arguments, command] {
-    const bool bare = command->count_all() <= 1;  // the command itself
-    return run(*arguments, bare && Caller::current() == nullptr);
-  };
+      .type_name("LINK");
+  command.add_option("--fault", arguments->faults, "of 'faults --link udp': only this one; may be repeated")
+      .type_name("NAME")
+      .check(suggests(fault_names()));
+  command.add_option("--condition", arguments->conditions, "of 'misspecification': only this one; may be repeated")
+      .type_name("NAME");
+  command.add_flag("--page", arguments->page,
+                   "of 'faults': writes docs/guide/safety.md, from the tables of both links");
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.validation/2");
+  const Option charts =
+      command
+          .add_option("--charts", arguments->charts, "also write the charts of the study as SVG files into this folder")
+          .type_name("FOLDER")
+          .check(not_empty());
+  command.add_flag("--overwrite", arguments->overwrite, "replace those files where they are there").needs(charts);
+  command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  add_engine_options(command, arguments->engine);
+  return [arguments, command] { return run(*arguments, command.is_bare() && Caller::current() == nullptr); };
 }
 
 }  // namespace mbk::app

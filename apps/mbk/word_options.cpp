@@ -7,12 +7,12 @@
 
 namespace mbk::app {
 
-CLI::Option* add_word_option(CLI::App& command, const std::string& name, std::span<const std::string_view> words,
-                             std::function<void(std::string_view)> take, const std::string& help) {
+Option add_word_option(Command command, const std::string& name, std::span<const std::string_view> words,
+                       std::function<void(std::string_view)> take, const std::string& help) {
   const auto given = [take = std::move(take)](const std::string& word) { take(word); };
-  return command.add_option_function<std::string>(name, given, help)
-      ->type_name(fmt::format("{}", fmt::join(words, "|")))
-      ->check(one_of({words.begin(), words.end()}));
+  return command.add_option_function(name, given, help)
+      .type_name(fmt::format("{}", fmt::join(words, "|")))
+      .check(one_of({words.begin(), words.end()}));
 }
 
 }  // namespace mbk::app

@@ -75,10 +75,10 @@ int run(const WorkArguments& arguments) {
 
 }  // namespace
 
-Action add_work(CLI::App& app) {
+Action add_work(Command app) {
   auto arguments = std::make_shared<WorkArguments>();
-  CLI::App* command = add_command(app, "work", "a part of a job that --engine began");
-  command->footer(
+  const Command command = app.add_command("work", "a part of a job that --engine began");
+  command.footer(
       "Examples:\n"
       "  mbk work arms/jobs/measure --status\n"
       "      how far it is\n"
@@ -88,18 +88,18 @@ Action add_work(CLI::App& app) {
       "      ends the tasks that wait or run in Slurm; what they finished stays\n\n"
       "A chunk's results stand in the job's folder, shards/CHUNK.*.shard; the command that began the job collects\n"
       "them. A chunk that is done twice gives the same bytes.");
-  command->add_option("FOLDER", arguments->folder, "the job's folder")->required()->check(not_empty());
-  CLI::Option* const chunk = command->add_option("--chunk", arguments->chunk, "which part, from 0")
-                                 ->type_name("K")
-                                 ->check(whole_number(0, 1'000'000'000));
-  command->add_option("--heartbeat", arguments->heartbeat_s, "between two signs of life in the shard (20)")
-      ->type_name("S")
-      ->check(positive());
-  command->add_flag("--with-parent", arguments->with_parent, "end when the process that started this one ends")
-      ->needs(chunk);
-  CLI::Option* const status = command->add_flag("--status", arguments->status, "how far the job is")->excludes(chunk);
-  command->add_flag("--cancel", arguments->cancel, "end its tasks in Slurm")->excludes(chunk)->excludes(status);
-  command->add_flag("--json", arguments->json, "of --status, for machines: schema mbk.job_state/1")->excludes(chunk);
+  command.add_option("FOLDER", arguments->folder, "the job's folder").required().check(not_empty());
+  const Option chunk = command.add_option("--chunk", arguments->chunk, "which part, from 0")
+                           .type_name("K")
+                           .check(whole_number(0, 1'000'000'000));
+  command.add_option("--heartbeat", arguments->heartbeat_s, "between two signs of life in the shard (20)")
+      .type_name("S")
+      .check(positive());
+  command.add_flag("--with-parent", arguments->with_parent, "end when the process that started this one ends")
+      .needs(chunk);
+  const Option status = command.add_flag("--status", arguments->status, "how far the job is").excludes(chunk);
+  command.add_flag("--cancel", arguments->cancel, "end its tasks in Slurm").excludes(chunk).excludes(status);
+  command.add_flag("--json", arguments->json, "of --status, for machines: schema mbk.job_state/1").excludes(chunk);
   return [arguments] { return run(*arguments); };
 }
 

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+// Every source of a command includes this; CLI11 itself only those that implement it and read the whole tree.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace mbk::app {
+
+/// What the value of an option may be.
+struct Check {
+  std::function<std::string(const std::string& given)> wrong;  ///< what is wrong with a value; "": nothing
+  std::vector<std::string> words = {};                         ///< that it can be, for a shell to offer
+};
+
+/// An option, flag or positional argument of a command. A handle: copies are the same option. What sets something
+/// returns it, for the next call.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option type_name(const std::string& placeholder) const;
+  Option option_text(const std::string& placeholder) const;  ///< in place of all that --help says behind the name
+  Option description(const std::string& help) const;
+  Option group(const std::string& heading) const;  ///< of --help that it stands under; "": nowhere
+  Option check(const Check& check) const;
+  Option check(std::function<std::string(const std::string& given)> wrong) const;
+  Option required() const;
+  Option needs(Option other) const;
+  Option remove_needs(Option other) const;
+  Option excludes(Option other) const;
+  Option expected(int values) const;
+  Option expected(int least, int most) const;
+  Option default_str(const std::string& value) const;  ///< where it is given without a value
+  Option delimiter(char between_values) const;
+  Option allow_extra_args(bool allow) const;  ///< whether it takes more values than one each time that it is given
+  Option take_all() const;                    ///< it may be given several times, and all values count
+
+  [[nodiscard]] std::string name() const;  ///< "--cutoff", "FILE"
+  [[nodiscard]] bool is_flag() const;
+  [[nodiscard]] bool is_given() const;
+  [[nodiscard]] bool takes_following() const;             ///< several words may follow it at once
+  [[nodiscard]] std::vector<std::string> values() const;  ///< that were given; of a flag none
+  [[nodiscard]] std::vector<std::string> words() const;   ///< of every Check that it has
+
+  [[nodiscard]] CLI::Option& cli() const { return *option_; }
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command of the program, or the program itself. A handle, as Option is.
+class Command {
+ public:
+  explicit Command(CLI::App& app) : app_(&app) {}
+
+  /// A command below this one.
+  Command add_command(const std::string& name, const std::string& summary) const;
+
+  /// An option whose value goes into `variable`, of one of the types at the end of command.cpp.
+  template <class T>
+  Option add_option(const std::string& name, T& variable, const std::string& help) const;
+  /// An option whose value, or values, `take` gets.
+  Option add_option_function(const std::string& name, std::function<void(const std::string&)> take,
+                             const std::string& help) const;
+  Option add_option_function(const std::string& name, std::function<void(const std::vector<std::string>&)> take,
+                             const std::string& help) const;
+  Option add_flag(const std::string& name, bool& variable, const std::string& help) const;
+  Option add_flag_callback(const std::string& name, std::function<void()> given, const std::string& help) const;
+  /// A flag that is answered with a text, in place of what the command does.
+  Option add_text_flag(const std::string& name, std::function<std::string()> text, const std::string& help) const;
+  /// The name that `option` had until the version before: still read, but listed nowhere.
+  void accept_former_name(Option option, const std::string& former) const;
+  void remove_option(const std::string& name) const;
+
+  void footer(const std::string& text) const;
+  void footer(std::function<std::string()> text) const;  ///< made where it is asked for
+  void require_subcommand() const;                       ///< it does nothing by itself
+
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] Option get_option(const std::string& name) const;  ///< one that it has
+  [[nodiscard]] std::optional<Option> find_option(const std::string& name) const;
+  [[nodiscard]] std::vector<Option> options() const;
+  [[nodiscard]] std::vector<std::string> option_names() const;   ///< as they are typed: "--cutoff", "-o"
+  [[nodiscard]] std::vector<Command> commands() const;           ///< those right below it
+  [[nodiscard]] bool has_typed(const std::string& below) const;  ///< whether that command below it was typed
+  [[nodiscard]] bool is_bare() const;                            ///< it was typed without any option or argument
+
+  [[nodiscard]] CLI::App& cli() const { return *app_; }
+
+ private:
+  CLI::App* app_;
+};
+
+/// Why the words of a command line were not taken.
+struct NotTaken {
+  std::string what;                        ///< in the parser's words
+  std::string usage;                       ///< the same in one sentence without a stop, with what was probably meant
+  std::string command;                     ///< that was typed, with its parts: "mbk study add"; "mbk" where none was
+  std::optional<std::string> answer = {};  ///< nothing is wrong: they ask for this text, as --help does
+};
+
+/// What words are parsed by: a command that stands above all others, or alone.
+class Parser {
+ public:
+  explicit Parser(const std::string& name = "", const std::string& description = "");
+  ~Parser();
+  Parser(const Parser&) = delete;
+  Parser& operator=(const Parser&) = delete;
+
+  [[nodiscard]] Command command() const { return Command(*app_); }
+
+  /// Sets what the options stand for.
+  [[nodiscard]] tl::expected<void, NotTaken> parse(std::vector<std::string> words) const;
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace mbk::app
