@@ -145,14 +145,15 @@ Option Command::add_option(const std::string& name, T& variable, const std::stri
   return Option(*app_->add_option(name, variable, help));
 }
 
-Option Command::add_option_function(const std::string& name, std::function<void(const std::string&)> take,
+Option Command::add_option_function(const std::string& name, const std::function<void(const std::string&)>& take,
                                     const std::string& help) const {
-  return Option(*app_->add_option_function<std::string>(name, std::move(take), help));
+  return Option(*app_->add_option_function<std::string>(name, take, help));
 }
 
-Option Command::add_option_function(const std::string& name, std::function<void(const std::vector<std::string>&)> take,
+Option Command::add_option_function(const std::string& name,
+                                    const std::function<void(const std::vector<std::string>&)>& take,
                                     const std::string& help) const {
-  return Option(*app_->add_option_function<std::vector<std::string>>(name, std::move(take), help));
+  return Option(*app_->add_option_function<std::vector<std::string>>(name, take, help));
 }
 
 Option Command::add_flag(const std::string& name, bool& variable, const std::string& help) const {

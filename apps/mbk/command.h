@@ -8,7 +8,7 @@
 #include <vector>
 
 // Every source of a command includes this; CLI11 itself only those that implement it and read the whole tree.
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): their name
 class App;
 class Option;
 }  // namespace CLI
@@ -69,9 +69,9 @@ class Command {
   template <class T>
   Option add_option(const std::string& name, T& variable, const std::string& help) const;
   /// An option whose value, or values, `take` gets.
-  Option add_option_function(const std::string& name, std::function<void(const std::string&)> take,
+  Option add_option_function(const std::string& name, const std::function<void(const std::string&)>& take,
                              const std::string& help) const;
-  Option add_option_function(const std::string& name, std::function<void(const std::vector<std::string>&)> take,
+  Option add_option_function(const std::string& name, const std::function<void(const std::vector<std::string>&)>& take,
                              const std::string& help) const;
   Option add_flag(const std::string& name, bool& variable, const std::string& help) const;
   Option add_flag_callback(const std::string& name, std::function<void()> given, const std::string& help) const;

@@ -4,7 +4,7 @@
 
 #include "apps/mbk/command.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): their name
 class ParseError;
 }
 
