@@ -11,6 +11,7 @@
 namespace CLI {  // NOLINT(readability-identifier-naming): their name
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI
 
 namespace mbk::app {

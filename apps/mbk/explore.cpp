@@ -13,9 +13,9 @@
 #include "apps/mbk/explore_options.h"
 #include "apps/mbk/explore_units.h"
 #include "apps/mbk/named_files.h"
-#include "apps/mbk/option_checks.h"
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/report_file.h"
+#include "apps/mbk/threads_option.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/report/result_charts.h"
 #include "mbk/present/result/exploration_json.h"
@@ -125,10 +125,7 @@ Action add_explore(Command app, const std::string& typed) {
   add_exploring_options(command, *arguments);
   const Option each =
       command.add_flag("--each", arguments->each, "a result for each recording, in place of one of all together");
-  command.add_option("--threads", arguments->threads, "with --each: recordings at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024))
-      .needs(each);
+  add_threads_option(command, arguments->threads, "with --each: recordings").needs(each);
   add_output_options(command, arguments->output, "mbk.explore/1, with --each mbk.explorations/1");
   add_report_options(command, arguments->report);
   add_charts_option(command, arguments->beside);

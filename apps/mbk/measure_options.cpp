@@ -8,6 +8,7 @@
 
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
+#include "apps/mbk/threads_option.h"
 #include "mbk/present/report/ranges_text.h"
 
 namespace mbk::app {
@@ -46,10 +47,7 @@ void add_measure_options(Command command, MeasureArguments& arguments) {
   add_signal_options(command, arguments.preprocess);
   add_identify_options(command, arguments.identify);
   add_range_options(command, arguments.ignored_ranges);
-  command.add_option("--threads", arguments.threads, "files measured at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024))
-      .group("Model");
+  add_threads_option(command, arguments.threads, "files measured").group("Model");
 }
 
 Result<measurement::Options> measurement_options(const MeasureArguments& arguments, const AnalyseArguments& analyse,

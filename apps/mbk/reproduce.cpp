@@ -14,6 +14,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
+#include "apps/mbk/threads_option.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/text.h"
@@ -159,9 +160,7 @@ Action add_reproduce(Command app) {
   command.add_option("--seed", arguments->seed, "of everything simulated; the same seed gives the same numbers (1)")
       .type_name("N")
       .check(whole_number(1, 1'000'000'000));
-  command.add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024));
+  add_threads_option(command, arguments->threads, "trials");
   command.add_flag("--without-printed", arguments->without_printed,
                    "leave the printed numbers out; ours stay the same");
   command.add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/2");

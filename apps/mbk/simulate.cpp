@@ -13,6 +13,7 @@
 #include "apps/mbk/progress.h"
 #include "apps/mbk/readers_option.h"
 #include "apps/mbk/scenario_argument.h"
+#include "apps/mbk/threads_option.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/files/recording/write.h"
@@ -311,9 +312,7 @@ Action add_simulate(Command app) {
   command.add_option("--seeds", arguments->seeds, "so many recordings, with seeds from there on (1)")
       .type_name("N")
       .check(whole_number(1, 100'000));
-  command.add_option("--threads", arguments->threads, "recordings at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024));
+  add_threads_option(command, arguments->threads, "recordings");
   command.add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
   command.add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
   add_readers_option(command, arguments->readers);

@@ -9,6 +9,7 @@
 #include "apps/mbk/progress.h"
 #include "apps/mbk/study_commands.h"
 #include "apps/mbk/study_options.h"
+#include "apps/mbk/threads_option.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/study/store/study_list.h"
@@ -274,9 +275,7 @@ Action add_study_check(Command group) {
   command.add_flag("--quick", arguments->quick, "do not measure again");
   command.add_flag("--remove-leftovers", arguments->remove_leftovers,
                    "also remove whole files that no recording refers to");
-  command.add_option("--threads", arguments->threads, "recordings measured at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024));
+  add_threads_option(command, arguments->threads, "recordings measured");
   add_study_option(command, arguments->study);
   add_output_options(command, arguments->output, "mbk.study_check/1");
   return [arguments] { return run_check(*arguments); };

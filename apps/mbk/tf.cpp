@@ -16,6 +16,7 @@
 #include "apps/mbk/reading_options.h"
 #include "apps/mbk/report_file.h"
 #include "apps/mbk/signal_names.h"
+#include "apps/mbk/threads_option.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/measure/analyse/describe_transfer_function.h"
 #include "mbk/measure/measurement/identify_transfer_function.h"
@@ -334,10 +335,7 @@ Action add_tf(Command app, const std::string& typed) {
       .type_name("S")
       .check(not_negative())
       .group(model);
-  command.add_option("--threads", arguments->threads, "starts tried at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024))
-      .group(model);
+  add_threads_option(command, arguments->threads, "starts tried").group(model);
   add_output_options(command, arguments->output, "mbk.tf/1");
   add_report_options(command, arguments->report);
   command.add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")

@@ -4,10 +4,6 @@
 
 #include "apps/mbk/command.h"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): their name
-class ParseError;
-}
-
 namespace mbk::app {
 
 /// What is wrong with the words of a command line, with what was probably meant, in one sentence without a stop.

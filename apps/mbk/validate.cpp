@@ -15,6 +15,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/progress.h"
+#include "apps/mbk/threads_option.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"
@@ -332,9 +333,7 @@ Action add_validate(Command app) {
   command.add_option("--seed", arguments->seed, "the same seed gives the same table (1)")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<long>::max()));
-  command.add_option("--threads", arguments->threads, "trials at a time (as many as there are cores)")
-      .type_name("N")
-      .check(whole_number(1, 1024));
+  add_threads_option(command, arguments->threads, "trials");
   add_choice(command, "--link", arguments->link,
              "of 'faults': function, or udp for a robot in a process of its own (function)")
       .type_name("LINK");
