@@ -38,8 +38,8 @@ if(MBK_PRECOMPILE)
   endforeach()
 endif()
 
-# mbk_precompile(TARGET library|loops|tests): TARGET is compiled with those headers. What they need it is
-# given, for a module need not link it by itself; nobody who links TARGET is.
+# mbk_precompile(TARGET library|loops|tests): TARGET is compiled with those headers. What they need it is given, for a
+# module need not link it by itself; nobody who links TARGET is.
 function(mbk_precompile target kind)
   if(MBK_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM mbk_precompiled_${kind})

@@ -852,9 +852,9 @@ Result<void> Fitter::check() {
       return bad_usage(fmt::format("start pole {} rad/s is not above 0", pole));
   }
   double input_squares = 0.0;
+  const auto squares = [](const Vector& x) { return numeric::variance(x) * static_cast<double>(x.size() - 1); };
   for (const SignalPair& pair : experiments_) {
     samples_ += pair.time.size();
-    const auto squares = [](const Vector& x) { return numeric::variance(x) * static_cast<double>(x.size() - 1); };
     const double of_input = squares(pair.input), of_output = squares(pair.output);
     input_squares += of_input;
     output_squares_ += of_output;
