@@ -3,12 +3,14 @@
 #include <chrono>
 #include <optional>
 
+#include "mbk/base/realtime/clock.h"
 #include "mbk/base/realtime/signal_stack.h"
 
 namespace mbk::session {
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(20);
+constexpr auto kSlice = std::chrono::milliseconds(5);
+constexpr int kSlices = 4;  // from one look to the next
 
 }  // namespace
 
@@ -16,35 +18,34 @@ IdleWatch::IdleWatch(device::Device& robot, std::function<void(const IdleState&)
     : robot_(robot), seen_(std::move(seen)), thread_([this] { watch(); }) {}
 
 IdleWatch::~IdleWatch() {
-  {
-    const std::scoped_lock lock(mutex_);
-    over_ = true;
-  }
-  wake_.notify_all();
+  over_ = true;
   thread_.join();
+}
+
+// Without a mutex and a condition: where no clock can be read, waiting for one with a time limit never ends, and leaves
+// the mutex to nobody.
+bool IdleWatch::rests() const noexcept {
+  for (int slice = 0; slice < kSlices && !over_; ++slice) std::this_thread::sleep_for(kSlice);
+  return !over_;
 }
 
 void IdleWatch::watch() noexcept {
   const realtime::SignalStack stack;
-  using Clock = std::chrono::steady_clock;
   device::State state;
   robot_.read(state);
   const std::uint64_t answered_before = state.answered;
   std::uint64_t last = state.sequence;
-  auto fresh_at = Clock::now();
+  std::int64_t fresh_at = realtime::monotonic_ns();
   std::optional<IdleState> told;
   for (std::uint64_t number = 0;; ++number) {
     const bool writes = robot_.write({number, {0.0, 0.0}, false});
-    {
-      std::unique_lock lock(mutex_);
-      if (wake_.wait_for(lock, kLook, [&] { return over_; })) return;
-    }
+    if (!rests()) return;
     const bool reads = robot_.read(state);
-    const auto now = Clock::now();
+    const std::int64_t now = realtime::monotonic_ns();
     if (state.sequence != last) fresh_at = now;
     last = state.sequence;
     IdleState seen;
-    seen.link = reads && writes && now - fresh_at < std::chrono::duration<double>(IdleState::kSilence);
+    seen.link = reads && writes && 1e-9 * static_cast<double>(now - fresh_at) < IdleState::kSilence;
     seen.stop_button = state.stop;
     seen.motors = state.motors;
     seen.confirmed_off = seen.link && state.motors == device::Motors::off && state.answered > answered_before;

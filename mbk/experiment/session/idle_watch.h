@@ -1,8 +1,8 @@
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
+#include <cstdint>
 #include <functional>
-#include <mutex>
 #include <thread>
 
 #include "mbk/experiment/device/device.h"
@@ -34,12 +34,11 @@ class IdleWatch {
 
  private:
   void watch() noexcept;
+  [[nodiscard]] bool rests() const noexcept;  ///< until the next look; false: it is over
 
   device::Device& robot_;
   std::function<void(const IdleState&)> seen_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool over_ = false;
+  std::atomic<bool> over_ = false;
   std::thread thread_;
 };
 
