@@ -3,7 +3,7 @@
 # compile them one by one.
 option(MBK_UNITY "Compile several sources of a module at a time" ON)
 # So that none takes more than 15 s: what is optimised little is compiled faster.
-set(MBK_UNITY_BATCH 7)
+set(MBK_UNITY_BATCH 10)
 set(MBK_UNITY_BATCH_OF_LOOPS 5)
 set(MBK_UNITY_BATCH_OF_TESTS 8)
 

@@ -7,10 +7,10 @@
 namespace mbk::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json option_json(const OptionText& option) {
-  Json json;
+OrderedJson option_json(const OptionText& option) {
+  OrderedJson json;
   if (!option.names.empty()) json["names"] = option.names;
   json["value"] = option.value;
   json["description"] = option.description;
@@ -26,15 +26,15 @@ Json option_json(const OptionText& option) {
   return json;
 }
 
-Json command_json(const CommandText& command) {
-  Json json;
+OrderedJson command_json(const CommandText& command) {
+  OrderedJson json;
   json["path"] = std::vector<std::string>(command.path.begin() + 1, command.path.end());  // without "mbk"
   json["summary"] = command.description;
   json["footer"] = command.footer;
   json["callable"] = command.commands.empty() && can_be_called(command.path[1]);
-  json["arguments"] = Json::array();
+  json["arguments"] = OrderedJson::array();
   for (const OptionText& positional : command.positionals) json["arguments"].push_back(option_json(positional));
-  json["options"] = Json::array();
+  json["options"] = OrderedJson::array();
   for (const OptionText& option : command.options) json["options"].push_back(option_json(option));
   return json;
 }
@@ -42,10 +42,10 @@ Json command_json(const CommandText& command) {
 }  // namespace
 
 std::string commands_json(const CommandText& root, const std::string& version) {
-  Json json;
+  OrderedJson json;
   json["schema"] = "mbk.commands/1";
   json["software"] = "mbk " + version;
-  json["commands"] = Json::array();
+  json["commands"] = OrderedJson::array();
   for_each_command(root, [&](const CommandText& command) {
     if (command.path.size() > 1) json["commands"].push_back(command_json(command));
   });

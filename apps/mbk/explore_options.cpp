@@ -3,6 +3,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/signal_names.h"
 #include "apps/mbk/word_options.h"
+#include "mbk/base/core/units.h"
 
 namespace mbk::app {
 namespace {

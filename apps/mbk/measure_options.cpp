@@ -9,6 +9,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
 #include "apps/mbk/threads_option.h"
+#include "mbk/base/core/units.h"
 #include "mbk/present/report/ranges_text.h"
 
 namespace mbk::app {

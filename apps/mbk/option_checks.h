@@ -7,9 +7,6 @@
 
 namespace mbk::app {
 
-inline constexpr double kMillimetres = 1000.0;   ///< in a metre: options say lengths in them
-inline constexpr double kMilliseconds = 1000.0;  ///< in a second: options say delays in them
-
 /// What an option's value may be. Each names the value and the limit; the parser's own checks print 300 digits, and let
 /// empty values, "nan" and "inf" through.
 [[nodiscard]] Check positive();

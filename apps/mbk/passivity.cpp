@@ -44,7 +44,7 @@ Result<AskedBand> band_of(const std::string& text) {
 }
 
 /// One limb's answer, ready to be written.
-struct Answer {
+struct LimbAnswer {
   std::vector<SourceFile> sources;
   Passivity passivity;
   std::vector<Energy> energies;
@@ -54,7 +54,7 @@ struct Answer {
 
 /// Answers, and what could not be had; each error names its file.
 struct PassivityAnswers {
-  std::vector<Answer> found;
+  std::vector<LimbAnswer> found;
   std::vector<Error> failed;
 };
 
@@ -62,14 +62,14 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   auto options = measurement_options(arguments);
   if (!options) return tl::unexpected(options.error());
   options->band = band;
-  const auto answer = [&](std::span<const Recording> recordings) -> Result<Answer> {
+  const auto answer = [&](std::span<const Recording> recordings) -> Result<LimbAnswer> {
     const bool leaves_out = options->preprocess.mode == Mode::default_mode;
     for (const Recording& recording : recordings) say_exclusions(recording, leaves_out);
     auto measured = measurement::measure(recordings, *options);
     if (!measured) return tl::unexpected(measured.error());
     const Identification& id = measured->identification;
-    return Answer{id.sources, std::move(*measured->passivity), std::move(measured->energies),
-                  std::move(measured->consistent), id.motion};
+    return LimbAnswer{id.sources, std::move(*measured->passivity), std::move(measured->energies),
+                      std::move(measured->consistent), id.motion};
   };
   PassivityAnswers answers;
   if (arguments.pool) {
@@ -83,13 +83,13 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
   if (!reader) return tl::unexpected(reader.error());
   const int count = reader->count();
-  std::vector<Result<Answer>> each(static_cast<std::size_t>(count), bad_data("not measured"));
+  std::vector<Result<LimbAnswer>> each(static_cast<std::size_t>(count), bad_data("not measured"));
   std::ignore = numeric::parallel_for(count, arguments.threads, [&](int i) -> Result<void> {
     const auto recording = reader->read_perturbation(i);
     each[static_cast<std::size_t>(i)] = recording ? answer({&*recording, 1}) : tl::unexpected(recording.error());
     return {};
   });  // a failure is kept with its file
-  for (Result<Answer>& one : each) {
+  for (Result<LimbAnswer>& one : each) {
     if (one) {
       answers.found.push_back(std::move(*one));
     } else {
@@ -100,10 +100,10 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
 }
 
 /// All results of a file.
-Result<std::vector<Answer>> from_file(const std::filesystem::path& file, const AskedBand& band) {
+Result<std::vector<LimbAnswer>> from_file(const std::filesystem::path& file, const AskedBand& band) {
   const auto results = stored_results(file);
   if (!results) return tl::unexpected(results.error());
-  std::vector<Answer> answers;
+  std::vector<LimbAnswer> answers;
   for (const result::StoredResult& stored : *results) {
     auto passivity = passivity_of(stored, band);
     if (!passivity) return tl::unexpected(passivity.error().in(file.string()));
@@ -126,7 +126,7 @@ PassivityAnswers from_results(const PassivityArguments& arguments, const AskedBa
   return answers;
 }
 
-std::string text_of(const Answer& answer) {
+std::string text_of(const LimbAnswer& answer) {
   std::string text;
   for (const SourceFile& source : answer.sources) text += source.label() + "\n";
   text += report::passivity_text(answer.passivity, answer.motion);
@@ -152,12 +152,12 @@ int run(const PassivityArguments& arguments) {
   std::string shown;
   if (arguments.output.json) {
     std::vector<std::string> documents;
-    for (const Answer& one : answers->found) {
+    for (const LimbAnswer& one : answers->found) {
       documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
     }
     shown = result::one_or_list_json("mbk.passivities/1", documents);
   } else {
-    for (const Answer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
+    for (const LimbAnswer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }
   if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
   return code;

@@ -16,7 +16,7 @@ using drivers::BridgeReport;
 using drivers::RuleFinding;
 using drivers::RuleVerdict;
 using session::Finding;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::size_t kColumns = 80;
 
@@ -104,8 +104,8 @@ std::string link_text(const RobotCheckReport::Link& link) {
   return text;
 }
 
-Json findings_json(const std::vector<Finding>& findings) {
-  Json all = Json::array();
+OrderedJson findings_json(const std::vector<Finding>& findings) {
+  OrderedJson all = OrderedJson::array();
   for (const Finding& one : findings) {
     const char* word = one.verdict == Finding::Verdict::fine       ? "fine"
                        : one.verdict == Finding::Verdict::doubtful ? "doubtful"
@@ -116,20 +116,20 @@ Json findings_json(const std::vector<Finding>& findings) {
 }
 
 template <class Value>
-Json optional_json(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
+OrderedJson optional_json(const std::optional<Value>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
 }
 
-Json link_json(const RobotCheckReport::Link& link) {
+OrderedJson link_json(const RobotCheckReport::Link& link) {
   const BridgeReport& report = link.report;
-  Json rules = Json::array();
+  OrderedJson rules = OrderedJson::array();
   for (const RuleFinding& one : report.findings) {
     const auto& [rule, mend] = drivers::text_of(one.rule);
     rules.push_back(
         {{"rule", word_of(one.rule)}, {"requirement", rule}, {"verdict", word_of(one.verdict)}, {"seen", one.seen}});
     if (one.verdict == RuleVerdict::failed) rules.back()["mend"] = mend;
   }
-  Json watchdogs = Json::array();
+  OrderedJson watchdogs = OrderedJson::array();
   for (const auto& [asked, found] : report.watchdogs) watchdogs.push_back({{"asked_s", asked}, {"found_s", found}});
   return {{"address", link.address},
           {"motors", link.options.motors},
@@ -143,16 +143,16 @@ Json link_json(const RobotCheckReport::Link& link) {
           {"watchdogs", std::move(watchdogs)}};
 }
 
-Json lateness_json(const realtime::Lateness& lateness) {
-  Json histogram = Json::array();
+OrderedJson lateness_json(const realtime::Lateness& lateness) {
+  OrderedJson histogram = OrderedJson::array();
   for (std::size_t i = 0; i < lateness.histogram.size(); ++i) {
-    histogram.push_back(
-        {{"up_to_s", i < realtime::Lateness::kEdges.size() ? Json(realtime::Lateness::kEdges[i]) : Json(nullptr)},
-         {"count", lateness.histogram[i]}});
+    histogram.push_back({{"up_to_s", i < realtime::Lateness::kEdges.size() ? OrderedJson(realtime::Lateness::kEdges[i])
+                                                                           : OrderedJson(nullptr)},
+                         {"count", lateness.histogram[i]}});
   }
   return {{"rate_hz", 1.0 / lateness.period},
           {"duration_s", lateness.duration},
-          {"priority", lateness.setup.fifo ? Json(lateness.priority) : Json(nullptr)},
+          {"priority", lateness.setup.fifo ? OrderedJson(lateness.priority) : OrderedJson(nullptr)},
           {"locked_memory", lateness.setup.locked_memory},
           {"wake_ups", lateness.record.count()},
           {"missed", lateness.missed},
@@ -162,7 +162,7 @@ Json lateness_json(const realtime::Lateness& lateness) {
           {"histogram", std::move(histogram)}};
 }
 
-Json timing_json(const RobotCheckReport::Timing& timing) {
+OrderedJson timing_json(const RobotCheckReport::Timing& timing) {
   const realtime::Machine& machine = timing.machine;
   return {{"lateness", lateness_json(timing.lateness)},
           {"machine",
@@ -210,14 +210,14 @@ std::string text_of(const RobotCheckReport& report) {
 }
 
 std::string json_of(const RobotCheckReport& report) {
-  Json json{{"schema", "mbk.robot_check/1"}, {"software", fmt::format("mbk {}", version())}};
+  OrderedJson json{{"schema", "mbk.robot_check/1"}, {"software", fmt::format("mbk {}", version())}};
   if (report.setup) {
     json["setup"] = {{"file", report.setup->file}, {"findings", findings_json(report.setup->findings)}};
     if (report.setup->live) json["setup"]["live"] = findings_json(*report.setup->live);
   }
   if (report.link) json["link"] = link_json(*report.link);
   if (report.timing) json["timing"] = timing_json(*report.timing);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace mbk::app

@@ -163,12 +163,12 @@ std::string lost_messages_text(std::vector<std::string>& notes) {
 
 /// The loudest thing that this program says.
 std::string alarm(const safety::MotorsOff& motors) {
-  constexpr std::size_t kColumns = 78;  // any terminal's
-  const std::string line(kColumns, '!');
+  constexpr std::size_t kAlarmWidth = 78;  // any terminal's
+  const std::string line(kAlarmWidth, '!');
   return fmt::format(
       "\a\n{0}\n!!  MOTORS NOT CONFIRMED OFF\n!!  Press the hardware stop button: cut the motors' power. Let nobody "
       "touch the robot.\n{0}\n{1}\n\n",
-      line, report::wrapped("The motors are " + safety::sentence(motors) + ".", kColumns));
+      line, report::wrapped("The motors are " + safety::sentence(motors) + ".", kAlarmWidth));
 }
 
 /// Exit code of what was performed; what is worst counts.

@@ -8,6 +8,7 @@
 #include "apps/mbk/preprocess_options.h"
 #include "apps/mbk/reading_options.h"
 #include "apps/mbk/sensor_options.h"
+#include "mbk/base/core/units.h"
 #include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/measure/measurement/find_sensor_delay.h"
 #include "mbk/present/report/sensor_text.h"

@@ -11,6 +11,7 @@
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/word_options.h"
+#include "mbk/base/core/units.h"
 #include "mbk/present/result/sensor_json.h"
 
 namespace mbk::app {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/mbk/option_checks.h"
+#include "mbk/base/core/units.h"
 
 namespace mbk::app {
 namespace {

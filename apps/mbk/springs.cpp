@@ -9,6 +9,7 @@
 #include "apps/mbk/reading_options.h"
 #include "apps/mbk/scenario_argument.h"
 #include "apps/mbk/spring_options.h"
+#include "mbk/base/core/units.h"
 #include "mbk/measure/calibration/spring_array.h"
 #include "mbk/measure/calibration/spring_constant.h"
 #include "mbk/measure/calibration/spring_design.h"

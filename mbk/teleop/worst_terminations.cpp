@@ -62,10 +62,10 @@ std::vector<double> scan(double sample_time, std::span<const RadPerSec> frequenc
   return omega;
 }
 
-class Search {
+class TerminationSearch {
  public:
-  Search(const Teleoperator& teleoperator, double sample_time, Port port, double a,
-         std::span<const RadPerSec> frequencies)
+  TerminationSearch(const Teleoperator& teleoperator, double sample_time, Port port, double a,
+                    std::span<const RadPerSec> frequencies)
       : teleoperator_(teleoperator),
         sample_time_(sample_time),
         port_(port == Port::one ? 0 : 1),
@@ -145,7 +145,7 @@ std::optional<WorstTerminations> worst_terminations(const Teleoperator& teleoper
                                                     std::span<const RadPerSec> frequencies, double sample_time,
                                                     Port port, double a) {
   if (frequencies.empty()) return std::nullopt;
-  const Search search(teleoperator, sample_time, port, a, frequencies);
+  const TerminationSearch search(teleoperator, sample_time, port, a, frequencies);
   std::optional<Candidate> best;
   for (const RadPerSec omega : frequencies) {
     for (const Index first : {0, 1}) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/calibration/spring_array.h"
@@ -17,8 +18,6 @@
 
 namespace mbk::thesis {
 namespace {
-
-constexpr double kMillimetres = 1e3;
 
 /// A rig and the field of its springs at rest.
 struct Rig {

@@ -25,6 +25,9 @@ struct RadPerSec {
   auto operator<=>(const RadPerSec&) const = default;
 };
 
+inline constexpr double kMillimetres = 1000.0;   ///< in a metre
+inline constexpr double kMilliseconds = 1000.0;  ///< in a second
+
 constexpr Hertz::Hertz(RadPerSec omega) : value(omega.value / (2.0 * std::numbers::pi)) {}
 
 }  // namespace mbk

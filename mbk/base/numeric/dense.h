@@ -39,6 +39,8 @@ struct ThinSvd {
 
 /// A⁻¹ by Gaussian elimination with row pivots; not finite where A is singular.
 [[nodiscard]] Matrix inverse(const Matrix& A);
+/// Of any square matrix, by the same elimination.
+[[nodiscard]] double determinant(const Matrix& A);
 [[nodiscard]] Eigen::MatrixXcd complex_inverse(const Eigen::MatrixXcd& A);
 /// |the last pivot| of Gaussian elimination with pivots from the whole matrix: 0 where A is singular.
 [[nodiscard]] double least_pivot(const Eigen::MatrixXcd& A);

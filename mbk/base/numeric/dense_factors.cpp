@@ -11,6 +11,10 @@ Matrix inverse(const Matrix& A) {
   return A.inverse();
 }
 
+double determinant(const Matrix& A) {
+  return A.determinant();
+}
+
 Matrix Cholesky::upper() const {
   return factor_.matrixU();
 }

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "mbk/base/config/document.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/robot/workspace.h"
 #include "mbk/model/robot_file/planar_keys.h"
 #include "mbk/model/robot_file/robot_file.h"
@@ -53,7 +52,7 @@ Verdict wrong_unless(bool fine) {
 }
 
 double largest_singular_value(const Matrix2d& matrix) {
-  return Eigen::JacobiSVD<Matrix2d>(matrix).singularValues()[0];
+  return numeric::singular_values(matrix)[0];
 }
 
 void check_links(const RobotSetup& setup, Findings& findings) {
@@ -70,7 +69,7 @@ void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& fin
     findings.add(Verdict::wrong, mass.error().line());
     return;
   }
-  const Vector2d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix2d>(*mass).eigenvalues();
+  const Vector2d eigenvalues = numeric::symmetric_eigenvalues(*mass);
   const std::string text =
       fmt::format("the hand feels {:.3g} to {:.3g} kg of the robot", eigenvalues[0], eigenvalues[1]);
   if (eigenvalues[0] <= 0.0) {
@@ -135,7 +134,7 @@ void check_force(const RobotSetup& setup, Findings& findings) {
     findings.add(Verdict::doubtful, "without a force sensor: what is measured needs --force-source virtual");
     return;
   }
-  const Vector2d gains = Eigen::JacobiSVD<Matrix2d>(f.wiring.force_gain).singularValues();
+  const Vector2d gains = numeric::singular_values(f.wiring.force_gain);
   findings.judge(doubtful_unless(gains[0] <= kUnevenGain * gains[1]),
                  fmt::format("the force sensor gives {:.4g} to {:.4g} N per unit", gains[1], gains[0]),
                  "its axes differ much, or both read nearly the same: see force_gain_N_per_unit");

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
+
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::recording {
 namespace {
@@ -212,7 +213,7 @@ FittedLengths fitted_lengths(const RecordedHand& recorded, const JointMotion& jo
     normal += row * row.transpose();
     right += position * row;
   });
-  const Row fitted = normal.completeOrthogonalDecomposition().solve(right);
+  const Row fitted = numeric::CompleteOrthogonal(normal).solve(right);
   FittedLengths lengths{fitted[2], fitted[3], fitted[4], 0.0};
   each_row([&](const Row& row, double position) {
     lengths.largest = std::max(lengths.largest, std::abs(position - row.dot(fitted)));

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/files/xdf/xdf_chunks.h"
 #include "mbk/files/xdf/xdf_clocks.h"
 
@@ -22,7 +23,6 @@ constexpr std::size_t kMaxPartsListed = 3;  ///< segments of a clock that are de
 constexpr double kRatesDiffer = 0.1;        ///< relative, beyond which effective and nominal rate do not agree
 constexpr double kManySamples = 5.0;        ///< moved by that much, stamps are said to be doubtful
 constexpr double kMicroseconds = 1e6;
-constexpr double kMilliseconds = 1e3;
 
 /// Units as stream headers spell them out, and as mbk writes them.
 constexpr auto kSpelledUnits = std::to_array<std::pair<std::string_view, std::string_view>>({

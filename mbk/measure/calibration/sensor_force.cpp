@@ -7,12 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/model/robot/kinematics.h"
 
 namespace mbk::calibration {
 namespace {
-
-constexpr double kMillimetres = 1000.0, kMilliseconds = 1000.0;
 
 Result<void> check(const SensorUse& use) {
   const SensorCalibration& c = use.calibration;

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "mbk/base/core/units.h"
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::calibration {
 namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
-
-constexpr double kMillimetres = 1000.0;
 
 /// The line from the screw eye to the disc, d_i.
 Vector2d line_of(const Spring& spring, const Vector2d& hand, const Matrix2d& rotation) {
@@ -117,11 +117,11 @@ namespace {
 
 /// The step downhill: (K + μI) p = F with the smallest eigenvalue of K + μI at least a thousandth of the largest size.
 Vector2d downhill_step(const Matrix2d& K, const Vector2d& force) {
-  const Eigen::SelfAdjointEigenSolver<Matrix2d> eigen(K);
-  Vector2d lambda = eigen.eigenvalues();
+  const numeric::SymmetricEigen eigen = numeric::symmetric_eigen(K);
+  Vector2d lambda = eigen.values;
   const double least = 1e-3 * lambda.cwiseAbs().maxCoeff();
   lambda = lambda.cwiseAbs().cwiseMax(least);
-  return eigen.eigenvectors() * (eigen.eigenvectors().transpose() * force).cwiseQuotient(lambda);
+  return eigen.vectors * (eigen.vectors.transpose() * force).cwiseQuotient(lambda);
 }
 
 /// What makes an equilibrium useless, if anything does.
@@ -146,7 +146,7 @@ Result<void> check_equilibrium(const SpringArray& array, const Vector2d& place, 
           "take a shorter spring or a screw eye that is further away");
     }
   }
-  const Vector2d lambda = Eigen::SelfAdjointEigenSolver<Matrix2d>(array.stiffness(place, rotation)).eigenvalues();
+  const Vector2d lambda = numeric::symmetric_eigenvalues(array.stiffness(place, rotation));
   if (!(lambda[0] > kFlat * lambda[1])) {
     return fail(ErrorKind::not_usable,
                 fmt::format("the equilibrium x {:.2f}, y {:.2f} mm is not stable: its smallest stiffness is {:.3g} N/m",

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/statistics.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 using numeric::RowRange;
 
-constexpr double kMillimetres = 1000.0;
 constexpr double kSeen = 4.0;  // standard errors by which a hook's deflection must stand out
 constexpr double kStraightPart = 1.0 / 3.0;
 constexpr double kMinFit = 0.9;  // R² below which a line says nothing

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/units.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/quadratic_program.h"
 #include "mbk/measure/calibration/spring_array.h"
 
@@ -18,7 +19,6 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr double kMillimetres = 1000.0;
 constexpr double kStiffnessUnit = 100.0;  // [N/m], k_i of a program in this unit is about 1
 constexpr double kForceUnit = 10.0;       // [N], m_i likewise
 constexpr Index kEquations = 5;           // f_x, f_y, k_xx, k_yy, k_xy
@@ -130,7 +130,7 @@ std::vector<Spring> springs_of(const Places& places, const Vector& z) {
 Result<void> check(const SpringRequest& request) {
   constexpr std::size_t kMinEyes = 3, kMaxEyes = 12;
   const Matrix2d& K = request.K;
-  const Vector2d lambda = Eigen::SelfAdjointEigenSolver<Matrix2d>(K).eigenvalues();
+  const Vector2d lambda = numeric::symmetric_eigenvalues(K);
   if (!K.allFinite() || K(0, 1) != K(1, 0)) return bad_usage("the target stiffness is not symmetric");
   if (!(lambda[0] > 0.0)) {
     return bad_usage(fmt::format("the target stiffness has the principal values {:g} and {:g} N/m, and both must be "
@@ -267,7 +267,7 @@ Result<SpringDesign> design_springs(const SpringRequest& request) {
   design.target_equilibrium = request.equilibrium;
   design.payload = request.payload;
   if (request.payload) {
-    const Vector2d lambda = Eigen::SelfAdjointEigenSolver<Matrix2d>(design.field.K).eigenvalues();
+    const Vector2d lambda = numeric::symmetric_eigenvalues(design.field.K);
     design.natural_frequency = (lambda / *request.payload).cwiseSqrt() / (2.0 * std::numbers::pi);
   }
   return design;

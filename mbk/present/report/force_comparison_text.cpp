@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
@@ -28,7 +29,6 @@ std::string axis_name(Index axis, Index axes) {
 
 std::string force_comparison_text(const ForceComparison& comparison, std::string_view estimated,
                                   std::string_view measured) {
-  constexpr double kMilliseconds = 1000.0;
   const Index axes = comparison.vaf.size();
   std::string text = fmt::format("{} against {}, {:.1f} s\n", estimated, measured, comparison.duration);
 

@@ -12,7 +12,6 @@
 /// How tables and paragraphs of a terminal are set. For the sources of this module only.
 namespace mbk::report {
 
-inline constexpr double kMillimetres = 1000.0;                ///< in a metre
 inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< in a radian
 
 /// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.

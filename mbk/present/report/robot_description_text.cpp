@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/base/core/units.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
 #include "mbk/present/report/layout.h"

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"

@@ -62,7 +62,7 @@ Json references_json(const std::vector<ChartReference>& references) {
   return array;
 }
 
-Json chart_json(const Chart& chart) {
+Json exhibit_chart_json(const Chart& chart) {
   Json json = {{"title", chart.title},
                {"x", axis_json(chart.x)},
                {"y", axis_json(chart.y)},
@@ -117,7 +117,7 @@ std::string to_json(const Reproduction& reproduction) {
       one["was"] = "slip" + exhibit.id.substr(std::string_view("erratum").size());
     }
     for (const ReproducedTable& table : exhibit.tables) one["tables"].push_back(table_json(table));
-    for (const Chart& chart : exhibit.charts) one["charts"].push_back(chart_json(chart));
+    for (const Chart& chart : exhibit.charts) one["charts"].push_back(exhibit_chart_json(chart));
     json["exhibits"].push_back(std::move(one));
   }
   return dumped(json);

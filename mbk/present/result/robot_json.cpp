@@ -10,7 +10,7 @@
 namespace mbk::result {
 namespace {
 
-constexpr const char* kSchema = "mbk.robot/1";
+constexpr const char* kRobotSchema = "mbk.robot/1";
 
 Json drive_json(const robot::DriveTerms& drive) {
   Json json = {{"terms", Json::array()}, {"smoothing", drive.smoothing}};
@@ -49,7 +49,7 @@ bool is_covariance(const Matrix& V) {
 }
 
 StoredRobot stored_from(const Json& json) {
-  if (!has_schema(json, kSchema)) throw Malformed{fmt::format("its schema is not {}", kSchema)};
+  if (!has_schema(json, kRobotSchema)) throw Malformed{fmt::format("its schema is not {}", kRobotSchema)};
   StoredRobot stored;
   stored.description = json.value("description", "");
   stored.urdf = json.value("urdf", "");
@@ -121,7 +121,7 @@ Json consistent_json(const ConsistentRobot& consistent) {
 }  // namespace
 
 std::string to_json(const RobotIdentification& found) {
-  Json json = header(kSchema);
+  Json json = header(kRobotSchema);
   json["inputs"] = inputs_json(found.sources);
   for (std::size_t k = 0; k < found.sources.size() && k < found.durations.size(); ++k) {
     json["inputs"][k]["duration_s"] = found.durations[k];

@@ -1,17 +1,17 @@
 #include "mbk/present/result/sensor_json.h"
 
-#include <Eigen/LU>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/present/result/json_parts.h"
 
 namespace mbk::result {
 namespace {
 
-constexpr const char* kSchema = "mbk.sensor/1";
+constexpr const char* kSensorSchema = "mbk.sensor/1";
 
 Json line_json(const ForceOnVoltage& line) {
   return {{"slope", number(line.slope)},
@@ -156,7 +156,7 @@ void read_provenance(SensorCalibration& calibration, const Json& json) {
 }  // namespace
 
 std::string to_json(const SensorCalibration& calibration) {
-  Json json = header(kSchema);
+  Json json = header(kSensorSchema);
   json["what"] = "calibrate";
   json["inputs"] = inputs_json(calibration.sources);
   json["continuous"] = calibration.continuous;
@@ -192,8 +192,8 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
   } catch (const Json::exception&) {
     return bad_data("a number is beyond what can be said", "give a file of 'mbk sensor calibrate --json'");
   }
-  if (!json.is_object() || text_or_empty(json, "schema") != kSchema) {
-    return bad_data(fmt::format("not a calibration of schema {}", kSchema),
+  if (!json.is_object() || text_or_empty(json, "schema") != kSensorSchema) {
+    return bad_data(fmt::format("not a calibration of schema {}", kSensorSchema),
                     "give a file of 'mbk sensor calibrate --json'");
   }
   Reader reader;
@@ -206,7 +206,7 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
   const Index n = std::ssize(calibration.axes);
   if (n == 2 && calibration.axes[0].name == calibration.axes[1].name) reader.wrong("axes", "x and y");
   calibration.slope = reader.matrix(json, "slope", n);
-  if (!calibration.slope.allFinite() || calibration.slope.determinant() == 0.0) {
+  if (!calibration.slope.allFinite() || numeric::determinant(calibration.slope) == 0.0) {
     reader.wrong("slope", "a matrix of numbers that can be inverted");
   }
   calibration.slope_error = reader.matrix(json, "slope_standard_error", n);

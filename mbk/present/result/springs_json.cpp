@@ -8,10 +8,10 @@
 namespace mbk::result {
 namespace {
 
-constexpr const char* kSchema = "mbk.springs/1";
+constexpr const char* kSpringsSchema = "mbk.springs/1";
 
 Json springs_json(const char* what) {
-  Json json = header(kSchema);
+  Json json = header(kSpringsSchema);
   json["what"] = what;
   return json;
 }

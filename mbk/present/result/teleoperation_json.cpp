@@ -57,7 +57,7 @@ Json admissible_json(const AdmissibleSet& set) {
   return json;
 }
 
-Json chart_json(const Chart& chart) {
+Json curve_json(const Chart& chart) {
   Json x = Json::array(), y = Json::array();
   for (const double value : chart.series.front().x) x.push_back(number(value));
   for (const double value : chart.series.front().y) y.push_back(number(value));
@@ -198,7 +198,7 @@ std::string to_json(const TeleoperationFinding& finding) {
   if (finding.excess) json["excess"] = excess_json(*finding.excess);
   if (finding.simulation) json["simulation"] = simulation_json(*finding.simulation);
   json["curves"] = Json::array();
-  for (const Chart& chart : finding.charts) json["curves"].push_back(chart_json(chart));
+  for (const Chart& chart : finding.charts) json["curves"].push_back(curve_json(chart));
   json["notes"] = finding.notes;
   return dumped(json);
 }

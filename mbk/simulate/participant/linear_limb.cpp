@@ -1,6 +1,6 @@
 #include "mbk/simulate/participant/linear_limb.h"
 
-#include <Eigen/Eigenvalues>
+#include "mbk/base/numeric/dense.h"
 
 namespace mbk::participant {
 
@@ -12,7 +12,7 @@ Result<LinearLimb> LinearLimb::create(const impedance::Model& model) {
   if (!impedance::stacked(model).allFinite()) return bad_usage("M, B, K and x0 of a limb must be finite");
   const Eigen::Matrix2d M = model.M;
   if (M(0, 1) != M(1, 0)) return bad_usage("the inertia of a limb must be symmetric");
-  if (M.selfadjointView<Eigen::Lower>().eigenvalues()[0] < 0.0) {
+  if (numeric::symmetric_eigenvalues(M)[0] < 0.0) {
     return bad_usage("the inertia of a limb must not have a negative eigenvalue");
   }
   return LinearLimb(M, model.B, model.K, model.x0);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -97,7 +97,7 @@ constexpr double kBarelyActive = 1.0001, kWellPassive = 0.25;
 impedance::Model antisymmetric_arm(impedance::Model arm, int kind, double share) {
   const double low = 2.0 * std::numbers::pi * judged_band().first.value;
   const double high = 2.0 * std::numbers::pi * judged_band().second.value;
-  const double edge = share * std::sqrt(impedance::symmetric_part(arm.B).determinant());
+  const double edge = share * std::sqrt(numeric::determinant(impedance::symmetric_part(arm.B)));
   double k_a = edge * low, m_a = 0.0;
   if (kind == 1) std::tie(k_a, m_a) = std::pair{0.0, edge / high};
   if (kind == 2) {  // opposite signs add up at the low end: low·m_a − k_a/low = −edge

@@ -31,7 +31,7 @@ struct Shown {
   bool changed = false;
 };
 
-using Held = std::array<Shown, kTimes.size()>;  // at each time
+using ShownAtTimes = std::array<Shown, kTimes.size()>;  // at each time
 
 Result<std::vector<protocol::Trial>> ready_trial() {
   const auto* scenario = laboratory::find_ready_scenario("relaxed_sinusoidal");
@@ -51,7 +51,7 @@ Result<Shown> shown_of(const journal::Journal& journal, const measurement::Optio
   return shown;
 }
 
-Result<Held> perform(protocol::Trial trial, std::uint64_t seed, const std::filesystem::path& folder) {
+Result<ShownAtTimes> perform(protocol::Trial trial, std::uint64_t seed, const std::filesystem::path& folder) {
   trial.seed = seed;
   auto robot = laboratory::simulated_robot(trial);
   if (!robot) return tl::unexpected(robot.error());
@@ -68,7 +68,7 @@ Result<Held> perform(protocol::Trial trial, std::uint64_t seed, const std::files
 
   session::Session session({true, 0.0});
   journal::Journal journal{session::header_of(*plan, (*robot)->facts()), {}, {}, {}};
-  Held held{};
+  ShownAtTimes held{};
   std::size_t taken = 0;
   std::optional<Error> failure;
   const auto watch = [&](std::span<const journal::Tick> ticks) {
@@ -99,8 +99,9 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
   if (!trials) return tl::unexpected(trials.error());
   const auto folder = TemporaryFolder::create("mbk-live-estimate");
   if (!folder) return tl::unexpected(folder.error());
-  const auto runs = seeded_runs(
-      options, [&](std::uint64_t seed) -> Result<Held> { return perform(trials->front(), seed, folder->path()); });
+  const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<ShownAtTimes> {
+    return perform(trials->front(), seed, folder->path());
+  });
   if (!runs) return tl::unexpected(runs.error());
 
   ValidationTable table;
@@ -127,7 +128,7 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
     table.rows.push_back(mean_row(fmt::format("{:g} s, mean of M, B and K", kTimes[at]), share, expected, "%"));
     std::ranges::move(rows, std::back_inserter(table.rows));
   }
-  const auto said_to_change = [](const Held& held) { return std::ranges::any_of(held, &Shown::changed); };
+  const auto said_to_change = [](const ShownAtTimes& held) { return std::ranges::any_of(held, &Shown::changed); };
   table.rows.push_back(share_row("said to have changed, though it did not", *runs, said_to_change, kHardlyEver));
   table.notes = {
       "A relaxed arm, sinusoidal position perturbation, from the session's own ticks: the live estimate is what "

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/identify/impedance_fit.h"
 #include "mbk/study/validation/rows.h"
@@ -179,8 +180,6 @@ constexpr std::array kMisspecified = {WarningCode::missing_dynamics, WarningCode
                                       WarningCode::dry_friction,     WarningCode::stiffness_changes,
                                       WarningCode::force_drifts,     WarningCode::tremor};
 
-constexpr double kMillimetresPerMetre = 1000.0;
-
 /// What came of one trial under one condition.
 struct MisspecifiedTrial {
   bool warned = false, usable = false;
@@ -240,8 +239,8 @@ void add_rows(const Misspecification& condition, const std::vector<MisspecifiedT
                    truth = one.truth.segment(static_cast<Index>(4 * part), size);
       held += static_cast<int>((error.array().abs() <= half.array()).count());
       all += static_cast<int>(size);
-      shares[static_cast<Index>(k)] = part < 3 ? 100.0 * error.cwiseAbs().maxCoeff() / truth.cwiseAbs().maxCoeff()
-                                               : kMillimetresPerMetre * error.norm();
+      shares[static_cast<Index>(k)] =
+          part < 3 ? 100.0 * error.cwiseAbs().maxCoeff() / truth.cwiseAbs().maxCoeff() : kMillimetres * error.norm();
     }
     table.rows.push_back(share_row(fmt::format("{}: {} held", condition.name, kParts[part]), held, all, {}));
     table.rows.push_back(
