@@ -6,9 +6,10 @@
 
 #include "mbk/base/core/linear_algebra.h"
 
-/// Eigen's decompositions of matrices whose size is known at run time, compiled here once: each use of one in a file of
-/// its own costs the compiler one to three seconds there. Matrices of fixed size (2×2, 3×3) stay with Eigen, which
-/// inlines them. A right side may be any expression; of one column it is solved as a vector.
+/// Eigen's decompositions, compiled here once: each use of one in a file of its own costs the compiler one to three
+/// seconds there. Only what Eigen writes out by itself (an inverse or a determinant up to 3×3), and what must not
+/// allocate, stays with matrices of fixed size. A right side may be any expression; of one column it is solved as a
+/// vector.
 namespace mbk::numeric {
 
 /// A V = V Λ.
