@@ -88,17 +88,18 @@ Sensitive antisymmetry_margin(const Model& model, double omega, int sign) {
 std::optional<double> nonpassive_below(const Model& model) {
   if (model.axes() == 1) return model.B(0, 0) > 0.0 ? std::optional(0.0) : std::nullopt;
   const Matrix B = symmetric_part(model.B);
-  if (!(numeric::determinant(B) > 0.0 && B.trace() > 0.0)) return std::nullopt;
-  return std::abs(antisymmetric_part(model.K)) / (2.0 * std::numbers::pi * std::sqrt(numeric::determinant(B)));
+  const double determinant = numeric::determinant(B);
+  if (!(determinant > 0.0 && B.trace() > 0.0)) return std::nullopt;
+  return std::abs(antisymmetric_part(model.K)) / (2.0 * std::numbers::pi * std::sqrt(determinant));
 }
 
 std::optional<std::pair<double, double>> absorbing_in_circles(const Model& model) {
   if (model.axes() == 1) return std::nullopt;
   const Matrix B = symmetric_part(model.B);
   const double m_a = antisymmetric_part(model.M), k_a = antisymmetric_part(model.K);
-  const double discriminant = numeric::determinant(B) + 4.0 * m_a * k_a;
-  if (!(numeric::determinant(B) > 0.0 && B.trace() > 0.0 && discriminant > 0.0)) return std::nullopt;
-  const double sum = std::sqrt(numeric::determinant(B)) + std::sqrt(discriminant);
+  const double determinant = numeric::determinant(B), discriminant = determinant + 4.0 * m_a * k_a;
+  if (!(determinant > 0.0 && B.trace() > 0.0 && discriminant > 0.0)) return std::nullopt;
+  const double sum = std::sqrt(determinant) + std::sqrt(discriminant);
   const double high = m_a != 0.0 ? sum / (2.0 * std::abs(m_a)) : std::numeric_limits<double>::infinity();
   return std::pair{2.0 * std::abs(k_a) / sum, high};
 }

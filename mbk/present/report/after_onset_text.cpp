@@ -3,14 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/present/report/exploration_parts_text.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
 namespace after_onset_lines {
-
-constexpr double kMs = 1e3;
 
 /// Entries row by row, and with two axes the eigenvalues of the symmetric part; of what is not identifiable how far its
 /// interval reaches.
@@ -42,10 +41,10 @@ void add(const char* name, const MatrixEstimate& one, const char* unit, std::vec
 std::string after_onset_text(const AfterOnsetEstimate& found, Motion motion) {
   using namespace after_onset_lines;
   const Units units = units_of(motion);
-  std::string text = fmt::format("the first {:.0f} ms after onset\n", kMs * found.window_s);
+  std::string text = fmt::format("the first {:.0f} ms after onset\n", kMilliseconds * found.window_s);
   std::vector<std::vector<std::string>> rows;
   std::string onsets = fmt::format("{}, less the mean of the {:.0f} ms before each; moved by {:.2g} {}", found.onsets,
-                                   kMs * found.baseline_s, found.displacement, units.position);
+                                   kMilliseconds * found.baseline_s, found.displacement, units.position);
   if (found.omitted > 0) {
     onsets +=
         fmt::format("; {} omitted, before which the limb did not rest or the recording is too short", found.omitted);

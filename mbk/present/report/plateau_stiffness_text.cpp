@@ -4,14 +4,13 @@
 #include <numbers>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/present/report/exploration_parts_text.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
 namespace plateau_stiffness {
-
-constexpr double kMilli = 1e3;
 
 std::string bracketed(const Interval& interval, int decimals, double scale = 1.0) {
   if (!std::isfinite(interval.first) || !std::isfinite(interval.second)) return "";
@@ -65,13 +64,13 @@ std::string plateau_stiffness_text(const PlateauStiffness& found, Motion motion)
   const StiffnessRegression& fit = found.fit;
   std::string text = "ramps and holds\n";
   const std::string size = motion == Motion::rotation ? fmt::format("{:.3g}°", 180.0 / std::numbers::pi * fit.amplitude)
-                                                      : fmt::format("{:.3g} mm", kMilli * fit.amplitude);
+                                                      : fmt::format("{:.3g} mm", kMillimetres * fit.amplitude);
   text += table(
       {{"plateaus", fmt::format("{} in {} directions, of {}{}", fit.displacements, fit.directions, size,
                                 found.left_out > 0 ? fmt::format("; {} left out: too short", found.left_out) : "")},
-       {"window",
-        fmt::format("{:.0f} ms to {:.0f} ms after the onset, {}; less the {:.0f} ms before it", kMilli * found.from_s,
-                    kMilli * found.to_s, found.window_rule, kMilli * found.baseline_s)},
+       {"window", fmt::format("{:.0f} ms to {:.0f} ms after the onset, {}; less the {:.0f} ms before it",
+                              kMilliseconds * found.from_s, kMilliseconds * found.to_s, found.window_rule,
+                              kMilliseconds * found.baseline_s)},
        {"displacement", fmt::format("{:.1f} % of what was commanded; motion on the window adds {:.2g} % to K",
                                     100.0 * fit.reached, 100.0 * found.motion_share)}});
   if (!found.usable) text += "  not usable: see the warnings\n";

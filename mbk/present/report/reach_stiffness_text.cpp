@@ -2,17 +2,16 @@
 
 #include <string>
 
+#include "mbk/base/core/units.h"
 #include "mbk/present/report/exploration_parts_text.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
 namespace reach_stiffness_detail {
 
-constexpr double kMilli = 1e3;
-
 std::string predicted_text(const ReachPredictor& by) {
   return fmt::format("{:.2g} mm off in left-out reaches; motion on the window adds {:.2g} % to K",
-                     kMilli * by.prediction_error, 100.0 * by.motion_share);
+                     kMillimetres * by.prediction_error, 100.0 * by.motion_share);
 }
 
 }  // namespace reach_stiffness_detail
@@ -23,10 +22,10 @@ std::string reach_stiffness_text(const ReachStiffness& found, Motion motion) {
   std::string text = "reaches\n";
   text += table(
       {{"reaches", fmt::format("{} undisturbed and {} displaced in {} directions, by {:.3g} mm{}", found.undisturbed,
-                               fit.displacements, fit.directions, kMilli * fit.amplitude,
+                               fit.displacements, fit.directions, kMillimetres * fit.amplitude,
                                found.left_out > 0 ? fmt::format("; {} left out: too short", found.left_out) : "")},
-       {"window", fmt::format("{:.0f} ms to {:.0f} ms after the event '{}'", kMilli * found.from_s, kMilli * found.to_s,
-                              found.trigger)},
+       {"window", fmt::format("{:.0f} ms to {:.0f} ms after the event '{}'", kMilliseconds * found.from_s,
+                              kMilliseconds * found.to_s, found.trigger)},
        {"prediction", fmt::format("from each reach's own past, {} components: {}", found.own_past.components,
                                   predicted_text(found.own_past))},
        {"displacement", fmt::format("{:.1f} % of what was commanded", 100.0 * fit.reached)}});

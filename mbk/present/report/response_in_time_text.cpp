@@ -3,14 +3,13 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/present/report/exploration_parts_text.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
 namespace response_in_time {
-
-constexpr double kMs = 1e3;
 
 std::string vaf(const ExplainedForce& one) {
   return with_interval(one.vaf, one.vaf_half_width) + " %";
@@ -60,7 +59,7 @@ std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion m
   using namespace response_in_time;
   std::string text = "impulse response\n";
   std::vector<std::vector<std::string>> rows = {
-      {"memory", fmt::format("±{:.0f} ms by {}{}", kMs * found.memory, found.memory_rule,
+      {"memory", fmt::format("±{:.0f} ms by {}{}", kMilliseconds * found.memory, found.memory_rule,
                              found.memory_at_limit ? ": the longest that was tried, it may be more" : "")},
       {"rank",
        fmt::format("{} of {} directions of the lagged motion, by cross-validation", found.rank, found.directions)},
@@ -122,9 +121,10 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
   const std::string unit = units_of(motion).damping;
   rows.push_back({"direction", direction_name(found.direction) + " stretch"});
   rows.push_back(
-      {"delay", fmt::format("a response shows from {:.0f} ms ({:.0f} to {:.0f} ms){}, until {:.0f} ms",
-                            kMs * found.delay, kMs * found.delay_low, kMs * found.delay_high,
-                            found.delay_at_limit ? ", the earliest that was tried" : "", kMs * found.memory)});
+      {"delay",
+       fmt::format("a response shows from {:.0f} ms ({:.0f} to {:.0f} ms){}, until {:.0f} ms",
+                   kMilliseconds * found.delay, kMilliseconds * found.delay_low, kMilliseconds * found.delay_high,
+                   found.delay_at_limit ? ", the earliest that was tried" : "", kMilliseconds * found.memory)});
   rows.push_back({"gain", fmt::format("{} {}{}{}", with_interval(found.gain_along.value, found.gain_along.half_width),
                                       unit, found.gain_along.value > 0.0 ? ", resists the stretch" : ", assists it",
                                       found.gain_identifiable ? "" : ": not identifiable")});
@@ -134,12 +134,13 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
     for (const Margin& one : fit.gain) {
       gains += (gains.empty() ? "" : ", ") + with_interval(one.value, one.half_width);
     }
-    rows.push_back({"second order", fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} ({})", gains,
-                                                unit, with_interval(kMs * fit.delay.value, kMs * fit.delay.half_width),
-                                                with_interval(fit.frequency.value, fit.frequency.half_width),
-                                                with_interval(fit.damping.value, fit.damping.half_width),
-                                                fit.p_value < 0.01 ? "the response is more than that" : "enough",
-                                                p_text(fit.p_value))});
+    rows.push_back(
+        {"second order",
+         fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} ({})", gains, unit,
+                     with_interval(kMilliseconds * fit.delay.value, kMilliseconds * fit.delay.half_width),
+                     with_interval(fit.frequency.value, fit.frequency.half_width),
+                     with_interval(fit.damping.value, fit.damping.half_width),
+                     fit.p_value < 0.01 ? "the response is more than that" : "enough", p_text(fit.p_value))});
   }
   rows.push_back({"nonlinearity",
                   found.nonlinearity.size() == 1
