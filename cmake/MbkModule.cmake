@@ -2,15 +2,42 @@
 # sources of a module are compiled several at a time. Each still includes what it uses: clang-tidy and the preset sanitize
 # compile them one by one.
 option(MBK_UNITY "Compile several sources of a module at a time" ON)
-# So that none takes more than 15 s: what is optimised little is compiled faster.
-set(MBK_UNITY_BATCH 10)
-set(MBK_UNITY_BATCH_OF_LOOPS 5)
-set(MBK_UNITY_BATCH_OF_TESTS 8)
+# How much text an object is made of, in bytes, so that none takes more than 15 s: what is optimised little is compiled
+# faster. A module whose text takes longer says with OBJECTS how many there are.
+set(MBK_OBJECT_BYTES 110000)
+set(MBK_OBJECT_BYTES_OF_LOOPS 70000)
+set(MBK_OBJECT_BYTES_OF_TESTS 90000)
 
-# mbk_unity(TARGET [SOURCE...]): the sources of TARGET are compiled several at a time, but for these.
-function(mbk_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MBK_UNITY} UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH})
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+# mbk_unity(TARGET BYTES [OBJECTS n] [ALONE SOURCE...]): the sources of TARGET, but for these, become objects of about as
+# many bytes of text, or n of equal size.
+function(mbk_unity target bytes)
+  cmake_parse_arguments(ARG "" "OBJECTS" "ALONE" ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MBK_UNITY} UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  set(ends "")
+  set(total 0)
+  set(together "")
+  list(FILTER sources EXCLUDE REGEX "^\\$<TARGET_OBJECTS:")
+  foreach(source IN LISTS sources)
+    get_filename_component(path ${source} ABSOLUTE)
+    if(NOT EXISTS ${path})
+      set(path ${CMAKE_CURRENT_BINARY_DIR}/${source})  # the build writes it
+    endif()
+    get_filename_component(name ${source} NAME)
+    if(NOT name IN_LIST ARG_ALONE)
+      file(SIZE ${path} size)
+      math(EXPR total "${total} + ${size}")
+      list(APPEND together ${source})
+      list(APPEND ends ${total})
+    endif()
+  endforeach()
+  if(NOT ARG_OBJECTS)
+    math(EXPR ARG_OBJECTS "(${total} + ${bytes} - 1) / ${bytes}")
+  endif()
+  foreach(source end IN ZIP_LISTS together ends)
+    math(EXPR object "(${end} - 1) * ${ARG_OBJECTS} / ${total}")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${target}_${object})
+  endforeach()
 endfunction()
 
 # Nothing of it is linked: an interface without libraries.
@@ -33,13 +60,13 @@ endfunction()
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
 # program that is no part of the library. LOOPS: it computes what a user waits for, so that it is optimised fully
-# (cmake/MbkPrecompile.cmake). TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources and
+# (cmake/MbkPrecompile.cmake). OBJECTS: how many its sources are compiled to, where their size does not say. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources and
 # tests that take long to compile, and so are compiled by themselves.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "LOOPS;NOT_INSTALLED;TESTS_WAIT" "" "ALONE;DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "LOOPS;NOT_INSTALLED;TESTS_WAIT" "OBJECTS" "ALONE;DEPENDS;NO_LOOPS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -58,16 +85,27 @@ function(mbk_module name)
 
   list(TRANSFORM ARG_DEPENDS PREPEND mbk:: OUTPUT_VARIABLE dependencies)
   if(sources)
-    add_library(mbk_${name} STATIC ${sources})
     set(public PUBLIC)
-    mbk_unity(mbk_${name} ${ARG_ALONE})
+    set(kind library)
+    set(bytes ${MBK_OBJECT_BYTES})
     if(ARG_LOOPS)
-      set_target_properties(mbk_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH_OF_LOOPS})
-      mbk_precompile(mbk_${name} loops)
-    else()
-      target_compile_options(mbk_${name} PRIVATE ${MBK_LITTLE_OPTIMISATION})
-      mbk_precompile(mbk_${name} library)
+      set(kind loops)
+      set(bytes ${MBK_OBJECT_BYTES_OF_LOOPS})
     endif()
+    if(ARG_NO_LOOPS)
+      list(TRANSFORM ARG_NO_LOOPS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+      list(REMOVE_ITEM sources ${ARG_NO_LOOPS})
+      add_library(mbk_${name}_no_loops OBJECT ${ARG_NO_LOOPS})
+      target_compile_features(mbk_${name}_no_loops PRIVATE cxx_std_20)
+      target_include_directories(mbk_${name}_no_loops PRIVATE ${PROJECT_SOURCE_DIR})
+      target_link_libraries(mbk_${name}_no_loops PRIVATE mbk_settings ${private_libraries} ${dependencies} ${ARG_PUBLIC_LIBRARIES})
+      mbk_unity(mbk_${name}_no_loops ${MBK_OBJECT_BYTES} ALONE ${ARG_ALONE})
+      mbk_optimise(mbk_${name}_no_loops library)
+      list(APPEND sources $<TARGET_OBJECTS:mbk_${name}_no_loops>)
+    endif()
+    add_library(mbk_${name} STATIC ${sources})
+    mbk_unity(mbk_${name} ${bytes} OBJECTS ${ARG_OBJECTS} ALONE ${ARG_ALONE})
+    mbk_optimise(mbk_${name} ${kind})
     target_link_libraries(mbk_${name} PRIVATE $<BUILD_INTERFACE:mbk_settings> ${private_libraries})
   else()
     add_library(mbk_${name} INTERFACE)
@@ -103,8 +141,7 @@ function(mbk_test name)
   target_link_libraries(${name} PRIVATE mbk_settings ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   # What is tested is as users have it; the tests themselves compile faster so.
   target_compile_options(${name} PRIVATE ${MBK_LITTLE_OPTIMISATION})
-  mbk_unity(${name} ${ARG_ALONE})
-  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE ${MBK_UNITY_BATCH_OF_TESTS})
+  mbk_unity(${name} ${MBK_OBJECT_BYTES_OF_TESTS} ALONE ${ARG_ALONE})
   if(NOT ARG_OWN_FLAGS)
     mbk_precompile(${name} tests)
   endif()

@@ -46,3 +46,12 @@ function(mbk_precompile target kind)
     target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
   endif()
 endfunction()
+
+# mbk_optimise(TARGET library|loops|tests): fully where it has loops that a user waits for, and with the headers that are
+# precompiled so.
+function(mbk_optimise target kind)
+  if(NOT kind STREQUAL loops)
+    target_compile_options(${target} PRIVATE ${MBK_LITTLE_OPTIMISATION})
+  endif()
+  mbk_precompile(${target} ${kind})
+endfunction()

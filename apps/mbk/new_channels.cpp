@@ -54,7 +54,7 @@ Result<Recording> read_with(const NewChannelsArguments& arguments, const std::st
 }
 
 /// What a person has to see before saying yes.
-void show(const std::string& text) {
+void tell(const std::string& text) {
   say_text(for_people(text, terminal_at(STDERR_FILENO)));
 }
 
@@ -67,12 +67,12 @@ int run(const NewChannelsArguments& arguments) {
     return report_error({ErrorKind::data, "holds no signal that a channel map can name",
                          "'mbk info' says what is in it", arguments.file.string()});
   }
-  show(fmt::format("{}, {}\n{}", arguments.file.string(), contents->format, signals_text(signals)));
+  tell(fmt::format("{}, {}\n{}", arguments.file.string(), contents->format, signals_text(signals)));
   const recording::ChannelGuess guess = recording::guess_channels(signals);
   std::string text = guess.reasons.empty() ? "" : "guessed\n";
   for (const std::string& reason : guess.reasons) text += "  " + reason + "\n";
   if (!guess.missing.empty()) text += fmt::format("  not found by name: {}\n", fmt::join(guess.missing, ", "));
-  show(
+  tell(
       text +
       "Two axes have x, y, Fx, Fy and xr, yr of the reference; one axis has x, F, xr. x=2:mm converts, Fx=-4 flips.\n");
 
@@ -86,11 +86,11 @@ int run(const NewChannelsArguments& arguments) {
   const auto map = Questions(arguments.yes).ask("channels", guess.missing.empty() ? guess.map : "", check);
   if (!map) return report_error(map.error().in(arguments.file.string()));
   for (const Chart& chart : report::first_seconds(*recording, arguments.seconds))
-    show("\n" + report::chart_text(chart));
-  show("The force is that of the hand on the robot; 'mbk measure' says where its sign is reversed.\n");
+    tell("\n" + report::chart_text(chart));
+  tell("The force is that of the hand on the robot; 'mbk measure' says where its sign is reversed.\n");
   const std::string rate = arguments.rate_hz ? fmt::format(" --rate {:g}", *arguments.rate_hz) : "";
   const std::string line = fmt::format("--channels {}{}", shell_word(*map), rate);
-  show(fmt::format("next: mbk measure {} {}\n", shell_word(arguments.file.string()), line));
+  tell(fmt::format("next: mbk measure {} {}\n", shell_word(arguments.file.string()), line));
   if (auto ok = arguments.output.write(line + "\n"); !ok) return report_error(ok.error());
   return kFine;
 }

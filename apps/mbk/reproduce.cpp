@@ -35,7 +35,7 @@ struct ReproduceArguments {
 };
 
 /// One exhibit on each line.
-std::string list_text() {
+std::string list_of_exhibits() {
   std::string text;
   for (const auto& [id, title] : thesis::exhibit_names()) text += fmt::format("{:<16} {}\n", id, title);
   return text;
@@ -112,7 +112,7 @@ std::string summary_text(const Reproduction& made, const fs::path& folder) {
 
 int run(const ReproduceArguments& arguments) {
   if (arguments.list) {
-    const auto ok = Output().write(list_text());
+    const auto ok = Output().write(list_of_exhibits());
     return ok ? kFine : report_error(ok.error());
   }
   const fs::path page = arguments.folder / "index.html";

@@ -115,7 +115,7 @@ int list() {
   return kFine;
 }
 
-int show(const std::string& name) {
+int show_scenario(const std::string& name) {
   const auto* ready = laboratory::find_ready_scenario(name);
   if (ready == nullptr) {
     return report_error({ErrorKind::usage, fmt::format("there is no ready scenario '{}'", name),
@@ -325,7 +325,7 @@ Action add_simulate(Command app) {
   command.add_flag("--quiet", arguments->quiet, "no progress and no summary");
   return [arguments, shown] {
     if (arguments->list) return list();
-    if (!shown->empty()) return show(*shown);
+    if (!shown->empty()) return show_scenario(*shown);
     if (arguments->scenario.empty()) {
       return report_error({ErrorKind::usage, "no scenario", "name a TOML file, or one of 'mbk simulate --list'", ""});
     }

@@ -248,7 +248,7 @@ int run_all(ValidateArguments arguments) {
   return code;
 }
 
-std::string list_text() {
+std::string list_of_studies() {
   return "Studies, each a method against known truth:\n" + study_lines() +
          "\n  mbk validate coverage            one of them, by as many runs as its rows need\n"
          "  mbk validate coverage --runs 20  a look at it; what so few runs do not show is said\n"
@@ -257,7 +257,7 @@ std::string list_text() {
 
 int run(const ValidateArguments& arguments, bool bare) {
   if (bare) {
-    const auto shown = Output().show(list_text());
+    const auto shown = Output().show(list_of_studies());
     return shown ? kFine : report_error(shown.error());
   }
   return arguments.study == kAll ? run_all(arguments) : run_one(arguments);

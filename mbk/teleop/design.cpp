@@ -25,7 +25,7 @@ Rational fraction(const Section& section, std::string_view key, double value, Si
 }
 
 /// [s]
-constexpr Sizes kDelays{1e-6, 1e6, "s"};
+constexpr Sizes kDelaySizes{1e-6, 1e6, "s"};
 /// Of two-ports, whose coefficients are products of up to twelve time constants.
 constexpr Sizes kCoefficients{1e-40, 1e40, "in SI units"};
 
@@ -44,7 +44,7 @@ Teleoperator read_teleoperator(const Document& document) {
     const auto value = needed == Need::required
                            ? std::optional(section.required_number(parameter.key, allowed(parameter.key)))
                            : section.optional_number(parameter.key, allowed(parameter.key));
-    const Sizes sizes = parameter.section == "delay" ? kDelays : Sizes{};
+    const Sizes sizes = parameter.section == "delay" ? kDelaySizes : Sizes{};
     if (value) result.values.emplace(parameter.name, fraction(section, parameter.key, *value, sizes));
   }
   return result;

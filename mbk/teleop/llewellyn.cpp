@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/on_axis.h"
 #include "mbk/base/lti/real_roots.h"
@@ -20,8 +20,6 @@ using lti::Interval;
 using lti::RationalFunction;
 using lti::RationalMatrix;
 using lti::RootBracket;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The four real functions of X = ω² that must not be negative.
 struct Conditions {

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <utility>
 
+#include "mbk/base/core/units.h"
 #include "mbk/teleop/architectures.h"
 #include "mbk/teleop/largest_shortage.h"
 #include "mbk/teleop/llewellyn.h"
@@ -34,7 +34,6 @@ teleop::TwoPort resistive(teleop::Form form, const std::array<Rational, 4>& entr
 
 /// Condition 3 as printed on a grid of the axis: the least of each.
 teleop::ConditionValues least_on_a_grid(const teleop::TwoPort& two_port) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   teleop::ConditionValues least{kInfinity, kInfinity, kInfinity};
   for (int i = 0; i <= 200; ++i) {
     const Eigen::MatrixXcd z = two_port.matrix(RadPerSec(1e-3 * std::pow(1e6, i / 200.0)));

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/reproduction.h"
 #include "mbk/thesis/exhibit_text.h"
 #include "mbk/thesis/workbench.h"
@@ -20,7 +20,6 @@ namespace mbk::thesis {
 
 inline constexpr auto kFigure = Exhibit::Kind::figure, kTable = Exhibit::Kind::table;
 inline constexpr std::array<const char*, 3> kMatrices = {"inertia", "damping", "stiffness"};
-inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< in a radian
 
 /// One exhibit: what it is, and what makes its content. `make` fills commands, tables, charts, related and the values
 /// of which its text (exhibit_text.h) speaks.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <limits>
 #include <numbers>
 
 namespace mbk {
@@ -25,8 +26,11 @@ struct RadPerSec {
   auto operator<=>(const RadPerSec&) const = default;
 };
 
-inline constexpr double kMillimetres = 1000.0;   ///< in a metre
-inline constexpr double kMilliseconds = 1000.0;  ///< in a second
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kDegree = std::numbers::pi / 180.0;   ///< [rad]
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< in a radian
+inline constexpr double kMillimetres = 1000.0;                ///< in a metre
+inline constexpr double kMilliseconds = 1000.0;               ///< in a second
 
 constexpr Hertz::Hertz(RadPerSec omega) : value(omega.value / (2.0 * std::numbers::pi)) {}
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/hermitian.h"
 
@@ -14,8 +14,6 @@ namespace mbk::lti {
 namespace {
 
 using enum PositiveRealCondition;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 FrequencyBand single(double omega) {
   return {RadPerSec(omega), RadPerSec(omega), RadPerSec(omega)};

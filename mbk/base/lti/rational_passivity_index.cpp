@@ -5,11 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/hermitian.h"
 #include "mbk/base/lti/positive_real.h"
@@ -18,7 +18,6 @@
 namespace mbk::lti {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidth = 1e-10;  // of the proven bounds, relative
 constexpr int kMaxTests = 400;
 

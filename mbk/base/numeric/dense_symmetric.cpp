@@ -18,4 +18,8 @@ SymmetricEigen generalized_symmetric_eigen(const Matrix& A, const Matrix& B) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+Vector hermitian_eigenvalues(const Eigen::MatrixXcd& A) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(A, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 }  // namespace mbk::numeric

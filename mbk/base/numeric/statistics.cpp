@@ -14,6 +14,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/core/vector4.h"
 
 namespace mbk::numeric {
@@ -119,7 +120,6 @@ double normal_probability(double z) {
 }
 
 double normal_quantile(double p) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (std::isnan(p)) return p;
   if (p <= 0.0) return -kInfinity;
   if (p >= 1.0) return kInfinity;

@@ -35,7 +35,6 @@ constexpr double kSettle = 0.05;                 // until what is under way has 
 constexpr double kCounted = 0.25;                // what has been refused is counted within [s]
 constexpr double kProbe = 0.03;                  // what has been sent shows within [s]
 constexpr double kStays = 0.1;                   // what must stay as it is is watched for so long [s]
-constexpr int kMaxAtOnce = 256;                  // datagrams of one tick: a flood must not hold the check up
 constexpr int kCopies = 3;                       // of what must not be believed: one may get lost
 constexpr auto kRules = word_table(BridgeRule{}).size();
 

@@ -16,7 +16,6 @@ using realtime::monotonic_ns;
 
 constexpr double kShortestWatchdog = 1e-3, kLongestWatchdog = 10.0;  // [s]
 constexpr double kAskAgain = 0.02;                                   // [s]
-constexpr int kMaxAtOnce = 256;  // datagrams of one tick: a flood must not hold the loop up
 
 std::int64_t after(double seconds) noexcept {
   return monotonic_ns() + std::llround(1e9 * seconds);

@@ -15,7 +15,6 @@ constexpr double kNap = 0.05;                     // [s]
 constexpr double kLongestStall = 2.0;             // that is made up for [s]
 constexpr std::int64_t kForget = 10'000'000'000;  // [ns]
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-constexpr int kMaxAtOnce = 256;  // datagrams of one tick
 
 }  // namespace
 

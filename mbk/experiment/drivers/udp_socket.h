@@ -9,6 +9,8 @@
 
 namespace mbk::drivers {
 
+inline constexpr int kMaxAtOnce = 256;  ///< datagrams that are taken in one tick: a flood must not hold anyone up
+
 /// Where datagrams come from or go to: IPv4.
 struct UdpAddress {
   std::uint32_t host = 0;  ///< a.b.c.d as a·2²⁴ + b·2¹⁶ + c·2⁸ + d

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/realtime/clock.h"
 #include "mbk/model/robot/workspace.h"
 
@@ -14,14 +15,13 @@ namespace {
 using Eigen::Vector2d;
 using Verdict = Finding::Verdict;
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr double kMinRate = 0.98;           // of the states that should have come
 constexpr double kMuchForce = 2.0;          // at a handle that nobody touches [N]
 constexpr double kNoisyForce = 0.5;         // standard deviation [N]
 constexpr double kMuchAcceleration = 0.5;   // at rest in a horizontal plane [m/s²]
 constexpr double kNoisyAcceleration = 0.5;  // standard deviation [m/s²]
 
-class Findings {
+class LiveFindings {
  public:
   void add(bool fine, Verdict otherwise, const std::string& text, const char* remedy) {
     all_.push_back(fine ? Finding{Verdict::fine, text} : Finding{otherwise, fmt::format("{}; {}", text, remedy)});
@@ -34,7 +34,7 @@ class Findings {
 
 /// Readings of a dead sensor.
 void check_readings(const char* name, const std::array<Readings, 2>& both, std::uint64_t frozen_after,
-                    Findings& findings) {
+                    LiveFindings& findings) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Readings& one = both[i];
     if (one.not_finite > 0) {
@@ -114,7 +114,7 @@ Result<LiveRecord> watch_robot(device::Device& robot, Hertz rate, double seconds
 }
 
 std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& facts, const LiveRecord& record) {
-  Findings findings;
+  LiveFindings findings;
   findings.add(record.link, Verdict::wrong,
                record.link ? "the link held" : fmt::format("the link broke after {:.2f} s", record.duration),
                "see the robot's program and its watchdog");

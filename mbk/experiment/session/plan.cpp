@@ -6,13 +6,13 @@
 #include <atomic>
 #include <thread>
 
+#include "mbk/base/core/units.h"
 #include "mbk/experiment/session/loop.h"
 #include "mbk/model/robot/workspace.h"
 
 namespace mbk::session {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr Eigen::Index kSpeedTicks = 20;
 
 /// One value of the schedule against one limit of the gate.

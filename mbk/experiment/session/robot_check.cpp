@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "mbk/base/config/document.h"
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/model/robot/workspace.h"
 #include "mbk/model/robot_file/planar_keys.h"
@@ -20,7 +21,6 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Verdict = Finding::Verdict;
 
-constexpr double kDegree = 0.017453292519943295;
 constexpr double kMillimetre = 1e-3, kMicrometre = 1e-6;
 constexpr double kShortestLink = 0.05, kLongestLink = 2.0;   // [m]: a robot for an arm
 constexpr double kMinMass = 0.05, kMaxMass = 20.0;           // of the robot at the hand [kg]

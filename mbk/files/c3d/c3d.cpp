@@ -14,7 +14,6 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
 constexpr std::byte kSignature{0x50};
 constexpr std::byte kFirstBlock{2};  ///< of the parameters; block 1 is the header
 constexpr std::byte kLastBlock{31};  ///< beyond it, the byte could be one of a text
@@ -96,7 +95,7 @@ class Decoder {
     layout_.scale = parameters_.number("POINT", "SCALE").value_or(header_scale);
     if (!std::isfinite(layout_.scale) || layout_.scale == 0.0) {
       return bad_data(fmt::format("POINT:SCALE is {}, which leaves open how numbers are stored", layout_.scale),
-                      std::string(kRemedy));
+                      std::string(kC3dRemedy));
     }
     if (header_scale != 0.0 && std::signbit(header_scale) != std::signbit(layout_.scale)) {
       return contradiction("as scale of the points, whose sign says how numbers are stored,", header_scale,
@@ -114,7 +113,7 @@ class Decoder {
     const double channels = parameters_.number("ANALOG", "USED").value_or(std::floor(in_frame / samples));
     if (std::max(channels, samples) > static_cast<double>(kMaxInWord) || channels != std::floor(channels)) {
       return bad_data(fmt::format("{} analog channels of {} samples in a frame are not possible", channels, samples),
-                      std::string(kRemedy));
+                      std::string(kC3dRemedy));
     }
     if (channels * samples != in_frame && channels * samples <= static_cast<double>(kMaxInWord)) {
       return contradiction(fmt::format("analog numbers in a frame, of {} samples each,", samples), in_frame,
@@ -173,7 +172,7 @@ class Decoder {
                        block));
     }
     if (!(block >= 2.0)) {
-      return bad_data(fmt::format("the data are said to begin at block {}", block), std::string(kRemedy));
+      return bad_data(fmt::format("the data are said to begin at block {}", block), std::string(kC3dRemedy));
     }
     layout_.data = (whole(block) - 1) * kC3dBlock;
     const std::uint64_t left = file_.view.size() - std::min<std::uint64_t>(layout_.data, file_.view.size());
@@ -181,7 +180,7 @@ class Decoder {
     if (layout_.frames > left / layout_.frame_size()) {
       return bad_data(fmt::format("{} frames of {} bytes need more than the {} bytes from block {} on", layout_.frames,
                                   layout_.frame_size(), left, block),
-                      std::string(kRemedy));
+                      std::string(kC3dRemedy));
     }
     if (const std::uint64_t room = left / layout_.frame_size() - layout_.frames;
         room > 0 && room * layout_.frame_size() >= kC3dBlock) {
@@ -347,12 +346,12 @@ Result<Parameters> parameters_of(std::span<const std::byte> bytes) {
   if (bytes.size() < kC3dBlock || bytes.size() < begin + kParameterHeader) {
     return bad_data(fmt::format("a C3D file of {} bytes ends before its parameters, which begin at block {}",
                                 bytes.size(), std::to_integer<int>(bytes[0])),
-                    std::string(kRemedy));
+                    std::string(kC3dRemedy));
   }
   const int processor = std::to_integer<int>(bytes[begin + 3]);
   if (processor < static_cast<int>(C3dProcessor::intel) || processor > static_cast<int>(C3dProcessor::sgi)) {
     return bad_data(fmt::format("a C3D file of processor {}; 84 (Intel), 85 (DEC) and 86 (SGI) are known", processor),
-                    std::string(kRemedy));
+                    std::string(kC3dRemedy));
   }
   const C3dBytes file(bytes, C3dProcessor{static_cast<std::uint8_t>(processor)});
   // The count of blocks is one byte and often wrong; the data begin behind the parameters in any case.

@@ -15,7 +15,7 @@ constexpr std::size_t kKeyAt = 298, kCountAt = 300, kTimesAt = 304, kLabelsAt = 
 constexpr std::size_t kMaxInHeader = 18;
 constexpr double kSameTime = 1e-4;  ///< [s]: two records of one event differ by the rounding of 32-bit reals
 
-std::string trimmed(std::string text) {
+std::string without_padding(std::string text) {
   text.resize(text.find_last_not_of(' ') + 1);
   return text;
 }
@@ -67,7 +67,7 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
   const std::size_t in_header = file.word(kKeyAt) == kFourLetterLabels ? file.word(kCountAt) : 0;
   for (std::size_t k = 0; k < in_header && k < kMaxInHeader; ++k) {
     const double time = file.real(kTimesAt + 4 * k);
-    std::string name = trimmed(printable(file.view.part(kLabelsAt + 4 * k, 4).padded_text()));
+    std::string name = without_padding(printable(file.view.part(kLabelsAt + 4 * k, 4).padded_text()));
     if (std::isfinite(time)) {
       add(events, {time, named(std::move(name))});
     } else {

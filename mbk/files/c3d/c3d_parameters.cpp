@@ -13,7 +13,6 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kMaxDimensions = 7;
-constexpr std::string_view kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
 
 double vax_real(std::uint32_t words) {
   const std::uint32_t bits = words << 16u | words >> 16u;  // the word with sign and exponent comes first
@@ -57,13 +56,16 @@ double value_at(const C3dParameter& parameter, std::size_t i, bool unsigned_word
 /// Type, dimensions and data of a parameter, which stand at `offset`.
 Result<C3dParameter> parameter_at(const C3dBytes& file, std::size_t offset, std::string_view name) {
   const std::string where = fmt::format("parameter {}", name);
-  const auto short_of = [&] { return bad_data("the parameter section ends within it", std::string(kRemedy), where); };
+  const auto short_of = [&] {
+    return bad_data("the parameter section ends within it", std::string(kC3dRemedy), where);
+  };
   if (!file.view.holds(offset, 2)) return short_of();
   const int type = file.view.at<std::int8_t>(offset);
   const std::size_t count = file.view.at<std::uint8_t>(offset + 1);
-  if (!is_type(type)) return bad_data(fmt::format("unknown type {}", type), std::string(kRemedy), where);
+  if (!is_type(type)) return bad_data(fmt::format("unknown type {}", type), std::string(kC3dRemedy), where);
   if (count > kMaxDimensions) {
-    return bad_data(fmt::format("{} dimensions are more than {}", count, kMaxDimensions), std::string(kRemedy), where);
+    return bad_data(fmt::format("{} dimensions are more than {}", count, kMaxDimensions), std::string(kC3dRemedy),
+                    where);
   }
   if (!file.view.holds(offset + 2, count)) return short_of();
   C3dParameter parameter{C3dParameter::Type{static_cast<std::int8_t>(type)}, {}, file};
@@ -96,7 +98,7 @@ Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begi
   std::map<std::pair<int, std::string>, C3dParameter> found;
   for (std::size_t at = begin; at < end;) {
     const auto damaged = [&](std::string_view what) {
-      return bad_data(fmt::format("{} at byte {} of the parameter section", what, at - begin), std::string(kRemedy));
+      return bad_data(fmt::format("{} at byte {} of the parameter section", what, at - begin), std::string(kC3dRemedy));
     };
     if (!file.view.holds(at, 1)) return damaged("the file ends");
     const auto name_size = static_cast<std::size_t>(std::abs(int{file.view.at<std::int8_t>(at)}));  // < 0: locked

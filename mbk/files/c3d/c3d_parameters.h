@@ -15,6 +15,10 @@ namespace mbk::recording {
 /// C3D files count in blocks of 512 bytes, from 1.
 inline constexpr std::size_t kC3dBlock = 512;
 
+/// What helps where its bytes contradict themselves.
+inline constexpr std::string_view kC3dRemedy =
+    "the file is damaged or cut short: copy it again from where it was recorded";
+
 /// What wrote the numbers of a C3D file; the value is that of the file's fourth parameter byte.
 enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, sgi = 86 };
 

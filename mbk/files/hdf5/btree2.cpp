@@ -9,7 +9,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr std::size_t kHighest = 32;                     ///< levels
+constexpr std::size_t kMostDepth = 32;                   ///< levels
 constexpr std::size_t kPrefix = 4 + 1 + 1;               ///< [bytes] before the records of a node
 constexpr std::size_t kFrame = kPrefix + kChecksumSize;  ///< [bytes] of a node that are no records
 
@@ -21,9 +21,9 @@ struct Level {
   std::size_t total_size = 0;     ///< [bytes] of that pointer's last field: records in the child and under it
 };
 
-class Walk {
+class Walk2 {
  public:
-  Walk(File& file, const std::function<Result<void>(BTree2, Cursor)>& use) : file_(file), use_(use) {}
+  Walk2(File& file, const std::function<Result<void>(BTree2, Cursor)>& use) : file_(file), use_(use) {}
 
   Result<void> run(std::uint64_t address) {
     const Sizes sizes = file_.sizes;
@@ -39,7 +39,7 @@ class Walk {
     in.skip(2);  // when nodes are split and merged
     const std::uint64_t root = in.address();
     const std::uint64_t records = in.word();
-    if (!known || depth > kHighest || record_size_ == 0 || !find_levels(depth)) {
+    if (!known || depth > kMostDepth || record_size_ == 0 || !find_levels(depth)) {
       return damaged(fmt::format("the B-tree at byte {} is broken", address));
     }
     if (root == kUndefined) return {};  // nothing was put into it
@@ -105,7 +105,7 @@ class Walk {
 }  // namespace
 
 Result<void> for_each_record(File& file, std::uint64_t header, const std::function<Result<void>(BTree2, Cursor)>& use) {
-  return Walk(file, use).run(header);
+  return Walk2(file, use).run(header);
 }
 
 }  // namespace mbk::hdf5

@@ -13,7 +13,7 @@ constexpr unsigned kMaxPageBits = 32;
 
 constexpr std::string_view kWhat = "an index of chunks";
 
-tl::unexpected<Error> broken(std::uint64_t address) {
+tl::unexpected<Error> broken_array(std::uint64_t address) {
   return damaged(fmt::format("the index of chunks at byte {} is broken", address));
 }
 
@@ -70,12 +70,12 @@ struct Array {
     const std::size_t head_size = prefix_size() + extra;
     std::uint64_t bytes = 0;
     if (!multiply(paged ? 0 : count, element_size, bytes) || bytes > file.bytes.size()) {
-      return broken(address);
+      return broken_array(address);
     }
     const auto block = file.checked_block(address, head_size + bytes + kChecksumSize, kWhat);
     if (!block) return tl::unexpected(block.error());
     Cursor in = file.cursor(*block);
-    if (!begins(in, signature)) return broken(address);
+    if (!begins(in, signature)) return broken_array(address);
     in.skip(head_size - in.at());
     if (!paged) return elements(in, first, count);
     if (written.bits.empty()) written = {block->subspan(head_size - bitmap_size), 0};
@@ -107,7 +107,7 @@ struct FixedArray : Array {
     const std::uint64_t count = in.length();
     const std::uint64_t data = in.address();
     if (!known || !element_size_is_possible() || page_bits > kMaxPageBits || count > file.bytes.size()) {
-      return broken(address);
+      return broken_array(address);
     }
     if (data == kUndefined) return {};
     const std::uint64_t per_page = std::uint64_t{1} << page_bits;
@@ -140,7 +140,7 @@ struct ExtensibleArray : Array {
     const std::uint64_t index = in.address();
     if (!known || !element_size_is_possible() || bits == 0 || bits > 64 || page_bits > kMaxPageBits ||
         !std::has_single_bit(least) || !std::has_single_bit(min_pointers) || log2_of(least) > bits) {
-      return broken(address);
+      return broken_array(address);
     }
     if (index == kUndefined) return {};
     return index_block(index);
@@ -158,7 +158,7 @@ struct ExtensibleArray : Array {
     const auto block = file.checked_block(address, size, kWhat);
     if (!block) return tl::unexpected(block.error());
     Cursor in = file.cursor(*block);
-    if (!begins(in, "EAIB")) return broken(address);
+    if (!begins(in, "EAIB")) return broken_array(address);
     in.address();  // of the header
     if (auto ok = elements(in, 0, in_index); !ok) return ok;
     std::uint64_t first = in_index;
@@ -185,12 +185,12 @@ struct ExtensibleArray : Array {
     std::uint64_t size = 0;
     if (bitmap > file.bytes.size() || !multiply(blocks, bitmap + file.sizes.address, size) ||
         size > file.bytes.size()) {
-      return broken(address);
+      return broken_array(address);
     }
     const auto block = file.checked_block(address, head_size + size + kChecksumSize, kWhat);
     if (!block) return tl::unexpected(block.error());
     Cursor in = file.cursor(*block);
-    if (!begins(in, "EASB")) return broken(address);
+    if (!begins(in, "EASB")) return broken_array(address);
     in.skip(head_size - in.at());
     return data_blocks(in, super, first, in.take(blocks * bitmap));
   }
@@ -204,7 +204,7 @@ struct ExtensibleArray : Array {
     for (std::uint64_t k = 0; k < blocks_in(super); ++k, first += count) {
       const std::uint64_t address = addresses.address();
       if (address == kUndefined) continue;
-      if (written.empty() && pages > 1) return broken(address);
+      if (written.empty() && pages > 1) return broken_array(address);
       if (auto ok = data_block(address, "EADB", offset_size(), first, count, {written, k * pages}); !ok) return ok;
     }
     return {};

@@ -9,29 +9,29 @@
 namespace mbk::hdf5 {
 namespace {
 
-using Kind = ChunkIndex::Kind;
+using IndexKind = ChunkIndex::Kind;
 
-class Reader {
+class IndexReader {
  public:
-  Reader(File& file, const ChunkIndex& index, const Dataspace& space, bool packed, std::uint64_t chunk_bytes,
-         const std::function<Result<void>(const Chunk&)>& use)
+  IndexReader(File& file, const ChunkIndex& index, const Dataspace& space, bool packed, std::uint64_t chunk_bytes,
+              const std::function<Result<void>(const Chunk&)>& use)
       : file_(file), index_(index), space_(space), packed_(packed), chunk_bytes_(chunk_bytes), use_(use) {}
 
   Result<void> read() {
     switch (index_.kind) {
-      case Kind::btree1:
+      case IndexKind::btree1:
         return btree1();
-      case Kind::btree2:
+      case IndexKind::btree2:
         return btree2();
-      case Kind::single:
+      case IndexKind::single:
         return use_({std::vector<std::uint64_t>(rank()), index_.address, index_.single_size.value_or(chunk_bytes_),
                      index_.single_skipped});
-      case Kind::implicit:
+      case IndexKind::implicit:
         return implicit();
-      case Kind::fixed_array:
+      case IndexKind::fixed_array:
         number_chunks(rank());
         return for_each_fixed(file_, index_.address, packed_, element());
-      case Kind::extensible_array:
+      case IndexKind::extensible_array:
         number_chunks(static_cast<std::size_t>(std::ranges::find(space_.maximum, kUndefined) - space_.maximum.begin()));
         return for_each_extensible(file_, index_.address, packed_, element());
     }
@@ -149,7 +149,7 @@ class Reader {
 
 Result<void> for_each_chunk(File& file, const ChunkIndex& index, const Dataspace& space, bool packed,
                             std::uint64_t chunk_bytes, const std::function<Result<void>(const Chunk&)>& use) {
-  return Reader(file, index, space, packed, chunk_bytes, use).read();
+  return IndexReader(file, index, space, packed, chunk_bytes, use).read();
 }
 
 }  // namespace mbk::hdf5

@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint64_t kMaxExpansion = 1100;
 constexpr std::uint64_t kSlack = 256;  ///< [bytes] of compressed data that say nothing
 
-class Reader {
+class ChunkReader {
  public:
-  Reader(File& file, const ChunkIndex& index, const Filters& filters, const Dataspace& space, Elements& elements)
+  ChunkReader(File& file, const ChunkIndex& index, const Filters& filters, const Dataspace& space, Elements& elements)
       : file_(file), index_(index), filters_(filters), space_(space), elements_(elements) {}
 
   Result<void> read() {
@@ -128,7 +128,7 @@ class Reader {
 
 Result<void> read_chunks(File& file, const ChunkIndex& index, const Filters& filters, const Dataspace& space,
                          Elements& elements) {
-  return Reader(file, index, filters, space, elements).read();
+  return ChunkReader(file, index, filters, space, elements).read();
 }
 
 }  // namespace mbk::hdf5

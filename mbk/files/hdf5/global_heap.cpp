@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint64_t kNodeMemory = 96;  ///< [bytes], of an entry of the map
 
-tl::unexpected<Error> broken(std::uint64_t address) {
+tl::unexpected<Error> broken_heap(std::uint64_t address) {
   return damaged(fmt::format("the global heap at byte {} is broken", address));
 }
 
@@ -21,7 +21,7 @@ Result<GlobalHeap::Collection> GlobalHeap::read(File& file, std::uint64_t addres
   const bool known = head.is("GCOL") && head.byte() == 1;
   head.skip(3);
   const std::uint64_t size = head.length();
-  if (!known || size < prefix_size) return broken(address);
+  if (!known || size < prefix_size) return broken_heap(address);
   const auto block = file.block(address, size, "a global heap");
   if (!block) return tl::unexpected(block.error());
 
@@ -33,7 +33,7 @@ Result<GlobalHeap::Collection> GlobalHeap::read(File& file, std::uint64_t addres
     const std::uint64_t length = in.length();
     if (number == 0) break;  // what is left is free
     const Bytes object = in.take(length);
-    if (!in.ok() || !objects.emplace(number, object).second) return broken(address);
+    if (!in.ok() || !objects.emplace(number, object).second) return broken_heap(address);
     if (auto ok = file.budget.keep(1, kNodeMemory); !ok) return tl::unexpected(ok.error());
     in.skip(std::min<std::uint64_t>((8 - length % 8) % 8, in.left()));
   }

@@ -18,8 +18,8 @@ bool read_chunk_shape(Cursor& in, std::size_t dimensions, std::size_t bytes_each
   return in.ok();
 }
 
-Result<Layout> broken() {
-  return damaged("its layout is broken");
+Result<Layout> broken_layout() {
+  return damaged("its layout is broken_layout");
 }
 
 /// Versions 1 and 2, as HDF5 wrote before 1.6 and MATLAB up to 7.4 (IV.A.2.i).
@@ -29,12 +29,12 @@ Result<Layout> before_1_6(Cursor& in) {
   const std::size_t dimensions = in.byte();
   const int kind = in.byte();
   in.skip(5);
-  if (kind != kCompact && kind != kContiguous && kind != kChunked) return broken();
+  if (kind != kCompact && kind != kContiguous && kind != kChunked) return broken_layout();
   const std::uint64_t address = kind == kCompact ? kUndefined : in.address();
   if (kind == kChunked) {
     layout.kind = Layout::Kind::chunked;
     layout.chunks.address = address;
-    if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken();
+    if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken_layout();
     return layout;
   }
   in.skip(4 * dimensions);  // the dataspace says them again
@@ -46,7 +46,7 @@ Result<Layout> before_1_6(Cursor& in) {
     layout.kind = Layout::Kind::compact;
     layout.compact = in.take(in.dword());
   }
-  if (!in.ok()) return broken();
+  if (!in.ok()) return broken_layout();
   return layout;
 }
 
@@ -56,7 +56,7 @@ Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
   const unsigned flags = in.byte();
   const std::size_t dimensions = in.byte();
   const std::size_t bytes_each = in.byte();
-  if (!read_chunk_shape(in, dimensions, bytes_each, chunks)) return broken();
+  if (!read_chunk_shape(in, dimensions, bytes_each, chunks)) return broken_layout();
   chunks.whole_edges = (flags & kPlainEdges) == 0;
   const int kind = in.byte();
   switch (kind) {
@@ -88,7 +88,7 @@ Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
       return layout;
   }
   chunks.address = in.address();
-  if (!in.ok()) return broken();
+  if (!in.ok()) return broken_layout();
   return layout;
 }
 
@@ -116,13 +116,13 @@ Result<Layout> read_layout(Cursor in) {
     if (version == 4) return chunked_since_1_10(in, std::move(layout));
     const std::size_t dimensions = in.byte();
     layout.chunks.address = in.address();
-    if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken();
+    if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken_layout();
   } else if (kind == kVirtual) {
     layout.what = "kept in other datasets";
   } else {
-    return broken();
+    return broken_layout();
   }
-  if (!in.ok()) return broken();
+  if (!in.ok()) return broken_layout();
   return layout;
 }
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint64_t kLinkMemory = 160;  ///< [bytes], without its texts
 
-class Reader {
+class LinkReader {
  public:
-  explicit Reader(File& file) : file_(file) {}
+  explicit LinkReader(File& file) : file_(file) {}
   std::vector<Link> links;
 
   /// A symbol table message: a B-tree of nodes whose names stand in a local heap (III.B to III.D).
@@ -140,7 +140,7 @@ bool is_group(const ObjectHeader& header) {
 }
 
 Result<std::vector<Link>> read_links(File& file, const ObjectHeader& header) {
-  Reader reader(file);
+  LinkReader reader(file);
   for (const Message& message : header.messages) {
     const Cursor body = file.cursor(message.body);
     Result<void> ok;

@@ -19,9 +19,9 @@ struct Segment {
   std::uint64_t size;
 };
 
-class Reader {
+class HeaderReader {
  public:
-  explicit Reader(File& file) : file_(file) {}
+  explicit HeaderReader(File& file) : file_(file) {}
   ObjectHeader header;
 
   Result<void> read(std::uint64_t address) {
@@ -126,7 +126,7 @@ const Message* ObjectHeader::find(MessageType type) const {
 }
 
 Result<ObjectHeader> read_object_header(File& file, std::uint64_t address) {
-  Reader reader(file);
+  HeaderReader reader(file);
   if (auto ok = reader.read(address); !ok) return tl::unexpected(ok.error());
   return std::move(reader.header);
 }

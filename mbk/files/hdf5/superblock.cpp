@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 constexpr std::size_t kFirstUserBlock = 512;
 
-tl::unexpected<Error> broken() {
+tl::unexpected<Error> broken_superblock() {
   return damaged("its HDF5 superblock is broken");
 }
 
@@ -66,18 +66,18 @@ Result<Superblock> read_superblock(Bytes file) {
     superblock.sizes.length = in.byte();
     open = version == 3 && (in.byte() & 1u) != 0;
     if (version == 2) in.skip(1);
-    if (!possible(superblock.sizes.address)) return broken();
+    if (!possible(superblock.sizes.address)) return broken_superblock();
     Cursor addresses(in.take(4 * superblock.sizes.address), superblock.sizes);
     base = addresses.address();
     addresses.address();  // extension
     end = addresses.address();
     superblock.root = addresses.address();
     in.skip(kChecksumSize);
-    if (in.ok() && !checksum_is_right(file.subspan(*start, in.at()))) return broken();
+    if (in.ok() && !checksum_is_right(file.subspan(*start, in.at()))) return broken_superblock();
   }
   if (!in.ok() || !possible(superblock.sizes.address) || !possible(superblock.sizes.length) || end == kUndefined ||
       end < base) {
-    return broken();
+    return broken_superblock();
   }
   // A user block that was put before the file or taken away moves everything.
   const std::uint64_t size = end - base;

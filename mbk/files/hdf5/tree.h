@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -37,6 +38,11 @@ struct Value {
   std::vector<std::uint64_t> shape;  ///< slowest dimension first, as HDF5 counts; empty: a single value
   std::variant<Numbers, Texts, References, Unread> data;
 };
+
+/// A text by itself.
+[[nodiscard]] inline Value one_text(std::string text) {
+  return {{}, Texts{std::move(text)}};
+}
 
 using Attributes = std::map<std::string, Value>;
 

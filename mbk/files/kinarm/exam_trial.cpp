@@ -15,7 +15,6 @@
 namespace mbk::recording {
 namespace {
 
-constexpr double kRateTolerance = 1e-3;   ///< relative
 constexpr double kEpsilon = 0x1p-23;      ///< of a 32-bit real
 constexpr double kLengthsMatter = 5e-4;   ///< share of the motion by which wrong lengths may be off
 constexpr double kNoMotion = 2e-2;        ///< share by which a recorded hand is another one, whatever the lengths

@@ -15,6 +15,8 @@
 
 namespace mbk::recording {
 
+inline constexpr double kRateTolerance = 1e-3;  ///< of two rates that are to be one, relative
+
 /// A signal of a trial under its own name.
 struct ExamSignal {
   std::string name, unit;

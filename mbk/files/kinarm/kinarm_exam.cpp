@@ -26,7 +26,6 @@ constexpr std::string_view kRaw = "raw/";
 constexpr std::string_view kCommonFolder = "raw/common/", kCommonC3d = "raw/common.c3d";
 constexpr std::string_view kC3d = ".c3d", kSignal = ".kinematics", kPosition = ".position";
 constexpr std::uint64_t kBeginOfC3d = std::uint64_t{160} << 10;  ///< which parameters seldom exceed
-constexpr double kRateTolerance = 1e-3;                          ///< relative
 
 /// A folder or C3D file of the archive: a trial, or a part of one that was split.
 struct Part {

@@ -12,7 +12,6 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::string_view kMetadataPrefix = "metadata.";
-constexpr std::size_t kLongestName = 63;  ///< of MATLAB
 
 template <class Named>
 const Named* find(const std::vector<Named>& all, std::string_view name) {
@@ -57,7 +56,8 @@ std::string unit_key(std::string_view channel) {
 
 bool is_matlab_name(std::string_view name) {
   const auto inner = [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !name.empty() && name.size() <= kLongestName && is_letter(name.front()) && std::ranges::all_of(name, inner);
+  return !name.empty() && name.size() <= kLongestMatlabName && is_letter(name.front()) &&
+         std::ranges::all_of(name, inner);
 }
 
 void take_annotations(Contents& contents) {
@@ -96,7 +96,7 @@ Result<std::map<std::string, std::string>> metadata_to_write(const Recording& re
   for (const auto& [key, value] : *metadata) {
     if (!is_matlab_name(key)) {
       return bad_data(fmt::format("metadata '{}' cannot be the name of a MATLAB field", printable(key)),
-                      fmt::format("use a letter, then letters, digits and _, at most {}", kLongestName));
+                      fmt::format("use a letter, then letters, digits and _, at most {}", kLongestMatlabName));
     }
   }
   return metadata;

@@ -26,6 +26,7 @@ void take_annotations(Contents& contents);
 [[nodiscard]] std::string several_lines_note(std::string_view key, std::size_t lines);
 
 /// A letter, then letters, digits and _; 63 at most.
+inline constexpr std::size_t kLongestMatlabName = 63;
 [[nodiscard]] bool is_matlab_name(std::string_view name);
 
 /// The metadata of a recording, and the units of channels.

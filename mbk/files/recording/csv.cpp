@@ -22,7 +22,6 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMaxColumns = 10'000, kMostCells = kMaxColumns + 2;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string place(std::size_t line) {
@@ -76,7 +75,7 @@ void take_comments(CsvText& text, Contents& contents) {
 }
 
 /// What a column holds beside numbers.
-struct Column {
+struct CsvColumn {
   std::optional<Error> obstacle;  ///< its first cell that is no number
   Index instants = 0;             ///< cells that are times of day or dates
   bool dates = false;
@@ -144,8 +143,8 @@ class Table {
     trailing_ = ends_empty && (names.empty() || names.size() + 1 == columns_ || names.back().empty());
     if (trailing_) --columns_;
     if (names.size() == columns_ + 1 && names.back().empty()) names.pop_back();
-    if (columns_ > kMaxColumns) {
-      return bad_data(fmt::format("it has more than {} columns", kMaxColumns), "every sample is one line",
+    if (columns_ > kMaxCsvColumns) {
+      return bad_data(fmt::format("it has more than {} columns", kMaxCsvColumns), "every sample is one line",
                       place(first.number));
     }
     kinds_.resize(columns_);
@@ -345,7 +344,7 @@ class Table {
   }
 
   /// [s] since the midnight before the first.
-  static double seconds(Column& column, const Instant& instant) {
+  static double seconds(CsvColumn& column, const Instant& instant) {
     constexpr double kDay = 86'400.0;
     const bool first = column.instants++ == 0;
     if (first) column.dates = instant.day.has_value(), column.first_day = instant.day.value_or(0);
@@ -389,7 +388,7 @@ class Table {
 
   /// The unit of a column, as a line under its name says it; that of times.
   Result<void> settle_unit(std::size_t c) {
-    Column& column = kinds_[c];
+    CsvColumn& column = kinds_[c];
     Array& array = contents.arrays[c];
     const std::string called = array.name.empty() ? fmt::format("column {}", c + 1) : fmt::format("'{}'", array.name);
     if (column.instants == 0) {
@@ -453,7 +452,7 @@ class Table {
 
   CsvHead head_;
   std::size_t columns_ = 0;
-  std::vector<Column> kinds_;
+  std::vector<CsvColumn> kinds_;
   std::vector<Odd> odd_;   ///< the line that is worked on, where it is not as most are
   bool trailing_ = false;  ///< every line ends with a separator
   bool decimal_commas_ = false, comma_is_sure_ = false;

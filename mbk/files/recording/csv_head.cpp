@@ -15,7 +15,6 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kFew = 40, kMany = 2000;  ///< lines that are looked at: at first, and where these do not suffice
-constexpr std::size_t kMostCells = 10'002;
 constexpr auto kSeparators = std::to_array<char>({';', '\t', '|', ',', kBlanks});
 
 enum class Cell { empty, missing, number, text };

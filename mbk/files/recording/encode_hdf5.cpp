@@ -7,17 +7,13 @@
 namespace mbk::recording {
 namespace {
 
-hdf5::Value one_text(std::string_view text) {
-  return {{}, hdf5::Texts{std::string(text)}};
-}
-
 hdf5::Dataset series(const Vector& values) {
   return {{{static_cast<std::uint64_t>(values.size())}, hdf5::Numbers{values, hdf5::Stored::float64}}, {}};
 }
 
 hdf5::Dataset time_series(const Vector& values) {
   hdf5::Dataset dataset = series(values);
-  dataset.attributes["unit"] = one_text("s");
+  dataset.attributes["unit"] = hdf5::one_text("s");
   return dataset;
 }
 
@@ -40,21 +36,21 @@ hdf5::Group hdf5_events(const std::vector<Event>& events) {
 
 Result<std::string> encode_hdf5(const Recording& recording) {
   hdf5::Group root;
-  root.attributes["software"] = one_text(fmt::format("mbk {}", version()));
+  root.attributes["software"] = hdf5::one_text(fmt::format("mbk {}", version()));
   for (const auto& [key, value] : recording.metadata) {
     if (key == "format") {
       return bad_data("metadata 'format' cannot be written: this attribute names the layout of the file",
                       "rename that entry");
     }
-    root.attributes[key] = one_text(value);
+    root.attributes[key] = hdf5::one_text(value);
   }
-  root.attributes["format"] = one_text(kLayout);
+  root.attributes["format"] = hdf5::one_text(std::string(kLayout));
   root.datasets["time"] = time_series(recording.time);
   hdf5::Group& channels = root.groups["channels"];
   for (const Channel& channel : recording.channels) {
     hdf5::Dataset& dataset = channels.datasets[channel.name] = series(channel.values);
-    dataset.attributes["unit"] = one_text(channel.unit);
-    dataset.attributes["frame"] = one_text(channel.frame);
+    dataset.attributes["unit"] = hdf5::one_text(channel.unit);
+    dataset.attributes["frame"] = hdf5::one_text(channel.frame);
   }
   if (!recording.events.empty()) root.groups["events"] = hdf5_events(recording.events);
   return hdf5::serialise(root);

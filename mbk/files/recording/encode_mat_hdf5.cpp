@@ -11,12 +11,8 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kHeaderText = 116, kUserBlock = 512;
+constexpr std::size_t kUserBlock = 512;
 constexpr std::string_view kReferred = "#refs#";
-
-hdf5::Value one_text(std::string text) {
-  return {{}, hdf5::Texts{std::move(text)}};
-}
 
 hdf5::Value one_number(double value, hdf5::Stored stored) {
   return {{}, hdf5::Numbers{Vector::Constant(1, value), stored}};
@@ -25,11 +21,12 @@ hdf5::Value one_number(double value, hdf5::Stored stored) {
 hdf5::Dataset dataset(const Matrix& values) {
   const std::vector<std::uint64_t> shape{static_cast<std::uint64_t>(values.cols()),
                                          static_cast<std::uint64_t>(values.rows())};
-  return {{shape, hdf5::Numbers{values.reshaped(), hdf5::Stored::float64}}, {{"MATLAB_class", one_text("double")}}};
+  return {{shape, hdf5::Numbers{values.reshaped(), hdf5::Stored::float64}},
+          {{"MATLAB_class", hdf5::one_text("double")}}};
 }
 
 hdf5::Dataset dataset(const std::string& text) {
-  hdf5::Attributes attributes{{"MATLAB_class", one_text("char")},
+  hdf5::Attributes attributes{{"MATLAB_class", hdf5::one_text("char")},
                               {"MATLAB_int_decode", one_number(2, hdf5::Stored::int32)}};
   const std::u16string units = utf16_from_utf8(text);
   if (units.empty()) {  // its dimensions stand in its place
@@ -64,12 +61,12 @@ class Encoder {
       referred[key] = dataset(cell);
       references.paths.push_back(fmt::format("/{}/{}", kReferred, key));
     }
-    group.datasets[name] = {{{1, cells.size()}, std::move(references)}, {{"MATLAB_class", one_text("cell")}}};
+    group.datasets[name] = {{{1, cells.size()}, std::move(references)}, {{"MATLAB_class", hdf5::one_text("cell")}}};
   }
 
   void add(hdf5::Group& group, const std::string& name, const MatVariable::Structure& fields) {
     hdf5::Group& structure = group.groups[name];
-    structure.attributes["MATLAB_class"] = one_text("struct");
+    structure.attributes["MATLAB_class"] = hdf5::one_text("struct");
     hdf5::Texts names;
     for (const MatVariable& field : fields) {
       add(structure, field);
@@ -81,7 +78,7 @@ class Encoder {
 
 std::string user_block() {
   std::string block = "MATLAB 7.3 MAT-file, written by mbk HDF5 schema 1.00 .";
-  block.resize(kHeaderText, ' ');
+  block.resize(kMatHeaderText, ' ');
   block.append(8, '\0');                   // no data of subsystems
   block += std::string_view("\0\2IM", 4);  // version 0x0200, least significant byte first
   block.resize(kUserBlock, '\0');

@@ -19,7 +19,6 @@ constexpr std::uint32_t kInt8 = 1, kUint16 = 4, kInt32 = 5, kUint32 = 6, kDouble
 // Classes of arrays.
 constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kCharClass = 4, kDoubleClass = 6;
 
-constexpr std::size_t kHeaderText = 116;
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 31;  ///< [bytes], since sizes within a v5 file have 32 bits
 
 /// Numbers in the byte order of this machine; the header says which that is.
@@ -90,7 +89,7 @@ std::string encoded(const std::string& name, const MatVariable::Structure& field
 
 std::string header() {
   std::string text = "MATLAB 5.0 MAT-file, written by mbk";
-  text.resize(kHeaderText, ' ');
+  text.resize(kMatHeaderText, ' ');
   text.append(8, '\0');  // no data of subsystems
   return text + raw(std::uint16_t{0x0100}) + raw(static_cast<std::uint16_t>('M' << 8 | 'I'));
 }

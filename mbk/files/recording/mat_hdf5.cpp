@@ -47,9 +47,9 @@ const hdf5::References* references_of(const hdf5::Value& value) {
   return std::get_if<hdf5::References>(&value.data);
 }
 
-class Decoder {
+class MatDecoder {
  public:
-  explicit Decoder(hdf5::Group& root) : root_(root) { contents.format = "MAT v7.3"; }
+  explicit MatDecoder(hdf5::Group& root) : root_(root) { contents.format = "MAT v7.3"; }
   Contents contents;
 
   void group(hdf5::Group& group, const std::string& prefix, int depth = 0) {
@@ -206,7 +206,7 @@ bool is_mat_hdf5(std::span<const std::byte> file, const hdf5::Group& root) {
 }
 
 Contents contents_of_mat_hdf5(hdf5::Group root) {
-  Decoder decoder(root);
+  MatDecoder decoder(root);
   decoder.group(root, "");
   return std::move(decoder.contents);
 }

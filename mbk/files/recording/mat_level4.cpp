@@ -12,7 +12,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kHeaderSize = 20;
-constexpr std::uint32_t kLongestName = 256;
+constexpr std::uint32_t kLongestNameInFile = 256;
 
 /// type = 1000 M + 100 O + 10 P + T: byte order, always 0, number format, kind of matrix.
 struct Header {
@@ -50,7 +50,8 @@ std::optional<Header> header_at(ByteView file, std::uint64_t offset) {
   if (!possible_type(at(0), kLittle == file.swapped ? 1 : 0) || at(3) > 1) return std::nullopt;
   Header header{at(0) % 100 / 10, at(0) % 10, at(1), at(2), at(3) == 1, "", 0, 0};
   const std::uint32_t name_size = at(4);
-  if (name_size == 0 || name_size > kLongestName || !file.holds(offset + kHeaderSize, name_size)) return std::nullopt;
+  if (name_size == 0 || name_size > kLongestNameInFile || !file.holds(offset + kHeaderSize, name_size))
+    return std::nullopt;
   header.name = file.part(static_cast<std::size_t>(offset) + kHeaderSize, name_size).padded_text();
   if (header.name.empty()) return std::nullopt;
   for (const char c : header.name) {

@@ -10,6 +10,8 @@
 
 namespace mbk::recording {
 
+inline constexpr std::size_t kMatHeaderText = 116;  ///< bytes with which a MAT-file of level 5 or 7.3 says what it is
+
 /// A variable of MATLAB, or a field of a structure.
 struct MatVariable {
   using Structure = std::vector<MatVariable>;

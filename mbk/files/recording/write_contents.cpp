@@ -16,8 +16,6 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kLongestName = 63;  ///< of MATLAB
-
 /// Names that a format can hold, each once, and what became of those that it cannot.
 class Names {
  public:
@@ -28,7 +26,7 @@ class Names {
     std::string name = wanted;
     for (int k = 2; !taken_.insert(name).second; ++k) {
       const std::string number = fmt::format("_{}", k);
-      name = wanted.substr(0, kLongestName - number.size()) + number;
+      name = wanted.substr(0, kLongestMatlabName - number.size()) + number;
     }
     if (name != from) said_.push_back(fmt::format("'{}' is called '{}' there", from, name));
     return name;
@@ -49,14 +47,10 @@ std::string matlab_name(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return !is_matlab_name(std::string("a") + c); }, '_');
   if (!is_matlab_name(name.substr(0, 1))) name = "x" + name;
-  return name.substr(0, kLongestName);
+  return name.substr(0, kLongestMatlabName);
 }
 
 // ---- HDF5 ----
-
-hdf5::Value one_text(std::string text) {
-  return {{}, hdf5::Texts{std::move(text)}};
-}
 
 hdf5::Value one_number(double value) {
   return {{}, hdf5::Numbers{Vector::Constant(1, value), hdf5::Stored::float64}};
@@ -94,18 +88,18 @@ std::string flat(std::string name) {
 
 Result<std::string> encode_contents_hdf5(const Contents& contents, std::vector<std::string>& said) {
   hdf5::Group root;
-  root.attributes["software"] = one_text(fmt::format("mbk {}", version()));
-  for (const auto& [key, value] : contents.metadata) root.attributes[key] = one_text(value);
+  root.attributes["software"] = hdf5::one_text(fmt::format("mbk {}", version()));
+  for (const auto& [key, value] : contents.metadata) root.attributes[key] = hdf5::one_text(value);
   Names names(said);
   std::vector<std::string> clocks;
   for (const Clock& clock : contents.clocks) clocks.push_back(flat(clock.name));
   for (std::size_t k = 0; k < contents.arrays.size(); ++k) {
     const Array& array = contents.arrays[k];
     hdf5::Dataset dataset = dataset_of(array.values);
-    if (!array.unit.empty()) dataset.attributes["unit"] = one_text(array.unit);
+    if (!array.unit.empty()) dataset.attributes["unit"] = hdf5::one_text(array.unit);
     if (array.rate_hz > 0.0) dataset.attributes["rate_hz"] = one_number(array.rate_hz);
     if (array.clock >= 0)
-      dataset.attributes["clock"] = one_text("clocks/" + clocks[static_cast<std::size_t>(array.clock)]);
+      dataset.attributes["clock"] = hdf5::one_text("clocks/" + clocks[static_cast<std::size_t>(array.clock)]);
     const std::string from = name_of(contents, k);
     const std::string path = names.take(from.substr(from.starts_with('/') ? 1 : 0), from);
     if (put(root, path, dataset)) continue;
@@ -114,7 +108,7 @@ Result<std::string> encode_contents_hdf5(const Contents& contents, std::vector<s
   }
   for (std::size_t k = 0; k < contents.clocks.size(); ++k) {
     hdf5::Dataset dataset = dataset_of(Matrix(contents.clocks[k].time));
-    dataset.attributes["unit"] = one_text("s");
+    dataset.attributes["unit"] = hdf5::one_text("s");
     if (!put(root, "clocks/" + clocks[k], dataset)) {
       said.push_back(fmt::format("the time stamps of '{}' found no place", contents.clocks[k].name));
     }
@@ -159,7 +153,7 @@ Result<std::vector<MatVariable>> variables_of(const Contents& contents, std::vec
 // ---- CSV ----
 
 /// A column of the table: a row or column of an array.
-struct Column {
+struct TableColumn {
   std::string name;
   const SharedMatrix* values;
   Index line;
@@ -175,7 +169,7 @@ std::string cell(std::string name) {
 
 Result<std::string> encode_contents_csv(const Contents& contents, std::vector<std::string>& said) {
   Names names(said);
-  std::vector<Column> columns;
+  std::vector<TableColumn> columns;
   Index samples = -1;
   const Array& first = contents.arrays.front();
   for (std::size_t k = 0; k < contents.arrays.size(); ++k) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/analyse/channel_cure.h"
@@ -111,7 +111,6 @@ std::optional<std::pair<double, double>> turn_of(const Matrix& Z, const Matrix& 
   const double cosine = Z(0, 0) + Z(1, 1), sine = Z(1, 0) - Z(0, 1);
   const double mirror = std::hypot(Z(0, 0) - Z(1, 1), Z(0, 1) + Z(1, 0)), turn = std::hypot(cosine, sine);
   if (!(turn > mirror)) return std::nullopt;
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   return std::pair(kDegrees * std::atan2(sine, cosine), kDegrees * error.norm() / turn);
 }
 

@@ -25,7 +25,7 @@ constexpr double kAsPrinted = 0.01;        ///< a band, relative
 constexpr double kOneSidedOfSeven = 2.6901095272;  ///< Φ⁻¹(1 − 0.025/7)
 constexpr std::size_t kSymmetricConditions = 3;    ///< M_s, B_s, K_s; then come the antisymmetric ones
 constexpr Index kCurvePoints = 200;
-constexpr double kSegmentsAcross = 4.0;  ///< of the coherence, end to end; seven with the overlap
+constexpr double kSegmentsOfCoherence = 4.0;  ///< of the coherence, end to end; seven with the overlap
 
 /// With these force or motion is not what it says it is, and neither is their product.
 constexpr std::array kImplausible = {WarningCode::force_sign_reversed,     WarningCode::torque_unit,
@@ -127,7 +127,7 @@ Coherence smallest_coherence(const std::vector<PreparedTrial>& trials, Hertz hig
     }
   }
   const Hertz rate(1.0 / trials.front().sample_time);
-  const double finest = kSegmentsAcross * rate.value / static_cast<double>(std::max<Index>(total, 1));
+  const double finest = kSegmentsOfCoherence * rate.value / static_cast<double>(std::max<Index>(total, 1));
   if (longest < 8) return {};
   const Index segment = dsp::segment_length(rate, Hertz(std::max(finest, lowest)), longest);
   const Hertz spacing(rate.value / static_cast<double>(segment));

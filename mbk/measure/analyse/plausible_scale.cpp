@@ -33,7 +33,7 @@ constexpr double kPriceOfAxis = 0.5;  ///< decades: that one axis is wrong needs
 constexpr double kPriceOfGain = 1.0;  ///< and that a gain is wrong more than a unit
 
 /// A matrix of the model and its standard errors.
-struct Part {
+struct KnownPart {
   Matrix Z, error;
 
   /// (σ₁ + … + σₙ)/n, whatever the signs and the order of the axes.
@@ -48,7 +48,7 @@ struct Numbers {
   double rate = 0.0;
   bool explained = false;    ///< the model explains enough of the force for its size to count
   double handle_mass = 0.0;  ///< [kg] subtracted from M, whatever its scale
-  Part M, B, K;
+  KnownPart M, B, K;
 };
 
 /// A number that lies outside its range.
@@ -113,7 +113,7 @@ Numbers explained(Numbers n, const Explanation& by) {
   n.speed = n.speed.cwiseProduct(by.position) / by.time;
   n.force = n.force.cwiseProduct(by.force);
   n.rate /= by.time;
-  const auto scale = [&](Part& part, double time) {
+  const auto scale = [&](KnownPart& part, double time) {
     if (part.Z.size() == 0) return;
     for (Matrix* Z : {&part.Z, &part.error}) {
       *Z = time * (by.force.asDiagonal() * *Z * by.position.cwiseInverse().asDiagonal());
@@ -133,7 +133,7 @@ bool outside(const PlausibleRange& range, double value, double error) {
   return value + 2.0 * error < range.low || value - 2.0 * error > range.high;
 }
 
-const Part& part_of(const Numbers& numbers, PlausibleQuantity quantity) {
+const KnownPart& part_of(const Numbers& numbers, PlausibleQuantity quantity) {
   return quantity == PlausibleQuantity::inertia   ? numbers.M
          : quantity == PlausibleQuantity::damping ? numbers.B
                                                   : numbers.K;
@@ -172,7 +172,7 @@ std::vector<Violation> violations(const Numbers& n, std::span<const PlausibleRan
       case damping:
       case stiffness: {
         // What is too small to be seen at all is too small, where the limb is seen in another way.
-        const Part& part = part_of(n, range.quantity);
+        const KnownPart& part = part_of(n, range.quantity);
         const bool counts = n.explained && (part.known() || (limb && part.Z.size() > 0));
         if (counts && outside(range, part.size(), part.size_error())) found.push_back({&range, part.size(), -1});
         break;
@@ -204,7 +204,7 @@ std::vector<Violation> violations(const Numbers& n, std::span<const PlausibleRan
 }
 
 /// log₁₀ of z_xy / z_yx, where the two surely differ; 0 otherwise.
-double lopsided(const Part& part) {
+double lopsided(const KnownPart& part) {
   if (part.Z.size() == 0 || !part.Z.allFinite()) return 0.0;
   const double xy = part.Z(0, 1), yx = part.Z(1, 0), error = std::hypot(part.error(0, 1), part.error(1, 0));
   if (!(std::abs(xy - yx) > kSignificant * error)) return 0.0;
@@ -220,7 +220,7 @@ double imbalance(const Numbers& n) {
   const double least = std::log10(kImbalance), same = std::log10(kSameFactor), m = lopsided(n.M);
   if (!(std::abs(m) > least)) return 0.0;
   int confirmed = 0;
-  for (const Part* other : {&n.B, &n.K}) {
+  for (const KnownPart* other : {&n.B, &n.K}) {
     const double r = lopsided(*other);
     if (r != 0.0 && std::abs(r - m) > same) return 0.0;
     confirmed += r != 0.0 ? 1 : 0;
@@ -243,7 +243,7 @@ double distance(const Numbers& n, std::span<const PlausibleRange> ranges) {
       case inertia:
       case damping:
       case stiffness:
-        if (const Part& part = part_of(n, range.quantity); part.known()) {
+        if (const KnownPart& part = part_of(n, range.quantity); part.known()) {
           for (const double value : part.Z.diagonal()) add(std::abs(value), range.typical);
         }
         break;

@@ -12,11 +12,6 @@
 namespace mbk::preprocess {
 namespace {
 
-std::string metadata_of(const Recording& recording, const char* key) {
-  const auto found = recording.metadata.find(key);
-  return found == recording.metadata.end() ? "" : found->second;
-}
-
 bool take(std::string_view word, std::string_view& text) {
   if (!text.starts_with(word)) return false;
   text.remove_prefix(word.size());
@@ -108,11 +103,11 @@ Result<std::vector<ExcludedWindow>> parse_excluded_windows(std::string_view text
 }
 
 Result<std::vector<ExcludedWindow>> excluded_windows(const Recording& recording) {
-  return parse_excluded_windows(metadata_of(recording, kExcludedWindows));
+  return parse_excluded_windows(recording.noted(kExcludedWindows));
 }
 
 std::string why_excluded(const Recording& recording) {
-  return metadata_of(recording, kExcluded);
+  return recording.noted(kExcluded);
 }
 
 std::string exclusions_text(const Recording& recording) {

@@ -22,11 +22,6 @@
 namespace mbk::preprocess {
 namespace {
 
-std::string metadata_of(const Recording& recording, const char* key) {
-  const auto found = recording.metadata.find(key);
-  return found == recording.metadata.end() ? "" : found->second;
-}
-
 /// The columns of matrices side by side, from a row on.
 std::vector<double*> columns_from(Index row, std::initializer_list<Matrix*> matrices) {
   std::vector<double*> columns;
@@ -124,8 +119,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   trial.sources = recording.sources;
   trial.notes = recording.notes;
   trial.recorded_handle_mass = recorded_handle_mass(recording);
-  trial.conditions = {metadata_of(recording, "participant"), metadata_of(recording, "condition"),
-                      metadata_of(recording, "posture")};
+  trial.conditions = {recording.noted("participant"), recording.noted("condition"), recording.noted("posture")};
   trial.recording_duration = inspection.duration + inspection.interval_median;
   Preparation& how = trial.preparation;
   how.mode = options.mode;

@@ -16,7 +16,6 @@ namespace {
 
 using KDL::Frame;
 using KDL::Twist;
-using KDL::Vector;
 using KDL::Wrench;
 
 constexpr auto kMax = static_cast<std::size_t>(kMaxJoints);
@@ -41,7 +40,7 @@ struct Motion {
 /// The standard parameters of a body, as wrench of a twist.
 struct Body {
   double mass;
-  Vector first_moment;
+  KDL::Vector first_moment;
   KDL::RotationalInertia inertia;
 
   explicit Body(const double* phi)
@@ -55,8 +54,8 @@ struct Body {
 
 /// Joint axes and the origins on them, base frame.
 struct Lines {
-  std::array<Vector, kMax> axis, origin;
-  Vector hand;
+  std::array<KDL::Vector, kMax> axis, origin;
+  KDL::Vector hand;
 
   Lines(const ChainParts& parts, const JointVector& position) {
     Frame body;
@@ -69,7 +68,7 @@ struct Lines {
   }
 };
 
-HandVector along(const std::vector<int>& axes, const Vector& v) {
+HandVector along(const std::vector<int>& axes, const KDL::Vector& v) {
   HandVector kept(static_cast<Index>(axes.size()));
   for (std::size_t k = 0; k < axes.size(); ++k) kept[static_cast<Index>(k)] = v[axes[k]];
   return kept;
@@ -144,12 +143,12 @@ void SerialChain::regressor(const JointVector& position, const JointVector& velo
   for (std::size_t i = 0; i < parts_->joints.size(); ++i) {
     const auto row = static_cast<Index>(i);
     body.pass(parts_->joints[i], i, position[row], velocity[row], acceleration[row]);
-    const Vector &w = body.velocity.rot, &a = body.acceleration.rot;
-    const Vector c = body.acceleration.vel + w * body.velocity.vel;
+    const KDL::Vector &w = body.velocity.rot, &a = body.acceleration.rot;
+    const KDL::Vector c = body.acceleration.vel + w * body.velocity.vel;
     for (std::size_t j = 0; j <= i; ++j) {
-      const Vector &along = body.axes[j].vel, &about = body.axes[j].rot;
-      const Vector h = along * a + w * (w * along) + c * about;
-      const Vector b = about * w;
+      const KDL::Vector &along = body.axes[j].vel, &about = body.axes[j].rot;
+      const KDL::Vector h = along * a + w * (w * along) + c * about;
+      const KDL::Vector b = about * w;
       const auto mixed = [&](int p, int q) { return about[p] * a[q] + about[q] * a[p] + b[p] * w[q] + b[q] * w[p]; };
       Y.block<1, kCoefficientsPerBody>(static_cast<Index>(j), row * kCoefficientsPerBody) << dot(along, c), h[0], h[1],
           h[2], 0.5 * mixed(0, 0), mixed(0, 1), mixed(0, 2), 0.5 * mixed(1, 1), mixed(1, 2), 0.5 * mixed(2, 2);
@@ -164,7 +163,7 @@ JointTerms SerialChain::terms(const JointVector& position, const JointVector& ve
   const Index n = joints();
   JointTerms terms{JointMatrix::Zero(n, n), JointVector::Zero(n), JointVector::Zero(n)};
   Motion body;
-  Twist weight(-parts_->gravity, Vector::Zero());
+  Twist weight(-parts_->gravity, KDL::Vector::Zero());
   std::array<Twist, kMax> drift;  // v_k × s_k
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -195,7 +194,8 @@ HandJacobian SerialChain::jacobian(const JointVector& position) const {
   const Lines lines(*parts_, position);
   HandJacobian J(hand_axes(), joints());
   for (std::size_t i = 0; i < parts_->joints.size(); ++i) {
-    const Vector column = slides(static_cast<int>(i)) ? lines.axis[i] : lines.axis[i] * (lines.hand - lines.origin[i]);
+    const KDL::Vector column =
+        slides(static_cast<int>(i)) ? lines.axis[i] : lines.axis[i] * (lines.hand - lines.origin[i]);
     J.col(static_cast<Index>(i)) = along(parts_->hand_axes, column);
   }
   return J;
@@ -204,8 +204,8 @@ HandJacobian SerialChain::jacobian(const JointVector& position) const {
 HandJacobian SerialChain::jacobian_rate(const JointVector& position, const JointVector& velocity) const {
   const Lines lines(*parts_, position);
   const std::size_t n = parts_->joints.size();
-  std::array<Vector, kMax> axis_rate, origin_rate;
-  Vector turning, moving, before;  // ω, velocity and place of the origin, of the body before
+  std::array<KDL::Vector, kMax> axis_rate, origin_rate;
+  KDL::Vector turning, moving, before;  // ω, velocity and place of the origin, of the body before
   for (std::size_t i = 0; i < n; ++i) {
     const double rate = velocity[static_cast<Index>(i)];
     axis_rate[i] = turning * lines.axis[i];
@@ -218,10 +218,10 @@ HandJacobian SerialChain::jacobian_rate(const JointVector& position, const Joint
     origin_rate[i] = moving;
     before = lines.origin[i];
   }
-  const Vector hand_rate = moving + turning * (lines.hand - before);
+  const KDL::Vector hand_rate = moving + turning * (lines.hand - before);
   HandJacobian rate(hand_axes(), joints());
   for (std::size_t i = 0; i < n; ++i) {
-    Vector column = axis_rate[i];
+    KDL::Vector column = axis_rate[i];
     if (!slides(static_cast<int>(i))) {
       column = axis_rate[i] * (lines.hand - lines.origin[i]) + lines.axis[i] * (hand_rate - origin_rate[i]);
     }

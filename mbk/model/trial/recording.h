@@ -58,6 +58,11 @@ struct Recording {
   std::vector<std::string> notes;               ///< what the reader wants its user to know, in words
 
   [[nodiscard]] Index samples() const { return time.size(); }
+  /// What the metadata say of it; "" where they say nothing.
+  [[nodiscard]] std::string noted(const std::string& key) const {
+    const auto found = metadata.find(key);
+    return found == metadata.end() ? std::string() : found->second;
+  }
 
   /// The channel of that name, or nullptr.
   [[nodiscard]] const Channel* find(std::string_view name) const {

@@ -1,18 +1,16 @@
 #pragma once
 
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/core/units.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/warning.h"
 
 /// @file
 /// How tables and paragraphs of a terminal are set. For the sources of this module only.
 namespace mbk::report {
-
-inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< in a radian
 
 /// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.
 [[nodiscard]] std::string with_interval(double value, double half_width);

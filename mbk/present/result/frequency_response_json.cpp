@@ -1,5 +1,5 @@
-#include <numbers>
 
+#include "mbk/base/core/units.h"
 #include "mbk/present/result/exploration_parts_json.h"
 
 namespace mbk::result {
@@ -40,7 +40,6 @@ Json periodic_json(const PeriodicFacts& facts) {
 }  // namespace
 
 Json frequency_response_json(const FrequencyResponseEstimate& found) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const auto outputs = static_cast<Index>(found.outputs.size());
   const auto inputs = static_cast<Index>(found.inputs.size());
   Json json = {{"method", word_of(found.method)},

@@ -37,12 +37,6 @@ Json numbers(const std::vector<double>& values) {
   return array;
 }
 
-Json references_json(const std::vector<ChartReference>& lines) {
-  Json array = Json::array();
-  for (const ChartReference& line : lines) array.push_back({{"value", number(line.value)}, {"name", line.name}});
-  return array;
-}
-
 Json chart_json(const Chart& chart) {
   Json json = {{"title", chart.title},
                {"x", {{"label", chart.x.label}, {"unit", chart.x.unit}}},

@@ -11,6 +11,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/version.h"
+#include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/recording.h"
@@ -121,6 +122,13 @@ inline Json preparation_json(const Preparation& how) {
   if (how.protocol == Protocol::underdamped) json["perturbations"] = how.perturbations;
   if (how.mode == Mode::reference) json["procedure"] = word_of(how.procedure);
   return json;
+}
+
+/// Lines of a chart that are there to compare with.
+inline Json references_json(const std::vector<ChartReference>& lines) {
+  Json array = Json::array();
+  for (const ChartReference& line : lines) array.push_back({{"value", number(line.value)}, {"name", line.name}});
+  return array;
 }
 
 }  // namespace mbk::result

@@ -54,14 +54,6 @@ Json rounded_list(const std::vector<double>& values) {
   return array;
 }
 
-Json references_json(const std::vector<ChartReference>& references) {
-  Json array = Json::array();
-  for (const ChartReference& reference : references) {
-    array.push_back({{"value", number(reference.value)}, {"name", reference.name}});
-  }
-  return array;
-}
-
 Json exhibit_chart_json(const Chart& chart) {
   Json json = {{"title", chart.title},
                {"x", axis_json(chart.x)},

@@ -1,7 +1,6 @@
 #include "mbk/present/result/transfer_function_json.h"
 
-#include <numbers>
-
+#include "mbk/base/core/units.h"
 #include "mbk/present/result/json_parts.h"
 
 namespace mbk::result {
@@ -34,7 +33,6 @@ Json around(const Vector& value, const Vector& half_width) {
 }
 
 Json response_json(const FrequencyResponse& response) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const Vector real = response.value.real();
   return {{"frequency_hz", list(response.frequency)},
           {"magnitude", list(response.value.cwiseAbs())},

@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "mbk/base/core/units.h"
 #include "mbk/study/reliability/axial.h"
 #include "mbk/study/reliability/distributions.h"
 
 namespace mbk::longitudinal {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Among more people than that one alone changes little, and leaving each out in turn costs much.
 constexpr int kMostJudgedByOthers = 40;

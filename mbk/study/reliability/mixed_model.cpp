@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <type_traits>
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/reliability/distributions.h"
@@ -20,7 +20,6 @@
 namespace mbk::reliability {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kParticipant = 0, kSession = 1, kResidual = 2;
 
 /// Lower triangle of a symmetric matrix, row by row.

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "mbk/base/core/units.h"
 
 namespace mbk::store {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// What is summed up of one participant's results.
 struct Sums {

@@ -46,20 +46,20 @@ constexpr double kHolds = 90.0;
 /// How many times as much as for the arm without its controller has to be left unexplained.
 constexpr double kContrast = 3.0;
 
-struct Outcome {
+struct AxisOutcome {
   one_dimensional::Axis axis;
   Attempt impedance, admittance;  ///< the second only where it is reported
   bool continuous = false;        ///< whether a stable continuous-time model was found for the impedance; likewise
 };
 
-Result<Outcome> perform(const Scenario& scenario, bool reported) {
+Result<AxisOutcome> perform(const Scenario& scenario, bool reported) {
   const auto performance = laboratory::simulate(scenario);
   if (!performance) return tl::unexpected(performance.error());
   auto axis = one_dimensional::axis_of(performance->recording);
   if (!axis) return tl::unexpected(axis.error());
   auto impedance = one_dimensional::attempted(axis->impedance);
   if (!impedance) return tl::unexpected(impedance.error());
-  if (!reported) return Outcome{std::move(*axis), std::move(*impedance), {}};
+  if (!reported) return AxisOutcome{std::move(*axis), std::move(*impedance), {}};
   auto admittance = one_dimensional::attempted(axis->admittance);
   if (!admittance) return tl::unexpected(admittance.error());
   identify::ContinuousFitOptions options;
@@ -68,7 +68,7 @@ Result<Outcome> perform(const Scenario& scenario, bool reported) {
   options.threads = 1;
   const auto continuous = identify::fit_continuous({one_dimensional::first_part(axis->impedance)}, options);
   if (!continuous) return tl::unexpected(continuous.error());
-  return Outcome{std::move(*axis), std::move(*impedance), std::move(*admittance), continuous->converged};
+  return AxisOutcome{std::move(*axis), std::move(*impedance), std::move(*admittance), continuous->converged};
 }
 
 Scenario with_condition(Scenario scenario, const Condition& condition, double switching_time) {
@@ -79,9 +79,9 @@ Scenario with_condition(Scenario scenario, const Condition& condition, double sw
   return scenario;
 }
 
-using Outcomes = std::span<const Outcome>;
+using Outcomes = std::span<const AxisOutcome>;
 
-Vector collected(Outcomes outcomes, const std::function<double(const Outcome&)>& value) {
+Vector collected(Outcomes outcomes, const std::function<double(const AxisOutcome&)>& value) {
   Vector values(static_cast<Index>(outcomes.size()));
   for (Index i = 0; i < values.size(); ++i) values[i] = value(outcomes[static_cast<std::size_t>(i)]);
   return values;
@@ -96,11 +96,11 @@ double median(const Vector& values) {
   return numeric::median({values.begin(), values.end()});
 }
 
-Vector vaf_of(Outcomes outcomes) {
-  return collected(outcomes, [](const Outcome& outcome) { return outcome.impedance.vaf; });
+Vector vafs_of(Outcomes outcomes) {
+  return collected(outcomes, [](const AxisOutcome& outcome) { return outcome.impedance.vaf; });
 }
 
-ValidationRow settled_row(std::string what, Outcomes outcomes, const std::function<bool(const Outcome&)>& is) {
+ValidationRow settled_row(std::string what, Outcomes outcomes, const std::function<bool(const AxisOutcome&)>& is) {
   return share_row(std::move(what), outcomes, is, {});
 }
 
@@ -122,7 +122,7 @@ Vector vaf_across(Outcomes outcomes) {
 }
 
 /// Fig. 4.7 in form.
-Chart force_chart(const Condition& condition, const Outcome& outcome) {
+Chart force_chart(const Condition& condition, const AxisOutcome& outcome) {
   const auto output = one_dimensional::validation_output(outcome.impedance, outcome.axis.impedance);
   Chart chart;
   chart.title = fmt::format("{}: the last 10 s of a trial, which the model has not seen", condition.name);
@@ -145,7 +145,7 @@ Chart force_chart(const Condition& condition, const Outcome& outcome) {
 /// Table 4.4 in form, and what says that it is the controller.
 void add_rows(std::size_t condition, Outcomes outcomes, ValidationTable& table) {
   const std::string name = kConditions[condition].name;
-  const Vector vaf = vaf_of(outcomes);
+  const Vector vaf = vafs_of(outcomes);
   for (std::size_t trial = 0; condition == kRigid && trial < kPrinted.size(); ++trial) {
     const Vector runs =
         vaf(Eigen::seqN(static_cast<Index>(trial), std::ssize(outcomes) / std::ssize(kPrinted), std::ssize(kPrinted)));
@@ -157,18 +157,18 @@ void add_rows(std::size_t condition, Outcomes outcomes, ValidationTable& table) 
   table.rows.push_back(exact_row(name + ": lower quartile of the VAF", quantile(vaf, 0.25), {}, "%"));
   table.rows.push_back(exact_row(name + ": lowest VAF", vaf.minCoeff(), {}, "%"));
   table.rows.push_back(median_row(name + ": median VAF on the other trials", vaf_across(outcomes), accepted, "%"));
-  table.rows.push_back(median_row(name + ": median VAF, commanded force to place",
-                                  collected(outcomes, [](const Outcome& outcome) { return outcome.admittance.vaf; }),
-                                  {}, "%"));
+  table.rows.push_back(
+      median_row(name + ": median VAF, commanded force to place",
+                 collected(outcomes, [](const AxisOutcome& outcome) { return outcome.admittance.vaf; }), {}, "%"));
   table.rows.push_back(settled_row(name + ": a stable model settled", outcomes,
-                                   [](const Outcome& outcome) { return outcome.impedance.holds; }));
+                                   [](const AxisOutcome& outcome) { return outcome.impedance.holds; }));
   table.rows.push_back(settled_row(name + ": so it did in continuous time", outcomes,
-                                   [](const Outcome& outcome) { return outcome.continuous; }));
+                                   [](const AxisOutcome& outcome) { return outcome.continuous; }));
 }
 
 /// The VAF of one condition at one switching time [%].
 Vector vaf_at(Outcomes all, std::size_t each, std::size_t time, std::size_t condition) {
-  return vaf_of(all.subspan((time * kConditions.size() + condition) * each, each));
+  return vafs_of(all.subspan((time * kConditions.size() + condition) * each, each));
 }
 
 /// The conclusion must not hang on a switching time that nobody knows. Trials of the same seed are compared.
@@ -220,7 +220,7 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
     return perform(scenario, k >= rows_from);
   });
   if (!ran) return tl::unexpected(ran.error());
-  const std::vector<Outcome>& outcomes = *ran;
+  const std::vector<AxisOutcome>& outcomes = *ran;
 
   ValidationTable table;
   table.study = "one-dimensional";

@@ -20,7 +20,7 @@ using laboratory::PlanarTrial;
 using laboratory::Scenario;
 
 /// A ready scenario, and what is expected of it.
-struct Condition {
+struct ConditionOfArm {
   const char* name;          ///< as it stands in the table
   const char* scenario;      ///< ready file
   double energy_sign;        ///< +1: the energy absorbed rises; −1: it falls
@@ -28,8 +28,8 @@ struct Condition {
   bool controller = true;
 };
 
-const std::vector<Condition>& conditions() {
-  static const std::vector<Condition> kAll = {
+const std::vector<ConditionOfArm>& conditions() {
+  static const std::vector<ConditionOfArm> kAll = {
       {"relaxed, sinusoidal", "relaxed_sinusoidal", 1.0, Range{92.0, 100.0}},
       {"relaxed, underdamped", "relaxed_underdamped", 1.0, Range{92.0, 100.0}},
       {"rigid, 2 N pulses", "rigid_underdamped_2N", -1.0, at_most(50.0)},
@@ -73,7 +73,7 @@ Result<void> add_plans(const Scenario& scenario, const StudyOptions& options, bo
 
 Result<std::vector<TrialPlan>> all_plans(const StudyOptions& options) {
   std::vector<TrialPlan> plans;
-  for (const Condition& condition : conditions()) {
+  for (const ConditionOfArm& condition : conditions()) {
     auto scenarios = ready(condition.scenario);
     if (!scenarios) return tl::unexpected(scenarios.error());
     if (!condition.controller) switch_controller_off(scenarios->front());
@@ -113,7 +113,7 @@ double vaf_of(const SimulatedTrial& trial) {
 }
 
 /// Of each arm: in how many trials the energy has the expected sign and the VAF its band; and the means.
-void add_condition(const Condition& condition, Trials trials, ValidationTable& table) {
+void add_condition(const ConditionOfArm& condition, Trials trials, ValidationTable& table) {
   for (std::size_t arm = 0; arm < kArms.size(); ++arm) {
     const std::size_t runs = trials.size() / kArms.size();
     const Trials mine = trials.subspan(arm * runs, runs);
@@ -193,7 +193,7 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
   table.runs = options.runs;
   table.seed = options.seed;
   Trials left = *trials;
-  for (const Condition& condition : conditions()) {
+  for (const ConditionOfArm& condition : conditions()) {
     const std::size_t trials_of_it = kArms.size() * static_cast<std::size_t>(options.runs);
     add_condition(condition, left.first(trials_of_it), table);
     left = left.subspan(trials_of_it);

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::validation {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kConfidence = 0.95;
 
 /// Successes whose whole interval (numeric::binomial_interval) is accepted: those from `first` to `last`; none where
