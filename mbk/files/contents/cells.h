@@ -25,7 +25,7 @@ struct NumberAhead {
 /// The number of digits, with at most a sign and a point and no more of them than 64 bits hold, with which a text
 /// begins: what most programs write. Its value to rounding.
 /// @param end  of what can be read, which may reach beyond the text: eight characters are looked at together
-[[nodiscard]] inline NumberAhead plain_number_ahead(const char* begin, const char* end);
+[[nodiscard, gnu::always_inline]] inline NumberAhead plain_number_ahead(const char* begin, const char* end);
 
 /// Digits with at most a sign and a point, no more of them than 64 bits hold. Nothing where a cell holds anything else.
 [[nodiscard]] inline std::optional<double> plain_number(std::string_view cell) {
@@ -88,7 +88,7 @@ inline constexpr std::array<Divisor, kDigits + 1> kDivisors = [] {
 
 /// digits / 10^decimals to rounding: 63 bits or more of the quotient, and whether anything is left of it, decide how it
 /// is rounded. What the reciprocal gives of them is right or one too small, which seldom matters.
-[[nodiscard]] inline double quotient(std::uint64_t digits, std::size_t decimals) {
+[[nodiscard, gnu::always_inline]] inline double quotient(std::uint64_t digits, std::size_t decimals) {
   if (digits == 0) return 0.0;
   const Divisor& by = kDivisors[decimals];
   const int up = std::countl_zero(digits);
@@ -125,7 +125,7 @@ struct Digits {
   std::uint64_t value = 0;
 };
 
-[[nodiscard]] inline Digits digits_at(const char* at, const char* end) {
+[[nodiscard, gnu::always_inline]] inline Digits digits_at(const char* at, const char* end) {
   Digits all;
   for (const bool last : {false, false, true}) {
     std::uint64_t eight = eight_at(at + all.count, end) ^ 0x3030303030303030U;  // digits are 0 to 9
