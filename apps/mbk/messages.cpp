@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "apps/mbk/caller.h"
+#include "mbk/base/realtime/rest.h"
 
 namespace mbk::app {
 namespace {
@@ -22,7 +23,7 @@ constexpr int kNotRead = -1, kNoMemory = -2;  // beside the numbers of errno
 /// Never destroyed: a thread that hangs in its last message outlives main.
 struct Messages {
   std::mutex mutex;
-  std::condition_variable came, written;
+  std::condition_variable came;
   std::deque<std::string> waiting;
   bool background = false, writing = false;
   std::uint64_t lost = 0;
@@ -73,7 +74,6 @@ void write_waiting() {
     lock.lock();
     all.writing = false;
     if (error != 0) all.lose(1, error);
-    all.written.notify_all();
   }
 }
 
@@ -124,8 +124,12 @@ void count_lost_message() noexcept {
 bool flush_messages(std::chrono::milliseconds longest) noexcept {
   try {
     Messages& all = messages();
-    std::unique_lock lock(all.mutex);
-    if (all.written.wait_for(lock, longest, [&] { return all.waiting.empty() && !all.writing; })) return true;
+    const auto are_written = [&] {
+      const std::scoped_lock lock(all.mutex);
+      return all.waiting.empty() && !all.writing;
+    };
+    if (realtime::rest(longest, are_written)) return true;
+    const std::scoped_lock lock(all.mutex);
     if (!all.waiting.empty()) all.lose(all.waiting.size(), kNotRead);
     all.waiting.clear();
   } catch (...) {

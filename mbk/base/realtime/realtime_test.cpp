@@ -11,6 +11,7 @@
 #include "mbk/base/realtime/bounded_ring.h"
 #include "mbk/base/realtime/clock.h"
 #include "mbk/base/realtime/cycle_record.h"
+#include "mbk/base/realtime/rest.h"
 #include "mbk/base/realtime/signal_stack.h"
 #include "tests/support/allocations.h"
 
@@ -79,6 +80,15 @@ TEST(BoundedRing, LosesNothingBetweenTwoThreadsThatWaitForEachOther) {
   }
   producer.join();
   EXPECT_EQ(ring.dropped(), 0U);
+}
+
+TEST(Rest, IsOverWithItsTimeOrWhenItIsDone) {
+  int asked = 0;
+  EXPECT_FALSE(rest(std::chrono::milliseconds(12), [&] { return ++asked > 100; }));
+  EXPECT_EQ(asked, 4);  // at 0, 5, 10 and 12 ms
+  EXPECT_TRUE(rest(std::chrono::hours(1), [&] { return ++asked > 6; }));
+  EXPECT_EQ(asked, 7);
+  EXPECT_TRUE(rest(std::chrono::hours(1), [] { return true; }));
 }
 
 TEST(VirtualClock, MovesOnByOnePeriodATick) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mbk/base/core/version.h"
+#include "mbk/base/realtime/rest.h"
 #include "mbk/experiment/console/frame.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/experiment/control/sequencer.h"
@@ -299,10 +300,17 @@ Action Console::ask(Question question) {
   decision_.reset();
   reset_code_.clear();
   changed_ = true;
+  lock.unlock();
   constexpr auto kLook = std::chrono::milliseconds(100);
-  while (!decided_.wait_for(lock, kLook, [&] { return decision_.has_value(); })) {
+  const auto is_decided = [&] {
+    const std::scoped_lock looking(mutex_);
+    return decision_.has_value();
+  };
+  while (!realtime::rest(kLook, is_decided)) {
+    const std::scoped_lock ending(mutex_);
     if (flags_.end_session) decision_ = Action::abort;
   }
+  lock.lock();
   question_ = Question::none;
   reset_code_.clear();
   changed_ = true;
@@ -457,7 +465,6 @@ void Console::wake() {
 
 void Console::decide(Action action) {
   decision_ = action;
-  decided_.notify_all();
 }
 
 void Console::estimated(const LiveEstimate::Estimate& estimate) {

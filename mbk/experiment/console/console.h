@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -201,7 +200,6 @@ class Console {
   session::LoopFlags& flags_;
   std::string protocol_, reset_code_, said_;
   std::mutex mutex_;
-  std::condition_variable decided_;
   std::vector<Listed> trials_;
   Page operator_page_;
   std::map<int, Page> reports_;  // the last ones, by number

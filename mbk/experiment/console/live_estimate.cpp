@@ -9,6 +9,7 @@
 #include <exception>
 #include <iterator>
 
+#include "mbk/base/realtime/rest.h"
 #include "mbk/base/realtime/signal_stack.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/model/trial/recording.h"
@@ -101,7 +102,6 @@ LiveEstimate::~LiveEstimate() {
     const std::scoped_lock lock(mutex_);
     over_ = true;
   }
-  wake_.notify_all();
   thread_.join();
 }
 
@@ -125,7 +125,6 @@ void LiveEstimate::finish() {
   std::unique_lock lock(mutex_);
   if (!running_) return;
   finishing_ = true;
-  wake_.notify_all();
   finished_.wait(lock, [&] { return !running_; });
 }
 
@@ -168,9 +167,13 @@ void LiveEstimate::run() noexcept {
   const realtime::SignalStack stack;
   // a thread of Linux has a priority of its own; where it is refused, nothing is lost
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
-  std::unique_lock lock(mutex_);
-  while (!over_) {
-    wake_.wait_for(lock, kInterval, [&] { return over_ || finishing_; });
+  const auto is_called = [&] {
+    const std::scoped_lock lock(mutex_);
+    return over_ || finishing_;
+  };
+  while (true) {
+    realtime::rest(kInterval, is_called);
+    std::unique_lock lock(mutex_);
     if (over_) break;
     if (!running_) continue;
     const bool final = finishing_;
@@ -178,6 +181,7 @@ void LiveEstimate::run() noexcept {
     if (final) running_ = finishing_ = false;
     finished_.notify_all();
   }
+  const std::scoped_lock lock(mutex_);
   running_ = false;
   finished_.notify_all();
 }

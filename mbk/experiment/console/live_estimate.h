@@ -64,7 +64,7 @@ class LiveEstimate {
 
   std::function<void(const Estimate&)> done_;
   std::mutex mutex_;
-  std::condition_variable wake_, finished_;
+  std::condition_variable finished_;
   std::vector<journal::Tick> incoming_;
   journal::Journal journal_;  // of the thread, and of `begin` while that rests
   measurement::Options options_;

@@ -4,13 +4,13 @@
 #include <optional>
 
 #include "mbk/base/realtime/clock.h"
+#include "mbk/base/realtime/rest.h"
 #include "mbk/base/realtime/signal_stack.h"
 
 namespace mbk::session {
 namespace {
 
-constexpr auto kSlice = std::chrono::milliseconds(5);
-constexpr int kSlices = 4;  // from one look to the next
+constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
 
 }  // namespace
 
@@ -20,13 +20,6 @@ IdleWatch::IdleWatch(device::Device& robot, std::function<void(const IdleState&)
 IdleWatch::~IdleWatch() {
   over_ = true;
   thread_.join();
-}
-
-// Without a mutex and a condition: where no clock can be read, waiting for one with a time limit never ends, and leaves
-// the mutex to nobody.
-bool IdleWatch::rests() const noexcept {
-  for (int slice = 0; slice < kSlices && !over_; ++slice) std::this_thread::sleep_for(kSlice);
-  return !over_;
 }
 
 void IdleWatch::watch() noexcept {
@@ -39,7 +32,7 @@ void IdleWatch::watch() noexcept {
   std::optional<IdleState> told;
   for (std::uint64_t number = 0;; ++number) {
     const bool writes = robot_.write({number, {0.0, 0.0}, false});
-    if (!rests()) return;
+    if (realtime::rest(kBetweenLooks, [this] { return over_.load(); })) return;
     const bool reads = robot_.read(state);
     const std::int64_t now = realtime::monotonic_ns();
     if (state.sequence != last) fresh_at = now;

@@ -34,7 +34,6 @@ class IdleWatch {
 
  private:
   void watch() noexcept;
-  [[nodiscard]] bool rests() const noexcept;  ///< until the next look; false: it is over
 
   device::Device& robot_;
   std::function<void(const IdleState&)> seen_;

@@ -7,13 +7,13 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
+#include <cmath>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
+#include "mbk/base/realtime/rest.h"
 #include "mbk/study/batch/merge.h"
 #include "mbk/study/batch/shard.h"
 
@@ -72,9 +72,8 @@ Remains remains_of(const JobFolder& folder, const Chunk& chunk) {
 class Heartbeat {
  public:
   Heartbeat(ShardWriter& shard, double interval_s)
-      : thread_([this, &shard, interval = std::chrono::duration<double>(interval_s)] {
-          std::unique_lock lock(mutex_);
-          while (!wake_.wait_for(lock, interval, [this] { return ended_; })) {
+      : thread_([this, &shard, interval = std::chrono::nanoseconds(std::llround(1e9 * interval_s))] {
+          while (!realtime::rest(interval, [this] { return ended_.load(); })) {
             if (shard.add(RecordKind::heartbeat, 0, "") && shard.sync()) continue;
             failed = true;
             return;
@@ -83,20 +82,14 @@ class Heartbeat {
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
   ~Heartbeat() {
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
-    }
-    wake_.notify_all();
+    ended_ = true;
     thread_.join();
   }
 
   std::atomic<bool> failed = false;
 
  private:
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool ended_ = false;
+  std::atomic<bool> ended_ = false;
   std::thread thread_;
 };
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace mbk::realtime {
+
+/// Sleeps for `longest`, or until `done`, which is asked every 5 ms. No clock can hold it up and it keeps no mutex:
+/// where the clock cannot be read, a condition variable with a time limit never ends, and leaves its mutex to nobody.
+/// @returns  done()
+template <class Done>
+bool rest(std::chrono::nanoseconds longest, const Done& done) {
+  constexpr std::chrono::nanoseconds kSlice = std::chrono::milliseconds(5);
+  for (auto left = longest; !done(); left -= kSlice) {
+    if (left <= left.zero()) return false;
+    std::this_thread::sleep_for(std::min(left, kSlice));
+  }
+  return true;
+}
+
+}  // namespace mbk::realtime
