@@ -246,8 +246,8 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
       fmt::format("The first rows are of a force that keeps its sign for {:g} s at least. That time is not published, "
                   "and decides how low they are; that they are low must hold at each.",
                   kSwitchingTimes.back()),
-      "Rows of a trial are medians over the runs. The interval of a median lies between two of the values, and needs "
-      "six of them.",
+      std::string("Rows of a trial are medians over the runs. The interval of a median lies between two of the values, "
+                  "and needs six of them."),
       "Printed values are those of a person, and are only shown.",
       "Where the force does not switch in the last 10 s there is little to explain, and the VAF low for any arm.",
       "Controller off: the same arm, noise and co-contraction; relaxed: without co-contraction too.",
