@@ -60,8 +60,9 @@ endfunction()
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
 # program that is no part of the library. LOOPS: it computes what a user waits for, so that it is optimised fully
-# (cmake/MbkPrecompile.cmake), but for the sources after NO_LOOPS; LOOPS with sources behind it: only these are. OBJECTS: how many its sources are compiled to, where their size does not say. TESTS_WAIT: its tests wait for a socket (label waits). ALONE: sources and
-# tests that take long to compile, and so are compiled by themselves.
+# (cmake/MbkPrecompile.cmake), but for the sources after NO_LOOPS; LOOPS with sources behind it: only these are. OBJECTS:
+# how many its other sources become, where their size does not say. ALONE: sources and tests that are compiled by
+# themselves, for they take long. TESTS_WAIT: its tests wait for a socket (label waits).
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
