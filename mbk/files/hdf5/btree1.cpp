@@ -5,7 +5,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr int kMostLevels = 32;  ///< levels; every level holds at least two entries more
+constexpr int kMostLevels = 32;  ///< every level holds at least two entries more
 
 struct Walk {
   File& file;

@@ -19,7 +19,7 @@ bool read_chunk_shape(Cursor& in, std::size_t dimensions, std::size_t bytes_each
 }
 
 Result<Layout> broken_layout() {
-  return damaged("its layout is broken_layout");
+  return damaged("its layout is broken");
 }
 
 /// Versions 1 and 2, as HDF5 wrote before 1.6 and MATLAB up to 7.4 (IV.A.2.i).

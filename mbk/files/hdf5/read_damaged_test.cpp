@@ -123,6 +123,20 @@ TEST(ReadDamagedHdf5, DoesNotBelieveDimensionsThatTheFileCannotHold) {
   }
 }
 
+TEST(ReadDamagedHdf5, SaysOfALayoutOfNoKnownClassThatItIsBroken) {
+  std::string bytes = written(Writer::earliest, [](hid_t file) { put_numbers(file, "x", counted(9), {{9}}); });
+  const std::uint64_t size = 9 * sizeof(double);
+  const std::string field(reinterpret_cast<const char*>(&size), sizeof size);
+  std::size_t at = bytes.find("\3\1");  // version and class: contiguous; then address and size
+  while (at != bytes.npos && bytes.compare(at + 10, field.size(), field) != 0) at = bytes.find("\3\1", at + 1);
+  ASSERT_NE(at, bytes.npos);
+  bytes[at + 1] = 9;
+  const auto root = read_bytes(bytes);
+  ASSERT_FALSE(root);
+  EXPECT_THAT(root.error().where, HasSubstr("/x"));
+  EXPECT_EQ(root.error().message, "its layout is broken");
+}
+
 TEST(ReadDamagedHdf5, KeepsToTheMemoryThatIsAllowed) {
   const std::string bytes = written(Writer::earliest, [](hid_t file) {
     put_numbers(file, "x", Vector::Zero(100'000), {{100'000}, {}, {100'000}}, H5T_IEEE_F64LE,

@@ -25,8 +25,9 @@ void take_annotations(Contents& contents);
 /// What is said of metadata that had several lines in the file: everything here is one line.
 [[nodiscard]] std::string several_lines_note(std::string_view key, std::size_t lines);
 
-/// A letter, then letters, digits and _; 63 at most.
-inline constexpr std::size_t kLongestMatlabName = 63;
+inline constexpr std::size_t kLongestMatlabName = 63;  ///< characters
+
+/// A letter, then letters, digits and _; kLongestMatlabName at most.
 [[nodiscard]] bool is_matlab_name(std::string_view name);
 
 /// The metadata of a recording, and the units of channels.
