@@ -10,7 +10,6 @@ namespace mbk::hdf5 {
 namespace {
 
 using test::counted;
-using test::good;
 using test::Id;
 using test::put_numbers;
 using test::read_bytes;
