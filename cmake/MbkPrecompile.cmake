@@ -55,3 +55,10 @@ function(mbk_optimise target kind)
   endif()
   mbk_precompile(${target} ${kind})
 endfunction()
+
+# mbk_program(TARGET library|loops): a program beside mbk, compiled as those libraries are, position-independent too, for
+# the sake of their precompiled headers.
+function(mbk_program target kind)
+  target_compile_options(${target} PRIVATE -fPIC)
+  mbk_optimise(${target} ${kind})
+endfunction()

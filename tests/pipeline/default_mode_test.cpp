@@ -1,8 +1,6 @@
 // Default mode against the truth in generated recordings, and on real ones.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/read.h"

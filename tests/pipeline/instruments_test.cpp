@@ -2,8 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/identify/impedance_fit.h"
@@ -62,7 +61,7 @@ impedance::Model truth_of(const Recording& recording) {
 }
 
 Eigen::Vector2d eigenvalues(const Matrix& Z) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(impedance::symmetric_part(Z)).eigenvalues();
+  return numeric::symmetric_eigenvalues(impedance::symmetric_part(Z));
 }
 
 TEST(RelaxedArmMovedByARobot, HasOneModelByBothMethods) {

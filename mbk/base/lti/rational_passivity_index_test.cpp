@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -142,12 +141,12 @@ double input_at(const Eigen::MatrixXcd& G) {
 }
 
 double output_at(const Eigen::MatrixXcd& G) {
-  return min_hermitian(G.inverse());
+  return min_hermitian(numeric::complex_inverse(G));
 }
 
 double minus_relative_at(const Eigen::MatrixXcd& G) {
   const Eigen::MatrixXcd one = Eigen::MatrixXcd::Identity(G.rows(), G.cols());
-  const Eigen::MatrixXcd S = (one - G) * (one + G).inverse();
+  const Eigen::MatrixXcd S = (one - G) * numeric::complex_inverse(one + G);
   return -std::sqrt(numeric::hermitian_eigenvalues(S.adjoint() * S).maxCoeff());
 }
 

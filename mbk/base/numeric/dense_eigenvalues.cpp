@@ -1,7 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/dense_solver.h"
 
 namespace mbk::numeric {
 

@@ -3,6 +3,12 @@
 
 #include "mbk/base/numeric/dense_solver.h"
 
+#ifdef MBK_REFLECTIONS
+namespace Eigen::internal {
+MBK_REFLECTIONS(template)
+}  // namespace Eigen::internal
+#endif
+
 namespace mbk::numeric {
 
 template class DenseSolver<Eigen::ColPivHouseholderQR<Matrix>>;

@@ -1,6 +1,6 @@
 #include <Eigen/SVD>
 
-#include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/dense_solver.h"
 
 namespace mbk::numeric {
 

@@ -62,7 +62,7 @@ TEST(ForceControl, DoesTheWorkOfItsForceInEveryPosture) {
 /// The force at the hand behind a torque.
 Vector2d hand_force(const Vector2d& theta, const Vector2d& torque) {
   const Matrix2d J = robot::jacobian(geometry(), theta);
-  return J.transpose().fullPivLu().solve(torque);
+  return J.transpose().inverse() * torque;
 }
 
 TEST(LineConstraint, AppliesAForceAlongTheLineAsItIs) {

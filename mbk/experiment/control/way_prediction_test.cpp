@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "tests/support/allocations.h"
 
@@ -63,7 +63,7 @@ TEST(WayPrediction, IsTheRidgeRegressionOfTheStackedReaches) {
     Y.row(i) = future_of(hand).reshaped().transpose();
   }
   for (int k = 1; k < kF; ++k) P(kReaches + k - 1, k) = std::sqrt(kReaches) * WayPrediction::kSigma;  // the penalty
-  const Eigen::MatrixXd twin = P.colPivHouseholderQr().solve(Y);
+  const Eigen::MatrixXd twin = numeric::PivotedQr(P).solve(Y);
   const Hand hand = drawn(random);
   const Eigen::VectorXd expected = twin.transpose() * past_of(hand);
   const WayPrediction::Way way = predicted(prediction, hand);

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/impedance_width.h"
 
 namespace mbk::analyse {
@@ -38,9 +38,9 @@ class Draws {
  public:
   Identification operator()(const Identification& id) {
     Identification drawn = id;
-    const Eigen::LLT<Matrix> root(id.covariance.topLeftCorner(12, 12));
+    const Matrix root = numeric::Cholesky(id.covariance.topLeftCorner(12, 12)).upper().transpose();
     Vector numbers = impedance::stacked(id.model);
-    numbers.head(12) += root.matrixL() * Vector(12).unaryExpr([&](double /*none*/) { return normal_(random_); });
+    numbers.head(12) += root * Vector(12).unaryExpr([&](double /*none*/) { return normal_(random_); });
     drawn.model = impedance::unstacked(numbers, 2);
     return drawn;
   }

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::analyse {
@@ -42,7 +42,7 @@ struct Spread {
 Spread monte_carlo(const Matrix& Z, const Matrix& covariance) {
   std::mt19937 random(1);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  const Eigen::LLT<Matrix> root(covariance);
+  const Matrix root = numeric::Cholesky(covariance).upper().transpose();
   constexpr int kDraws = 20000;
   Matrix values(kDraws, 4);
   for (int draw = 0; draw < kDraws; ++draw) {
@@ -51,7 +51,7 @@ Spread monte_carlo(const Matrix& Z, const Matrix& covariance) {
       value = -6.0;
       for (int k = 0; k < 12; ++k) value += uniform();
     }
-    const Vector change = root.matrixL() * normal;
+    const Vector change = root * normal;
     Matrix drawn = Z;
     drawn(0, 0) += change[0];
     drawn(0, 1) += change[1];

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/robot/kinematics.h"
 
@@ -41,8 +41,9 @@ SensorRun table(const Matrix& force, const Matrix& slope, double noise, std::uin
   run.source.path = "loads.csv";
   run.axes = {"x", "y"};
   run.force = force;
-  const Vector zero = -slope.inverse() * kOffset;
-  run.voltage = (force * slope.inverse().transpose()).rowwise() + zero.transpose();
+  const Matrix inverse = numeric::inverse(slope);
+  const Vector zero = -inverse * kOffset;
+  run.voltage = (force * inverse.transpose()).rowwise() + zero.transpose();
   for (double& v : run.voltage.reshaped()) {
     v += noise * random.normal();
     if (step > 0.0) v = step * std::round(v / step);
@@ -69,7 +70,7 @@ TEST(CalibrateSensor, GivesSlopesZerosAndCrosstalkBackFromExactVoltages) {
   const auto found = calibrate_sensor({table(loads(1), S, 0.0, 1)}, {});
   ASSERT_TRUE(found) << found.error().line();
   EXPECT_LT((found->slope - S).cwiseAbs().maxCoeff(), kRounding);
-  const Matrix C = S.inverse();
+  const Matrix C = numeric::inverse(S);
   for (Index i = 0; i < 2; ++i) {
     const SensorAxis& axis = found->axes[static_cast<std::size_t>(i)];
     EXPECT_NEAR(axis.intercept, kOffset[i], kRounding);

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::explore {
@@ -98,7 +98,7 @@ TEST(StiffnessRegression, IsNotBiasedByAHandThatItsOwnForceMoves) {
       dd += one.displacement * one.displacement.transpose();
       fd += one.force * one.displacement.transpose();
     }
-    plain += Matrix(fd * dd.inverse()).reshaped<Eigen::RowMajor>() / kRuns;
+    plain += Matrix(fd * numeric::inverse(dd)).reshaped<Eigen::RowMajor>() / kRuns;
   }
   EXPECT_NEAR(sum[3], 125.0, 2.0);
   EXPECT_LT(plain[3], 115.0);  // what least squares on the measured displacement would say

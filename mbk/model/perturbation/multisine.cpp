@@ -82,10 +82,12 @@ Result<Multisine> Multisine::with_random_phases(double period, const std::vector
 Jet<double> Multisine::at(double t) const {
   const double angle = 2.0 * std::numbers::pi * (std::fmod(t, period_) / period_);
   const Turn base{std::cos(angle), std::sin(angle)};
-  Turn turn;
+  Turn turn, rise = base;  // to a line, and to it from the line before
+  int times = 1;
   Jet<double> sum{0.0, 0.0, 0.0};
   for (const Step& step : steps_) {
-    turn = turn.and_then(step.rise == 1 ? base : repeated(base, step.rise));
+    if (step.rise != times) rise = repeated(base, times = step.rise);
+    turn = turn.and_then(rise);
     const double sine = step.in_phase * turn.sine + step.ahead * turn.cosine;
     sum.value += sine;
     sum.first += step.omega * (step.in_phase * turn.cosine - step.ahead * turn.sine);

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <numbers>
 
 #include "mbk/model/robot/single_joint.h"
@@ -90,10 +90,12 @@ TEST(HandFromJoints, WithMoreJointsThanAxesIsTheLeastSquaresInverse) {
   const ThreePointMasses mechanism;
   const JointVector q = Eigen::Vector3d(0.2, 0.7, -0.4);
   const Matrix transposed = mechanism.jacobian(q).transpose(), L = hand_from_joints(mechanism, q).value();
-  const Matrix pseudo_inverse = transposed.completeOrthogonalDecomposition().pseudoInverse();
+  const Matrix2d squared = transposed.transpose() * transposed;
+  const Matrix pseudo_inverse = squared.inverse() * transposed.transpose();
   EXPECT_LE((L - pseudo_inverse).norm(), 1e-12);
   // A torque that no force at the hand answers does not show.
-  const Vector null = Eigen::JacobiSVD<Matrix>(transposed.transpose(), Eigen::ComputeFullV).matrixV().col(2);
+  const Eigen::Vector3d first = transposed.col(0), second = transposed.col(1);
+  const Vector null = first.cross(second).normalized();
   EXPECT_LE((L * null).norm(), 1e-13);
 }
 
@@ -114,8 +116,10 @@ TEST(HandFromJoints, RefusesASingularPostureAndNamesIt) {
 TEST(HandFromJoints, DrawsTheLineAtAThousandthOfTheLargestSingularValue) {
   const PlanarMechanism planar({});
   const auto ratio = [](const Vector2d& q) {
-    const Vector2d values = Eigen::JacobiSVD<Matrix2d>(jacobian(Geometry{}, q)).singularValues();
-    return values[1] / values[0];
+    // σ₁ σ₂ = |det J| and σ₁² + σ₂² = ‖J‖²
+    const Matrix2d J = jacobian(Geometry{}, q);
+    const double product = std::abs(J.determinant()), half = 0.5 * J.squaredNorm();
+    return product / (half + std::sqrt(half * half - product * product));
   };
   int refused = 0, allowed = 0;
   for (double from_folded = 1e-4; from_folded < 0.02; from_folded *= 1.07) {

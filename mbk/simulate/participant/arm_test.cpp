@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "mbk/base/numeric/dense.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::participant {
@@ -106,7 +106,7 @@ TEST(Participants, HaveThePublishedImpedanceAndAnInertiaNearIt) {
     const TwoLinkArm limb = TwoLinkArm::create(options).value();
     for (double away = -ChainInertia::kElbowRange; away <= ChainInertia::kElbowRange; away += 0.05) {
       const Matrix2d I = limb.inertia().matrix(options.joints.elbow_angle + away);
-      EXPECT_GT(I.selfadjointView<Eigen::Lower>().eigenvalues()[0], 1e-3) << number << ", elbow " << away << " off";
+      EXPECT_GT(numeric::symmetric_eigenvalues(I)[0], 1e-3) << number << ", elbow " << away << " off";
     }
   }
   EXPECT_EQ(participant_options(7).error().message, "participant 7 is not one of the six, 1 to 6");

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/study/reliability/retest.h"
 
@@ -128,12 +127,12 @@ std::pair<double, Vector> by_dense_matrices(const Measurements& m, double partic
     }
     V(i, i) += residual + (m.known_variance.size() > 0 ? m.known_variance[i] : 0.0);
   }
-  const Matrix inverse = V.inverse();
+  const Matrix inverse = numeric::inverse(V);
   const Matrix information = m.fixed.transpose() * inverse * m.fixed;
-  const Vector beta = information.ldlt().solve(m.fixed.transpose() * inverse * m.values);
+  const Vector beta = numeric::PivotedCholesky(information).solve(m.fixed.transpose() * inverse * m.values);
   const Vector rest = m.values - m.fixed * beta;
-  const double log_det_V = 2.0 * Matrix(V.llt().matrixL()).diagonal().array().log().sum();
-  return {log_det_V + std::log(information.determinant()) + rest.dot(inverse * rest) +
+  const double log_det_V = 2.0 * numeric::Cholesky(V).upper().diagonal().array().log().sum();
+  return {log_det_V + std::log(numeric::determinant(information)) + rest.dot(inverse * rest) +
               static_cast<double>(n - p) * std::log(2.0 * std::numbers::pi),
           beta};
 }
@@ -167,7 +166,7 @@ TEST(MixedModel, IsTheMaximumOfTheLikelihoodByDenseMatrices) {
                             std::pow(2.0 * kStep * E, 2);
       }
     }
-    EXPECT_NEAR(*model->participant.standard_error, std::sqrt(information.inverse()(0, 0)), 0.01 * P);
+    EXPECT_NEAR(*model->participant.standard_error, std::sqrt(numeric::inverse(information)(0, 0)), 0.01 * P);
   }
 }
 

@@ -1,0 +1,63 @@
+#include "mbk/base/numeric/dense.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "mbk/base/numeric/random.h"
+
+namespace mbk::numeric {
+namespace dense_test {
+
+Eigen::VectorXcd drawn(Random& random, Index n) {
+  Eigen::VectorXcd v(n);
+  for (std::complex<double>& one : v) one = {random.normal(), random.normal()};
+  return v;
+}
+
+/// Of known eigenvalues, turned by n reflections I − 2 v v*/v*v; what stands above the diagonal is not to be read.
+Eigen::MatrixXcd hermitian_with(const Vector& eigenvalues, Random& random) {
+  const Index n = eigenvalues.size();
+  Eigen::MatrixXcd A = eigenvalues.cast<std::complex<double>>().asDiagonal();
+  for (Index k = 0; k < n; ++k) {
+    const Eigen::VectorXcd v = drawn(random, n).normalized();
+    const Eigen::MatrixXcd turn = Eigen::MatrixXcd::Identity(n, n) - 2.0 * v * v.adjoint();
+    A = (turn * A * turn).eval();
+  }
+  A.triangularView<Eigen::StrictlyUpper>().setConstant(std::numeric_limits<double>::quiet_NaN());
+  return A;
+}
+
+TEST(HermitianEigenvalues, AreThoseThatTheMatrixWasMadeOf) {
+  Random random(1);
+  for (Index n = 1; n <= 6; ++n) {
+    for (int turn = 0; turn < 20; ++turn) {
+      Vector expected(n);
+      for (double& one : expected) one = std::exp(3.0 * random.normal()) * (random.uniform() < 0.5 ? -1.0 : 1.0);
+      if (turn % 2 == 1 && n > 2) expected[1] = expected[0];  // one that comes twice
+      std::ranges::sort(expected);
+      const Vector found = hermitian_eigenvalues(hermitian_with(expected, random));
+      ASSERT_EQ(found.size(), n);
+      EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST(HermitianEigenvalues, OfTwoByTwoAreTheRootsOfItsPolynomial) {
+  Random random(2);
+  for (int turn = 0; turn < 100; ++turn) {
+    const double a = random.normal(), d = random.normal();
+    const std::complex<double> c = drawn(random, 1)[0];
+    const Eigen::MatrixXcd A = (Eigen::MatrixXcd(2, 2) << a, std::conj(c), c, d).finished();
+    const double middle = 0.5 * (a + d), half = std::sqrt(0.25 * (a - d) * (a - d) + std::norm(c));
+    const Vector found = hermitian_eigenvalues(A);
+    EXPECT_NEAR(found[0], middle - half, 1e-14 * (std::abs(middle) + half));
+    EXPECT_NEAR(found[1], middle + half, 1e-14 * (std::abs(middle) + half));
+  }
+}
+
+}  // namespace dense_test
+}  // namespace mbk::numeric
