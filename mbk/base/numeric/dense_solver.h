@@ -20,8 +20,8 @@ Matrix DenseSolver<Factor>::solve_matrix(const Matrix& right) const {
 
 }  // namespace mbk::numeric
 
-// Blocks of Householder reflections on a matrix of doubles, which three files would compile alike; dense_qr.cpp does. The
-// names are those of Eigen 3.4.0; with another version nothing is declared (mbk/base/core/matrix_products.h).
+// Blocks of Householder reflections on a matrix of doubles, which three files would compile alike; dense_qr.cpp does.
+// The names are those of Eigen 3.4.0; with another version nothing is declared (mbk/base/core/matrix_products.h).
 #if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4 && EIGEN_MINOR_VERSION == 0
 // NOLINTBEGIN(cppcoreguidelines-macro-usage)
 #define MBK_REFLECTIONS(instantiate)                                                                    \
