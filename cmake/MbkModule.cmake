@@ -131,6 +131,9 @@ function(mbk_module name)
   endif()
 endfunction()
 
+set(MBK_KEEPS_MEMORY
+    GLIBC_TUNABLES=glibc.malloc.mmap_threshold=134217728:glibc.malloc.trim_threshold=134217728:glibc.malloc.top_pad=16777216)
+
 # A GoogleTest program whose cases CTest sees one by one. A case skipped for want of MBK_DATA_DIR counts as skipped.
 # WAITS: it waits for a socket, which a busy machine may hold up; only tests with this label have a second chance
 # (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers. ALONE: as above.
@@ -149,7 +152,9 @@ function(mbk_test name)
     mbk_precompile(${name} tests)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300 ${labels})
+  # As in the program (apps/mbk/memory.cpp), memory that was freed serves again; to clear new pages took a quarter of some.
+  gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST
+                       PROPERTIES TIMEOUT 300 ${labels} ENVIRONMENT ${MBK_KEEPS_MEMORY})
 endfunction()
 
 # mbk_test_each_simd(TEST FILTER): the cases that FILTER names, as processors run them that have less than this one.
