@@ -133,5 +133,31 @@ TEST(ZeroPhase, RefusesASignalShorterThanItsPadding) {
   EXPECT_THAT(refused.error().message, testing::HasSubstr("15 samples are too few"));
 }
 
+TEST(FilterZeroPhase, OfColumnsSideBySideIsThatOfEachAloneToTheLastBit) {
+  const SectionCascade filter = lowpass(12.0);
+  const Padding padding{.samples = 20};
+  for (Index columns = 1; columns <= 9; ++columns) {
+    const Matrix signals = noise(300, columns, static_cast<unsigned>(columns));
+    const Matrix filtered = filter_zero_phase(filter, signals, padding).value();
+    for (Index column = 0; column < columns; ++column) {
+      const Vector x = signals.col(column);
+      std::vector<double> work;
+      for (Index i = padding.samples; i >= 1; --i) work.push_back(2.0 * x[0] - x[i]);
+      work.insert(work.end(), x.begin(), x.end());
+      for (Index i = 1; i <= padding.samples; ++i) work.push_back(2.0 * x[299] - x[299 - i]);
+      CausalFilter running(filter);
+      for (int pass = 0; pass < 2; ++pass) {
+        running.settle(work.front());
+        for (double& value : work) value = running.step(value);
+        std::ranges::reverse(work);
+      }
+      for (Index i = 0; i < 300; ++i) {
+        ASSERT_EQ(filtered(i, column), work[static_cast<std::size_t>(padding.samples + i)])
+            << columns << ", " << column;
+      }
+    }
+  }
+}
+
 }  // namespace zero_phase_test
 }  // namespace mbk::dsp
