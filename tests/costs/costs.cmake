@@ -2,10 +2,9 @@
 # starts with what costs most, so that nothing long is left alone at the end. What has run is measured in
 # Testing/Temporary/CTestCostData.txt of the build folder, from which this list is renewed.
 #
-# The browser's tests wait for each other (RESOURCE_LOCK) and clang-tidy takes all processors: they begin before all else,
-# as their own COST says. CTest reads this file after the tests that it names; a name that is no test is passed over.
+# The browser's tests and robots in real time wait for each other (RESOURCE_LOCK) and clang-tidy takes all processors: they
+# begin before all else, as their own COST says. CTest reads this file after the tests that it names; a name that is no test is passed over.
 set(costs
-    99 end_to_end/bridge
     98 end_to_end/cluster
     97 package/debian_packages
     78 end_to_end/advice
@@ -13,7 +12,6 @@ set(costs
     75 python/notebooks
     74 end_to_end/reproduce
     67 bindings/octave
-    66 end_to_end/signals
     61 instructions
     51 documents/site
     50 end_to_end/udp
