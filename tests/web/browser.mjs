@@ -18,8 +18,9 @@ const skip = (why) => {
   process.exit(skipped);
 };
 
-const found = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
-const executablePath = found.find((path) => path && existsSync(path)) ?? skip("no Chromium; its Debian package is chromium");
+// The shell draws the same pages without a browser around them, in half of the time.
+const found = [process.env.CHROMIUM, "/usr/bin/chromium-headless-shell", "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
+const executablePath = found.find((path) => path && existsSync(path)) ?? skip("no Chromium; its Debian package is chromium-headless-shell");
 const library = (name) => {
   try {
     return packages(name);
@@ -150,9 +151,21 @@ export async function runWithConsole(experiment, name, ...args) {
 /** The console without a session, which shows of the robot what it is told (console_double.cpp). */
 export const startDouble = () => started(program("CONSOLE_DOUBLE"), []);
 
+/** What is printed stays to be looked at: without a printer it is over at once in one browser, and never in another. */
+function holdPrinting() {
+  window.print = () => { top.prints = (top.prints ?? 0) + 1; };
+}
+
+/** The frame that was sent to the printer, once. */
+export const printedFrame = (page) => eventually(async () => {
+  assert.equal(await page.evaluate(() => window.prints), 1, "what is printed is the figure alone");
+  return page.frames().at(-1);
+});
+
 /** A page on a report, or at an address; a `script` runs before its own. What it says on the console, which errors it meets and what it asks a network for is kept. */
 export async function open(file, { script, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, reducedMotion: "reduce", ...options });
+  await context.addInitScript(holdPrinting);
   if (script) await context.addInitScript(script);
   const page = await context.newPage();
   const said = [];

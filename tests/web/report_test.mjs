@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { after, test } from "node:test";
 import { join } from "node:path";
-import { assertShown, changed, clipped, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, scrollThrough, simulate, violations, violationsInBoth, violationsInDark } from "./browser.mjs";
+import { assertShown, changed, clipped, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, printedFrame, scrollThrough, simulate, violations, violationsInBoth, violationsInDark } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
@@ -309,7 +309,7 @@ test("a drawing is saved as on paper, whatever the screen looks like, and printe
         saved.push(text);
       }
       await page.getByRole("button", { name: /^Print, save PDF: Ellipses/ }).click();
-      await eventually(async () => assert.equal(await page.frames().at(-1).locator("svg .none, svg svg").count(), 4, "three ellipses and the legend"));
+      assert.equal(await (await printedFrame(page)).locator("svg .none, svg svg").count(), 4, "three ellipses and the legend");
     }, { colorScheme });
   }
   assert.deepEqual(saved.slice(0, 2), saved.slice(2));
