@@ -3,7 +3,8 @@
 # Testing/Temporary/CTestCostData.txt of the build folder, from which this list is renewed.
 #
 # The browser's tests and robots in real time wait for each other (RESOURCE_LOCK) and clang-tidy takes all processors: they
-# begin before all else, as their own COST says. CTest reads this file after the tests that it names; a name that is no test is passed over.
+# begin before all else, as their own COST says. CTest reads this file after the tests that it names; a name that is no
+# test is passed over.
 set(costs
     98 end_to_end/cluster
     97 package/debian_packages

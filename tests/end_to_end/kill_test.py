@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sessions in real time that are killed from outside (SIGKILL) at moments drawn by lot, and disks that refuse.
 
-MBK_KILLS sets how many moments there are (12; half of them beside a load), MBK_KILLS_SEED draws others; in full:
+MBK_KILLS sets how many moments there are (12), MBK_KILLS_SEED draws others; the full form is
   MBK_KILLS=100 MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/kill_test.py
 What is lost is measured from outside: the session's first tick is dated by its status lines, on the clock by which the
 kill is dated too. The first line comes up to 10 ms after the tick that it tells of, so much may be lost more than is
@@ -222,14 +222,14 @@ class Killing(Case):
             return what + ", before it said anything", 0.0
         return what, killed - session.first - times[-1]
 
-    def kill_at_moments(self, kills, max_lost, at_a_time, priority=0):
+    def kill_at_moments(self, max_lost, at_a_time, priority=0):
         whole, kept = self.whole_run()
         unharmed = digest(kept)
         lot = random.Random(SEED)
-        at_the_end = [k % 3 == 2 for k in range(kills)]
+        at_the_end = [k % 3 == 2 for k in range(KILLS)]
         moments = [lot.uniform(0.0, 0.012) if end else lot.uniform(0.02, whole) for end in at_the_end]
         with Stalls(priority) as stalls, concurrent.futures.ThreadPoolExecutor(at_a_time) as pool:
-            results = list(pool.map(self.killed_at, range(kills), moments, at_the_end))
+            results = list(pool.map(self.killed_at, range(KILLS), moments, at_the_end))
         for what in sorted({what for what, _ in results}):
             lost = [1e3 * lost for one, lost in results if one == what]
             print(f"{what}: {len(lost)} times, at most {max(lost):.0f} ms lost", file=sys.stderr)
@@ -281,12 +281,12 @@ watchdog_ms = 5000
 
     def test_the_recorder_keeps_up_beside_a_load_in_real_time(self):
         with Load() as load:
-            self.kill_at_moments(KILLS // 2, self.MOST_LOST, 2, RECORDER_PRIORITY if load.busy else 0)
+            self.kill_at_moments(self.MOST_LOST, 2, RECORDER_PRIORITY if load.busy else 0)
 
 
 class Kill(Killing):
     def test_every_recording_opens_and_at_most_0_2_s_are_lost(self):
-        self.kill_at_moments(KILLS, MOST_LOST, AT_A_TIME)
+        self.kill_at_moments(MOST_LOST, AT_A_TIME)
 
     def test_recording_and_journal_both_there(self):
         """Killed after the recording had its name and before the journal was removed."""

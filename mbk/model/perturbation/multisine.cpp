@@ -86,7 +86,10 @@ Jet<double> Multisine::at(double t) const {
   int times = 1;
   Jet<double> sum{0.0, 0.0, 0.0};
   for (const Step& step : steps_) {
-    if (step.rise != times) rise = repeated(base, times = step.rise);
+    if (step.rise != times) {
+      times = step.rise;
+      rise = repeated(base, times);
+    }
     turn = turn.and_then(rise);
     const double sine = step.in_phase * turn.sine + step.ahead * turn.cosine;
     sum.value += sine;
