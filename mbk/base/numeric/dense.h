@@ -29,6 +29,7 @@ struct SymmetricEigen {
 [[nodiscard]] Eigen::VectorXcd eigenvalues(const Matrix& A);
 /// Descending.
 [[nodiscard]] Vector singular_values(const Matrix& A);
+[[nodiscard]] Vector complex_singular_values(const Eigen::MatrixXcd& A);
 
 /// A = U diag(values) Vᵀ, with k = min(m, n).
 struct ThinSvd {
@@ -43,8 +44,6 @@ struct ThinSvd {
 /// Of any square matrix, by the same elimination.
 [[nodiscard]] double determinant(const Matrix& A);
 [[nodiscard]] Eigen::MatrixXcd complex_inverse(const Eigen::MatrixXcd& A);
-/// |the last pivot| of Gaussian elimination with pivots from the whole matrix: 0 where A is singular.
-[[nodiscard]] double least_pivot(const Eigen::MatrixXcd& A);
 
 /// e^A of a square matrix.
 [[nodiscard]] Matrix matrix_exponential(const Matrix& A);
@@ -107,7 +106,7 @@ class HermitianPivotedCholesky {
   [[nodiscard]] Eigen::VectorXcd solve(const Eigen::VectorXcd& right) const;
 
  private:
-  Eigen::LDLT<Eigen::MatrixXcd> factor_;
+  PivotedCholesky as_real_;
 };
 
 /// Q R Pᵀ by Householder reflections, columns in descending order of length.

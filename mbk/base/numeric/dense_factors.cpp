@@ -23,16 +23,6 @@ Vector PivotedCholesky::pivots() const {
   return factor_.vectorD();
 }
 
-HermitianPivotedCholesky::HermitianPivotedCholesky(const Eigen::MatrixXcd& A) : factor_(A) {}
-
-Vector HermitianPivotedCholesky::pivots() const {
-  return factor_.vectorD().real();
-}
-
-Eigen::VectorXcd HermitianPivotedCholesky::solve(const Eigen::VectorXcd& right) const {
-  return factor_.solve(right);
-}
-
 double Lu::reciprocal_condition() const {
   return factor_.rcond();
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <vector>
 
 #include "mbk/base/numeric/random.h"
 
@@ -56,6 +57,59 @@ TEST(HermitianEigenvalues, OfTwoByTwoAreTheRootsOfItsPolynomial) {
     const Vector found = hermitian_eigenvalues(A);
     EXPECT_NEAR(found[0], middle - half, 1e-14 * (std::abs(middle) + half));
     EXPECT_NEAR(found[1], middle + half, 1e-14 * (std::abs(middle) + half));
+  }
+}
+
+Eigen::MatrixXcd complex_drawn(Random& random, Index rows, Index columns) {
+  Eigen::MatrixXcd A(rows, columns);
+  for (Index j = 0; j < columns; ++j) A.col(j) = drawn(random, rows);
+  return A;
+}
+
+TEST(ComplexInverse, TimesTheMatrixIsOne) {
+  Random random(3);
+  for (Index n = 1; n <= 5; ++n) {
+    const Eigen::MatrixXcd A = complex_drawn(random, n, n), inverse = complex_inverse(A);
+    EXPECT_LE((A * inverse - Eigen::MatrixXcd::Identity(n, n)).norm(), 1e-13 * A.norm() * inverse.norm());
+  }
+  EXPECT_FALSE(complex_inverse(Eigen::MatrixXcd::Zero(2, 2)).allFinite());
+}
+
+TEST(ComplexSingularValues, AreTheRootsOfTheGramMatrixsEigenvalues) {
+  Random random(4);
+  for (Index n = 1; n <= 4; ++n) {
+    const Eigen::MatrixXcd A = complex_drawn(random, n + 1, n);
+    const Vector found = complex_singular_values(A), expected = hermitian_eigenvalues(A.adjoint() * A).cwiseSqrt().reverse();
+    ASSERT_EQ(found.size(), n);
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-12 * expected[0]);
+  }
+  const Eigen::MatrixXcd alike = (Eigen::MatrixXcd(2, 2) << 1.0, std::complex<double>(0.0, 1.0),
+                                  std::complex<double>(0.0, 1.0), -1.0).finished();  // the second row is i times the first
+  EXPECT_NEAR(complex_singular_values(alike)[1], 0.0, 1e-15);
+}
+
+TEST(HermitianPivotedCholesky, SolvesAndHasThePivotsOfElimination) {
+  Random random(5);
+  for (Index n = 1; n <= 5; ++n) {
+    const Eigen::MatrixXcd C = complex_drawn(random, n + 1, n), A = C.adjoint() * C;
+    Eigen::MatrixXcd given = A;
+    given.triangularView<Eigen::StrictlyUpper>().setConstant(std::numeric_limits<double>::quiet_NaN());
+    const HermitianPivotedCholesky factor(given);
+    const Eigen::VectorXcd x = drawn(random, n);
+    EXPECT_LE((factor.solve(A * x) - x).norm(), 1e-10 * x.norm());
+    // Plain elimination, the largest of the diagonal first.
+    Eigen::MatrixXcd rest = A;
+    std::vector<Index> left;
+    for (Index k = 0; k < n; ++k) left.push_back(k);
+    const Vector pivots = factor.pivots();
+    ASSERT_EQ(pivots.size(), n);
+    for (Index step = 0; step < n; ++step) {
+      const auto largest = std::ranges::max_element(left, {}, [&](Index k) { return rest(k, k).real(); });
+      const Index k = *largest;
+      EXPECT_NEAR(pivots[step], rest(k, k).real(), 1e-12 * A.norm());
+      rest -= (rest.col(k) * rest.row(k) / rest(k, k)).eval();
+      left.erase(largest);
+    }
   }
 }
 

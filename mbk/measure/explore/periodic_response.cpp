@@ -488,7 +488,7 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
     constexpr double kSmallest = 1e-3;  // singular value of the directions, of unit vectors
     Cx unit = input_power.cwiseSqrt().cwiseInverse().asDiagonal() * A *
               reference_power.cwiseSqrt().cwiseInverse().asDiagonal();
-    if (!unit.allFinite() || numeric::least_pivot(unit) < kSmallest) {
+    if (!unit.allFinite() || numeric::complex_singular_values(unit)[sizes.inputs - 1] < kSmallest) {
       ++facts.skipped_lines;
       continue;
     }
