@@ -505,7 +505,7 @@ class Interrupted(StudyCase):
                  for k in range(24)]
         added, measured = {}, set()
         for n in range(10 * KILLS):
-            if sum(self.kills.values()) >= KILLS:
+            if sum(self.kills.values()) >= KILLS and min(self.kills[what] for what in self.longest) > KILLS // 20:
                 break
             what = ("add", "measure", "forget", "add", "measure")[n % 5]
             if what == "add":
