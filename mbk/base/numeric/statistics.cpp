@@ -88,12 +88,59 @@ MBK_X86_64_V4 double squares_v4(const double* x, Index count) {
   return squares_body<Eight>(x, count);
 }
 
+/// Whether all are finite is seen by the sum of x − x, which is 0 then.
+template <class Lanes>
+[[gnu::always_inline]] inline Extremes extremes_body(const double* x, Index count) {
+  constexpr Index kAtOnce = 4, kRows = kAtOnce * Lanes::kWidth;
+  const double infinity = std::numeric_limits<double>::infinity();
+  typename Lanes::V least[kAtOnce], greatest[kAtOnce], nothing[kAtOnce] = {};
+  for (Index i = 0; i < kAtOnce; ++i) {
+    least[i] = infinity + typename Lanes::V{};
+    greatest[i] = -infinity + typename Lanes::V{};
+  }
+  Index t = 0;
+  for (; t + kRows <= count; t += kRows) {
+    for (Index i = 0; i < kAtOnce; ++i) {
+      const typename Lanes::V one = Lanes::at(x + t + i * Lanes::kWidth);
+      nothing[i] += one - one;
+      least[i] = one < least[i] ? one : least[i];
+      greatest[i] = one > greatest[i] ? one : greatest[i];
+    }
+  }
+  Extremes found{infinity, -infinity};
+  double sum = 0.0;
+  const auto take = [&](double low, double high, double difference) {
+    found = {std::min(found.min, low), std::max(found.max, high)};
+    sum += difference;
+  };
+  for (Index i = 0; i < kAtOnce; ++i) {
+    for (Index k = 0; k < Lanes::kWidth; ++k) take(least[i][k], greatest[i][k], nothing[i][k]);
+  }
+  for (; t < count; ++t) take(x[t], x[t], x[t] - x[t]);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return count > 0 && sum == 0.0 ? found : Extremes{nan, nan};
+}
+Extremes extremes_any(const double* x, Index count) {
+  return extremes_body<Four>(x, count);
+}
+MBK_X86_64_V3 Extremes extremes_v3(const double* x, Index count) {
+  return extremes_body<Four>(x, count);
+}
+MBK_X86_64_V4 Extremes extremes_v4(const double* x, Index count) {
+  return extremes_body<Eight>(x, count);
+}
+
 }  // namespace
 
 double variance(const Eigen::Ref<const Vector>& values) {
   if (values.size() < 2) return 0.0;
   const auto squares = has_x86_64_v4() ? squares_v4 : has_x86_64_v3() ? squares_v3 : squares_any;
   return squares(values.data(), values.size()) / static_cast<double>(values.size() - 1);
+}
+
+Extremes finite_extremes(const Eigen::Ref<const Vector>& values) {
+  const auto extremes = has_x86_64_v4() ? extremes_v4 : has_x86_64_v3() ? extremes_v3 : extremes_any;
+  return extremes(values.data(), values.size());
 }
 
 double variance_accounted_for(const Vector& measured, const Vector& residual) {

@@ -20,6 +20,14 @@ inline constexpr double kNormal99 = 2.5758293035489004;  ///< Φ⁻¹(0.995)
 /// It ignores a constant error and may be negative: always show the RMSE beside it. NaN where f is constant.
 [[nodiscard]] double variance_accounted_for(const Vector& measured, const Vector& residual);
 
+/// The least and the greatest of some values.
+struct Extremes {
+  double min, max;
+};
+
+/// Of values that are all finite; NaN where one is not, or there is none.
+[[nodiscard]] Extremes finite_extremes(const Eigen::Ref<const Vector>& values);
+
 /// √(mean of squares).
 [[nodiscard]] double root_mean_square(const Vector& values);
 

@@ -36,6 +36,40 @@ TEST(Statistics, VarianceIsThatOfThePlainSumForAnyLength) {
   }
 }
 
+TEST(Statistics, ExtremesAreThoseOfThePlainSearchForAnyLengthAndPlace) {
+  for (const Index count : {1, 2, 15, 16, 31, 32, 33, 100, 1000, 4099}) {
+    Vector values = Vector::Random(count).array() - 3.0;
+    const Extremes found = finite_extremes(values);
+    EXPECT_EQ(found.min, values.minCoeff()) << count << " values";
+    EXPECT_EQ(found.max, values.maxCoeff()) << count;
+    for (Index at = 0; at < count; at += 1 + count / 97) {
+      Vector other = values;
+      other[at] = 7.0;
+      EXPECT_EQ(finite_extremes(other).max, 7.0) << at;
+      other[at] = -7.0;
+      EXPECT_EQ(finite_extremes(other).min, -7.0) << at;
+    }
+  }
+}
+
+TEST(Statistics, ThereAreNoExtremesWhereOneValueIsNotFinite) {
+  EXPECT_TRUE(std::isnan(finite_extremes(Vector()).min));
+  EXPECT_TRUE(std::isnan(finite_extremes(Vector()).max));
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double other : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
+    for (const Index count : {1, 31, 33, 200}) {
+      for (Index at = 0; at < count; ++at) {
+        Vector values = Vector::Random(count);
+        values[at] = other;
+        EXPECT_TRUE(std::isnan(finite_extremes(values).min)) << at << " of " << count;
+        EXPECT_TRUE(std::isnan(finite_extremes(values).max)) << at << " of " << count;
+        EXPECT_EQ(first_non_finite(values), at);
+      }
+      EXPECT_EQ(first_non_finite(Vector::Random(count)), -1);
+    }
+  }
+}
+
 TEST(Statistics, VarianceAccountedForIgnoresAnOffsetAndMayBeNegative) {
   const Vector force = (Vector(4) << 1, -1, 1, -1).finished();
   EXPECT_DOUBLE_EQ(variance_accounted_for(force, Vector::Constant(4, 7.0)), 100.0);

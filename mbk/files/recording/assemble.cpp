@@ -95,10 +95,8 @@ bool is_matrix(const Array& array) {
   return std::min(array.values.rows(), array.values.cols()) > 1;
 }
 
-/// Rows that are NaN throughout, column by column, as they stand in memory.
-std::vector<Index> rows_not_recorded(const SharedMatrix& values) {
-  std::vector<Index> rows;
-  for (Index row = 0; row < values.rows(); ++row) rows.push_back(row);
+/// Those of some rows that are NaN throughout: column by column, as they stand in memory.
+std::vector<Index> not_recorded_of(std::vector<Index> rows, const SharedMatrix& values) {
   for (Index column = 0; column < values.cols() && !rows.empty(); ++column) {
     std::erase_if(rows, [&](Index row) { return !std::isnan(values(row, column)); });
   }
@@ -291,15 +289,21 @@ class Assembler {
 
   Result<void> take_logs(const Array& logs) {
     std::vector<std::string> absent;
-    const std::vector<Index> not_recorded = rows_not_recorded(logs.values);
+    std::vector<const ChannelKind*> kinds;
+    std::vector<Index> rows;
     for (const ChannelKind& kind : channel_kinds()) {
       if (kind.logs_row == 0 || !is_requested(kind)) continue;
-      const Line line{&logs, kind.logs_row - 1, true};
-      if (kind.name != "time" && std::ranges::binary_search(not_recorded, line.index)) {
-        absent.emplace_back(kind.name);
+      kinds.push_back(&kind);
+      if (!is_time(&kind)) rows.push_back(kind.logs_row - 1);
+    }
+    const std::vector<Index> not_recorded = not_recorded_of(std::move(rows), logs.values);
+    for (const ChannelKind* kind : kinds) {
+      const Line line{&logs, kind->logs_row - 1, true};
+      if (std::ranges::find(not_recorded, line.index) != not_recorded.end()) {
+        absent.emplace_back(kind->name);
       } else {
         signals_.push_back(
-            {&kind, line, nullptr, false, fmt::format("row {}", kind.logs_row), fmt::format("{}", kind.logs_row)});
+            {kind, line, nullptr, false, fmt::format("row {}", kind->logs_row), fmt::format("{}", kind->logs_row)});
       }
     }
     recording_.notes.push_back(fmt::format(

@@ -24,25 +24,7 @@ constexpr Index kRunLength = 5;
 constexpr Index kRuns = 3;
 constexpr double kClippedFraction = 0.002;
 
-/// Of values that are all finite; NaN where one is not, or there is none.
-struct Extremes {
-  double min = kNaN, max = kNaN;
-};
-
-/// Piece by piece, each read from memory once. Whether all are finite is seen by a sum, which takes several at a time.
-Extremes finite_extremes(const Eigen::Ref<const Vector>& values) {
-  constexpr Index kPiece = 2048;
-  Extremes extremes;
-  for (Index begin = 0; begin < values.size(); begin += kPiece) {
-    const auto piece = values.segment(begin, std::min(kPiece, values.size() - begin)).array();
-    if ((piece - piece).sum() != 0.0) return {};
-    extremes.min = std::fmin(extremes.min, piece.minCoeff());
-    extremes.max = std::fmax(extremes.max, piece.maxCoeff());
-  }
-  return extremes;
-}
-
-void find_non_finite(const std::string& name, const Vector& values, const Extremes& finite,
+void find_non_finite(const std::string& name, const Vector& values, const numeric::Extremes& finite,
                      std::vector<NonFinite>& found) {
   if (values.size() == 0 || !std::isnan(finite.min)) return;
   const Index first = first_non_finite(values);
@@ -211,7 +193,7 @@ void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& fact
 }
 
 /// Of those of its values.
-ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values, const Extremes& finite) {
+ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values, const numeric::Extremes& finite) {
   ChannelFacts facts{channel.name, channel.unit, finite.min, finite.max};
   facts.constant = facts.min == facts.max;
   if (std::isnan(finite.min)) {
@@ -231,11 +213,11 @@ Inspection inspect(const Recording& recording) {
   Inspection facts;
   facts.samples = recording.samples();
   inspect_time(recording.time, facts);
-  find_non_finite("time", recording.time, finite_extremes(recording.time), facts.non_finite);
+  find_non_finite("time", recording.time, numeric::finite_extremes(recording.time), facts.non_finite);
   let_go(recording.time);
   find_missing(recording, facts.missing);
   for (const Channel& channel : recording.channels) {
-    const Extremes finite = finite_extremes(channel.values);
+    const numeric::Extremes finite = numeric::finite_extremes(channel.values);
     find_non_finite(channel.name, channel.values, finite, facts.non_finite);
     facts.channels.push_back(inspect_channel(channel, channel.values, finite));
     let_go(channel.values);
@@ -252,7 +234,7 @@ std::vector<ChannelFacts> clipped_channels(const Recording& recording, double fr
   for (const Channel& channel : recording.channels) {
     if (!can_clip(channel.name) || begin >= end) continue;
     const auto values = channel.values.segment(begin, end - begin);
-    const ChannelFacts facts = inspect_channel(channel, values, finite_extremes(values));
+    const ChannelFacts facts = inspect_channel(channel, values, numeric::finite_extremes(values));
     let_go(channel.values);
     if (facts.clipped) clipped.push_back(facts);
   }
