@@ -38,12 +38,13 @@ with h5py.File(sys.argv[1], "r") as source, h5py.File(sys.argv[2], "w") as targe
 """
 
 
-def peak(command):
-    """Greatest memory of a process [MB]."""
+def peak(command, runs=9):
+    """Greatest memory of a process [MB], the median of several: where memory begins differs from run to run."""
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True); "
             "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
-    ran = subprocess.run([sys.executable, "-c", code, *map(str, command)], check=True, capture_output=True, text=True)
-    return int(ran.stdout) / 1e3
+    weigh = [sys.executable, "-c", code, *map(str, command)]
+    return statistics.median(int(subprocess.run(weigh, check=True, capture_output=True, text=True).stdout) * 1024 / 1e6
+                             for _ in range(runs))
 
 
 def ratios(name, values):
@@ -106,7 +107,7 @@ def main():
     ratios("identify, HDF5 uncompressed", over(hdf5))
     ratios("identify --mode reference, without Python's imports", over(exact, 2))
     ratios("measure, the same parts", over(whole))
-    print("\ngreatest memory: " + ", ".join(f"{title} {value:.0f} MB" for title, value in memory))
+    print("\ngreatest memory: " + ", ".join(f"{title} {value:.1f} MB" for title, value in memory))
     difference = largest_difference(exact[4], exact[3]["model"])
     print(f"M, B and K of the reference mode differ by at most {difference:.1e} (limit {AGREEMENT:g})")
     if not difference <= AGREEMENT:

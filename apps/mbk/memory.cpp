@@ -7,6 +7,13 @@
 #include <cstdint>
 #include <cstdlib>
 
+// mallinfo2 is there from glibc 2.33 on.
+#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
+#if __GLIBC_PREREQ(2, 33)
+#define MBK_LARGE_PAGES
+#endif
+#endif
+
 namespace mbk::app {
 namespace {
 
@@ -15,8 +22,8 @@ namespace {
 }  // namespace
 
 void prefer_large_pages() {
-#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
-  constexpr std::uintptr_t kPage = std::uintptr_t{2} << 20, kArena = std::uintptr_t{64} << 20;
+#ifdef MBK_LARGE_PAGES
+  constexpr std::uintptr_t kPage = std::uintptr_t{2} << 20, kArena = std::uintptr_t{64} << 20, kSmallPage = 4096;
   // What is larger goes back when it is freed: columns of hours, not what a file of a minute is unpacked to, in whose
   // place signals can stand later.
   mallopt(M_MMAP_THRESHOLD, 16 << 20);
@@ -24,16 +31,21 @@ void prefer_large_pages() {
   mallopt(M_TRIM_THRESHOLD, 128 << 20);
   mallopt(M_TOP_PAD, static_cast<int>(kArena));
   const auto end_of_heap = [] { return reinterpret_cast<std::uintptr_t>(sbrk(0)); };
-  const std::uintptr_t before = end_of_heap();
-  void* volatile some = std::malloc(kPage);  // here the heap grows by the arena
-  std::free(some);
-  const std::uintptr_t begin = (before + kPage - 1) / kPage * kPage, end = end_of_heap();
+  // One block that nobody touches reaches from where the heap is free, by which it grows by the arena, to where its first
+  // large page begins: so all that follows stands in large pages, and but for the last one fills them. The word that the
+  // heap keeps before what is free stands before that page, too: a page of which a part is there cannot be a large one.
+  constexpr std::uintptr_t kWord = sizeof(std::size_t);
+  const std::uintptr_t before = end_of_heap(), free = before - mallinfo2().keepcost;
+  const std::uintptr_t begin = (before + kSmallPage + kPage - 1) / kPage * kPage;
+  static void* volatile untouched = nullptr;
+  untouched = std::malloc(begin - 2 * kWord - free - kWord);
+  const std::uintptr_t end = end_of_heap();
   if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // only advice: it may fail
 #endif
 }
 
 void give_back_large_blocks() {
-#if defined(__GLIBC__)
+#ifdef MBK_LARGE_PAGES
   if (keeps_large_blocks) mallopt(M_MMAP_THRESHOLD, 5 << 20);
 #endif
 }
