@@ -31,9 +31,10 @@ void prefer_large_pages() {
   mallopt(M_TRIM_THRESHOLD, 128 << 20);
   mallopt(M_TOP_PAD, static_cast<int>(kArena));
   const auto end_of_heap = [] { return reinterpret_cast<std::uintptr_t>(sbrk(0)); };
-  // One block that nobody touches reaches from where the heap is free, by which it grows by the arena, to where its first
-  // large page begins: so all that follows stands in large pages, and but for the last one fills them. The word that the
-  // heap keeps before what is free stands before that page, too: a page of which a part is there cannot be a large one.
+  // One block that nobody touches reaches from where the heap is free, by which it grows by the arena, to where its
+  // first large page begins: so all that follows stands in large pages, and but for the last one fills them. The word
+  // that the heap keeps before what is free stands before that page, too: a page of which a part is there cannot be a
+  // large one.
   constexpr std::uintptr_t kWord = sizeof(std::size_t);
   const std::uintptr_t before = end_of_heap(), free = before - mallinfo2().keepcost;
   const std::uintptr_t begin = (before + kSmallPage + kPage - 1) / kPage * kPage;

@@ -6,8 +6,8 @@ namespace mbk::numeric {
 
 namespace {
 
-/// [Re A, −Im A; Im A, Re A], which is to real vectors [Re x; Im x] what A is to x. Its inverse is that of A written so,
-/// and it has each singular value, each eigenvalue of a Hermitian A and each of its pivots twice.
+/// [Re A, −Im A; Im A, Re A], which is to real vectors [Re x; Im x] what A is to x. Its inverse is that of A written
+/// so, and it has each singular value, each eigenvalue of a Hermitian A and each of its pivots twice.
 Matrix as_real(const Eigen::MatrixXcd& A) {
   Matrix real(2 * A.rows(), 2 * A.cols());
   real << A.real(), -A.imag(), A.imag(), A.real();

@@ -79,12 +79,14 @@ TEST(ComplexSingularValues, AreTheRootsOfTheGramMatrixsEigenvalues) {
   Random random(4);
   for (Index n = 1; n <= 4; ++n) {
     const Eigen::MatrixXcd A = complex_drawn(random, n + 1, n);
-    const Vector found = complex_singular_values(A), expected = hermitian_eigenvalues(A.adjoint() * A).cwiseSqrt().reverse();
+    const Vector found = complex_singular_values(A),
+                 expected = hermitian_eigenvalues(A.adjoint() * A).cwiseSqrt().reverse();
     ASSERT_EQ(found.size(), n);
     EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-12 * expected[0]);
   }
-  const Eigen::MatrixXcd alike = (Eigen::MatrixXcd(2, 2) << 1.0, std::complex<double>(0.0, 1.0),
-                                  std::complex<double>(0.0, 1.0), -1.0).finished();  // the second row is i times the first
+  const Eigen::MatrixXcd alike =
+      (Eigen::MatrixXcd(2, 2) << 1.0, std::complex<double>(0.0, 1.0), std::complex<double>(0.0, 1.0), -1.0)
+          .finished();  // the second row is i times the first
   EXPECT_NEAR(complex_singular_values(alike)[1], 0.0, 1e-15);
 }
 

@@ -193,7 +193,8 @@ void inspect_clipping(const Eigen::Ref<const Vector>& values, ChannelFacts& fact
 }
 
 /// Of those of its values.
-ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values, const numeric::Extremes& finite) {
+ChannelFacts inspect_channel(const Channel& channel, const Eigen::Ref<const Vector>& values,
+                             const numeric::Extremes& finite) {
   ChannelFacts facts{channel.name, channel.unit, finite.min, finite.max};
   facts.constant = facts.min == facts.max;
   if (std::isnan(finite.min)) {
