@@ -18,6 +18,7 @@ namespace mbk::app {
 namespace {
 
 [[maybe_unused]] bool keeps_large_blocks = false;
+[[maybe_unused, gnu::used]] void* untouched = nullptr;  ///< before the first large page; nobody frees it
 
 }  // namespace
 
@@ -38,7 +39,6 @@ void prefer_large_pages() {
   constexpr std::uintptr_t kWord = sizeof(std::size_t);
   const std::uintptr_t before = end_of_heap(), free = before - mallinfo2().keepcost;
   const std::uintptr_t begin = (before + kSmallPage + kPage - 1) / kPage * kPage;
-  static void* volatile untouched = nullptr;
   untouched = std::malloc(begin - 2 * kWord - free - kWord);
   const std::uintptr_t end = end_of_heap();
   if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);  // only advice: it may fail
