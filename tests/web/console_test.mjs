@@ -461,10 +461,18 @@ test("in a relaxed trial the participant's picture is steady, and the trial ends
   const participant = await visit(running.participant, { script: watchPictures });
   const { page } = participant;
   await operator.click("Begin: relaxed");
-  const pictures = await page.waitForFunction(() => document.querySelector('.instruction[data-text="relax"]') && document.querySelector('canvas[data-steady="true"]:not([data-handle])') && globalThis.pictures, undefined, { timeout: 60_000 }).then((value) => value.jsonValue());
+  const pictures = await page.waitForFunction(() => {
+    const instruction = document.querySelector('.instruction[data-text="relax"]');
+    if (!instruction || !document.querySelector('canvas[data-steady="true"]:not([data-handle])')) return 0;
+    // At the end the ring changes with the next frame, before anybody could ask.
+    new MutationObserver(() => {
+      if (instruction.dataset.text !== "relax") globalThis.picturesUntilTheEnd ??= globalThis.pictures;
+    }).observe(instruction, { attributes: true });
+    return globalThis.pictures;
+  }, undefined, { timeout: 60_000 }).then((value) => value.jsonValue());
   await screenshot(page, "participant-steady");
   await page.waitForFunction(() => document.querySelector('.instruction:not([data-text="relax"])'), undefined, { timeout: 60_000 });
-  assert.equal(await page.evaluate(() => globalThis.pictures), pictures, "nothing was drawn anew while nothing changed");
+  assert.equal(await page.evaluate(() => globalThis.picturesUntilTheEnd), pictures, "nothing was drawn anew while nothing changed");
   await page.locator(".instruction", { hasText: "Thank you. That went well." }).waitFor({ timeout: 60_000 });
   await operator.click("Finish");
   await participant.close();

@@ -6,21 +6,25 @@ namespace mbk::numeric {
 
 namespace {
 
-/// [Re A, −Im A; Im A, Re A], which is to real vectors [Re x; Im x] what A is to x. Its inverse is that of A written
-/// so, and it has each singular value, each eigenvalue of a Hermitian A and each of its pivots twice.
+/// Each number a + b i as [a, −b; b, a], which is to real and imaginary parts in turn what A is to x. Its inverse is
+/// that of A written so; it has each singular value, and of a Hermitian A each eigenvalue and each pivot, twice.
 Matrix as_real(const Eigen::MatrixXcd& A) {
   Matrix real(2 * A.rows(), 2 * A.cols());
-  real << A.real(), -A.imag(), A.imag(), A.real();
+  for (Index j = 0; j < A.cols(); ++j) {
+    for (Index i = 0; i < A.rows(); ++i) {
+      const double a = A(i, j).real(), b = A(i, j).imag();
+      real(2 * i, 2 * j) = real(2 * i + 1, 2 * j + 1) = a;
+      real(2 * i + 1, 2 * j) = b;
+      real(2 * i, 2 * j + 1) = -b;
+    }
+  }
   return real;
 }
 
-/// The same of a Hermitian matrix, as far as its lower triangle goes.
-Matrix lower_as_real(const Eigen::MatrixXcd& A) {
-  const Index n = A.rows();
+/// The same, with a diagonal that is real. Of its lower triangle nothing comes from the upper one of A.
+Matrix hermitian_as_real(const Eigen::MatrixXcd& A) {
   Matrix real = as_real(A);
-  for (Index i = 0; i < n; ++i) {
-    for (Index k = i; k < n; ++k) real(n + i, k) = i == k ? 0.0 : -A(k, i).imag();
-  }
+  for (Index i = 0; i < A.rows(); ++i) real(2 * i + 1, 2 * i) = 0.0;
   return real;
 }
 
@@ -31,7 +35,7 @@ Vector every_second(const Vector& values) {
 }  // namespace
 
 Vector hermitian_eigenvalues(const Eigen::MatrixXcd& A) {
-  return every_second(symmetric_eigenvalues(lower_as_real(A)));
+  return every_second(symmetric_eigenvalues(hermitian_as_real(A)));
 }
 
 Vector complex_singular_values(const Eigen::MatrixXcd& A) {
@@ -40,26 +44,30 @@ Vector complex_singular_values(const Eigen::MatrixXcd& A) {
 
 Eigen::MatrixXcd complex_inverse(const Eigen::MatrixXcd& A) {
   const Matrix real = inverse(as_real(A));
-  Eigen::MatrixXcd result(A.rows(), A.cols());
-  result.real() = real.topLeftCorner(A.rows(), A.cols());
-  result.imag() = real.bottomLeftCorner(A.rows(), A.cols());
+  Eigen::MatrixXcd result(A.cols(), A.rows());
+  for (Index j = 0; j < result.cols(); ++j) {
+    for (Index i = 0; i < result.rows(); ++i) result(i, j) = {real(2 * i, 2 * j), real(2 * i + 1, 2 * j)};
+  }
   return result;
 }
 
-HermitianPivotedCholesky::HermitianPivotedCholesky(const Eigen::MatrixXcd& A) : as_real_(lower_as_real(A)) {}
+HermitianPivotedCholesky::HermitianPivotedCholesky(const Eigen::MatrixXcd& A) : as_real_(hermitian_as_real(A)) {}
 
+/// Eigen takes the diagonal's elements in descending order, as they were before: those that are there twice, as
+/// neighbours, stay neighbours.
 Vector HermitianPivotedCholesky::pivots() const {
   return every_second(as_real_.pivots());
 }
 
 Eigen::VectorXcd HermitianPivotedCholesky::solve(const Eigen::VectorXcd& right) const {
-  const Index n = right.size();
-  Vector real(2 * n);
-  real << right.real(), right.imag();
+  Vector real(2 * right.size());
+  for (Index i = 0; i < right.size(); ++i) {
+    real[2 * i] = right[i].real();
+    real[2 * i + 1] = right[i].imag();
+  }
   real = as_real_.solve(real);
-  Eigen::VectorXcd result(n);
-  result.real() = real.head(n);
-  result.imag() = real.tail(n);
+  Eigen::VectorXcd result(right.size());
+  for (Index i = 0; i < right.size(); ++i) result[i] = {real[2 * i], real[2 * i + 1]};
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "mbk/base/numeric/random.h"
@@ -90,28 +91,53 @@ TEST(ComplexSingularValues, AreTheRootsOfTheGramMatrixsEigenvalues) {
   EXPECT_NEAR(complex_singular_values(alike)[1], 0.0, 1e-15);
 }
 
+/// Plain elimination, the largest of the diagonal as it was given first; it changes places with what stands there.
+Vector pivots_of(Eigen::MatrixXcd A) {
+  const Index n = A.rows();
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Index{0});
+  const Vector given = A.diagonal().real();
+  Vector pivots(n);
+  for (Index step = 0; step < n; ++step) {
+    const auto here = order.begin() + step;
+    std::iter_swap(here, std::max_element(here, order.end(), [&](Index a, Index b) { return given[a] < given[b]; }));
+    pivots[step] = A(*here, *here).real();
+    A -= (A.col(*here) * A.row(*here) / A(*here, *here)).eval();
+  }
+  return pivots;
+}
+
 TEST(HermitianPivotedCholesky, SolvesAndHasThePivotsOfElimination) {
   Random random(5);
-  for (Index n = 1; n <= 5; ++n) {
-    const Eigen::MatrixXcd C = complex_drawn(random, n + 1, n), A = C.adjoint() * C;
+  for (int turn = 0; turn < 200; ++turn) {
+    const Index n = 1 + turn % 6;
+    const Eigen::MatrixXcd C = complex_drawn(random, n + 1, n);
+    Eigen::MatrixXcd A = C.adjoint() * C;
+    const Vector size = A.diagonal().real().cwiseSqrt().cwiseInverse();
+    if (turn % 2 == 1) A = (size.asDiagonal() * A * size.asDiagonal()).eval();  // as that of coherences
     Eigen::MatrixXcd given = A;
     given.triangularView<Eigen::StrictlyUpper>().setConstant(std::numeric_limits<double>::quiet_NaN());
     const HermitianPivotedCholesky factor(given);
     const Eigen::VectorXcd x = drawn(random, n);
-    EXPECT_LE((factor.solve(A * x) - x).norm(), 1e-10 * x.norm());
-    // Plain elimination, the largest of the diagonal first.
-    Eigen::MatrixXcd rest = A;
-    std::vector<Index> left;
-    for (Index k = 0; k < n; ++k) left.push_back(k);
-    const Vector pivots = factor.pivots();
-    ASSERT_EQ(pivots.size(), n);
-    for (Index step = 0; step < n; ++step) {
-      const auto largest = std::ranges::max_element(left, {}, [&](Index k) { return rest(k, k).real(); });
-      const Index k = *largest;
-      EXPECT_NEAR(pivots[step], rest(k, k).real(), 1e-12 * A.norm());
-      rest -= (rest.col(k) * rest.row(k) / rest(k, k)).eval();
-      left.erase(largest);
-    }
+    EXPECT_LE((factor.solve(A * x) - x).norm(), 1e-8 * x.norm()) << turn;
+    ASSERT_EQ(factor.pivots().size(), n);
+    EXPECT_LE((factor.pivots() - pivots_of(A)).cwiseAbs().maxCoeff(), 1e-11 * A.norm()) << turn;
+  }
+}
+
+TEST(HermitianPivotedCholesky, OneThatIsSingularHasAPivotOfNothing) {
+  Random random(6);
+  for (int turn = 0; turn < 100; ++turn) {
+    const Index n = 2 + turn % 3;
+    Eigen::MatrixXcd C = complex_drawn(random, 7, n);
+    // The last is one of the others, times any number: real, imaginary or neither.
+    const std::complex<double> times = turn % 4 == 0   ? std::complex<double>(3.0, 0.0)
+                                       : turn % 4 == 1 ? std::complex<double>(0.0, 2.0)
+                                                       : drawn(random, 1)[0];
+    C.col(n - 1) = times * C.col(turn % (n - 1));
+    const Vector size = C.colwise().norm().cwiseInverse();
+    const Eigen::MatrixXcd A = size.asDiagonal() * (C.adjoint() * C) * size.asDiagonal();
+    EXPECT_LE(HermitianPivotedCholesky(A).pivots().cwiseAbs().minCoeff(), 1e-13) << turn;
   }
 }
 
