@@ -22,6 +22,7 @@ HERE = Path(__file__).resolve().parent
 ORDER = HERE.parent / "apps/mbk/function_order.txt"
 SHARE = 0.7  # of their bytes
 
+
 def usual(folder):
     """Arguments of mbk."""
     return [["--version"], ["identify", "--json", folder / "log.h5"], ["measure", folder / "log.mat"],
