@@ -133,13 +133,18 @@ def with_fixed_addresses():
         return []
 
 
-def count(command, folder):
-    """Counts one run of a command in a folder. Raises Failed where its exit code is not 0."""
+def profile(command, folder, *options):
+    """What callgrind says of one run of a command in a folder. Raises Failed where its exit code is not 0."""
     with tempfile.NamedTemporaryFile(prefix="callgrind-", suffix=".out") as out:
         ran = subprocess.run([*with_fixed_addresses(), "valgrind", "--tool=callgrind", f"--callgrind-out-file={out.name}",
-                              "--dump-line=no", *map(str, command)], cwd=folder, env=environment(folder),
+                              "--dump-line=no", *options, *map(str, command)], cwd=folder, env=environment(folder),
                              stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                              check=False)
         if ran.returncode != 0:
             raise Failed(f"exit code {ran.returncode} of: {' '.join(map(str, command))}\n{ran.stderr.strip()[-2000:]}")
-        return read(Path(out.name).read_text(encoding="utf-8", errors="replace"))
+        return Path(out.name).read_text(encoding="utf-8", errors="replace")
+
+
+def count(command, folder):
+    """Counts one run of a command in a folder. Raises Failed where its exit code is not 0."""
+    return read(profile(command, folder))

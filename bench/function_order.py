@@ -31,14 +31,8 @@ def usual(folder):
 
 def executed(mbk, arguments, folder):
     """Names of the program's functions, as the linker knows them."""
-    out = folder / "callgrind.out"
-    ran = subprocess.run(["valgrind", "--tool=callgrind", "--demangle=no", f"--callgrind-out-file={out}", "--dump-line=no",
-                          "--compress-strings=no", mbk, *map(str, arguments)], cwd=folder, capture_output=True, text=True,
-                         env=callgrind.environment(folder), check=False)
-    if ran.returncode != 0:
-        sys.exit(f"function_order.py: mbk {' '.join(map(str, arguments))}: exit code {ran.returncode}\n{ran.stderr[-2000:]}")
     names, of_mbk = set(), False
-    for line in out.read_text(encoding="utf-8").splitlines():
+    for line in callgrind.profile([mbk, *arguments], folder, "--demangle=no", "--compress-strings=no").splitlines():
         if line.startswith("ob="):
             of_mbk = line[3:].strip() == str(mbk)
         elif line.startswith("fn=") and of_mbk:
@@ -98,7 +92,10 @@ def main():
         for make in ([programs / "make_log", "--protocol", "sinusoidal", "--seed", "1", "--out", folder / "log.mat"],
                      [mbk, "convert", folder / "log.mat", folder / "log.h5", "--quiet"]):
             subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
-        used = set().union(*(executed(mbk, arguments, folder) for arguments in usual(folder)))
+        try:
+            used = set().union(*(executed(mbk, arguments, folder) for arguments in usual(folder)))
+        except callgrind.Failed as failure:
+            sys.exit(f"function_order.py: {failure}")
     bytes_of, names_at = functions(mbk)
     used = {name for names in names_at.values() if not used.isdisjoint(names) for name in names}
     new = ORDER.with_name(ORDER.name + ".new")

@@ -21,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 
+import many_files
 import whole_command
 from whole_command import AGREEMENT, HERE, header, largest_difference, row, run
 
@@ -40,11 +41,7 @@ with h5py.File(sys.argv[1], "r") as source, h5py.File(sys.argv[2], "w") as targe
 
 def peak(command, runs=9):
     """Greatest memory of a process [MB], the median of several: where memory begins differs from run to run."""
-    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True); "
-            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
-    weigh = [sys.executable, "-c", code, *map(str, command)]
-    return statistics.median(int(subprocess.run(weigh, check=True, capture_output=True, text=True).stdout) * 1024 / 1e6
-                             for _ in range(runs))
+    return statistics.median(many_files.run(command)[-1] for _ in range(runs))
 
 
 def ratios(name, values):

@@ -44,7 +44,7 @@ def run(command):
             sys.exit(f"many_files.py: exit code {process.returncode} of: {' '.join(map(str, command[:6]))} ...")
         out.seek(0)
         cpu = usage.ru_utime + usage.ru_stime
-        return out.read().decode(), wall, cpu, usage.ru_minflt, usage.ru_maxrss / 1e3
+        return out.read().decode(), wall, cpu, usage.ru_minflt, usage.ru_maxrss * 1024 / 1e6
 
 
 def largest_difference(models, others):
