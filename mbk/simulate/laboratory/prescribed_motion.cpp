@@ -19,6 +19,9 @@ using perturbation::Jet;
 using perturbation::MinimumJerk;
 using perturbation::Multisine;
 using perturbation::PulseSchedule;
+using robot::HandVector;
+
+using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;  // never on the heap
 
 // Streams of the seed; pulses use stream 0, the sines of axis i stream kSines + i, and so on.
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
@@ -145,7 +148,7 @@ Result<PrescribedMotion> PrescribedMotion::create(const PrescribedMotionOptions&
   return PrescribedMotion(options.home, duration, *std::move(schedule));
 }
 
-Jet<Vector> PrescribedMotion::at(double t) const {
+Jet<HandVector> PrescribedMotion::at(double t) const {
   const Index axes = home_.size();
   if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) {
     const Jet<Eigen::Vector2d> d = pulses->at(t);
@@ -153,7 +156,7 @@ Jet<Vector> PrescribedMotion::at(double t) const {
   }
   const Sines& sines = std::get<Sines>(shape_);
   const Jet<double> g = sines.growth.at(t);
-  Jet<Vector> x{home_, Vector(axes), Vector(axes)};
+  Jet<HandVector> x{home_, HandVector(axes), HandVector(axes)};
   for (Index i = 0; i < axes; ++i) {
     const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
     x.value[i] += g.value * s.value;
@@ -163,9 +166,9 @@ Jet<Vector> PrescribedMotion::at(double t) const {
   return x;
 }
 
-Vector PrescribedMotion::reference(double t) const {
+HandVector PrescribedMotion::reference(double t, const HandVector& position) const {
   if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return home_ + pulses->reference(t).head(home_.size());
-  return at(t).value;
+  return position;
 }
 
 std::vector<Event> PrescribedMotion::events() const {
@@ -189,18 +192,20 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
 
   const Index axes = options.limb.axes();
   const auto samples = static_cast<Index>(std::llround(motion->duration() * rate.value));
+  const impedance::Model& limb = options.limb;
+  const HandMatrix M = limb.M, B = limb.B, K = limb.K;
+  const HandVector x0 = limb.x0;
   Matrix position(samples, axes), force(samples, axes), reference(samples, axes), acceleration(samples, axes);
   Recording recording;
   recording.time.resize(samples);
   for (Index i = 0; i < samples; ++i) {
     const double t = static_cast<double>(i + 1) / rate.value;
-    const Jet<Vector> x = motion->at(t);
+    const Jet<HandVector> x = motion->at(t);
     recording.time[i] = t;
     position.row(i) = x.value.transpose();
     acceleration.row(i) = x.second.transpose();
-    reference.row(i) = motion->reference(t).transpose();
-    const impedance::Model& limb = options.limb;
-    force.row(i) = -(limb.M * x.second + limb.B * x.first + limb.K * (x.value - limb.x0)).transpose();
+    reference.row(i) = motion->reference(t, x.value).transpose();
+    force.row(i) = -(M * x.second + B * x.first + K * (x.value - x0)).transpose();
   }
 
   const PrescribedMotionSensors& sensors = options.sensors;

@@ -12,6 +12,7 @@
 #include "mbk/model/perturbation/minimum_jerk.h"
 #include "mbk/model/perturbation/multisine.h"
 #include "mbk/model/perturbation/underdamped_pulse.h"
+#include "mbk/model/robot/mechanism.h"
 #include "mbk/model/trial/protocol.h"
 #include "mbk/model/trial/recording.h"
 
@@ -62,10 +63,11 @@ class PrescribedMotion {
   [[nodiscard]] static Result<PrescribedMotion> create(const PrescribedMotionOptions& options);
 
   /// x, ẋ, ẍ of the hand [m, m/s, m/s²], one entry per axis.
-  [[nodiscard]] perturbation::Jet<Vector> at(double t) const;
+  [[nodiscard]] perturbation::Jet<robot::HandVector> at(double t) const;
 
-  /// What the robot is told to follow [m]: the motion itself for sines; home, displaced during the pulses, for pulses.
-  [[nodiscard]] Vector reference(double t) const;
+  /// What the robot is told to follow at t [m]: of sines the hand's own position there; of pulses home, displaced while
+  /// one lasts.
+  [[nodiscard]] robot::HandVector reference(double t, const robot::HandVector& position) const;
 
   [[nodiscard]] double duration() const { return duration_; }  ///< [s]
 
