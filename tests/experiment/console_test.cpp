@@ -567,18 +567,19 @@ TEST_F(ConsoleOfASession, TheRobotsStateIsShownAtOnceFromAnyThread) {
     });
   }
   for (std::thread& other : others) other.join();
+  constexpr int kLast = 4242;  // none of the others
   RobotStatus robot;
   robot.motors = RobotStatus::Motors::on;
   robot.confirmed_off = false;
   robot.stop_button = true;
   robot.link = false;
-  robot.fault = 17;
+  robot.fault = kLast;
   robot.sentence = "the drives still report 3 N·m";
   console_->show_robot(robot);
-  EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("robot").at("fault") == 17; }));
+  EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("robot").at("fault") == kLast; }));
   const Json all = {{"motors", "on"},      {"confirmed_off", false},
                     {"stop_button", true}, {"link", false},
-                    {"fault", 17},         {"sentence", "the drives still report 3 N·m"}};
+                    {"fault", kLast},         {"sentence", "the drives still report 3 N·m"}};
   EXPECT_EQ(page->state.at("robot"), all);
   robot.confirmed_off = true;
   console_->show_robot(robot);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The Debian packages: lintian accepts them, they hold what they should, need what they link, and run where unpacked."""
+"""The Debian packages: they hold what they should, need what they link, and run where unpacked."""
 
 import gzip
 import os
@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-TOOLS = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "lintian", "file", "readelf")
+TOOLS = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "file", "readelf")
 SKIPPED = 77
 MPI = pathlib.Path(os.environ["BUILD"], "bin/mbk_mpi").exists()
 PYTHON = pathlib.Path(os.environ["BUILD"], "python/mbk/__init__.py").exists()
@@ -31,11 +31,11 @@ class Packages(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="mbk-package-")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        # This asks lintian too, and fails where it finds an error or a warning.
-        ran(SOURCE / "tools/package", "--from", os.environ["BUILD"], "--to", cls.folder)
+        made = pathlib.Path(os.environ["PACKAGES"])  # which lintian looks at after this: tests/package/CMakeLists.txt
+        ran(SOURCE / "tools/package", "--from", os.environ["BUILD"], "--to", made, "--lintian", "no")
         cls.root = cls.folder / "root"
         cls.packages = {}
-        for file in cls.folder.glob("*.deb"):
+        for file in made.glob("*.deb"):
             cls.packages[file.name.split("_")[0]] = file
             ran("dpkg-deb", "--extract", file, cls.root)
         cls.mbk = cls.root / "usr/bin/mbk"

@@ -135,8 +135,12 @@ function shaded(one: Series, k: number): object[] {
   }));
 }
 
-function options(chart: Chart, printed: boolean): Record<string, unknown> {
+function grids(chart: Chart, printed: boolean): object[] {
   const each = panelHeight(chart, printed);
+  return chart.panels.map((_, k) => ({ left: 74, right: 22, top: top + k * (each + gap), height: each }));
+}
+
+function options(chart: Chart): Record<string, unknown> {
   const text = { fontFamily: font, color: "var(--label)", fontSize: 12 };
   const rule = { lineStyle: { color: "var(--axis)" } };
   const [low, high] = extent(chart);
@@ -147,7 +151,7 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
   return {
     animation: false,
     textStyle: { fontFamily: font },
-    grid: chart.panels.map((_, k) => ({ left: 74, right: 22, top: top + k * (each + gap), height: each })),
+    grid: grids(chart, false),
     xAxis: chart.panels.map((_, k) => ({
       type: chart.x.log ? "log" : "value",
       gridIndex: k,
@@ -201,7 +205,6 @@ function options(chart: Chart, printed: boolean): Record<string, unknown> {
       { type: "inside", xAxisIndex: chart.panels.map((_, k) => k), zoomOnMouseWheel: "ctrl", moveOnMouseWheel: false, filterMode: "none" },
       {
         type: "slider",
-        show: !printed,
         xAxisIndex: chart.panels.map((_, k) => k),
         bottom: 4,
         height: 16,
@@ -286,7 +289,7 @@ class Drawn {
     const width = this.place.clientWidth || printWidth;
     this.place.style.height = `${height(this.chart, false)}px`;
     this.shown = init(this.place, null, { renderer: "svg", width, height: height(this.chart, false) });
-    this.shown.setOption(options(this.chart, false));
+    this.shown.setOption(options(this.chart));
     if (this.chart.x.log) this.shown.on("datazoom", () => this.placeTicks());
     new ResizeObserver(() => this.resize()).observe(this.place);
   }
@@ -309,10 +312,10 @@ class Drawn {
     this.printed = printed;
     const tall = height(this.chart, printed);
     this.place.style.height = `${tall}px`;
+    // What is shown of the x axis stays, and all is drawn once, by the new size.
+    this.shown?.setOption({ grid: grids(this.chart, printed), dataZoom: [{}, { show: !printed }] }, { lazyUpdate: true });
     this.shown?.resize({ width: printed ? printWidth : this.place.clientWidth || printWidth, height: tall });
-    const { start, end } = this.window();
-    this.shown?.setOption(options(this.chart, printed));
-    this.zoomTo(start, end); // which places the ticks
+    this.shown?.getZr().flush(); // paper does not wait for the next frame
   }
 
   /** Does it while the chart is as on paper. */
