@@ -577,9 +577,8 @@ TEST_F(ConsoleOfASession, TheRobotsStateIsShownAtOnceFromAnyThread) {
   robot.sentence = "the drives still report 3 N·m";
   console_->show_robot(robot);
   EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("robot").at("fault") == kLast; }));
-  const Json all = {{"motors", "on"},      {"confirmed_off", false},
-                    {"stop_button", true}, {"link", false},
-                    {"fault", kLast},         {"sentence", "the drives still report 3 N·m"}};
+  const Json all = {{"motors", "on"}, {"confirmed_off", false}, {"stop_button", true},
+                    {"link", false},  {"fault", kLast},         {"sentence", "the drives still report 3 N·m"}};
   EXPECT_EQ(page->state.at("robot"), all);
   robot.confirmed_off = true;
   console_->show_robot(robot);
