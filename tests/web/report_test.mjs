@@ -135,6 +135,9 @@ test("the keyboard reaches the content first, zooms a chart and shows all again"
   await page.keyboard.press("Enter");
   await eventually(async () => assert.equal(await figure.locator(".zoom").textContent(), "25–75 %"));
   await eventually(async () => assert.notDeepEqual(await ticks(), whole));
+  const zoomed = await ticks();
+  await page.evaluate(() => ["beforeprint", "afterprint"].forEach((when) => dispatchEvent(new Event(when))));
+  assert.deepEqual(await ticks(), zoomed, "what was printed is shown as before");
   for (let k = 0; k < 4; ++k) await page.keyboard.press("Tab");
   await eventually(async () => assert.match(await page.evaluate(() => document.activeElement.ariaLabel ?? document.activeElement.getAttribute("aria-label")), /^Show all/));
   await page.keyboard.press("Enter");
