@@ -89,7 +89,6 @@ JointVector DynamicModel::drive_torque(const JointVector& position, const JointV
 
 std::optional<HandJacobian> regular_hand_from_joints(const Mechanism& mechanism, const JointVector& position) noexcept {
   constexpr double kSmallestRatio = 1e-3;
-  using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
   const HandJacobian J = mechanism.jacobian(position);
   const HandMatrix gram = J * J.transpose();
   if (gram.rows() == 1) {

@@ -15,6 +15,7 @@ using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
 /// Along the axes in which the hand is measured: one or two.
 using HandVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
+using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
 using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, kMaxJoints>;
 
 /// A number that the dynamics are linear in.

@@ -19,9 +19,8 @@ using perturbation::Jet;
 using perturbation::MinimumJerk;
 using perturbation::Multisine;
 using perturbation::PulseSchedule;
+using robot::HandMatrix;
 using robot::HandVector;
-
-using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;  // never on the heap
 
 // Streams of the seed; pulses use stream 0, the sines of axis i stream kSines + i, and so on.
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
