@@ -35,8 +35,8 @@ Result<std::vector<Maker>> chosen(const std::vector<std::string>& only) {
 
 /// Read once.
 const Result<std::vector<ExhibitText>>& texts() {
-  static const Result<std::vector<ExhibitText>> all = read_text(text_files());
-  return all;
+  static const Result<std::vector<ExhibitText>> kAll = read_text(text_files());
+  return kAll;
 }
 
 /// nullptr where it has none.

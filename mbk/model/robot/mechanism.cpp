@@ -10,8 +10,8 @@ std::string Mechanism::joint_name(int joint) const {
 }
 
 const Vector& Mechanism::stated_coefficients() const {
-  static const Vector none;
-  return none;
+  static const Vector kNone;
+  return kNone;
 }
 
 std::vector<Matrix> Mechanism::regressors(const JointMotion& motion) const {
