@@ -33,8 +33,7 @@ Index fast_length_above(Index n) {
 
 Index segment_length(Hertz sample_rate, Hertz resolution, Index longest) {
   const auto wanted = static_cast<Index>(std::min(sample_rate.value / resolution.value, 1e9));
-  const Index length = fast_length_below(std::min(std::max<Index>(wanted, 8), longest));
-  return length - length % 2;
+  return 2 * fast_length_below(std::min(std::max<Index>(wanted, 8), longest) / 2);
 }
 
 Vector hann_window(Index length) {

@@ -43,6 +43,19 @@ TEST(Spectrum, TransformsOnlyLengthsOfSmallFactors) {
   EXPECT_EQ(fast_length_above(0), 2);
 }
 
+TEST(Spectrum, ASegmentIsEvenAndItsTransformFastHoweverLongTheRecording) {
+  for (const Hertz resolution : {Hertz(0.01), Hertz(0.1), Hertz(1.0 / 12.347), Hertz(1000.0)}) {
+    for (Index longest = 8; longest < 25000; ++longest) {
+      const Index length = segment_length(Hertz(1000.0), resolution, longest);
+      ASSERT_EQ(length % 2, 0) << longest;  // 3⁹ − 1 = 2·13·757 is not what 3⁹ becomes
+      ASSERT_EQ(fast_length_below(length), length) << longest;
+      const Index wanted = std::min(longest, std::max<Index>(8, static_cast<Index>(1000.0 / resolution.value)));
+      ASSERT_LE(length, wanted) << longest;
+      ASSERT_GT(fast_length_above(length + 1), wanted) << longest;
+    }
+  }
+}
+
 TEST(Spectrum, RefusesTooLittle) {
   EXPECT_FALSE(welch(Vector::Zero(7), Hertz(1000.0), Hertz(1.0)));
   EXPECT_FALSE(welch(Vector::Zero(100), Hertz(0.0), Hertz(1.0)));

@@ -1,6 +1,5 @@
 #include "mbk/simulate/participant/arm_geometry.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,6 +36,11 @@ Matrix2d jacobian_rate(const ArmLinks& links, const Vector2d& q_rate) {
   return columns(forearm - q_rate[0] * links.upper_arm, forearm);
 }
 
+Matrix2d force_curvature(const ArmLinks& links, const Vector2d& force) {
+  const double forearm = -force.dot(links.forearm);
+  return (Matrix2d() << forearm - force.dot(links.upper_arm), forearm, forearm, forearm).finished();
+}
+
 Vector2d hand_position(const ArmGeometry& geometry, const Vector2d& q) {
   const ArmLinks at = arm_links(geometry, q);
   return geometry.shoulder + at.upper_arm + at.forearm;
@@ -54,20 +58,41 @@ Matrix2d jacobian_rate(const ArmGeometry& geometry, const Vector2d& q, const Vec
   return jacobian_rate(arm_links(geometry, q), q_rate);
 }
 
-Matrix2d force_curvature(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& force) {
-  const ArmLinks at = arm_links(geometry, q);
-  const double forearm = -force.dot(at.forearm);
-  return (Matrix2d() << forearm - force.dot(at.upper_arm), forearm, forearm, forearm).finished();
+Elbow Elbow::at(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Posture posture(const ArmGeometry& geometry, const Vector2d& hand) {
+  constexpr double kPi = std::numbers::pi, kAtShoulder = 1e-24;  // [m²], where there is no way to the hand
+  const double l1 = geometry.upper_arm, l2 = geometry.forearm;
+  const Vector2d p = hand - geometry.shoulder;
+  const double squared = p.squaredNorm();
+  Posture at;
+
+  // The triangle of shoulder, elbow and hand
+  const double cosine = (squared - l1 * l1 - l2 * l2) / (2.0 * l1 * l2);
+  at.q[1] = std::clamp(std::acos(std::clamp(cosine, -1.0, 1.0)), kSmallestElbowAngle, kPi - kSmallestElbowAngle);
+  const bool reached = at.q[1] > kSmallestElbowAngle && at.q[1] < kPi - kSmallestElbowAngle;
+  at.elbow = reached ? Elbow{cosine, std::sqrt((1.0 - cosine) * (1.0 + cosine))} : Elbow::at(at.q[1]);
+  const double along = l1 + l2 * at.elbow.cosine, beside = l2 * at.elbow.sine;  // of the hand to the upper arm
+
+  // The upper arm is the way to the hand, turned back by the angle between them
+  const Vector2d way = squared < kAtShoulder ? Vector2d(Vector2d::UnitY()) : p;
+  const Vector2d upper_arm =
+      Vector2d(along * way.x() + beside * way.y(), along * way.y() - beside * way.x()).normalized();
+  at.links = {l1 * upper_arm, l2 * (at.elbow.cosine * upper_arm + at.elbow.sine * turned(upper_arm))};
+
+  // q₁ in −90° to 270°, and less by a turn where the direction of the hand would be 270° and more: measured from
+  // straight ahead, that one jumps only behind the person
+  double q1 = std::atan2(upper_arm.y(), upper_arm.x()) - geometry.rotation;
+  q1 -= 2.0 * kPi * std::floor((q1 + 0.5 * kPi) / (2.0 * kPi));
+  if (q1 > 0.5 * kPi && q1 + std::atan2(beside, along) >= 1.5 * kPi) q1 -= 2.0 * kPi;
+  at.q[0] = q1;
+  return at;
 }
 
 Vector2d joint_angles(const ArmGeometry& geometry, const Vector2d& hand) {
-  const double l1 = geometry.upper_arm, l2 = geometry.forearm;
-  const Vector2d p = Eigen::Rotation2Dd(-geometry.rotation) * (hand - geometry.shoulder);
-  const double cosine = std::clamp((p.squaredNorm() - l1 * l1 - l2 * l2) / (2.0 * l1 * l2), -1.0, 1.0);
-  const double q2 = std::clamp(std::acos(cosine), kSmallestElbowAngle, std::numbers::pi - kSmallestElbowAngle);
-  // Measured from straight ahead, so that the angle jumps only behind the person
-  const double toward_hand = 0.5 * std::numbers::pi - std::atan2(p.x(), p.y());
-  return {toward_hand - std::atan2(l2 * std::sin(q2), l1 + l2 * std::cos(q2)), q2};
+  return posture(geometry, hand).q;
 }
 
 }  // namespace mbk::participant

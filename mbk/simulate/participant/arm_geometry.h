@@ -31,20 +31,37 @@ struct ArmLinks {
 [[nodiscard]] Matrix2d jacobian(const ArmLinks& links);
 [[nodiscard]] Matrix2d jacobian_rate(const ArmLinks& links, const Vector2d& q_rate);
 
+/// Σ_k F_k ∂²p_k/∂q² [N·m]: how a force [N] (base frame) turns with the joints. Symmetric.
+[[nodiscard]] Matrix2d force_curvature(const ArmLinks& links, const Vector2d& force);
+
 /// J = ∂p/∂q [m]; det J = l₁l₂ sin q₂.
 [[nodiscard]] Matrix2d jacobian(const ArmGeometry& geometry, const Vector2d& q);
 
 /// J̇ = dJ/dt [m/s].
 [[nodiscard]] Matrix2d jacobian_rate(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& q_rate);
 
-/// Σ_k F_k ∂²p_k/∂q² [N·m]: how a force [N] (base frame) turns with the joints. Symmetric.
-[[nodiscard]] Matrix2d force_curvature(const ArmGeometry& geometry, const Vector2d& q, const Vector2d& force);
+/// The forearm against the upper arm: cos q₂ and sin q₂.
+struct Elbow {
+  double cosine, sine;
+
+  [[nodiscard]] static Elbow at(double angle);  ///< [rad]
+};
+
+/// The arm with the hand at one place, by one arccosine and one arctangent.
+struct Posture {
+  Vector2d q;  ///< [rad]
+  Elbow elbow;
+  ArmLinks links;
+};
 
 /// The posture that has the hand at a place, elbow to the right:
 ///   q₂ = acos((r² − l₁² − l₂²)/(2 l₁l₂)),  q₁ = α − atan2(l₂ sin q₂, l₁ + l₂ cos q₂)
 /// with (x, y) the hand in the arm's axes, r its distance, α = 90° − atan2(x, y) its direction, −90° ≤ α < 270°. A
 /// place out of reach gives the posture toward it whose elbow is `kSmallestElbowAngle` from straight or from folded, so
-/// that J always has an inverse.
+/// that J always has an inverse; the shoulder itself, the one toward the base frame's y axis.
+[[nodiscard]] Posture posture(const ArmGeometry& geometry, const Vector2d& hand);
+
+/// Its q alone.
 [[nodiscard]] Vector2d joint_angles(const ArmGeometry& geometry, const Vector2d& hand);
 
 inline constexpr double kSmallestElbowAngle = 0.05;  ///< [rad]

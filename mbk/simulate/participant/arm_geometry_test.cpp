@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -40,10 +41,52 @@ TEST(ArmGeometry, AnglesOfAPlaceLeadBackToIt) {
   }
 }
 
+/// The documented formulas as they stand.
+Vector2d angles_by_the_formulas(const ArmGeometry& geometry, const Vector2d& hand) {
+  const double l1 = geometry.upper_arm, l2 = geometry.forearm;
+  const Vector2d p = Eigen::Rotation2Dd(-geometry.rotation) * (hand - geometry.shoulder);
+  const double cosine = std::clamp((p.squaredNorm() - l1 * l1 - l2 * l2) / (2.0 * l1 * l2), -1.0, 1.0);
+  const double q2 = std::clamp(std::acos(cosine), kSmallestElbowAngle, std::numbers::pi - kSmallestElbowAngle);
+  const double direction = 0.5 * std::numbers::pi - std::atan2(p.x(), p.y());
+  return {direction - std::atan2(l2 * std::sin(q2), l1 + l2 * std::cos(q2)), q2};
+}
+
+TEST(ArmGeometry, APostureIsThatOfTheFormulasAllAroundAndBeyondReach) {
+  numeric::Random random(5);
+  int out_of_reach = 0, jumped = 0;
+  for (int i = 0; i < 20000; ++i) {
+    ArmGeometry geometry = turned_arm();
+    geometry.rotation = random.uniform(-20.0, 20.0);
+    const Vector2d hand = geometry.shoulder + Vector2d(random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7));
+    const Posture at = posture(geometry, hand);
+    const Vector2d expected = angles_by_the_formulas(geometry, hand);
+    ASSERT_LT((at.q - expected).norm(), 1e-11) << hand.transpose() << ", turned by " << geometry.rotation;
+    ASSERT_LT(std::hypot(at.elbow.cosine - std::cos(at.q[1]), at.elbow.sine - std::sin(at.q[1])), 1e-13);
+    const ArmLinks links = arm_links(geometry, at.q);
+    ASSERT_LT((at.links.upper_arm - links.upper_arm).norm() + (at.links.forearm - links.forearm).norm(), 1e-13);
+    const double r = (hand - geometry.shoulder).norm();
+    out_of_reach += r > geometry.upper_arm + geometry.forearm || r < std::abs(geometry.upper_arm - geometry.forearm);
+    jumped += at.q[0] < -0.5 * std::numbers::pi;
+  }
+  EXPECT_GT(out_of_reach, 1000);
+  EXPECT_GT(jumped, 1000);
+}
+
+TEST(ArmGeometry, TheHandAtTheShoulderIsAPostureToo) {
+  const ArmGeometry geometry = turned_arm();
+  for (const double away : {0.0, 1e-200, 1e-13, 1e-11}) {
+    const Posture at = posture(geometry, geometry.shoulder + Vector2d(0.0, away));
+    EXPECT_DOUBLE_EQ(at.q[1], std::numbers::pi - kSmallestElbowAngle);
+    EXPECT_NEAR(at.links.upper_arm.norm(), geometry.upper_arm, kRounding);
+    EXPECT_NEAR(at.links.forearm.norm(), geometry.forearm, kRounding);
+  }
+  EXPECT_FALSE(posture(geometry, {std::nan(""), 0.0}).q.allFinite());
+}
+
 TEST(ArmGeometry, DerivativesAgreeWithDifferences) {
   const ArmGeometry geometry = turned_arm();
   const Vector2d q(0.4, 1.3), q_rate(0.8, -1.7), force(3.0, -2.0);
-  const Matrix2d curvature = force_curvature(geometry, q, force);
+  const Matrix2d curvature = force_curvature(arm_links(geometry, q), force);
   for (int joint = 0; joint < 2; ++joint) {
     const Vector2d step = kStep * Vector2d::Unit(joint);
     const Vector2d slope = (hand_position(geometry, q + step) - hand_position(geometry, q - step)) / (2.0 * kStep);

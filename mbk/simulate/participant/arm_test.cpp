@@ -105,7 +105,7 @@ TEST(Participants, HaveThePublishedImpedanceAndAnInertiaNearIt) {
     const TwoLinkArm::Options options = participant_limb(number).value();
     const TwoLinkArm limb = TwoLinkArm::create(options).value();
     for (double away = -ChainInertia::kElbowRange; away <= ChainInertia::kElbowRange; away += 0.05) {
-      const Matrix2d I = limb.inertia().matrix(options.joints.elbow_angle + away);
+      const Matrix2d I = limb.inertia().matrix(Elbow::at(options.joints.elbow_angle + away));
       EXPECT_GT(numeric::symmetric_eigenvalues(I)[0], 1e-3) << number << ", elbow " << away << " off";
     }
   }

@@ -30,13 +30,13 @@ Result<void> check(const ArmGeometry& geometry) {
 
 }  // namespace
 
-Matrix2d ChainInertia::matrix(double elbow_angle) const {
-  const double coupling = b * std::cos(elbow_angle);
+Matrix2d ChainInertia::matrix(const Elbow& elbow) const {
+  const double coupling = b * elbow.cosine;
   return (Matrix2d() << a + 2.0 * coupling, c + coupling, c + coupling, c).finished();
 }
 
-Vector2d ChainInertia::coriolis_torque(double elbow_angle, const Vector2d& q_rate) const {
-  return b * std::sin(elbow_angle) * Vector2d(-(2.0 * q_rate[0] + q_rate[1]) * q_rate[1], q_rate[0] * q_rate[0]);
+Vector2d ChainInertia::coriolis_torque(const Elbow& elbow, const Vector2d& q_rate) const {
+  return b * elbow.sine * Vector2d(-(2.0 * q_rate[0] + q_rate[1]) * q_rate[1], q_rate[0] * q_rate[0]);
 }
 
 Result<ChainInertia> ChainInertia::from_matrix(const Matrix2d& I_q, double elbow_angle) {
@@ -100,43 +100,41 @@ Vector2d TwoLinkArm::elastic_torque(const Vector2d& q) const {
 }
 
 LoadDynamics<2> TwoLinkArm::dynamics(const HandState<2>& hand) const {
-  const Vector2d q = joint_angles(options_.geometry, hand.position);
-  const ArmLinks links = arm_links(options_.geometry, q);
+  const auto [q, elbow, links] = posture(options_.geometry, hand.position);
   const Matrix2d J_inverse = jacobian(links).inverse();
   const Vector2d q_rate = J_inverse * hand.velocity;
   // q̈ = J⁻¹ (ẍ − J̇ q̇)
-  const Matrix2d inertia = J_inverse.transpose() * inertia_.matrix(q[1]) * J_inverse;
+  const Matrix2d inertia = J_inverse.transpose() * inertia_.matrix(elbow) * J_inverse;
   const Vector2d torque =
-      inertia_.coriolis_torque(q[1], q_rate) + damping_scale_ * options_.joints.damping * q_rate + elastic_torque(q);
+      inertia_.coriolis_torque(elbow, q_rate) + damping_scale_ * options_.joints.damping * q_rate + elastic_torque(q);
   const Vector2d convective = jacobian_rate(links, q_rate) * q_rate;
   return {inertia, J_inverse.transpose() * torque - inertia * convective, 0.0};
 }
 
 Matrix2d TwoLinkArm::stiffness(const Vector2d& hand) const {
-  const Vector2d q = joint_angles(options_.geometry, hand);
-  const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
+  const auto [q, elbow, links] = posture(options_.geometry, hand);
+  const Matrix2d J_inverse = jacobian(links).inverse();
   const Vector2d force_hand_on_robot = -(J_inverse.transpose() * elastic_torque(q));
   return J_inverse.transpose() *
-         (stiffness_scale_ * options_.joints.stiffness + force_curvature(options_.geometry, q, force_hand_on_robot)) *
-         J_inverse;
+         (stiffness_scale_ * options_.joints.stiffness + force_curvature(links, force_hand_on_robot)) * J_inverse;
 }
 
 impedance::Model TwoLinkArm::impedance(const Vector2d& hand) const {
-  const Vector2d q = joint_angles(options_.geometry, hand);
-  const Matrix2d J_inverse = jacobian(options_.geometry, q).inverse();
+  const auto [q, elbow, links] = posture(options_.geometry, hand);
+  const Matrix2d J_inverse = jacobian(links).inverse();
   const Matrix2d K = stiffness(hand);
   const Vector2d bias = J_inverse.transpose() * elastic_torque(q);
   const Eigen::FullPivLU<Matrix2d> solver(K);
   const Vector2d x0 = solver.isInvertible() ? Vector2d(hand - solver.solve(bias))
                                             : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  return {J_inverse.transpose() * inertia_.matrix(q[1]) * J_inverse,
+  return {J_inverse.transpose() * inertia_.matrix(elbow) * J_inverse,
           damping_scale_ * J_inverse.transpose() * options_.joints.damping * J_inverse, K, x0};
 }
 
 double TwoLinkArm::kinetic_energy(const HandState<2>& hand) const {
-  const Vector2d q = joint_angles(options_.geometry, hand.position);
-  const Vector2d q_rate = jacobian(options_.geometry, q).inverse() * hand.velocity;
-  return 0.5 * q_rate.dot(inertia_.matrix(q[1]) * q_rate);
+  const auto [q, elbow, links] = posture(options_.geometry, hand.position);
+  const Vector2d q_rate = jacobian(links).inverse() * hand.velocity;
+  return 0.5 * q_rate.dot(inertia_.matrix(elbow) * q_rate);
 }
 
 double TwoLinkArm::elastic_energy(const Vector2d& hand) const {

@@ -11,10 +11,10 @@ namespace mbk::participant {
 struct ChainInertia {
   double a = 0.0, b = 0.0, c = 0.0;
 
-  [[nodiscard]] Matrix2d matrix(double elbow_angle) const;
+  [[nodiscard]] Matrix2d matrix(const Elbow& elbow) const;
 
   /// C(q, q̇) q̇ = b sin q₂ [−(2 q̇₁ + q̇₂) q̇₂, q̇₁²] [N·m].
-  [[nodiscard]] Vector2d coriolis_torque(double elbow_angle, const Vector2d& q_rate) const;
+  [[nodiscard]] Vector2d coriolis_torque(const Elbow& elbow, const Vector2d& q_rate) const;
 
   static constexpr double kElbowRange = 0.35;  ///< 20° [rad]
 

@@ -43,9 +43,9 @@ TEST(ChainInertia, ComesFromItsMatrixAtOnePosture) {
   EXPECT_NEAR(chain.a, 0.304, 5e-4);
   EXPECT_NEAR(chain.b, 0.1006, 1e-4);
   EXPECT_EQ(chain.c, 0.072);
-  EXPECT_LT((chain.matrix(joints.elbow_angle) - joints.inertia).norm(), 1e-15);
+  EXPECT_LT((chain.matrix(Elbow::at(joints.elbow_angle)) - joints.inertia).norm(), 1e-15);
   for (double elbow = 0.0; elbow < 3.2; elbow += 0.1) {
-    EXPECT_GT(numeric::symmetric_eigenvalues(chain.matrix(elbow))[0], 0.0) << elbow;
+    EXPECT_GT(numeric::symmetric_eigenvalues(chain.matrix(Elbow::at(elbow)))[0], 0.0) << elbow;
   }
 }
 
@@ -127,8 +127,9 @@ TEST(TwoLinkArm, ObeysItsEquationOfMotionInTheJoints) {
   const HandState<2> hand = {hand_position(arm.geometry(), q), J * q_rate};
   const Vector2d acceleration = J * q_acceleration + jacobian_rate(arm.geometry(), q, q_rate) * q_rate;
   const Vector2d q0 = joint_angles(arm.geometry(), kHome);
-  const Vector2d torque = arm.inertia().matrix(q[1]) * q_acceleration + arm.inertia().coriolis_torque(q[1], q_rate) +
-                          options.joints.damping * q_rate + options.joints.stiffness * (q - q0);
+  const Vector2d torque = arm.inertia().matrix(Elbow::at(q[1])) * q_acceleration +
+                          arm.inertia().coriolis_torque(Elbow::at(q[1]), q_rate) + options.joints.damping * q_rate +
+                          options.joints.stiffness * (q - q0);
   EXPECT_LT((J.transpose() * force(arm, hand, acceleration) + torque).norm(), 1e-12 * torque.norm());
 }
 
