@@ -47,7 +47,7 @@ struct Elbow {
   [[nodiscard]] static Elbow at(double angle);  ///< [rad]
 };
 
-/// The arm with the hand at one place, by one arccosine and one arctangent.
+/// The arm with the hand at one place. Sines and cosines of q follow from the triangle of shoulder, elbow and hand.
 struct Posture {
   Vector2d q;  ///< [rad]
   Elbow elbow;
