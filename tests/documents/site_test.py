@@ -6,7 +6,6 @@ skipped rather than run without the proof.
 """
 
 import functools
-import html.parser
 import os
 import pathlib
 import re
@@ -16,6 +15,8 @@ import sys
 import tempfile
 import unittest
 import urllib.parse
+
+import lxml.html
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 TOOLS = ("doxygen", "node", "sphinx-build", "unshare")
@@ -34,27 +35,16 @@ def standing_at(folder, path):
     return found if found.is_file() else None
 
 
-class Page(html.parser.HTMLParser):
-    """What a page loads, where it leads, and the places in it."""
+class Page:
+    """What a page loads, where it leads, the places in it, and its text."""
 
     def __init__(self, file):
-        super().__init__()
-        self.loads, self.leads, self.places, self.text = [], [], set(), []
-        self.feed(file.read_text())
-
-    def handle_starttag(self, tag, attributes):
-        found = dict(attributes)
-        for name in LOADED.get(tag, ()):
-            if found.get(name):
-                self.loads.append(found[name])
-        if tag == "a" and found.get("href"):
-            self.leads.append(found["href"])
-        for name in ("id", "name"):
-            if found.get(name):
-                self.places.add(found[name])
-
-    def handle_data(self, data):
-        self.text.append(data)
+        tree = lxml.html.parse(str(file), lxml.html.HTMLParser(encoding="utf-8"))
+        loaded = [found for one in tree.iter(*LOADED) for found in map(one.get, LOADED[one.tag])]
+        self.loads = [found for found in loaded if found]
+        self.leads = [found for found in (one.get("href") for one in tree.iter("a")) if found]
+        self.places = set(tree.xpath("//@id | //@name"))
+        self.text = tree.xpath("string()")
 
 
 class Site(unittest.TestCase):
@@ -87,7 +77,7 @@ class Site(unittest.TestCase):
 
     def test_commands_say_what_the_program_says(self):
         help_text = subprocess.run([os.environ["MBK"], "measure", "--help-all"], capture_output=True, text=True, check=True).stdout
-        shown = "".join(self.pages[self.html / "commands/mbk-measure.html"].text)
+        shown = self.pages[self.html / "commands/mbk-measure.html"].text
         options = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", help_text, re.MULTILINE))
         self.assertGreater(len(options), 30)
         for option in options:
@@ -100,7 +90,7 @@ class Site(unittest.TestCase):
         for name in ("KaTeX_Main-Regular.woff2", "KaTeX_Math-Italic.woff2"):
             self.assertTrue((self.html / "_static/katex/fonts" / name).is_file(), name)
         for file, page in self.pages.items():
-            self.assertNotIn("@@", "".join(page.text) if file.parent.name == "theory" else "", self.name(file))
+            self.assertNotIn("@@", page.text if file.parent.name == "theory" else "", self.name(file))
 
     def test_functions_of_the_theory_lead_to_their_reference(self):
         leads = self.pages[self.html / "theory/equations.html"].leads
