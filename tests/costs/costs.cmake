@@ -9,7 +9,6 @@ set(costs
     109 install
     76 instructions
     75 package/lintian
-    70 bindings/octave
     66 end_to_end/statements
     63 end_to_end/cluster
     53 validation_test/Coverage.NominalNinetyFivePercentIntervalsHoldTheTruthThatOften
@@ -38,11 +37,12 @@ set(costs
     21 measurement_test/IdentifyRobot.AccusesNoHonestDriveOfBendingPlayOrStickingFriction
     21 validation_test/Faults.SwitchTheMotorsOffInTime
     20 faults/nth_call
-    19 teleop_test/LargestShortage.IsThatOfTheBisectionForRandomNetworks
     18 end_to_end/study
     16 end_to_end/completion
+    15 end_to_end/terminal
     15 measurement_test/IdentifyRobot.FindsDrivesThatBend
     15 measurement_test/IdentifyRobot.FindsDrivesWithPlay
+    15 python/notebooks
     15 python/wheel
     14 bindings/python
     14 end_to_end/convert
@@ -50,9 +50,7 @@ set(costs
     13 bench/against
     12 end_to_end/measure
     12 end_to_end/passivity
-    12 end_to_end/terminal
     12 faults/power_cut
-    12 python/notebooks
     12 thesis_test/Questions.AnActiveAnswerIsDecidedByTheEnergy
     12 thesis_test/VirtualSensorExhibits.ErrMoreWithoutCoulombFrictionInTheModel
     12 validation_test/Recovery.ARelaxedArmInTheClosedLoopIsFoundWithoutMuchBias
@@ -61,16 +59,17 @@ set(costs
     11 end_to_end/teleop
     11 identify_test/NearestConsistent.AgreesWithTheBarrierMethod
     11 reference_test/NoiseFree.GivesTheTruthOfPulsesUpToTheSmoothing
-    11 teleop_test/AdmissibleSet.AgreesWithDecisionsOfSingleValues
     11 validation_test/ClosedLoopStudy.FindsThatLeastSquaresCallsAPassiveArmActiveAndInstrumentsAndEnergyDoNot
     11 validation_test/VirtualSensorStudy.FindsForceStiffnessAndMassWithoutASensorAndWorseWithoutFriction
     10 end_to_end/manual
     10 end_to_end/misbehaving_robot
     10 end_to_end/tf
     10 python/types
+    10 teleop_test/AdmissibleSet.AgreesWithDecisionsOfSingleValues
     10 thesis_test/ApparatusExhibits.FindTheRobotAndWhatFrictionIsTakenForWithoutCoulomb
     10 thesis_test/VirtualSensorExhibits.FindTheRelaxedArmByBothMethods
     9 bench/instructions
+    9 bindings/octave
     9 thesis_test/Reproduce.ComputesTheSameOnAnyNumberOfThreads
     9 validation_test/ReflexStudy.RefutesNothingInAFewRuns
     9 validation_test/Springs.RigsOfBothTablesAreFound
