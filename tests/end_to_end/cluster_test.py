@@ -20,7 +20,7 @@ TESTS = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(TESTS / "cluster"), str(TESTS.parent / "bench")]
 import private_slurm  # noqa: E402
 import study as studies  # noqa: E402
-from processes import ended_by_kill, workers_of  # noqa: E402
+from processes import ended_by_kill, processes_of, workers_of  # noqa: E402
 
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 RUNS = 32  # of 40 ms
@@ -153,7 +153,7 @@ class Engines:
         self.wait_for(lambda: len(self.shards()) >= 3)
         began.kill()
         began.communicate()
-        self.wait_for(lambda: not workers_of(self.folder))
+        self.wait_for(lambda: not processes_of(self.folder))  # a rank between two chunks has no worker
         finished = self.shards()
         self.assertGreaterEqual(len(finished), 3)
         ran = self.job(*VALIDATE, *SHORT, "--keep-job", code=self.judged)
