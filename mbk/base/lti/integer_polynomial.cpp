@@ -77,21 +77,21 @@ Residues gcd_modulo(Residues a, Residues b, std::uint64_t prime) {
   return b.empty() ? a : b;
 }
 
-/// Of an odd number below 2³², by the test of Miller and Rabin, which bases 2, 7 and 61 decide there (Jaeschke 1993).
+/// Of an odd number between 61 and 2³², by the test of Miller and Rabin, which bases 2, 7 and 61 decide there (Jaeschke
+/// 1993).
 bool is_prime(std::uint64_t odd) {
-  const auto passes = [odd](std::uint64_t base) {
-    if (base % odd == 0) return true;
-    std::uint64_t exponent = odd - 1;
-    while (exponent % 2 == 0) exponent /= 2;
-    std::uint64_t power = power_modulo(base % odd, exponent, odd);
+  std::uint64_t odd_part = odd - 1;
+  while (odd_part % 2 == 0) odd_part /= 2;
+  const auto passes = [odd, odd_part](std::uint64_t base) {
+    std::uint64_t power = power_modulo(base, odd_part, odd);
     if (power == 1) return true;
-    for (; exponent < odd - 1; exponent *= 2) {
+    for (std::uint64_t exponent = odd_part; exponent < odd - 1; exponent *= 2) {
       if (power == odd - 1) return true;
       power = power * power % odd;
     }
     return false;
   };
-  return odd > 1 && passes(2) && passes(7) && passes(61);
+  return passes(2) && passes(7) && passes(61);
 }
 
 /// A polynomial known modulo the product of some primes, by its remainders between −modulus/2 and modulus/2.
