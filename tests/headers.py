@@ -56,6 +56,33 @@ class Tree:
             found |= {other} if mark == "<" else self.brought(other)
         return found
 
+    @functools.cache
+    def included(self, name):
+        """The headers of ours that a file includes itself, in order."""
+        text = (self.root / name).read_text(encoding="utf-8")
+        return [other for mark, other in INCLUDE.findall(text) if mark == '"' and (self.root / other).exists()]
+
+    @functools.cache
+    def reached(self, name):
+        """A file and the headers of ours that it includes, itself or through another."""
+        return frozenset({name}.union(*map(self.reached, self.included(name))))
+
+    def compiled_by_themselves(self, sources):
+        """The headers before which, in one of the sources, stand none of ours but those that they include themselves."""
+        found = set()
+
+        def read(name, before):
+            for header in self.included(name):
+                if header not in before:
+                    if before <= self.reached(header):
+                        found.add(header)
+                    before = read(header, before) | {header}
+            return before
+
+        for source in sources:
+            read(source, frozenset())
+        return found
+
     def missing(self, name):
         """What a header names and does not get: header of it → (line, name)."""
         found = {}

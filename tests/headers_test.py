@@ -28,6 +28,17 @@ class Headers(unittest.TestCase):
     def test_words_in_comments_and_strings_need_nothing(self):
         self.assertEqual(self.problems(said='/// like std::map\nconst char* k = "std::map"; // std::vector\n'), [])
 
+    def test_a_header_is_compiled_by_itself_where_nothing_else_of_ours_stands_before_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in {"low.h": "", "alone.h": "#include <map>\n", "top.h": '#include "low.h"\n',
+                               "top.cpp": '#include "top.h"\n#include "low.h"\n#include "alone.h"\n'}.items():
+                pathlib.Path(folder, name).write_text(text)
+            tree = headers.Tree(folder)
+            self.assertEqual(tree.compiled_by_themselves(["top.cpp"]), {"low.h", "top.h"})
+            self.assertEqual(tree.compiled_by_themselves(["top.cpp", "alone.h"]), {"low.h", "top.h"})
+            pathlib.Path(folder, "alone.cpp").write_text('#include <vector>\n#include "alone.h"\n')
+            self.assertEqual(tree.compiled_by_themselves(["top.cpp", "alone.cpp"]), {"low.h", "top.h", "alone.h"})
+
 
 if __name__ == "__main__":
     unittest.main()

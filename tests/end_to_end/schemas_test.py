@@ -53,6 +53,7 @@ class Schemas(Case):
     def test_a_document_of_mbk_fits_and_a_changed_one_does_not(self):
         result = self.fine("measure", "--json", make_log().path).json
         schemas.check(result)
+        self.assertTrue(schemas.validator("result").is_valid(result))
         for change in (lambda one: one.pop("model"), lambda one: one["model"].pop("K"),
                        lambda one: one.update(of_my_own=1), lambda one: one["passivity"]["trial"].update(verdict="maybe"),
                        lambda one: one["model"]["M"].append("1"), lambda one: one.update(usable=None)):
@@ -60,6 +61,7 @@ class Schemas(Case):
             change(wrong)
             with self.assertRaises(AssertionError):
                 schemas.check(wrong)
+            self.assertFalse(schemas.validator("result").is_valid(wrong))
 
     def test_a_file_that_is_no_recording_is_listed_as_a_schema_says(self):
         table = self.file("table.csv", "alpha,beta\n" + "1,2\n" * 20)

@@ -1,6 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <typeinfo>
+#include <vector>
 
 #include "mbk/base/core/printable.h"
 #include "mbk/base/dsp/zero_phase.h"
@@ -39,36 +45,70 @@
 namespace mbk {
 namespace {
 
+/// What the words of one enumeration do.
+struct Row {
+  std::string_view word, said;  ///< of a value, and what word_of says of it
+  bool comes_back, listed;
+};
+struct Table {
+  std::string type;
+  std::vector<Row> rows;
+  std::vector<std::string_view> list;
+  bool takes_nonsense;
+};
+
 template <class Enum>
-class WordsOf : public testing::Test {};
-
-using Enumerations =
-    testing::Types<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal,
-                   perturbation::MultisinePlan::Phases, perturbation::MultisinePlan::Axes, AccelerationSource,
-                   AdmittanceOutput, Agreement, ArmPosture::Of, ChartSeries::Drawn, DelayedResponse, Exhibit::Kind,
-                   ForceSource, FrequencyResponseMethod, InputHold, InstrumentMotion, Method, Mode, MotionOutcome,
-                   ParametersFrom, Procedure, Protocol, Provenance, Readers, ReferenceQuantity, RobotMethod,
-                   SensorWarningCode, StabilityCondition, StabilityVerdict, Structure, TransferFunctionMethod, Verdict,
-                   WarningCode, journal::Ending::How, recording::Format, calibration::SensorFrame, teleop::Architecture,
-                   teleop::Form, teleop::SimulatedArm::Kind, control::Phase, device::Motors, device::Wiring::Frame,
-                   drivers::Refusal, drivers::BridgeRule, drivers::RuleVerdict, safety::Reason,
-                   safety::MotorsOff::State, protocol::Machine, console::Action, console::Question, console::Refusal,
-                   ElbowSide, validation::Force, validation::TrialKind>;
-TYPED_TEST_SUITE(WordsOf, Enumerations);
-
-TYPED_TEST(WordsOf, GoBothWays) {
-  for (const auto& [value, word] : kWords<TypeParam>) {
-    EXPECT_EQ(word_of(value), word);
-    EXPECT_EQ(value_of<TypeParam>(word), value) << word;
-    EXPECT_NE(std::ranges::find(kWordList<TypeParam>, word), kWordList<TypeParam>.end()) << word;
+Table table_of() {
+  Table table{typeid(Enum).name(),
+              {},
+              {kWordList<Enum>.begin(), kWordList<Enum>.end()},
+              value_of<Enum>("no such word").has_value()};
+  for (const auto& [value, word] : kWords<Enum>) {
+    table.rows.push_back(
+        {word, word_of(value), value_of<Enum>(word) == value, std::ranges::find(table.list, word) != table.list.end()});
   }
-  EXPECT_FALSE(value_of<TypeParam>("no such word"));
+  return table;
 }
 
-TYPED_TEST(WordsOf, StandOnOneLineWithoutSpaceAround) {
-  for (const std::string_view word : kWordList<TypeParam>) {
-    EXPECT_EQ(printable(std::string(word)), word);
-    EXPECT_FALSE(word.starts_with(' ') || word.ends_with(' ')) << word;
+template <class... Enums>
+std::vector<Table> tables_of(std::type_identity<std::tuple<Enums...>> /*of*/) {
+  return {table_of<Enums>()...};
+}
+
+using Enumerations =
+    std::tuple<dsp::Extension, perturbation::Quantity, perturbation::LimitedSignal, perturbation::MultisinePlan::Phases,
+               perturbation::MultisinePlan::Axes, AccelerationSource, AdmittanceOutput, Agreement, ArmPosture::Of,
+               ChartSeries::Drawn, DelayedResponse, Exhibit::Kind, ForceSource, FrequencyResponseMethod, InputHold,
+               InstrumentMotion, Method, Mode, MotionOutcome, ParametersFrom, Procedure, Protocol, Provenance, Readers,
+               ReferenceQuantity, RobotMethod, SensorWarningCode, StabilityCondition, StabilityVerdict, Structure,
+               TransferFunctionMethod, Verdict, WarningCode, journal::Ending::How, recording::Format,
+               calibration::SensorFrame, teleop::Architecture, teleop::Form, teleop::SimulatedArm::Kind, control::Phase,
+               device::Motors, device::Wiring::Frame, drivers::Refusal, drivers::BridgeRule, drivers::RuleVerdict,
+               safety::Reason, safety::MotorsOff::State, protocol::Machine, console::Action, console::Question,
+               console::Refusal, ElbowSide, validation::Force, validation::TrialKind>;
+
+std::vector<Table> tables() {
+  return tables_of(std::type_identity<Enumerations>());
+}
+
+TEST(Words, GoBothWays) {
+  for (const Table& table : tables()) {
+    EXPECT_FALSE(table.rows.empty()) << table.type;
+    EXPECT_FALSE(table.takes_nonsense) << table.type;
+    for (const Row& row : table.rows) {
+      EXPECT_EQ(row.said, row.word) << table.type;
+      EXPECT_TRUE(row.comes_back) << table.type << ": " << row.word;
+      EXPECT_TRUE(row.listed) << table.type << ": " << row.word;
+    }
+  }
+}
+
+TEST(Words, StandOnOneLineWithoutSpaceAround) {
+  for (const Table& table : tables()) {
+    for (const std::string_view word : table.list) {
+      EXPECT_EQ(printable(std::string(word)), word) << table.type;
+      EXPECT_FALSE(word.starts_with(' ') || word.ends_with(' ')) << table.type << ": " << word;
+    }
   }
 }
 

@@ -8,20 +8,6 @@
 
 namespace mbk::robot {
 
-Matrix2d Inertia::matrix(const Vector2d& theta) const {
-  const double coupling = -0.5 * alpha2 * std::sin(theta[0] - theta[1]);
-  Matrix2d I;
-  I << alpha1, coupling, coupling, alpha3;
-  return I;
-}
-
-Matrix2d Inertia::coriolis(const Vector2d& theta, const Vector2d& theta_rate) const {
-  const double c = 0.5 * alpha2 * std::cos(theta[0] - theta[1]);
-  Matrix2d C;
-  C << 0.0, c * theta_rate[1], -c * theta_rate[0], 0.0;
-  return C;
-}
-
 Inertia Inertia::with_payload(const Geometry& geometry, double mass) const {
   const double d1 = geometry.d1, d2 = geometry.d2;
   return {alpha1 + mass * d1 * d1, alpha2 + 2.0 * mass * d1 * d2, alpha3 + mass * d2 * d2};

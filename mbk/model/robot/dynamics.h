@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "mbk/model/robot/friction.h"
 #include "mbk/model/robot/kinematics.h"
@@ -14,11 +15,21 @@ struct Inertia {
   double alpha3 = 0.04416;  ///< [kg·m²]
 
   /// I(θ) = [[α₁, −½α₂ sin(θ₁ − θ₂)], [·, α₃]] [kg·m²].
-  [[nodiscard]] Matrix2d matrix(const Vector2d& theta) const;
+  [[nodiscard]] Matrix2d matrix(const Vector2d& theta) const {
+    const double coupling = -0.5 * alpha2 * std::sin(theta[0] - theta[1]);
+    Matrix2d I;
+    I << alpha1, coupling, coupling, alpha3;
+    return I;
+  }
 
   /// C(θ, θ̇) = ½α₂ cos(θ₁ − θ₂) [[0, θ̇₂], [−θ̇₁, 0]] [N·m·s/rad]. The lower-left sign is the opposite of the printed
   /// (A.6): only so İ − 2C is skew and the motors' work is what the links gain.
-  [[nodiscard]] Matrix2d coriolis(const Vector2d& theta, const Vector2d& theta_rate) const;
+  [[nodiscard]] Matrix2d coriolis(const Vector2d& theta, const Vector2d& theta_rate) const {
+    const double c = 0.5 * alpha2 * std::cos(theta[0] - theta[1]);
+    Matrix2d C;
+    C << 0.0, c * theta_rate[1], -c * theta_rate[0], 0.0;
+    return C;
+  }
 
   /// The same robot with a point mass m [kg] fixed at the hand: α₁ + m d₁², α₂ + 2 m d₁d₂, α₃ + m d₂².
   [[nodiscard]] Inertia with_payload(const Geometry& geometry, double mass) const;

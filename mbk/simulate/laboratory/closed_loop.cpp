@@ -102,62 +102,74 @@ ClosedLoop<Axes>::ClosedLoop(const Options& options, const Values& theta, partic
 }
 
 template <int Axes>
-auto ClosedLoop<Axes>::derivative(const State& state, TrueState<Axes>* seen) const -> State {
-  using Matrix = AxisMatrix<Axes>;
+auto ClosedLoop<Axes>::mechanics(const State& state) const -> Mechanics {
   const RobotOf<Axes>& robot = options_.robot;
-  const Values theta = state.template segment<Axes>(kTheta), rate = state.template segment<Axes>(kRate);
-  const Values motor_rate = options_.capstan ? Values(state.template segment<Axes>(kMotorRate)) : rate;
-  const auto [place, J, J_rate] = hand_kinematics(robot.geometry, theta, rate);
-  const participant::HandState<Axes> hand = {place, J * rate, theta[Axes - 1], rate[Axes - 1]};
-
-  const Values friction = robot.friction_torque(motor_rate);
-  Matrix I = robot.inertia.matrix(theta);
-  Values drive = torque_ - friction, motor_acceleration = Values::Zero();
-  double cable_loss = 0.0;
+  Mechanics now;
+  now.theta = state.template segment<Axes>(kTheta);
+  now.rate = state.template segment<Axes>(kRate);
+  now.motor_angle = state.template segment<Axes>(kMotorAngle);
+  now.motor_rate = options_.capstan ? Values(state.template segment<Axes>(kMotorRate)) : now.rate;
+  const auto [place, J, J_rate] = hand_kinematics(robot.geometry, now.theta, now.rate);
+  now.J = J;
+  now.convective = J_rate * now.rate;
+  now.hand = {place, J * now.rate, now.theta[Axes - 1], now.rate[Axes - 1]};
+  now.friction = robot.friction_torque(now.motor_rate);
+  now.inertia = robot.inertia.matrix(now.theta);
+  now.coriolis = robot.inertia.coriolis(now.theta, now.rate) * now.rate;
   if (options_.capstan) {
-    const Values twist = state.template segment<Axes>(kMotorAngle) - theta, twist_rate = motor_rate - rate;
-    const Values cable = options_.capstan->torque(twist, twist_rate);
-    motor_acceleration = (drive - cable).cwiseQuotient(options_.capstan->motor_inertia);
-    I.diagonal() -= options_.capstan->motor_inertia;
-    drive = cable;
+    const Values twist = now.motor_angle - now.theta, twist_rate = now.motor_rate - now.rate;
+    now.cable = options_.capstan->torque(twist, twist_rate);
+    now.inertia.diagonal() -= options_.capstan->motor_inertia;
     const Values elastic = options_.capstan->stiffness.cwiseProduct(options_.capstan->bend(twist));
-    cable_loss = twist_rate.dot(cable - elastic);
+    now.cable_loss = twist_rate.dot(now.cable - elastic);
+  }
+  return now;
+}
+
+template <int Axes>
+auto ClosedLoop<Axes>::derivative(const State& state, const Mechanics& now, TrueState<Axes>* seen) const -> State {
+  const AxisMatrix<Axes>& J = now.J;
+  const participant::HandState<Axes>& hand = now.hand;
+  Values drive = torque_ - now.friction, motor_acceleration = Values::Zero();
+  if (options_.capstan) {
+    motor_acceleration = (drive - now.cable).cwiseQuotient(options_.capstan->motor_inertia);
+    drive = now.cable;
   }
 
   const participant::LoadDynamics<Axes> load = load_->dynamics(hand);
-  const Matrix beyond = load.inertia + options_.handle_mass * Matrix::Identity();
-  const Values convective = J_rate * rate, moment = load.moment * Values::Unit(Axes - 1);
-  const Values torque =
-      drive - robot.inertia.coriolis(theta, rate) * rate + moment - J.transpose() * (beyond * convective + load.bias);
-  const Values acceleration = accelerated(I + J.transpose() * beyond * J, torque);
-  const Values hand_acceleration = J * acceleration + convective;
+  const AxisMatrix<Axes> beyond = load.inertia + options_.handle_mass * AxisMatrix<Axes>::Identity();
+  const Values moment = load.moment * Values::Unit(Axes - 1);
+  const Values torque = drive - now.coriolis + moment - J.transpose() * (beyond * now.convective + load.bias);
+  const Values acceleration = accelerated(now.inertia + J.transpose() * beyond * J, torque);
+  const Values hand_acceleration = J * acceleration + now.convective;
   const Values force = -(beyond * hand_acceleration + load.bias);
 
   double viscous = 0.0;
   for (int joint = 0; joint < Axes; ++joint) {
-    viscous += robot.friction[static_cast<std::size_t>(joint)].viscous * motor_rate[joint] * motor_rate[joint];
+    const double damping = options_.robot.friction[static_cast<std::size_t>(joint)].viscous;
+    viscous += damping * now.motor_rate[joint] * now.motor_rate[joint];
   }
   if (!options_.capstan) motor_acceleration = acceleration;
   State change;
-  change << rate, acceleration, motor_rate, motor_acceleration, torque_.dot(motor_rate),
-      -force.dot(hand.velocity) - load.moment * hand.rotation_rate, viscous, friction.dot(motor_rate) - viscous,
-      cable_loss;
+  change << now.rate, acceleration, now.motor_rate, motor_acceleration, torque_.dot(now.motor_rate),
+      -force.dot(hand.velocity) - load.moment * hand.rotation_rate, viscous, now.friction.dot(now.motor_rate) - viscous,
+      now.cable_loss;
 
   if (seen != nullptr) {
     seen->time = time_;
-    seen->theta = theta;
-    seen->theta_rate = rate;
-    seen->motor_angle = state.template segment<Axes>(kMotorAngle);
+    seen->theta = now.theta;
+    seen->theta_rate = now.rate;
+    seen->motor_angle = now.motor_angle;
     seen->position = hand.position;
     seen->velocity = hand.velocity;
     seen->acceleration = hand_acceleration;
     seen->force_hand_on_robot = force;
     seen->motor_torque = torque_;
-    seen->kinetic_energy = 0.5 * rate.dot(I * rate);
+    seen->kinetic_energy = 0.5 * now.rate.dot(now.inertia * now.rate);
     seen->elastic_energy = 0.0;
     if (options_.capstan) {
-      const Values bent = options_.capstan->bend(seen->motor_angle - theta);
-      seen->kinetic_energy += 0.5 * motor_rate.dot(options_.capstan->motor_inertia.cwiseProduct(motor_rate));
+      const Values bent = options_.capstan->bend(now.motor_angle - now.theta);
+      seen->kinetic_energy += 0.5 * now.motor_rate.dot(options_.capstan->motor_inertia.cwiseProduct(now.motor_rate));
       seen->elastic_energy = 0.5 * bent.dot(options_.capstan->stiffness.cwiseProduct(bent));
     }
     const auto energy = state.template segment<5>(kEnergy);
@@ -169,17 +181,19 @@ auto ClosedLoop<Axes>::derivative(const State& state, TrueState<Axes>* seen) con
 template <int Axes>
 TrueState<Axes> ClosedLoop<Axes>::state() const {
   TrueState<Axes> now;
-  derivative(state_, &now);
+  derivative(state_, mechanics(state_), &now);
   return now;
 }
 
 template <int Axes>
 const TrueState<Axes>& ClosedLoop<Axes>::hold(const Values& motor_torque, double sample_time) {
-  const TrueState<Axes> before = state();
+  const Mechanics now = mechanics(state_);
+  TrueState<Axes> before;
+  derivative(state_, now, &before);
   load_->tick(time_, sample_time, hand_of(before), true_state_.force_hand_on_robot);
   torque_ = motor_torque;
   sample_time_ = sample_time;
-  change_ = derivative(state_, &true_state_);
+  change_ = derivative(state_, now, &true_state_);
   true_state_.acceleration = 0.5 * (before.acceleration + true_state_.acceleration);
   true_state_.force_hand_on_robot = 0.5 * (before.force_hand_on_robot + true_state_.force_hand_on_robot);
   return true_state_;

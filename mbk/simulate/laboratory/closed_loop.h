@@ -96,7 +96,22 @@ class ClosedLoop {
   using State = Eigen::Matrix<double, kSize, 1>;
 
   ClosedLoop(const Options& options, const Values& theta, participant::Load<Axes>& load, double start_time);
-  State derivative(const State& state, TrueState<Axes>* seen = nullptr) const;
+
+  /// What follows from a state alone, whatever load and motors do.
+  struct Mechanics {
+    Values theta, rate, motor_angle, motor_rate;
+    participant::HandState<Axes> hand;
+    AxisMatrix<Axes> J;             ///< of the hand [m]
+    Values convective;              ///< J̇ θ̇ [m/s²]
+    AxisMatrix<Axes> inertia;       ///< I, without motors behind a cable [kg·m²]
+    Values coriolis;                ///< C θ̇ [N·m]
+    Values friction;                ///< F_r [N·m]
+    Values cable = Values::Zero();  ///< s [N·m]
+    double cable_loss = 0.0;        ///< in its damping [W]
+  };
+  Mechanics mechanics(const State& state) const;
+  State derivative(const State& state, const Mechanics& now, TrueState<Axes>* seen = nullptr) const;
+  State derivative(const State& state) const { return derivative(state, mechanics(state)); }
 
   Options options_;
   participant::Load<Axes>* load_;
