@@ -175,18 +175,23 @@ class Killing(Case):
         return time.monotonic() - begin, whole.target
 
     def killed_at(self, number, moment, at_the_end):
-        """Kills a session so long after its start, or after the recording is begun to be made of its journal.
-        Returns what happened and how much was lost [s]."""
+        """A session that is killed so long after its start, or after the recording is begun to be made of its journal, and
+        when; None where it was over before."""
         session = self.begin(f"killed_{number}")
         if at_the_end:
             session.wait_for_the_recording()
         time.sleep(moment)
-        if session.process.poll() is not None:
-            session.end()
+        if session.process.poll() is None:
+            return session, session.kill()
+        session.end()
+        return session, None
+
+    def left_by(self, session, killed):
+        """What is there of it, and how much was lost [s]."""
+        if killed is None:
             self.assertEqual(session.process.returncode, FINE)
             self.assertFalse(session.journal.exists())
             return "was over", 0.0
-        killed = session.kill()
         if not session.journal.exists():
             if session.target.exists():
                 return "recording alone", 0.0
@@ -222,21 +227,24 @@ class Killing(Case):
             return what + ", before it said anything", 0.0
         return what, killed - session.first - times[-1]
 
-    def kill_at_moments(self, max_lost, at_a_time, priority=0):
-        whole, kept = self.whole_run()
-        unharmed = digest(kept)
+    def kill_at_moments(self, whole, at_a_time, priority=0):
+        """Kills in sessions that would take `whole` seconds, and the longest stall beside them."""
         lot = random.Random(SEED)
         at_the_end = [k % 3 == 2 for k in range(KILLS)]
         moments = [lot.uniform(0.0, 0.012) if end else lot.uniform(0.02, whole) for end in at_the_end]
         with Stalls(priority) as stalls, concurrent.futures.ThreadPoolExecutor(at_a_time) as pool:
-            results = list(pool.map(self.killed_at, range(KILLS), moments, at_the_end))
+            kills = list(zip(moments, pool.map(self.killed_at, range(KILLS), moments, at_the_end)))
+        return kills, stalls.worst
+
+    def judge(self, max_lost, kills, stall):
+        with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
+            results = list(pool.map(lambda kill: self.left_by(*kill[1]), kills))
         for what in sorted({what for what, _ in results}):
             lost = [1e3 * lost for one, lost in results if one == what]
             print(f"{what}: {len(lost)} times, at most {max(lost):.0f} ms lost", file=sys.stderr)
-        print(f"the machine let a thread wait for {1e3 * stalls.worst:.0f} ms at most", file=sys.stderr)
-        for moment, (what, lost) in zip(moments, results):
-            self.assertLessEqual(lost, max_lost + stalls.worst, f"{what}, killed after {moment:.3f} s")
-        self.assertEqual(digest(kept), unharmed)
+        print(f"the machine let a thread wait for {1e3 * stall:.0f} ms at most", file=sys.stderr)
+        for (moment, _), (what, lost) in zip(kills, results):
+            self.assertLessEqual(lost, max_lost + stall, f"{what}, killed after {moment:.3f} s")
 
 
 class KillUdp(Killing):
@@ -280,13 +288,20 @@ watchdog_ms = 5000
         return Run(self.folder, name, f"{name}.toml")
 
     def test_the_recorder_keeps_up_beside_a_load_in_real_time(self):
+        whole, kept = self.whole_run()
+        unharmed = digest(kept)
         with Load() as load:
-            self.kill_at_moments(self.MOST_LOST, 2, RECORDER_PRIORITY if load.busy else 0)
+            kills, stall = self.kill_at_moments(whole, 2, RECORDER_PRIORITY if load.busy else 0)
+        self.judge(self.MOST_LOST, kills, stall)
+        self.assertEqual(digest(kept), unharmed)
 
 
 class Kill(Killing):
     def test_every_recording_opens_and_at_most_0_2_s_are_lost(self):
-        self.kill_at_moments(MOST_LOST, AT_A_TIME)
+        whole, kept = self.whole_run()
+        unharmed = digest(kept)
+        self.judge(MOST_LOST, *self.kill_at_moments(whole, AT_A_TIME))
+        self.assertEqual(digest(kept), unharmed)
 
     def test_recording_and_journal_both_there(self):
         """Killed after the recording had its name and before the journal was removed."""
