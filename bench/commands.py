@@ -80,6 +80,7 @@ class Load:
             Command("measure", ["measure", "recording.mat"], "recording"),
             Command("measure, reference mode", ["measure", "--mode", "reference", "log.mat"], "log"),
             Command("identify", ["identify", "recording.mat"], "recording"),
+            Command("explore", ["explore", "recording.mat"], "recording"),
             Command("passivity", ["passivity", "recording.mat"], "recording"),
             Command("tf", ["tf", "recording.mat", "--input", "xr", "--output", "x", "--poles", "2", "--zeros", "1",
                            "--to", "10", "--threads", "1"], "recording"),
