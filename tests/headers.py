@@ -67,8 +67,9 @@ class Tree:
         """A file and the headers of ours that it includes, itself or through another."""
         return frozenset({name}.union(*map(self.reached, self.included(name))))
 
-    def compiled_by_themselves(self, sources):
-        """The headers before which, in one of the sources, stand none of ours but those that they include themselves."""
+    def compiled_by_themselves(self, batches):
+        """The headers before which, in one of the batches of sources that are compiled together, stand none of ours but
+        those that they include themselves."""
         found = set()
 
         def read(name, before):
@@ -79,8 +80,10 @@ class Tree:
                     before = read(header, before) | {header}
             return before
 
-        for source in sources:
-            read(source, frozenset())
+        for batch in batches:
+            before = frozenset()
+            for source in batch:
+                before = read(source, before)
         return found
 
     def missing(self, name):

@@ -33,11 +33,11 @@ class Headers(unittest.TestCase):
             for name, text in {"low.h": "", "alone.h": "#include <map>\n", "top.h": '#include "low.h"\n',
                                "top.cpp": '#include "top.h"\n#include "low.h"\n#include "alone.h"\n'}.items():
                 pathlib.Path(folder, name).write_text(text)
-            tree = headers.Tree(folder)
-            self.assertEqual(tree.compiled_by_themselves(["top.cpp"]), {"low.h", "top.h"})
-            self.assertEqual(tree.compiled_by_themselves(["top.cpp", "alone.h"]), {"low.h", "top.h"})
             pathlib.Path(folder, "alone.cpp").write_text('#include <vector>\n#include "alone.h"\n')
-            self.assertEqual(tree.compiled_by_themselves(["top.cpp", "alone.cpp"]), {"low.h", "top.h", "alone.h"})
+            tree = headers.Tree(folder)
+            self.assertEqual(tree.compiled_by_themselves([["top.cpp"]]), {"low.h", "top.h"})
+            self.assertEqual(tree.compiled_by_themselves([["top.cpp", "alone.cpp"]]), {"low.h", "top.h"})
+            self.assertEqual(tree.compiled_by_themselves([["top.cpp"], ["alone.cpp"]]), {"low.h", "top.h", "alone.h"})
 
 
 if __name__ == "__main__":
