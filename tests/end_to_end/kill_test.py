@@ -227,16 +227,18 @@ class Killing(Case):
             return what + ", before it said anything", 0.0
         return what, killed - session.first - times[-1]
 
-    def kill_at_moments(self, whole, at_a_time, priority=0):
-        """Kills in sessions that would take `whole` seconds, and the longest stall beside them."""
+    def kill_at_moments(self, at_a_time, priority=0):
+        """A whole recording and what it was, the kills of other sessions, and the longest stall beside them: for judge."""
+        whole, kept = self.whole_run()
+        unharmed = digest(kept)
         lot = random.Random(SEED)
         at_the_end = [k % 3 == 2 for k in range(KILLS)]
         moments = [lot.uniform(0.0, 0.012) if end else lot.uniform(0.02, whole) for end in at_the_end]
         with Stalls(priority) as stalls, concurrent.futures.ThreadPoolExecutor(at_a_time) as pool:
             kills = list(zip(moments, pool.map(self.killed_at, range(KILLS), moments, at_the_end)))
-        return kills, stalls.worst
+        return kept, unharmed, kills, stalls.worst
 
-    def judge(self, max_lost, kills, stall):
+    def judge(self, max_lost, kept, unharmed, kills, stall):
         with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
             results = list(pool.map(lambda kill: self.left_by(*kill[1]), kills))
         for what in sorted({what for what, _ in results}):
@@ -245,6 +247,7 @@ class Killing(Case):
         print(f"the machine let a thread wait for {1e3 * stall:.0f} ms at most", file=sys.stderr)
         for (moment, _), (what, lost) in zip(kills, results):
             self.assertLessEqual(lost, max_lost + stall, f"{what}, killed after {moment:.3f} s")
+        self.assertEqual(digest(kept), unharmed)
 
 
 class KillUdp(Killing):
@@ -288,20 +291,14 @@ watchdog_ms = 5000
         return Run(self.folder, name, f"{name}.toml")
 
     def test_the_recorder_keeps_up_beside_a_load_in_real_time(self):
-        whole, kept = self.whole_run()
-        unharmed = digest(kept)
         with Load() as load:
-            kills, stall = self.kill_at_moments(whole, 2, RECORDER_PRIORITY if load.busy else 0)
-        self.judge(self.MOST_LOST, kills, stall)
-        self.assertEqual(digest(kept), unharmed)
+            done = self.kill_at_moments(2, RECORDER_PRIORITY if load.busy else 0)
+        self.judge(self.MOST_LOST, *done)
 
 
 class Kill(Killing):
     def test_every_recording_opens_and_at_most_0_2_s_are_lost(self):
-        whole, kept = self.whole_run()
-        unharmed = digest(kept)
-        self.judge(MOST_LOST, *self.kill_at_moments(whole, AT_A_TIME))
-        self.assertEqual(digest(kept), unharmed)
+        self.judge(MOST_LOST, *self.kill_at_moments(AT_A_TIME))
 
     def test_recording_and_journal_both_there(self):
         """Killed after the recording had its name and before the journal was removed."""

@@ -28,7 +28,7 @@ def validator(name):
 
 @functools.lru_cache(maxsize=None)
 def quick(name):
-    """Does the same fifty times as fast, and says little of what is wrong."""
+    """Does the same in less time, and says little of what is wrong."""
     uri = (FOLDER / f"{name}.schema.json").as_uri()
     return fastjsonschema.compile({**read(uri), "$id": uri}, handlers={"file": read})
 
