@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/option_limits.h"
 
 namespace mbk::participant {
@@ -179,7 +180,10 @@ void Arm::tick(double t, double /*sample_time*/, const HandState<2>& hand, const
   cocontraction_.step(hand.velocity.norm());
   tense(t);
   reach(t);
-  const Matrix2d K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
+  Matrix2d K = Matrix2d::Constant(kNaN);  // where nobody looks at it
+  if (controller_.is_to_decide() || departures_) {
+    K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
+  }
   const Vector2d& voluntary = controller_.step(hand.position, force_on_robot, K, cocontraction_.voluntary_weight());
   noise_ = remnant_.step(voluntary.norm());
   if (departures_) departures_->step(t, hand.position, K);

@@ -79,7 +79,7 @@ const Eigen::Vector2d& IntermittentController::step(const Eigen::Vector2d& hand,
                                                     const Eigen::Matrix2d& stiffness, double weight) {
   delayed_[next_] = {hand - options_.position, force_hand_on_robot - options_.force};
   next_ = (next_ + 1) % delayed_.size();  // now the oldest: the delay ago
-  if (to_decision_ == 0) {
+  if (is_to_decide()) {
     increment_ = increment(delayed_[next_], stiffness, weight);
     ramp_tick_ = 0;
     to_decision_ = interval_ticks_;

@@ -40,8 +40,11 @@ class IntermittentController {
   [[nodiscard]] static Result<IntermittentController> create(const Options& options, double sample_time,
                                                              std::uint64_t seed, std::uint32_t stream = 0);
 
+  /// The next step takes a decision. No other looks at the stiffness.
+  [[nodiscard]] bool is_to_decide() const { return to_decision_ == 0; }
+
   /// One tick. Before the delay has passed, the errors count as zero. Does not allocate.
-  /// @param stiffness  K [N/m]   @param weight  w
+  /// @param stiffness  K [N/m], any where it is not to decide   @param weight  w
   /// @returns  F_v [N], part of what the hand exerts on the robot
   const Eigen::Vector2d& step(const Eigen::Vector2d& hand, const Eigen::Vector2d& force_hand_on_robot,
                               const Eigen::Matrix2d& stiffness, double weight);

@@ -55,6 +55,21 @@ TEST(IntermittentController, FirstStepIsTheGainTimesStiffnessTimesDisplacementOn
   EXPECT_GT((forces[start + 300] - expected).norm(), 0.0);  // the next decision, 0.28 s after the first
 }
 
+TEST(IntermittentController, LooksAtTheStiffnessOnlyWhereItIsToDecide) {
+  const std::size_t ticks = 2000;
+  const Vector2d hand = kTarget + Vector2d(0.003, 0.002);
+  const auto always = held(exact_options(), hand, {0, 0}, ticks);
+  auto controller = IntermittentController::create(exact_options(), kTick, 1).value();
+  int decisions = 0;
+  for (std::size_t i = 0; i < ticks; ++i) {
+    const bool decides = controller.is_to_decide();
+    const Matrix2d K = decides ? kStiffness : Matrix2d::Constant(std::nan(""));
+    EXPECT_EQ(controller.step(hand, {0, 0}, K, 1.0), always[i]) << i;
+    decisions += decides ? 1 : 0;
+  }
+  EXPECT_NEAR(decisions, ticks * kTick / exact_options().interval, 1.0);
+}
+
 TEST(IntermittentController, AnswersAfterTheDelayAndWithinOneInterval) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const std::size_t start =

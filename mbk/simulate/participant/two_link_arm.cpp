@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mbk/base/core/option_limits.h"
 
@@ -99,42 +98,46 @@ Vector2d TwoLinkArm::elastic_torque(const Vector2d& q) const {
   return stiffness_scale_ * options_.joints.stiffness * (q - q0_);
 }
 
+const TwoLinkArm::AtPlace& TwoLinkArm::at(const Vector2d& hand) const {
+  if (last_.hand == hand) return last_;
+  last_.hand = hand;
+  last_.posture = posture(options_.geometry, hand);
+  last_.J_inverse = jacobian(last_.posture.links).inverse();
+  last_.inertia = last_.J_inverse.transpose() * inertia_.matrix(last_.posture.elbow) * last_.J_inverse;
+  return last_;
+}
+
 LoadDynamics<2> TwoLinkArm::dynamics(const HandState<2>& hand) const {
-  const auto [q, elbow, links] = posture(options_.geometry, hand.position);
-  const Matrix2d J_inverse = jacobian(links).inverse();
+  const auto& [place, posture, J_inverse, inertia] = at(hand.position);
   const Vector2d q_rate = J_inverse * hand.velocity;
   // q̈ = J⁻¹ (ẍ − J̇ q̇)
-  const Matrix2d inertia = J_inverse.transpose() * inertia_.matrix(elbow) * J_inverse;
-  const Vector2d torque =
-      inertia_.coriolis_torque(elbow, q_rate) + damping_scale_ * options_.joints.damping * q_rate + elastic_torque(q);
-  const Vector2d convective = jacobian_rate(links, q_rate) * q_rate;
+  const Vector2d torque = inertia_.coriolis_torque(posture.elbow, q_rate) +
+                          damping_scale_ * options_.joints.damping * q_rate + elastic_torque(posture.q);
+  const Vector2d convective = jacobian_rate(posture.links, q_rate) * q_rate;
   return {inertia, J_inverse.transpose() * torque - inertia * convective, 0.0};
 }
 
 Matrix2d TwoLinkArm::stiffness(const Vector2d& hand) const {
-  const auto [q, elbow, links] = posture(options_.geometry, hand);
-  const Matrix2d J_inverse = jacobian(links).inverse();
-  const Vector2d force_hand_on_robot = -(J_inverse.transpose() * elastic_torque(q));
+  const auto& [place, posture, J_inverse, inertia] = at(hand);
+  const Vector2d force_hand_on_robot = -(J_inverse.transpose() * elastic_torque(posture.q));
   return J_inverse.transpose() *
-         (stiffness_scale_ * options_.joints.stiffness + force_curvature(links, force_hand_on_robot)) * J_inverse;
+         (stiffness_scale_ * options_.joints.stiffness + force_curvature(posture.links, force_hand_on_robot)) *
+         J_inverse;
 }
 
 impedance::Model TwoLinkArm::impedance(const Vector2d& hand) const {
-  const auto [q, elbow, links] = posture(options_.geometry, hand);
-  const Matrix2d J_inverse = jacobian(links).inverse();
+  const auto& [place, posture, J_inverse, inertia] = at(hand);
   const Matrix2d K = stiffness(hand);
-  const Vector2d bias = J_inverse.transpose() * elastic_torque(q);
+  const Vector2d bias = J_inverse.transpose() * elastic_torque(posture.q);
   const Eigen::FullPivLU<Matrix2d> solver(K);
-  const Vector2d x0 = solver.isInvertible() ? Vector2d(hand - solver.solve(bias))
-                                            : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  return {J_inverse.transpose() * inertia_.matrix(elbow) * J_inverse,
-          damping_scale_ * J_inverse.transpose() * options_.joints.damping * J_inverse, K, x0};
+  const Vector2d x0 = solver.isInvertible() ? Vector2d(hand - solver.solve(bias)) : Vector2d::Constant(kNaN);
+  return {inertia, damping_scale_ * J_inverse.transpose() * options_.joints.damping * J_inverse, K, x0};
 }
 
 double TwoLinkArm::kinetic_energy(const HandState<2>& hand) const {
-  const auto [q, elbow, links] = posture(options_.geometry, hand.position);
-  const Vector2d q_rate = jacobian(links).inverse() * hand.velocity;
-  return 0.5 * q_rate.dot(inertia_.matrix(elbow) * q_rate);
+  const AtPlace& now = at(hand.position);
+  const Vector2d q_rate = now.J_inverse * hand.velocity;
+  return 0.5 * q_rate.dot(inertia_.matrix(now.posture.elbow) * q_rate);
 }
 
 double TwoLinkArm::elastic_energy(const Vector2d& hand) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/core/result.h"
 #include "mbk/simulate/participant/arm_geometry.h"
 #include "mbk/simulate/participant/load.h"
@@ -43,7 +44,8 @@ struct JointParameters {
 /// Passive mechanics of an arm of two links in the plane, at any posture:
 ///   I(q) q̈ + C(q, q̇) q̇ + s_D D_q q̇ + s_K K_q (q − q₀) = −Jᵀ F_h
 /// F_h the force that the hand exerts on the robot. Beyond reach the arm keeps its last possible posture
-/// (`joint_angles`).
+/// (`joint_angles`). What follows from the hand's place alone is kept for the place that was asked for last, so an arm
+/// is not for two threads at once.
 class TwoLinkArm : public Load<2> {
  public:
   struct Options {
@@ -88,8 +90,17 @@ class TwoLinkArm : public Load<2> {
  private:
   TwoLinkArm(const Options& options, const ChainInertia& inertia)
       : options_(options), inertia_(inertia), q0_(joint_angles(options.geometry, options.equilibrium)) {}
+  /// The arm with the hand at one place.
+  struct AtPlace {
+    Vector2d hand = Vector2d::Constant(kNaN);
+    Posture posture;
+    Matrix2d J_inverse;
+    Matrix2d inertia;  // J⁻ᵀ I J⁻¹
+  };
+  [[nodiscard]] const AtPlace& at(const Vector2d& hand) const;
   [[nodiscard]] Vector2d elastic_torque(const Vector2d& q) const;
 
+  mutable AtPlace last_;
   Options options_;
   ChainInertia inertia_;
   Vector2d q0_;

@@ -37,6 +37,29 @@ TEST(TwoLinkArm, DefaultIsTheFirstParticipantsHand) {
   EXPECT_LT((hand.B - (Matrix2d() << 5.76, -2.14, -2.14, 10.56).finished()).cwiseAbs().maxCoeff(), 0.7);
 }
 
+TEST(TwoLinkArm, SaysTheSameOfAPlaceWhateverItWasAskedBefore) {
+  const Vector2d elsewhere = kHome + Vector2d(0.05, 0.03);
+  const HandState<2> hand = {kHome, {0.1, -0.2}, 0.0, 0.0};
+  const auto changed = [] {
+    TwoLinkArm arm = TwoLinkArm::create(asymmetric()).value();
+    arm.scale(2.0, 1.5);
+    arm.rest_at(kHome + Vector2d(0.01, 0.0));
+    return arm;
+  };
+  TwoLinkArm asked = TwoLinkArm::create(asymmetric()).value();
+  EXPECT_NE(asked.dynamics(hand).bias, changed().dynamics(hand).bias);
+  asked.scale(2.0, 1.5);
+  asked.rest_at(kHome + Vector2d(0.01, 0.0));
+  for (const Vector2d& before : {kHome, elsewhere}) {
+    static_cast<void>(asked.kinetic_energy({before, {1.0, 0.0}, 0.0, 0.0}));
+    EXPECT_EQ(asked.dynamics(hand).inertia, changed().dynamics(hand).inertia);
+    EXPECT_EQ(asked.dynamics(hand).bias, changed().dynamics(hand).bias);
+    EXPECT_EQ(asked.stiffness(kHome), changed().stiffness(kHome));
+    EXPECT_EQ(asked.kinetic_energy(hand), changed().kinetic_energy(hand));
+    EXPECT_EQ(asked.impedance(kHome).x0, changed().impedance(kHome).x0);
+  }
+}
+
 TEST(ChainInertia, ComesFromItsMatrixAtOnePosture) {
   const JointParameters joints;
   const ChainInertia chain = ChainInertia::from_matrix(joints.inertia, joints.elbow_angle).value();
