@@ -128,6 +128,11 @@ end
 printf('%d lines, %d failures\n', steps, failures);
 assert(failures == 0 && steps > 90);
 
+% the check value of the standard, and lengths that four do not divide
+for known = {'', 0; 'a', 3904355907; 'ab', 2659403885; 'abc', 891568578; '123456789', 3421780262}'
+  assert(mbk_crc32(reshape(uint8(known{1}), 1, [])), uint32(known{2}));
+end
+
 % the whole step, as a block calls it
 step_sample = mbk_sample();
 step_sample.motors_on = true;
