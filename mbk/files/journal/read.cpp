@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -193,11 +194,12 @@ std::vector<Tick> ticks_of(Bytes bytes, const std::vector<Block>& blocks, Damage
   const auto not_after = [](const Tick& one, const Tick& other) { return one.number >= other.number; };
   if (std::ranges::adjacent_find(ticks, not_after) == ticks.end()) return ticks;
   std::ranges::sort(ticks, {}, &Tick::number);
+  const auto as_written = [](const Tick& tick) { return std::as_bytes(std::span(&tick, 1)); };
   std::size_t kept = 0;
   for (std::size_t begin = 0, end = 0; begin < ticks.size(); begin = end) {
     bool alike = true;
     for (end = begin + 1; end < ticks.size() && ticks[end].number == ticks[begin].number; ++end) {
-      alike = alike && std::memcmp(&ticks[end], &ticks[begin], sizeof(Tick)) == 0;
+      alike = alike && std::ranges::equal(as_written(ticks[end]), as_written(ticks[begin]));
     }
     if (alike) ticks[kept++] = ticks[begin];
     if (!alike) ++damage.contradictory;  // nothing says which of them is right

@@ -45,10 +45,10 @@ concept MadeOf = requires {
 /// How many members a struct has: one after the other is tried.
 template <class Struct, class... Members>
 consteval std::size_t member_count() {
-  if constexpr (MadeOf<Struct, Members..., AnyMember>) {
-    return member_count<Struct, Members..., AnyMember>();
-  } else if constexpr (MadeOf<Struct, Members..., OptionalMember>) {
+  if constexpr (MadeOf<Struct, Members..., OptionalMember>) {
     return member_count<Struct, Members..., OptionalMember>();
+  } else if constexpr (MadeOf<Struct, Members..., AnyMember>) {
+    return member_count<Struct, Members..., AnyMember>();
   } else {
     return sizeof...(Members);
   }

@@ -251,8 +251,8 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
       "Printed values are those of a person, and are only shown.",
       "Where the force does not switch in the last 10 s there is little to explain, and the VAF low for any arm.",
       "Controller off: the same arm, noise and co-contraction; relaxed: without co-contraction too.",
-      "In continuous time an impedance has more zeros than poles; 4 poles and 3 zeros follow it with distant poles "
-      "alone.",
+      std::string("In continuous time an impedance has more zeros than poles; 4 poles and 3 zeros follow it with "
+                  "distant poles alone."),
       fmt::format("Simulated: {}.", laboratory::kTunedGains)};
   return table;
 }

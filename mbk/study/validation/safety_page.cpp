@@ -107,15 +107,15 @@ std::string reasons_of(const UdpFaultKind& kind) {
   if (std::ranges::count_if(kind.reasons, is_of_motion) < std::ssize(moves)) {
     return codes(kind.reasons, [](std::string_view one) { return one; });
   }
-  std::string text_;
+  std::string listed;
   for (const std::string_view one : kind.reasons) {
-    if (!is_of_motion(one)) text_ += fmt::format("{}, ", one);
+    if (!is_of_motion(one)) listed += fmt::format("{}, ", one);
   }
-  return text_ + "*motion*";
+  return listed + "*motion*";
 }
 
 std::string udp_table() {
-  std::string text_ =
+  std::string table =
       "| Fault | What happens | What detects it | Position, force: off within | The motors are | Robot's duty, or what "
       "limits the harm |\n|---|---|---|---|---|---|\n";
   for (const UdpFaultKind& kind : udp_fault_kinds()) {
@@ -126,20 +126,20 @@ std::string udp_table() {
     const std::string soon = kind.expected == Expected::trip
                                  ? ticks(kind.detection[0], kMore) + ", " + ticks(kind.detection[1], kMore)
                                  : "–";
-    text_ += fmt::format("| `{}`{} | {} | {} | {} | {} | {} |\n", kind.name, kind.version > 1 ? " (version 2)" : "",
+    table += fmt::format("| `{}`{} | {} | {} | {} | {} | {} |\n", kind.name, kind.version > 1 ? " (version 2)" : "",
                          kind.what, found, soon, text(kind.safe_state), kind.bound);
   }
-  return text_;
+  return table;
 }
 
 std::string function_table() {
-  std::string text_ = "| Fault | What detects it | Position, force: off within |\n|---|---|---|\n";
+  std::string table = "| Fault | What detects it | Position, force: off within |\n|---|---|---|\n";
   for (const FaultKind& kind : fault_kinds()) {
-    text_ += fmt::format("| {} | {} | {}, {} |\n", kind.name,
+    table += fmt::format("| {} | {} | {}, {} |\n", kind.name,
                          codes(kind.reasons, [](safety::Reason one) { return word_of(one); }),
                          ticks(kind.detection[0], safety::kRampTicks), ticks(kind.detection[1], safety::kRampTicks));
   }
-  return text_;
+  return table;
 }
 
 }  // namespace
