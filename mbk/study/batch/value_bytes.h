@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -27,14 +28,15 @@ inline constexpr bool kIs = false;
 template <template <class...> class Template, class... Arguments>
 inline constexpr bool kIs<Template<Arguments...>, Template> = true;
 
-/// Stands for a member of any type but std::optional, which could also be made of what it holds.
+/// Stands for a member of any type but std::optional, which could also be made of what it holds. Never called, and has
+/// a body for types that only one source knows.
 struct AnyMember {
   template <class Type>
-  requires(!kIs<Type, std::optional>) operator Type() const;  // NOLINT(google-explicit-constructor)
+  requires(!kIs<Type, std::optional>) operator Type() const { std::abort(); }  // NOLINT(google-explicit-constructor)
 };
 struct OptionalMember {
   template <class Type>
-  requires(kIs<Type, std::optional>) operator Type() const;  // NOLINT(google-explicit-constructor)
+  requires(kIs<Type, std::optional>) operator Type() const { std::abort(); }  // NOLINT(google-explicit-constructor)
 };
 
 template <class Struct, class... Members>
@@ -45,10 +47,10 @@ concept MadeOf = requires {
 /// How many members a struct has: one after the other is tried.
 template <class Struct, class... Members>
 consteval std::size_t member_count() {
-  if constexpr (MadeOf<Struct, Members..., OptionalMember>) {
-    return member_count<Struct, Members..., OptionalMember>();
-  } else if constexpr (MadeOf<Struct, Members..., AnyMember>) {
+  if constexpr (MadeOf<Struct, Members..., AnyMember>) {
     return member_count<Struct, Members..., AnyMember>();
+  } else if constexpr (MadeOf<Struct, Members..., OptionalMember>) {
+    return member_count<Struct, Members..., OptionalMember>();
   } else {
     return sizeof...(Members);
   }
