@@ -5,7 +5,6 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -28,15 +27,21 @@ inline constexpr bool kIs = false;
 template <template <class...> class Template, class... Arguments>
 inline constexpr bool kIs<Template<Arguments...>, Template> = true;
 
-/// Stands for a member of any type but std::optional, which could also be made of what it holds. Never called, and has
-/// a body for types that only one source knows.
+/// Defined nowhere, so that a program in which a stand-in for a member came to be called cannot be linked.
+[[noreturn]] void stand_in_is_called();
+
+/// Stands for a member of any type but std::optional, which could also be made of what it holds.
 struct AnyMember {
   template <class Type>
-  requires(!kIs<Type, std::optional>) operator Type() const { std::abort(); }  // NOLINT(google-explicit-constructor)
+  requires(!kIs<Type, std::optional>) operator Type() const {  // NOLINT(google-explicit-constructor)
+    stand_in_is_called();
+  }
 };
 struct OptionalMember {
   template <class Type>
-  requires(kIs<Type, std::optional>) operator Type() const { std::abort(); }  // NOLINT(google-explicit-constructor)
+  requires(kIs<Type, std::optional>) operator Type() const {  // NOLINT(google-explicit-constructor)
+    stand_in_is_called();
+  }
 };
 
 template <class Struct, class... Members>
