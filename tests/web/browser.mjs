@@ -179,42 +179,19 @@ export async function open(file, { script, ...options } = {}) {
   return { page, said, outside, close: () => context.close() };
 }
 
-/** The browser has stopped drawing a page. On a busy machine that happens now and then, and for good; the next page is drawn. */
-class NoFrame extends Error {}
+/** Waits until all charts are drawn, which the page sees to without being scrolled, and all pictures are there. */
+export const drawn = (page) => page.waitForFunction(() =>
+  [...document.querySelectorAll(".chart")].every((chart) => chart.querySelector("svg")) && [...document.images].every((one) => one.complete), undefined, { polling: 20 });
 
-/** Brings everything into view once, so that every chart is drawn. */
-export async function scrollThrough(page) {
-  const height = await page.evaluate(() => document.documentElement.scrollHeight);
-  for (let y = 0; y < height; y += 600) {
-    for (let tries = 3; ; --tries) {
-      const drawn = await page.evaluate((top) => new Promise((done) => {
-        scrollTo({ top, behavior: "instant" });
-        requestAnimationFrame(() => requestAnimationFrame(() => done(true)));
-        setTimeout(() => done(false), 3000);
-      }), y);
-      if (drawn) break;
-      if (tries === 0) throw new NoFrame("no frame is drawn");
-      await page.bringToFront(); // the browser may have lost one frame alone, and waits for a reason to draw
-    }
-  }
-  await page.evaluate(() => scrollTo({ top: 0, behavior: "instant" }));
-}
-
-/** Looks at a page, which says nothing on the console and asks no network for anything. Where the browser stops drawing it, it is opened again and looked at from the beginning, twice at most. */
+/** Looks at a page, which says nothing on the console and asks no network for anything. */
 export async function onPage(file, look, options = {}) {
-  for (let more = 2; ; --more) {
-    const { page, said, outside, close: done } = await open(file, options);
-    try {
-      await look(page);
-      assert.deepEqual(said, []);
-      assert.deepEqual(outside(), []);
-      return;
-    } catch (error) {
-      if (!(error instanceof NoFrame) || more === 0) throw error;
-      console.log(`# the browser stopped drawing ${file}, which is opened again`);
-    } finally {
-      await done();
-    }
+  const { page, said, outside, close: done } = await open(file, options);
+  try {
+    await look(page);
+    assert.deepEqual(said, []);
+    assert.deepEqual(outside(), []);
+  } finally {
+    await done();
   }
 }
 
@@ -268,7 +245,7 @@ export const clipped = (page) => page.evaluate(() => {
 
 /** Screenshot at 1440 px and an A4 PDF, to be looked at. */
 export async function picture(page, name) {
-  await scrollThrough(page);
+  await drawn(page);
   await screenshot(page, name, { fullPage: true });
   return page.pdf({ path: join(pictures, `${name}.pdf`), preferCSSPageSize: true, printBackground: true });
 }

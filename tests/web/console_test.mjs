@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, runWithConsole, screenshot, scrollThrough, startDouble, violations, violationsInBoth } from "./browser.mjs";
+import { closeBrowser, drawn, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, runWithConsole, screenshot, startDouble, violations, violationsInBoth } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -600,7 +600,7 @@ test("a report that the console serves is drawn under the policy of its own scri
   tell(`report ${file}`);
   await has(".trials", "Open the report");
   await onPage(await operator.page.getByRole("link", { name: "Open the report" }).evaluate((link) => link.href), async (page) => {
-    await scrollThrough(page);
+    await drawn(page);
     await page.locator("[_echarts_instance_] svg, [_echarts_instance_] canvas").first().waitFor(); // drawn by its script
     await screenshot(page, "console-report");
   });

@@ -1,7 +1,7 @@
 // The report of mbk explore in a browser: its numbers are those of --json, it is quiet, offline, accessible and printable.
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { changed, close, closeBrowser, folder, makeLog, mbk, numbers, onPage, picture, scrollThrough, simulate, violationsInBoth } from "./browser.mjs";
+import { changed, close, closeBrowser, drawn, folder, makeLog, mbk, numbers, onPage, picture, simulate, violationsInBoth } from "./browser.mjs";
 import { join } from "node:path";
 
 after(closeBrowser);
@@ -16,7 +16,7 @@ const arm = explore("arm", makeLog("arm.mat", "--protocol", "sinusoidal", "--see
 const joint = explore("joint", simulate("joint.mat", "ankle_reflex"), "--axes", "1");
 
 const onWholePage = (file, look) => onPage(file, async (page) => {
-  await scrollThrough(page);
+  await drawn(page);
   await look(page);
 });
 

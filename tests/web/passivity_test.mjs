@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, makeLog, measure, numbers, onPage, scrollThrough, simulate, violations, violationsInBoth } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, drawn, makeLog, measure, numbers, onPage, simulate, violations, violationsInBoth } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -135,7 +135,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
 
   test(`a page with all of it has no violation: ${name}`, () => onPage(file, async (page) => {
     await page.$$eval("details", (details) => details.forEach((one) => (one.open = true)));
-    await scrollThrough(page);
+    await drawn(page);
     assert.deepEqual(await violationsInBoth(page), []);
   }));
 }
@@ -266,7 +266,7 @@ test("what a document does not hold is left out", async () => {
       }
     });
     await onPage(empty, async (page) => {
-      await scrollThrough(page);
+      await drawn(page);
       assert.doesNotMatch(await page.textContent("main"), /NaN(?! throughout)|null|Infinity|\[object/);
       assert.deepEqual(await violations(page), []);
     });

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { after, test } from "node:test";
 import { join } from "node:path";
-import { assertShown, changed, clipped, close, closeBrowser, documentOf, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, printedFrame, scrollThrough, simulate, violations, violationsInBoth, violationsInDark } from "./browser.mjs";
+import { assertShown, changed, clipped, close, closeBrowser, documentOf, drawn, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, printedFrame, simulate, violations, violationsInBoth, violationsInDark } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
@@ -98,7 +98,7 @@ test("the arm of a simulated participant lies under the ellipses, its links in t
 });
 
 test("the page is quiet, asks no network for anything and holds its licences", () => onPage(onePage, async (page) => {
-  await scrollThrough(page);
+  await drawn(page);
   const licences = await page.$eval(".licences", (element) => element.textContent);
   for (const words of ["Apache License", "Copyright 2017-2026 The Apache Software Foundation", "Baidu Inc.", "Microsoft Corporation", "Mike Bostock"]) {
     assert.ok(licences.includes(words), words);
@@ -113,7 +113,7 @@ for (const [what, file, prepare] of [
 ]) {
   test(`axe finds no violation: ${what}`, () => onPage(file, async (page) => {
     await prepare?.(page);
-    await scrollThrough(page);
+    await drawn(page);
     assert.deepEqual(await violations(page), []);
   }));
 }
@@ -445,7 +445,7 @@ test("undefined numbers are said to be undefined", async () => {
     document.trials[0].diagnostics = none(document.trials[0].diagnostics);
   });
   await onPage(file, async (page) => {
-    await scrollThrough(page);
+    await drawn(page);
     const read = await numbers(page, "#trial-1-model");
     assert.equal(read.K00.shown, "undefined");
     assert.doesNotMatch(await page.textContent("main"), /NaN(?! throughout)|null|Infinity|\[object/);

@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { assertShown, changed, close, closeBrowser, documentOf, eventually, folder, mbk, numbers, onPage, open, picture, screenshot, scrollThrough, violations, violationsInBoth } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, drawn, eventually, folder, mbk, numbers, onPage, open, picture, screenshot, violations, violationsInBoth } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -312,7 +312,7 @@ test("a chart opens larger with Enter, the arrow keys go on, Escape leads back",
 }));
 
 test("drawings are pictures: nothing in them reaches the page, each loads, and each keeps its place", () => onPage(every, async (page) => {
-  await scrollThrough(page);
+  await drawn(page);
   const images = await page.$$eval("article img", (all) => all.map((one) => ({ src: one.src.slice(0, 19), loaded: one.complete && one.naturalWidth > 0, ratio: one.clientWidth / one.clientHeight })));
   assert.equal(images.length, 4);
   for (const { src, loaded, ratio } of images) {
@@ -370,7 +370,7 @@ test("nothing to show, and nothing known, is no error", async () => {
   for (const file of [empty, bare, unknown]) {
     await onPage(file, async (page) => {
       await openAll(page);
-      await scrollThrough(page);
+      await drawn(page);
       assert.doesNotMatch(await page.textContent("main"), /NaN|null|Infinity|undefined|\[object/);
       assert.deepEqual(await violations(page), []);
     });
@@ -420,7 +420,7 @@ test("pictures to be looked at, and A4 pages on which nothing is too wide", asyn
     });
   }
   await onPage(every, async (page) => {
-    await scrollThrough(page);
+    await drawn(page);
     await screenshot(page, "reproduction-390", { fullPage: true });
   }, { viewport: { width: 390, height: 844 } });
   await onPage(every, async (page) => {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { changed, closeBrowser, documentOf, folder, mbk, onPage, picture, scrollThrough, violationsInBoth } from "./browser.mjs";
+import { changed, closeBrowser, documentOf, drawn, folder, mbk, onPage, picture, violationsInBoth } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -99,7 +99,7 @@ test("an uncertain minimal detectable change makes no sure claim", () => {
 });
 
 test("the page of the study shows every participant, and what does not count with its reason as text", () => onPage(whole, async (tab) => {
-  await scrollThrough(tab);
+  await drawn(tab);
   assert.equal(await tab.textContent("h1"), hostile);
   assert.notEqual(await tab.title(), "owned");
   assert.equal(await tab.locator("#participants svg.forest rect.value").count(), 6);
@@ -162,7 +162,7 @@ test("a study without recordings says so", () => onPage(nothing, async (tab) => 
 const files = { whole, stiffer, same, few, "few-stiffer": fewStiffer, nothing };
 for (const [name, file] of Object.entries(files)) {
   test(`axe finds no violation, nothing is undefined or too wide: ${name}`, () => onPage(file, async (tab) => {
-    await scrollThrough(tab);
+    await drawn(tab);
     await tab.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
     assert.deepEqual(await violationsInBoth(tab), []);
     assert.doesNotMatch(await tab.textContent("main"), /NaN|Infinity|\[object|undefined/);

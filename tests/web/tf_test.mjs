@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, folder, makeLog, mbk, numbers, onPage, picture, scrollThrough, simulate, violations, violationsInBoth } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, drawn, folder, makeLog, mbk, numbers, onPage, picture, simulate, violations, violationsInBoth } from "./browser.mjs";
 import { join } from "node:path";
 
 after(closeBrowser);
@@ -32,7 +32,7 @@ const discrete = changed(chosen.file, "discrete", ({ result }) => {
 });
 
 const onWholePage = (file, look) => onPage(file, async (page) => {
-  await scrollThrough(page);
+  await drawn(page);
   await look(page);
 });
 

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mman.h>
 
 #include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -13,6 +17,7 @@
 #include "mbk/base/realtime/cycle_record.h"
 #include "mbk/base/realtime/rest.h"
 #include "mbk/base/realtime/signal_stack.h"
+#include "mbk/base/realtime/thread_setup.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::realtime {
@@ -147,6 +152,26 @@ TEST(CycleRecord, TakesAnythingWithoutAllocating) {
   EXPECT_EQ(testing_support::allocations(), before);
   EXPECT_EQ(record.count(), 3U);
   EXPECT_EQ(CycleRecord().quantile(0.5), 0.0);
+}
+
+/// What of the process is locked [kB], by /proc/self/status.
+long locked() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmLck:")) return std::stol(line.substr(6));
+  }
+  return -1;
+}
+
+TEST(LockMemory, LocksAtThePriorityOfTheCallerWhatAThreadInRealTimeFindsLocked) {
+  const int scheduled = sched_getscheduler(0);
+  lock_memory();
+  EXPECT_EQ(sched_getscheduler(0), scheduled);
+  const long before = locked();
+  ThreadSetup setup;
+  std::thread([&] { setup = prepare_thread(); }).join();
+  EXPECT_EQ(before > 0, setup.locked_memory) << setup.refused;
+  munlockall();
 }
 
 }  // namespace

@@ -11,6 +11,10 @@ struct ThreadSetup {
   std::string refused;         ///< what was refused, why, and what would allow it; empty where nothing was
 };
 
+/// Fetches and locks the memory of the process, at the priority of the caller: it may take a tenth of a second, for
+/// which a thread that goes before others would hold a processor. Whether it is refused is said by prepare_thread.
+void lock_memory() noexcept;
+
 /// Asks for SCHED_FIFO at `priority` (1–99) for the calling thread and for locked memory for the process, and touches
 /// the stack so that it is there. What is refused is said, never an error: a simulation needs neither.
 [[nodiscard]] ThreadSetup prepare_thread(int priority = 80);

@@ -184,6 +184,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   auto writer = journal::Writer::create(outcome.journal, header_of(plan, robot.facts()), expected);
   if (!writer) return tl::unexpected(writer.error());
   NotBegun guard{outcome.journal};
+  const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
+  if (in_real_time) realtime::lock_memory();
   if (auto ok = start(robot); !ok) return tl::unexpected(ok.error());
   guard.robot = &robot;
 
@@ -192,7 +194,6 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   flags_->end_trial = false;
   flags_->recording = true;
   realtime::BoundedRing<Tick> ring(kRing);
-  const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
   Recorder recorder(ring, std::move(*writer), *flags_, watch, in_real_time);
   std::thread loop([&] {
     const realtime::SignalStack stack;
