@@ -195,6 +195,23 @@ export async function onPage(file, look, options = {}) {
   }
 }
 
+const kept = new Map();
+const stateOf = (page) => page.evaluate(() => `${document.querySelectorAll("*").length} ${document.querySelectorAll("[open]").length} ${document.body.textContent}`);
+
+/** Looks at a page as it was opened, with every chart drawn: tests that only read share the page of a file. */
+export async function reading(file, look) {
+  if (!kept.has(file)) {
+    const opened = await open(file);
+    await drawn(opened.page);
+    kept.set(file, { ...opened, state: await stateOf(opened.page) });
+  }
+  const { page, said, outside, state } = kept.get(file);
+  await look(page);
+  assert.equal(await stateOf(page), state, "who reads a page changes nothing of it, and who does takes onPage");
+  assert.deepEqual(said, []);
+  assert.deepEqual(outside(), []);
+}
+
 /** The numbers of a part of the page by name, each with every digit and as it is shown. */
 export async function numbers(page, selector) {
   const all = await page.$$eval(`${selector} data[data-name]`, (elements) =>

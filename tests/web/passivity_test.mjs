@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, drawn, makeLog, measure, numbers, onPage, simulate, violations, violationsInBoth } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, drawn, makeLog, measure, numbers, onPage, reading, simulate, violations, violationsInBoth } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -30,7 +30,7 @@ function assertInterval(read, name, value, [low, high]) {
 const assertAllShown = (read) => Object.entries(read).forEach(([name, number]) => assertShown(number, name));
 
 for (const [name, { json, file }] of Object.entries(all)) {
-  test(`both statements are a word, a sign and the sentence of the JSON: ${name}`, () => onPage(file, async (page) => {
+  test(`both statements are a word, a sign and the sentence of the JSON: ${name}`, () => reading(file, async (page) => {
     const { passivity } = json;
     const signs = { passive: "✓", active: "✕", undecided: "?", none: "–" };
     for (const what of ["trial", "prediction"]) {
@@ -58,7 +58,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
     assertAllShown(read);
   }));
 
-  test(`each condition stands with value, bounds and outcome: ${name}`, () => onPage(file, async (page) => {
+  test(`each condition stands with value, bounds and outcome: ${name}`, () => reading(file, async (page) => {
     const read = await numbers(page, "#trial-1-conditions");
     const outcomes = await page.$$eval("#trial-1-conditions .conditions .outcome", (cells) => cells.map((cell) => cell.textContent));
     const word = { passive: "✓ holds", active: "✕ fails", undecided: "? open" };
@@ -102,7 +102,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
     });
   }));
 
-  test(`both methods and the instruments stand beside each other: ${name}`, () => onPage(file, async (page) => {
+  test(`both methods and the instruments stand beside each other: ${name}`, () => reading(file, async (page) => {
     const read = await numbers(page, "#trial-1-methods");
     const [other] = json.alternatives;
     const usable = Object.fromEntries([json, other].map((one) => [one.method, one.usable]));
@@ -147,7 +147,7 @@ test("the cases are what they are taken for", () => {
   assert.ok(undecided.json.passivity.trial.lines.length > 5);
 });
 
-test("bootstrap intervals stand beside those of the delta method, angles in degrees", () => onPage(undecided.file, async (page) => {
+test("bootstrap intervals stand beside those of the delta method, angles in degrees", () => reading(undecided.file, async (page) => {
   const { quantities } = undecided.json.bootstrap;
   const read = await numbers(page, "#trial-1-methods .bootstrap");
   let angles = 0;
@@ -180,7 +180,7 @@ test("one axis has the impedance in the complex plane: the real part b, the imag
   assert.equal(await page.locator(".force-field, .ellipse-drawing").count(), 0);
 }));
 
-test("two axes have force fields: whole K is the sum of its parts, arrows have one scale and point along −K x", () => onPage(undecided.file, async (page) => {
+test("two axes have force fields: whole K is the sum of its parts, arrows have one scale and point along −K x", () => reading(undecided.file, async (page) => {
   assert.equal(await page.locator("#trial-1-nyquist").count(), 0);
   const { K } = undecided.json.model;
   const read = await numbers(page, "#trial-1-force-field");

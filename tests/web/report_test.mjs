@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { after, test } from "node:test";
 import { join } from "node:path";
-import { assertShown, changed, clipped, close, closeBrowser, documentOf, drawn, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, printedFrame, simulate, violations, violationsInBoth, violationsInDark } from "./browser.mjs";
+import { assertShown, changed, clipped, close, closeBrowser, documentOf, drawn, eventually, folder, makeLog, mbk, measure, numbers, onPage, open, picture, printedFrame, reading, simulate, violations, violationsInBoth, violationsInDark } from "./browser.mjs";
 import { withDiagnostics } from "./diagnostics.mjs";
 
 after(closeBrowser);
@@ -41,14 +41,11 @@ function assertModel(read, result) {
   for (const [name, number] of Object.entries(read)) assertShown(number, name);
 }
 
-test("the model, its intervals and the fit are those of --json", async () => {
-  const { page, close: done } = await open(one.file);
+test("the model, its intervals and the fit are those of --json", () => reading(one.file, async (page) => {
   assertModel(await numbers(page, "#trial-1-model"), one.json);
-  await done();
-});
+}));
 
-test("the ellipses and their intervals are those of --json", async () => {
-  const { page, close: done } = await open(one.file);
+test("the ellipses and their intervals are those of --json", () => reading(one.file, async (page) => {
   const read = await numbers(page, "#trial-1-ellipses");
   for (const [name, ellipse] of Object.entries(one.json.ellipses)) {
     for (const [key, field] of [["area", "area"], ["shape", "shape"], ["orientation", "orientation_deg"]]) {
@@ -60,11 +57,9 @@ test("the ellipses and their intervals are those of --json", async () => {
     close(read[`${name}-large`].value, ellipse.eigenvalues[1], name);
   }
   for (const [name, finding] of Object.entries(one.json.antisymmetry)) close(read[`${name}-zmean`].value, finding.zmean_percent, name);
-  await done();
-});
+}));
 
-test("an ellipse is drawn to scale: its axes and circle are in the ratio of the numbers", async () => {
-  const { page, close: done } = await open(one.file);
+test("an ellipse is drawn to scale: its axes and circle are in the ratio of the numbers", () => reading(one.file, async (page) => {
   const drawn = await page.$$eval("#trial-1-ellipses .ellipse-drawing", (drawings) => drawings.map((svg) => ({
     rx: Number(svg.querySelector(".ellipse").getAttribute("rx")),
     ry: Number(svg.querySelector(".ellipse").getAttribute("ry")),
@@ -80,8 +75,7 @@ test("an ellipse is drawn to scale: its axes and circle are in the ratio of the 
     assert.ok(Math.abs(circle - (rx * value) / large) < pixel, name);
     assert.ok(Math.abs(parseFloat(/-?[\d.]+/.exec(turn)[0]) + one.json.ellipses[name].orientation_deg) < 1e-3, name);
   });
-  await done();
-});
+}));
 
 test("the arm of a simulated participant lies under the ellipses, its links in the ratio of their lengths", async () => {
   const report = measure("relaxed", relaxed);
@@ -97,8 +91,7 @@ test("the arm of a simulated participant lies under the ellipses, its links in t
   await done();
 });
 
-test("the page is quiet, asks no network for anything and holds its licences", () => onPage(onePage, async (page) => {
-  await drawn(page);
+test("the page is quiet, asks no network for anything and holds its licences", () => reading(onePage, async (page) => {
   const licences = await page.$eval(".licences", (element) => element.textContent);
   for (const words of ["Apache License", "Copyright 2017-2026 The Apache Software Foundation", "Baidu Inc.", "Microsoft Corporation", "Mike Bostock"]) {
     assert.ok(licences.includes(words), words);
@@ -111,7 +104,7 @@ for (const [what, file, prepare] of [
   ["a result that is not usable", withPlots(unusable, "unusable-plots"), undefined],
   ["several recordings, all open", withPlots(several, "several-plots"), (page) => page.$$eval("details.trial", (all) => all.forEach((d) => (d.open = true)))],
 ]) {
-  test(`axe finds no violation: ${what}`, () => onPage(file, async (page) => {
+  test(`axe finds no violation: ${what}`, () => (prepare ? onPage : reading)(file, async (page) => {
     await prepare?.(page);
     await drawn(page);
     assert.deepEqual(await violations(page), []);
@@ -170,8 +163,7 @@ test("a CSV file holds every value of its chart", async () => {
   await done();
 });
 
-test("each chart has a description, one sentence on how to read it, and lines that differ without colour", async () => {
-  const { page, close: done } = await open(onePage);
+test("each chart has a description, one sentence on how to read it, and lines that differ without colour", () => reading(onePage, async (page) => {
   const figures = await page.$$eval("figure.chart-figure", (all) => all.map((figure) => ({
     description: figure.querySelector("[role=img]").getAttribute("aria-label"),
     caption: figure.querySelector("figcaption").textContent,
@@ -183,21 +175,17 @@ test("each chart has a description, one sentence on how to read it, and lines th
     assert.match(caption, /^How to read this\. \S/);
     if (dashes.length === 2) assert.equal(new Set(dashes).size, 2, caption);
   }
-  await done();
-});
+}));
 
-test("one axis has no ellipses and the units of what moves", async () => {
-  const { page, close: done } = await open(oneAxis.file);
+test("one axis has no ellipses and the units of what moves", () => reading(oneAxis.file, async (page) => {
   assertModel(await numbers(page, "#trial-1-model"), oneAxis.json);
   assert.equal(await page.locator(".ellipse-drawing").count(), 0);
   const text = await page.textContent("#trial-1-model");
   for (const unit of Object.values(oneAxis.json.units)) assert.ok(text.includes(unit === "m" ? "mm" : unit), unit);
-  await done();
-});
+}));
 
-test("a result that is not usable says so first, with every warning in plain and in exact words", async () => {
+test("a result that is not usable says so first, with every warning in plain and in exact words", () => reading(unusable.file, async (page) => {
   assert.equal(unusable.code, 4);
-  const { page, close: done } = await open(unusable.file);
   assert.match(await page.textContent(".verdict"), /Not usable\. Do not report these numbers/);
   const read = await page.$$eval(".warning", (all) => all.map((item) => ({
     code: item.dataset.code,
@@ -208,8 +196,7 @@ test("a result that is not usable says so first, with every warning in plain and
   assert.deepEqual(read.map(({ title, ...warning }) => warning), unusable.json.warnings.map(({ was, ...warning }) => warning));
   for (const { title, code } of read) assert.notEqual(title, code);
   assert.equal(await page.locator(".ellipse-drawing").count(), 0, "no number of it is shown");
-  await done();
-});
+}));
 
 test("every warning that mbk knows has plain words", async () => {
   const header = readFileSync(new URL("../../mbk/model/trial/warning.h", import.meta.url), "utf8").split("former_word_table")[0];
@@ -362,7 +349,7 @@ test("the cards are of the model on which the prediction of passivity rests", as
 });
 
 test("values from the literature stand beside K, B and M with their source, and only of hands in a plane", async () => {
-  await onPage(one.file, async (page) => {
+  await reading(one.file, async (page) => {
     const table = page.locator("#trial-1-model .literature");
     // √(A R/π) of Dyck (2013), table 3.3: P6 and P5
     const [low, high] = [[4892.9, 6.5], [17693.1, 5.2]].map(([area, shape]) => Math.sqrt((area * shape) / Math.PI).toFixed(0));
@@ -370,7 +357,7 @@ test("values from the literature stand beside K, B and M with their source, and 
     assert.match(await table.textContent(), /University of Alberta, 2013, table 3\.3\. Conditions: arm relaxed;/);
     assert.equal(await page.locator(".card .beside").count(), 3);
   });
-  await onPage(oneAxis.file, async (page) => assert.equal(await page.locator(".literature, .beside").count(), 0));
+  await reading(oneAxis.file, async (page) => assert.equal(await page.locator(".literature, .beside").count(), 0));
 });
 
 test("a logarithmic axis has ticks at 1, 2 and 5, and others where one looks closer", () => onPage(one.file, async (page) => {
@@ -400,7 +387,7 @@ test("recordings are called by participant, condition and file, in the file's ow
 });
 
 test("in the dark axe finds nothing wrong either", async () => {
-  for (const file of [onePage, unusable.file]) await onPage(file, async (page) => assert.deepEqual(await violationsInDark(page), []));
+  for (const file of [onePage, unusable.file]) await reading(file, async (page) => assert.deepEqual(await violationsInDark(page), []));
 });
 
 test("a comparison has the widths of --json, the results by the names of their files, and what was left out", async () => {

@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { assertShown, changed, close, closeBrowser, documentOf, drawn, eventually, folder, mbk, numbers, onPage, open, picture, screenshot, violations, violationsInBoth } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, drawn, eventually, folder, mbk, numbers, onPage, open, picture, reading, screenshot, violations, violationsInBoth } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -82,7 +82,7 @@ const pressed = async (page, ...keys) => {
 const focusedId = (page) => page.evaluate(() => document.activeElement?.id);
 
 for (const [name, file] of Object.entries({ "what mbk made": real.file, "every kind of thing": every })) {
-  test(`each cell is that of the document, every digit of it, rounded as print is: ${name}`, () => onPage(file, async (page) => {
+  test(`each cell is that of the document, every digit of it, rounded as print is: ${name}`, () => reading(file, async (page) => {
     const { exhibits } = documentOf(file).reproduction;
     let compared = 0;
     for (const { id, tables } of exhibits) {
@@ -115,7 +115,7 @@ for (const [name, file] of Object.entries({ "what mbk made": real.file, "every k
     assert.ok(compared > 300, `${compared} numbers`);
   }));
 
-  test(`the tally counts the cells, and each is marked: ${name}`, () => onPage(file, async (page) => {
+  test(`the tally counts the cells, and each is marked: ${name}`, () => reading(file, async (page) => {
     const { exhibits, agreement } = documentOf(file).reproduction;
     const cells = exhibits.flatMap(({ tables }) => tables.flatMap(({ rows }) => rows.flatMap((row) => row.cells)));
     const read = await numbers(page, "#tally");
@@ -141,7 +141,7 @@ for (const [name, file] of Object.entries({ "what mbk made": real.file, "every k
   }));
 }
 
-test("chapters and kinds follow each other, by number", () => onPage(every, async (page) => {
+test("chapters and kinds follow each other, by number", () => reading(every, async (page) => {
   const groups = await page.$$eval("section.group", (all) => all.map((one) => [one.id, [...one.querySelectorAll("article")].map(({ id }) => id)]));
   assert.deepEqual(groups, [
     ["chapter-3", ["table-3.3", "table-3.6", "figure-3.1", "figure-3.2"]],
@@ -215,7 +215,7 @@ test("an address leads to an exhibit, and past a filter", async () => {
   await done();
 });
 
-test("links lead somewhere: to exhibits of this page, and to files that are there", () => onPage(real.file, async (page) => {
+test("links lead somewhere: to exhibits of this page, and to files that are there", () => reading(real.file, async (page) => {
   const hrefs = await page.$$eval("main a[href]", (all) => all.map((link) => link.getAttribute("href")));
   const ids = new Set(await page.$$eval("[id]", (all) => all.map(({ id }) => id)));
   const files = hrefs.filter((href) => !href.startsWith("#"));
@@ -311,8 +311,7 @@ test("a chart opens larger with Enter, the arrow keys go on, Escape leads back",
   await eventually(async () => assert.ok(await pictures.nth(1).evaluate((one) => one === document.activeElement), "the focus is back"));
 }));
 
-test("drawings are pictures: nothing in them reaches the page, each loads, and each keeps its place", () => onPage(every, async (page) => {
-  await drawn(page);
+test("drawings are pictures: nothing in them reaches the page, each loads, and each keeps its place", () => reading(every, async (page) => {
   const images = await page.$$eval("article img", (all) => all.map((one) => ({ src: one.src.slice(0, 19), loaded: one.complete && one.naturalWidth > 0, ratio: one.clientWidth / one.clientHeight })));
   assert.equal(images.length, 4);
   for (const { src, loaded, ratio } of images) {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { changed, closeBrowser, documentOf, drawn, folder, mbk, onPage, picture, violationsInBoth } from "./browser.mjs";
+import { changed, closeBrowser, documentOf, drawn, folder, mbk, onPage, picture, reading, violationsInBoth } from "./browser.mjs";
 
 after(closeBrowser);
 
@@ -55,7 +55,7 @@ const nothing = page("nothing", "nothing");
 const claims = /more than measurement error/;
 
 test("a change beyond the minimal detectable change is said once, in words, and another is not", async () => {
-  await onPage(stiffer, async (tab) => {
+  await reading(stiffer, async (tab) => {
     const said = await tab.textContent(".said");
     assert.match(said, /In session 2 the area of the stiffness ellipse is [\d\u202f]+\u00a0% higher than in session 1: more than measurement error explains\./);
     const { courses } = documentOf(stiffer);
@@ -65,7 +65,7 @@ test("a change beyond the minimal detectable change is said once, in words, and 
     assert.equal(Number(await tab.getAttribute('.statement data[data-name="difference"]', "value")), changes[0].difference);
     assert.match(await tab.textContent("#limits"), /good or bad/);
   });
-  await onPage(same, async (tab) => {
+  await reading(same, async (tab) => {
     assert.match(await tab.textContent(".said"), /no change of the area of the stiffness ellipse is shown/);
     assert.match(await tab.textContent(".statement"), /no proof that nothing changed/);
     assert.doesNotMatch(await tab.textContent("#change"), claims);
@@ -73,14 +73,14 @@ test("a change beyond the minimal detectable change is said once, in words, and 
 });
 
 test("where too few people came again nothing is claimed, however large the difference", async () => {
-  await onPage(fewStiffer, async (tab) => {
+  await reading(fewStiffer, async (tab) => {
     assert.match(await tab.textContent(".said"), /higher than in session 1\. Whether that is more than measurement error is not known\./);
     assert.match(await tab.textContent(".statement"), /only 3 people have two sessions or more, and 5 are needed/);
     assert.doesNotMatch(await tab.textContent("#change"), /: more than measurement error/);
     assert.doesNotMatch((await tab.textContent("main")).replace(/Whether that is more than measurement error is not known/g, ""), claims);
     assert.equal(await tab.locator("#change .band, #change .beyond-error, #change .uncertain").count(), 0);
   });
-  await onPage(few, async (tab) => {
+  await reading(few, async (tab) => {
     assert.equal(await tab.locator("#sessions .band, #sessions .beyond-error").count(), 0);
     assert.match(await tab.textContent('#sessions [data-name="mdc-unknown"]'), /not known: only 3 people/);
     assert.match(await tab.textContent("#summary"), /no reliability stated, too few people: 3/);
@@ -98,8 +98,7 @@ test("an uncertain minimal detectable change makes no sure claim", () => {
   });
 });
 
-test("the page of the study shows every participant, and what does not count with its reason as text", () => onPage(whole, async (tab) => {
-  await drawn(tab);
+test("the page of the study shows every participant, and what does not count with its reason as text", () => reading(whole, async (tab) => {
   assert.equal(await tab.textContent("h1"), hostile);
   assert.notEqual(await tab.title(), "owned");
   assert.equal(await tab.locator("#participants svg.forest rect.value").count(), 6);
@@ -114,7 +113,7 @@ test("the page of the study shows every participant, and what does not count wit
   assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="mdc"]', "value")), area.between_sessions.error[0].mdc95);
 }));
 
-test("differences have the p that was corrected for all tests, and an effect size", () => onPage(whole, async (tab) => {
+test("differences have the p that was corrected for all tests, and an effect size", () => reading(whole, async (tab) => {
   const { comparison } = documentOf(whole).summary;
   const area = comparison.outcomes.find(({ outcome }) => outcome === "stiffness_area");
   const row = await tab.$eval("#comparison tbody tr", (one) => [...one.children].map((cell) => cell.textContent));
@@ -154,7 +153,7 @@ test("the page of a participant holds nothing of others", () => {
   for (const { participants } of json.courses) assert.deepEqual(participants.map(({ participant }) => participant), [2]);
 });
 
-test("a study without recordings says so", () => onPage(nothing, async (tab) => {
+test("a study without recordings says so", () => reading(nothing, async (tab) => {
   assert.match(await tab.textContent("#summary"), /no recordings yet/);
   assert.doesNotMatch(await tab.textContent("main"), /NaN|null|undefined|Infinity|\[object/);
 }));

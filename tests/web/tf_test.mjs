@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { after, test } from "node:test";
-import { assertShown, changed, close, closeBrowser, documentOf, drawn, folder, makeLog, mbk, numbers, onPage, picture, simulate, violations, violationsInBoth } from "./browser.mjs";
+import { assertShown, changed, close, closeBrowser, documentOf, drawn, folder, makeLog, mbk, numbers, onPage, picture, reading, simulate, violations, violationsInBoth } from "./browser.mjs";
 import { join } from "node:path";
 
 after(closeBrowser);
@@ -36,7 +36,7 @@ const onWholePage = (file, look) => onPage(file, async (page) => {
   await look(page);
 });
 
-test("coefficients, poles, zeros and gain are those of --json", () => onWholePage(chosen.file, async (page) => {
+test("coefficients, poles, zeros and gain are those of --json", () => reading(chosen.file, async (page) => {
   const { json } = chosen;
   const read = await numbers(page, "main");
   for (const { name, value, standard_error } of json.parameters) {
@@ -55,7 +55,7 @@ test("coefficients, poles, zeros and gain are those of --json", () => onWholePag
 }));
 
 test("a delay that was found has its interval, and what the input does between samples is said", async () => {
-  await onWholePage(chosen.file, async (page) => {
+  await reading(chosen.file, async (page) => {
     assert.match(await page.textContent("#summary"), /a delay of 0\.002 s\. The model/);
     assert.match(await page.textContent("#hold"), chosen.json.hold === "zero" ? /zero-order hold/ : /first-order hold/);
   });
@@ -76,12 +76,12 @@ test("a delay that was found has its interval, and what the input does between s
 });
 
 test("the formula is the model, in s with a delay and in q", async () => {
-  await onWholePage(inverted.file, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(s\) = \([\d.]+\) \/ \(s² \+ [\d.]+ s \+ [\d.]+\)/));
-  await onWholePage(chosen.file, async (page) => assert.match(await page.textContent(".formula"), /e−0\.002 s/));
-  await onWholePage(discrete, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(q\) = \(0\.25 q⁻¹\) \/ \(1 − 1\.5 q⁻¹ \+ 0\.75 q⁻²\)/));
+  await reading(inverted.file, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(s\) = \([\d.]+\) \/ \(s² \+ [\d.]+ s \+ [\d.]+\)/));
+  await reading(chosen.file, async (page) => assert.match(await page.textContent(".formula"), /e−0\.002 s/));
+  await reading(discrete, async (page) => assert.match(await page.getAttribute(".formula", "aria-label"), /^G\(q\) = \(0\.25 q⁻¹\) \/ \(1 − 1\.5 q⁻¹ \+ 0\.75 q⁻²\)/));
 });
 
-test("the impedance has the M, B, K of --json", () => onWholePage(inverted.file, async (page) => {
+test("the impedance has the M, B, K of --json", () => reading(inverted.file, async (page) => {
   const read = await numbers(page, "#impedance");
   for (const name of ["M", "B", "K"]) {
     const { value, standard_error } = inverted.json.impedance[name];
@@ -91,7 +91,7 @@ test("the impedance has the M, B, K of --json", () => onWholePage(inverted.file,
   assert.match(await page.textContent("#impedance"), /N·m·s\/rad/);
 }));
 
-test("the table of orders has every model and says which was chosen", () => onWholePage(chosen.file, async (page) => {
+test("the table of orders has every model and says which was chosen", () => reading(chosen.file, async (page) => {
   const rows = await page.$$eval("#orders tbody tr", (all) => all.map((row) => row.textContent));
   assert.equal(rows.length, chosen.json.orders.length);
   rows.forEach((row, k) => assert.equal(/chosen/.test(row), chosen.json.orders[k].chosen, row));
@@ -111,7 +111,7 @@ test("the Bode plot holds the response and both ends of its interval", () => onW
   assert.equal(await figure.locator(".legend", { hasText: "excited band" }).count(), 1);
 }));
 
-test("the Nyquist plot has one scale, its marks on the curve, and an ellipse for each frequency of the band", () => onWholePage(chosen.file, async (page) => {
+test("the Nyquist plot has one scale, its marks on the curve, and an ellipse for each frequency of the band", () => reading(chosen.file, async (page) => {
   const { frequency_response: r, excited_band_hz: [low, high] } = chosen.json;
   const drawn = await page.$eval("svg.nyquist[role=img]", (svg) => ({
     ellipses: [...svg.querySelectorAll(".region ellipse")].map((e) => [Number(e.getAttribute("rx")), Number(e.getAttribute("ry")), e.getAttribute("transform")]),
