@@ -2,10 +2,29 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <random>
 #include <vector>
 
 namespace mbk::numeric {
 namespace {
+
+TEST(Random, IsThatOfTheStandardBitForBit) {
+  for (const std::uint64_t seed :
+       {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{5'489'000'000'123}, ~std::uint64_t{0}}) {
+    for (const std::uint32_t stream : {0U, 1U, 0x80000000U}) {
+      std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U), stream};
+      std::mt19937_64 standard(sequence);
+      Random ours(seed, stream);
+      for (int i = 0; i < 4 * 312 + 1; ++i) {
+        ASSERT_EQ(ours.uniform(), static_cast<double>(standard() >> 11U) * 0x1p-53)
+            << seed << ' ' << stream << ' ' << i;
+        // Of every number but the least likely 2⁻⁶⁴: all bits of a draw.
+        ASSERT_EQ(ours.below(~std::uint64_t{0}), standard() % ~std::uint64_t{0}) << seed << ' ' << stream << ' ' << i;
+      }
+    }
+  }
+}
 
 TEST(Random, StreamsOfOneSeedDiffer) {
   EXPECT_NE(Random(1, 0).uniform(), Random(1, 1).uniform());
