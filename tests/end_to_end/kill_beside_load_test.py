@@ -17,7 +17,7 @@ from killing import AS_OTHERS, EXPERIMENT, Killing, Run
 FIFO_LOAD = """
 import os, time
 os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param({priority}))
-while True:  # by one clock, so that no processor is left
+while os.getppid() == {parent}:  # by one clock, so that no processor is left
     if (into := time.monotonic() % {period}) > {busy}:
         time.sleep({period} - into)
 """
@@ -34,9 +34,9 @@ class Load:
     """Programs, one for each core, that go before all that is not in real time; none where that is not allowed."""
 
     def __enter__(self):
-        may = subprocess.run([sys.executable, "-c", "import os; os.sched_setscheduler(0, os.SCHED_FIFO, "
-                              "os.sched_param(1))"], capture_output=True, check=False).returncode == 0
-        code = FIFO_LOAD.format(priority=LOAD_PRIORITY, period=PERIOD, busy=BUSY)
+        asked = subprocess.run(["chrt", "--fifo", str(RECORDER_PRIORITY), "true"], capture_output=True, check=False)
+        may = asked.returncode == 0
+        code = FIFO_LOAD.format(priority=LOAD_PRIORITY, parent=os.getpid(), period=PERIOD, busy=BUSY)
         self.busy = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(os.cpu_count() if may else 0)]
         return self
 
