@@ -25,22 +25,21 @@ PERIOD, BUSY = 0.25, 0.18  # s: who does not go before it loses more than MOST_L
 LOAD_PRIORITY, TEST_PRIORITY, RECORDER_PRIORITY = 50, 60, 70  # what kills and dates is not held up
 
 
-def go_before(priority):
-    """This thread, and those that it begins."""
-    os.sched_setscheduler(0, os.SCHED_FIFO if priority else os.SCHED_OTHER, os.sched_param(priority))
-
-
 class Load:
-    """Programs, one for each core, that go before all that is not in real time; none where that is not allowed."""
+    """Programs, one for each core, that go before all that is not in real time; none where that is not allowed. This
+    thread, and those that it begins meanwhile, go before them."""
 
     def __enter__(self):
         asked = subprocess.run(["chrt", "--fifo", str(RECORDER_PRIORITY), "true"], capture_output=True, check=False)
         may = asked.returncode == 0
         code = FIFO_LOAD.format(priority=LOAD_PRIORITY, parent=os.getpid(), period=PERIOD, busy=BUSY)
         self.busy = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(os.cpu_count() if may else 0)]
+        if may:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(TEST_PRIORITY))
         return self
 
     def __exit__(self, *_):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
         for one in self.busy:
             one.kill()
             one.wait()
@@ -88,11 +87,7 @@ watchdog_ms = 5000
 
     def test_the_recorder_keeps_up_beside_a_load_in_real_time(self):
         with Load() as load:
-            if load.busy:
-                self.addCleanup(go_before, 0)
-                go_before(TEST_PRIORITY)
             done = self.kill_at_moments(RECORDER_PRIORITY if load.busy else 0)
-        go_before(0)
         self.judge(self.MOST_LOST, *done)
 
 

@@ -198,7 +198,7 @@ class Killing(Case):
         return what, killed - session.first - times[-1]
 
     def kill_at_moments(self, priority=0):
-        """A whole recording and what it was, the kills of other sessions, and the stalls beside them: for judge."""
+        """A whole recording and what it was, the kills of other sessions, and the longest stall beside them: for judge."""
         whole, kept = self.whole_run()
         unharmed = digest(kept)
         lot = random.Random(SEED)
@@ -206,10 +206,9 @@ class Killing(Case):
         moments = [lot.uniform(0.0, 0.012) if end else lot.uniform(0.02, whole) for end in at_the_end]
         with Stalls(priority) as stalls, concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
             kills = list(zip(moments, pool.map(self.killed_at, range(KILLS), moments, at_the_end)))
-        return kept, unharmed, kills, stalls
+        return kept, unharmed, kills, stalls.worst
 
-    def judge(self, max_lost, kept, unharmed, kills, stalls):
-        stall = stalls.worst
+    def judge(self, max_lost, kept, unharmed, kills, stall):
         with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
             results = list(pool.map(lambda kill: self.left_by(*kill[1]), kills))
         for what in sorted({what for what, _ in results}):

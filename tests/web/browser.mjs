@@ -183,15 +183,19 @@ export async function open(file, { script, ...options } = {}) {
 export const drawn = (page) => page.waitForFunction(() =>
   [...document.querySelectorAll(".chart")].every((chart) => chart.querySelector("svg")) && [...document.images].every((one) => one.complete), undefined, { polling: 20 });
 
+async function lookAt({ page, said, outside }, look) {
+  await look(page);
+  assert.deepEqual(said, []);
+  assert.deepEqual(outside(), []);
+}
+
 /** Looks at a page, which says nothing on the console and asks no network for anything. */
 export async function onPage(file, look, options = {}) {
-  const { page, said, outside, close: done } = await open(file, options);
+  const opened = await open(file, options);
   try {
-    await look(page);
-    assert.deepEqual(said, []);
-    assert.deepEqual(outside(), []);
+    await lookAt(opened, look);
   } finally {
-    await done();
+    await opened.close();
   }
 }
 
@@ -205,11 +209,9 @@ export async function reading(file, look) {
     await drawn(opened.page);
     kept.set(file, { ...opened, state: await stateOf(opened.page) });
   }
-  const { page, said, outside, state } = kept.get(file);
-  await look(page);
-  assert.equal(await stateOf(page), state, "who reads a page changes nothing of it, and who does takes onPage");
-  assert.deepEqual(said, []);
-  assert.deepEqual(outside(), []);
+  const opened = kept.get(file);
+  await lookAt(opened, look);
+  assert.equal(await stateOf(opened.page), opened.state, "who reads a page changes nothing of it, and who does takes onPage");
 }
 
 /** The numbers of a part of the page by name, each with every digit and as it is shown. */

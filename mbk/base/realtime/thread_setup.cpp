@@ -18,14 +18,10 @@ void touch_stack() {
   for (std::size_t i = 0; i < pages.size(); i += 4096) pages[i] = std::byte{0};
 }
 
-bool memory_is_locked() noexcept {
-  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-}
-
 }  // namespace
 
-void lock_memory() noexcept {
-  static_cast<void>(memory_is_locked());
+bool lock_memory() noexcept {
+  return mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
 }
 
 ThreadSetup prepare_thread(int priority) {
@@ -41,7 +37,7 @@ ThreadSetup prepare_thread(int priority) {
     refuse("no real-time scheduling (SCHED_FIFO)", error,
            "give the user 'rtprio 90' in /etc/security/limits.d, or the program CAP_SYS_NICE");
   }
-  if (memory_is_locked()) {
+  if (lock_memory()) {
     setup.locked_memory = true;
   } else {
     refuse("memory is not locked", errno, "give the user 'memlock unlimited' in /etc/security/limits.d");

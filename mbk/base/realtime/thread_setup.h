@@ -12,8 +12,9 @@ struct ThreadSetup {
 };
 
 /// Fetches and locks the memory of the process, at the priority of the caller: it may take a tenth of a second, for
-/// which a thread that goes before others would hold a processor. Whether it is refused is said by prepare_thread.
-void lock_memory() noexcept;
+/// which a thread that goes before others would hold a processor. @returns whether it is locked; why not is said by
+/// prepare_thread
+bool lock_memory() noexcept;
 
 /// Asks for SCHED_FIFO at `priority` (1–99) for the calling thread and for locked memory for the process, and touches
 /// the stack so that it is there. What is refused is said, never an error: a simulation needs neither.
