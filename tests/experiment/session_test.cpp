@@ -11,10 +11,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <semaphore>
 #include <stdexcept>
 #include <thread>
 
 #include "mbk/experiment/session/plan.h"
+#include "mbk/experiment/session/recorder.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/simulate/laboratory/simulation.h"
@@ -145,6 +147,49 @@ TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
       EXPECT_NE(recording->metadata.at("ended_detail").find("nothing was shown from tick"), std::string::npos);
     }
   }
+}
+
+TEST_F(SessionFolder, AWatchThatIsStuckHoldsUpNoRecordingAndWhatItDidNotSeeIsSaid) {
+  constexpr std::uint64_t kTicks = 3000, kRing = 1024;
+  const fs::path file = folder_ / "trial.journal";
+  auto writer = journal::Writer::create(file, journal::Header{}, kTicks);
+  ASSERT_TRUE(writer) << writer.error().line();
+  realtime::BoundedRing<journal::Tick> ring(kRing);
+  LoopFlags flags;
+  std::binary_semaphore let_go{0};
+  std::uint64_t seen = 0;
+  const auto watch = [&](std::span<const journal::Tick> ticks) {
+    if (seen == 0) let_go.acquire();
+    seen += ticks.size();
+  };
+  Recorder recorder(ring, std::move(*writer), flags, watch, /*in_real_time=*/true);
+
+  const auto deadline =
+      std::chrono::steady_clock::now() + std::chrono::seconds(20);  // for what comes at once, or never
+  const auto soon = [&] { return std::chrono::steady_clock::now() < deadline; };
+  for (std::uint64_t number = 0; number < kTicks && soon(); std::this_thread::yield()) {
+    if (ring.room() == 0) continue;
+    journal::Tick tick;
+    tick.number = number++;
+    tick.time = 1e-3 * static_cast<double>(tick.number);
+    ring.push(tick);
+  }
+  const auto in_the_file = [&] {
+    const auto journal = journal::read(file);
+    return journal ? journal->ticks.size() : 0;
+  };
+  while (in_the_file() < kTicks && soon()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(in_the_file(), kTicks);
+  EXPECT_TRUE(flags.recording);
+
+  let_go.release();
+  const auto ended = recorder.finish({.ticks = kTicks});
+  ASSERT_TRUE(ended) << ended.error().line();
+  EXPECT_EQ(ended->dropped, 0U);
+  EXPECT_GE(seen, kRing);
+  EXPECT_LT(seen, kTicks);
+  EXPECT_NE(ended->detail.find(fmt::format("{} ticks were not shown", kTicks - seen)), std::string::npos)
+      << ended->detail;
 }
 
 TEST_F(SessionFolder, EndsEarlyWhenAsked) {

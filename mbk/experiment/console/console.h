@@ -113,7 +113,7 @@ class Console {
   /// A trial is about to begin.   @param index  in the list
   void begin(std::size_t index, const journal::Header& header, const std::filesystem::path& target, double duration);
 
-  /// What the recorder is to call (session::Watch).
+  /// What the viewer is to call (session::Watch).
   void watch(std::span<const journal::Tick> ticks) noexcept;
 
   /// The trial is over. Returns once the last estimate is there.

@@ -21,12 +21,17 @@ constexpr int kPriority = 70;                   // below the loop's
 constexpr std::size_t kBlock = 256;             // ticks, where there are many
 constexpr std::size_t kMaxPending = 1 << 20;    // ticks kept for a disk that does not take them
 constexpr std::uintmax_t kMinSpace = 16 << 20;  // [bytes] beside what is reserved
+constexpr int kSync = 1, kEnd = 2;              // asked of the disk
 
 }  // namespace
 
 Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, LoopFlags& flags, Watch watch,
                    bool in_real_time)
-    : ticks_(ticks), writer_(std::move(writer)), flags_(flags), watch_(std::move(watch)), in_real_time_(in_real_time) {
+    : ticks_(ticks),
+      writer_(std::move(writer)),
+      flags_(flags),
+      viewer_(std::move(watch), ticks.capacity(), in_real_time ? Viewer::Lagging::skips : Viewer::Lagging::is_waited),
+      in_real_time_(in_real_time) {
   pending_.reserve(journal::Writer::kLongest);  // where no more memory comes, ticks still reach the file
   try {
     recording_ = std::thread([this] { record(); });
@@ -35,6 +40,7 @@ Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, L
     stop_threads();
     throw;
   }
+  ready_.wait(false);
 }
 
 Recorder::~Recorder() {
@@ -44,11 +50,7 @@ Recorder::~Recorder() {
 void Recorder::stop_threads() {
   over_ = true;
   if (recording_.joinable()) recording_.join();
-  {
-    const std::scoped_lock lock(mutex_);
-    closing_ = true;
-  }
-  wake_.notify_all();
+  ask_of_disk(kEnd);
   if (syncing_.joinable()) syncing_.join();
 }
 
@@ -57,21 +59,8 @@ bool Recorder::drain() {
   pending_.resize(before + kBlock);
   const std::size_t came = ticks_.pop(pending_.data() + before, kBlock);
   pending_.resize(before + came);
-  if (watch_ && came > 0) show(std::span(pending_).subspan(before));
+  viewer_.show(std::span(pending_).subspan(before));
   return came == kBlock;
-}
-
-void Recorder::show(std::span<const Tick> ticks) noexcept {
-  try {
-    try {
-      watch_(ticks);
-    } catch (const std::exception& error) {
-      watch_ = nullptr;
-      remark_ = fmt::format("nothing was shown from tick {} on: {}", ticks.front().number, error.what());
-    }
-  } catch (...) {  // of another kind, or no memory to say so
-    watch_ = nullptr;
-  }
 }
 
 void Recorder::failed(const char* why) noexcept {
@@ -99,12 +88,7 @@ void Recorder::write_pending() {
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(over));
     given_up_ += over;
   }
-  if (written == 0) return;
-  {
-    const std::scoped_lock lock(mutex_);
-    dirty_ = true;
-  }
-  wake_.notify_all();
+  if (written > 0) ask_of_disk(kSync);
 }
 
 void Recorder::write_rest() {
@@ -138,6 +122,8 @@ void Recorder::look_after_file() {
 void Recorder::record() noexcept {
   const realtime::SignalStack stack;
   if (in_real_time_) static_cast<void>(realtime::prepare_thread(kPriority));
+  ready_ = true;
+  ready_.notify_one();
   using Clock = std::chrono::steady_clock;
   auto next_block = Clock::now() + kBlockTime, next_look = Clock::now();
   while (!over_) {
@@ -165,16 +151,18 @@ void Recorder::record() noexcept {
   }
 }
 
+void Recorder::ask_of_disk(int what) noexcept {
+  asked_of_disk_ |= what;
+  asked_of_disk_.notify_one();
+}
+
 void Recorder::keep_syncing() noexcept {
   const realtime::SignalStack stack;
-  std::unique_lock lock(mutex_);
   while (true) {
-    wake_.wait(lock, [&] { return dirty_ || closing_; });
-    if (!dirty_) return;
-    dirty_ = false;
-    lock.unlock();
-    if (!writer_.reaches_disk()) flags_.recording = false;
-    lock.lock();
+    asked_of_disk_.wait(0);
+    const int asked = asked_of_disk_.exchange(0);
+    if ((asked & kSync) != 0 && !writer_.reaches_disk()) flags_.recording = false;
+    if ((asked & kEnd) != 0) return;
   }
 }
 
@@ -184,7 +172,9 @@ Result<journal::Ending> Recorder::finish(journal::Ending ending) {
   look_after_file();
   write_pending();  // what failed under the old name
   ending.dropped = ticks_.dropped() + pending_.size() + given_up_;
-  if (!remark_.empty()) ending.detail += (ending.detail.empty() ? "" : "; ") + remark_;
+  for (const std::string& remark : {viewer_.finish(), remark_}) {
+    if (!remark.empty()) ending.detail += (ending.detail.empty() ? "" : "; ") + remark;
+  }
   const auto ended = writer_.end(ending);
   if (misplaced_) return tl::unexpected(*misplaced_);
   if (!pending_.empty() && failure_) {

@@ -1,0 +1,86 @@
+#include "mbk/experiment/session/viewer.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "mbk/base/realtime/signal_stack.h"
+
+namespace mbk::session {
+namespace {
+
+using journal::Tick;
+
+constexpr std::size_t kAtATime = 256;  // ticks
+
+}  // namespace
+
+Viewer::Viewer(Watch watch, std::size_t capacity, Lagging lagging)
+    : watch_(std::move(watch)), lagging_(lagging), ring_(watch_ ? capacity : 1) {
+  if (watch_) thread_ = std::thread([this] { hand_on(); });
+}
+
+Viewer::~Viewer() {
+  stop();
+}
+
+void Viewer::stop() noexcept {
+  if (!thread_.joinable()) return;
+  over_ = true;
+  wake();
+  thread_.join();
+}
+
+void Viewer::wake() noexcept {
+  ++came_;
+  came_.notify_one();
+}
+
+void Viewer::show(std::span<const Tick> ticks) noexcept {
+  if (!thread_.joinable() || ticks.empty()) return;
+  using namespace std::chrono_literals;
+  for (const Tick& tick : ticks) {
+    for (; lagging_ == Lagging::is_waited && ring_.room() == 0; std::this_thread::sleep_for(1ms)) wake();
+    ring_.push(tick);
+  }
+  wake();
+}
+
+void Viewer::hand_on() noexcept {
+  const realtime::SignalStack stack;
+  std::array<Tick, kAtATime> ticks;
+  while (true) {
+    const int seen = came_;
+    const bool last = over_;
+    while (const std::size_t count = ring_.pop(ticks.data(), ticks.size())) call(std::span(ticks).first(count));
+    if (last) return;
+    came_.wait(seen);
+  }
+}
+
+void Viewer::call(std::span<const Tick> ticks) noexcept {
+  if (!watch_) return;
+  try {
+    try {
+      watch_(ticks);
+    } catch (const std::exception& error) {
+      watch_ = nullptr;
+      failure_ = fmt::format("nothing was shown from tick {} on: {}", ticks.front().number, error.what());
+    }
+  } catch (...) {  // of another kind, or no memory to say so
+    watch_ = nullptr;
+  }
+}
+
+std::string Viewer::finish() {
+  stop();
+  if (failure_.empty() && ring_.dropped() > 0) {
+    return fmt::format("{} ticks were not shown: what shows them did not keep up", ring_.dropped());
+  }
+  return std::move(failure_);
+}
+
+}  // namespace mbk::session
