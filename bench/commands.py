@@ -75,10 +75,11 @@ class Load:
 
     def commands(self):
         small = [f"small_seed{k + 1}.mat" for k in range(self.small_files)]
+        window = ["--from", "12", "--to", str(min(max(self.seconds, 20), 62))]  # of the log, whose protocol sets its length
         return [
             Command("start", ["--version"]),
             Command("measure", ["measure", "recording.mat"], "recording"),
-            Command("measure, reference mode", ["measure", "--mode", "reference", "log.mat"], "log"),
+            Command("measure, reference mode", ["measure", "--mode", "reference", *window, "log.mat"], "log"),
             Command("identify", ["identify", "recording.mat"], "recording"),
             Command("explore", ["explore", "recording.mat"], "recording"),
             Command("passivity", ["passivity", "recording.mat"], "recording"),

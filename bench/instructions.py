@@ -28,7 +28,7 @@ import commands
 HERE = Path(__file__).resolve().parent
 FIGURES = HERE / "instructions.json"
 LIMIT = 0.03
-LOAD = commands.Load(seconds=12, small_files=50, small_seconds=4)
+LOAD = commands.Load(seconds=8, small_files=20, small_seconds=4)
 KEPT = 0.004  # share of the total from which on a function stands in the figures
 SHOWN = 8  # functions of either list
 NOT_COMPARABLE = 77

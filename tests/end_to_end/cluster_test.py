@@ -117,11 +117,11 @@ class Engines:
         self.assertIn("nothing new", self.job("study", "measure", "--study", there).out)
 
     def test_resamples_people_to_the_same_bytes(self):
-        summary = ("study", "summary", "--study", self.repeated_study(), "--bootstrap", "1000", "--outcome", "K_xx",
+        summary = ("study", "summary", "--study", self.repeated_study(), "--bootstrap", "250", "--outcome", "K_xx",
                    "--compare", "session", "--json")
         here = self.mbk(*summary)
-        self.assertEqual(here.json["bootstrap"], {"draws": 1000, "seed": 1})
-        self.assertEqual(self.job(*summary, "--chunk-units", "400").out, here.out)
+        self.assertEqual(here.json["bootstrap"], {"draws": 250, "seed": 1})
+        self.assertEqual(self.job(*summary, "--chunk-units", "100").out, here.out)
 
     def test_a_killed_process_costs_no_result(self):
         began = self.begin(*VALIDATE, *SHORT)

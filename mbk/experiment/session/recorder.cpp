@@ -30,7 +30,7 @@ Recorder::Recorder(realtime::BoundedRing<Tick>& ticks, journal::Writer writer, L
     : ticks_(ticks),
       writer_(std::move(writer)),
       flags_(flags),
-      viewer_(std::move(watch), ticks.capacity(), in_real_time ? Viewer::Lagging::skips : Viewer::Lagging::is_waited),
+      viewer_(std::move(watch), ticks.capacity(), in_real_time ? Viewer::Pace::skips : Viewer::Pace::waits),
       in_real_time_(in_real_time) {
   pending_.reserve(journal::Writer::kLongest);  // where no more memory comes, ticks still reach the file
   try {

@@ -14,11 +14,11 @@
 namespace mbk::session {
 
 /// Takes the loop's ticks to the journal from a thread of its own: a block at least every 50 ms. Another thread waits
-/// for the disk, and a third for whoever watches; with neither of them it shares a lock, so that what is slow, or is
-/// kept from running, holds up no recording. Free space, and whether the file is still under its name, is looked at
-/// once a second. Where the file fails, or there is no memory for what comes, LoopFlags::recording falls, and what
-/// could not be written is tried again at the end. A file that was removed or replaced goes on under another name, with
-/// all that it holds. A watch that throws is not called again; the recording goes on.
+/// for the disk and, in real time, a third for whoever watches; with neither of them it shares a lock, so that what is
+/// slow, or is kept from running, holds up no recording. Free space, and whether the file is still under its name, is
+/// looked at once a second. Where the file fails, or there is no memory for what comes, LoopFlags::recording falls, and
+/// what could not be written is tried again at the end. A file that was removed or replaced goes on under another name,
+/// with all that it holds. A watch that throws is not called again; the recording goes on.
 class Recorder {
  public:
   /// Returns when its thread is ready: what comes into the ring from then on is written in time.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -18,47 +17,23 @@ constexpr std::size_t kAtATime = 256;  // ticks
 
 }  // namespace
 
-Viewer::Viewer(Watch watch, std::size_t capacity, Lagging lagging)
-    : watch_(std::move(watch)), lagging_(lagging), ring_(watch_ ? capacity : 1) {
-  if (watch_) thread_ = std::thread([this] { hand_on(); });
+Viewer::Viewer(Watch watch, std::size_t room, Pace pace)
+    : watch_(std::move(watch)), ring_(pace == Pace::skips ? room : 1) {
+  if (watch_ && pace == Pace::skips) thread_ = std::thread([this] { hand_on(); });
 }
 
 Viewer::~Viewer() {
   stop();
 }
 
-void Viewer::stop() noexcept {
-  if (!thread_.joinable()) return;
-  over_ = true;
-  wake();
-  thread_.join();
-}
-
-void Viewer::wake() noexcept {
-  ++came_;
-  came_.notify_one();
-}
-
 void Viewer::show(std::span<const Tick> ticks) noexcept {
-  if (!thread_.joinable() || ticks.empty()) return;
-  using namespace std::chrono_literals;
-  for (const Tick& tick : ticks) {
-    for (; lagging_ == Lagging::is_waited && ring_.room() == 0; std::this_thread::sleep_for(1ms)) wake();
-    ring_.push(tick);
+  if (ticks.empty()) return;
+  if (!thread_.joinable()) {
+    call(ticks);
+    return;
   }
+  for (const Tick& tick : ticks) ring_.push(tick);
   wake();
-}
-
-void Viewer::hand_on() noexcept {
-  const realtime::SignalStack stack;
-  std::array<Tick, kAtATime> ticks;
-  while (true) {
-    const int seen = came_;
-    const bool last = over_;
-    while (const std::size_t count = ring_.pop(ticks.data(), ticks.size())) call(std::span(ticks).first(count));
-    if (last) return;
-    came_.wait(seen);
-  }
 }
 
 void Viewer::call(std::span<const Tick> ticks) noexcept {
@@ -73,6 +48,30 @@ void Viewer::call(std::span<const Tick> ticks) noexcept {
   } catch (...) {  // of another kind, or no memory to say so
     watch_ = nullptr;
   }
+}
+
+void Viewer::hand_on() noexcept {
+  const realtime::SignalStack stack;
+  std::array<Tick, kAtATime> ticks;
+  while (true) {
+    const int seen = came_;
+    const bool last = over_;
+    while (const std::size_t count = ring_.pop(ticks.data(), ticks.size())) call(std::span(ticks).first(count));
+    if (last) return;
+    came_.wait(seen);
+  }
+}
+
+void Viewer::wake() noexcept {
+  ++came_;
+  came_.notify_one();
+}
+
+void Viewer::stop() noexcept {
+  if (!thread_.joinable()) return;
+  over_ = true;
+  wake();
+  thread_.join();
 }
 
 std::string Viewer::finish() {
