@@ -29,6 +29,8 @@ ThreadSetup prepare_thread(int priority) {
   const auto refuse = [&](const char* what, int error, const char* remedy) {
     setup.refused += fmt::format("{}{}: {}; {}", setup.refused.empty() ? "" : ". ", what, std::strerror(error), remedy);
   };
+  setup.locked_memory = lock_memory();  // while it takes long, nobody else is kept from running
+  const int not_locked = errno;
   sched_param parameters{};
   parameters.sched_priority = priority;
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters); error == 0) {
@@ -37,10 +39,8 @@ ThreadSetup prepare_thread(int priority) {
     refuse("no real-time scheduling (SCHED_FIFO)", error,
            "give the user 'rtprio 90' in /etc/security/limits.d, or the program CAP_SYS_NICE");
   }
-  if (lock_memory()) {
-    setup.locked_memory = true;
-  } else {
-    refuse("memory is not locked", errno, "give the user 'memlock unlimited' in /etc/security/limits.d");
+  if (!setup.locked_memory) {
+    refuse("memory is not locked", not_locked, "give the user 'memlock unlimited' in /etc/security/limits.d");
   }
   touch_stack();
   return setup;
