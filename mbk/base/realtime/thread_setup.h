@@ -16,7 +16,7 @@ struct ThreadSetup {
 /// prepare_thread
 bool lock_memory() noexcept;
 
-/// Asks for SCHED_FIFO at `priority` (1–99) for the calling thread and for locked memory for the process, and touches
+/// Asks for locked memory for the process, then for SCHED_FIFO at `priority` (1–99) for the calling thread, and touches
 /// the stack so that it is there. What is refused is said, never an error: a simulation needs neither.
 [[nodiscard]] ThreadSetup prepare_thread(int priority = 80);
 
