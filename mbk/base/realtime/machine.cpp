@@ -131,7 +131,6 @@ Lateness measure_lateness(double period, double duration, int priority) {
   Lateness found;
   found.period = period;
   found.priority = priority;
-  lock_memory();  // before anything is held up by it
   std::thread([&] {
     found.setup = prepare_thread(priority);
     WallClock clock(period);

@@ -18,6 +18,7 @@
 #include "mbk/base/realtime/rest.h"
 #include "mbk/base/realtime/signal_stack.h"
 #include "mbk/base/realtime/thread_setup.h"
+#include "mbk/base/realtime/wake_up.h"
 #include "tests/support/allocations.h"
 
 namespace mbk::realtime {
@@ -85,6 +86,28 @@ TEST(BoundedRing, LosesNothingBetweenTwoThreadsThatWaitForEachOther) {
   }
   producer.join();
   EXPECT_EQ(ring.dropped(), 0U);
+}
+
+TEST(WakeUp, LosesNothingThatIsAsked) {
+  constexpr int kRounds = 10000;
+  WakeUp there, back;
+  int rounds = 0;
+  std::thread asked([&] {
+    for (bool over = false; !over;) {
+      const int what = there.wait();
+      if ((what & 1) != 0) ++rounds;
+      over = (what & 2) != 0;
+      back.ask(4);
+    }
+  });
+  for (int round = 0; round < kRounds; ++round) {
+    there.ask(1);
+    EXPECT_EQ(back.wait(), 4);
+  }
+  there.ask(1);
+  there.ask(2);
+  asked.join();
+  EXPECT_EQ(rounds, kRounds + 1);
 }
 
 TEST(Rest, IsOverWithItsTimeOrWhenItIsDone) {

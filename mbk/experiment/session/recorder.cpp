@@ -50,7 +50,7 @@ Recorder::~Recorder() {
 void Recorder::stop_threads() {
   over_ = true;
   if (recording_.joinable()) recording_.join();
-  ask_of_disk(kEnd);
+  disk_.ask(kEnd);
   if (syncing_.joinable()) syncing_.join();
 }
 
@@ -88,7 +88,7 @@ void Recorder::write_pending() {
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(over));
     given_up_ += over;
   }
-  if (written > 0) ask_of_disk(kSync);
+  if (written > 0) disk_.ask(kSync);
 }
 
 void Recorder::write_rest() {
@@ -151,16 +151,10 @@ void Recorder::record() noexcept {
   }
 }
 
-void Recorder::ask_of_disk(int what) noexcept {
-  asked_of_disk_ |= what;
-  asked_of_disk_.notify_one();
-}
-
 void Recorder::keep_syncing() noexcept {
   const realtime::SignalStack stack;
   while (true) {
-    asked_of_disk_.wait(0);
-    const int asked = asked_of_disk_.exchange(0);
+    const int asked = disk_.wait();
     if ((asked & kSync) != 0 && !writer_.reaches_disk()) flags_.recording = false;
     if ((asked & kEnd) != 0) return;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mbk/base/realtime/bounded_ring.h"
+#include "mbk/base/realtime/wake_up.h"
 #include "mbk/experiment/session/loop.h"
 #include "mbk/experiment/session/viewer.h"
 #include "mbk/files/journal/journal.h"
@@ -42,7 +43,6 @@ class Recorder {
  private:
   void record() noexcept;
   void keep_syncing() noexcept;
-  void ask_of_disk(int what) noexcept;
   bool drain();
   void failed(const char* why) noexcept;
   void write_pending();
@@ -60,7 +60,7 @@ class Recorder {
   std::optional<Error> failure_, misplaced_;
   std::string remark_;  // what failed beside the file, or befell it: of the recorder's thread until that is over
   std::atomic<bool> ready_{false}, over_{false};
-  std::atomic<int> asked_of_disk_{0};
+  realtime::WakeUp disk_;  // of the thread that waits for it
   std::thread recording_, syncing_;
 };
 

@@ -14,6 +14,7 @@ namespace {
 using journal::Tick;
 
 constexpr std::size_t kAtATime = 256;  // ticks
+constexpr int kShow = 1, kStop = 2;    // asked of the thread
 
 }  // namespace
 
@@ -33,7 +34,7 @@ void Viewer::show(std::span<const Tick> ticks) noexcept {
     return;
   }
   for (const Tick& tick : ticks) ring_.push(tick);
-  wake();
+  wake_up_.ask(kShow);
 }
 
 void Viewer::call(std::span<const Tick> ticks) noexcept {
@@ -54,23 +55,15 @@ void Viewer::hand_on() noexcept {
   const realtime::SignalStack stack;
   std::array<Tick, kAtATime> ticks;
   while (true) {
-    const int seen = came_;
-    const bool last = over_;
+    const int asked = wake_up_.wait();
     while (const std::size_t count = ring_.pop(ticks.data(), ticks.size())) call(std::span(ticks).first(count));
-    if (last) return;
-    came_.wait(seen);
+    if ((asked & kStop) != 0) return;
   }
-}
-
-void Viewer::wake() noexcept {
-  ++came_;
-  came_.notify_one();
 }
 
 void Viewer::stop() noexcept {
   if (!thread_.joinable()) return;
-  over_ = true;
-  wake();
+  wake_up_.ask(kStop);
   thread_.join();
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <span>
 #include <string>
 #include <thread>
 
 #include "mbk/base/realtime/bounded_ring.h"
+#include "mbk/base/realtime/wake_up.h"
 #include "mbk/files/journal/tick.h"
 
 namespace mbk::session {
@@ -39,14 +39,12 @@ class Viewer {
  private:
   void hand_on() noexcept;
   void call(std::span<const journal::Tick> ticks) noexcept;
-  void wake() noexcept;
   void stop() noexcept;
 
   Watch watch_;
   realtime::BoundedRing<journal::Tick> ring_;
   std::string failure_;  // of the thread that calls the watch, until that is over
-  std::atomic<bool> over_{false};
-  std::atomic<int> came_{0};
+  realtime::WakeUp wake_up_;
   std::thread thread_;
 };
 
