@@ -3,8 +3,8 @@
 # Testing/Temporary/CTestCostData.txt of the build folder, from which this list is renewed.
 #
 # The browser's tests and robots in real time wait for each other (RESOURCE_LOCK) and clang-tidy takes all processors: they
-# begin before all else, and end_to_end/cluster later than its time asks for, as their own COST says. CTest reads this file
-# after the tests that it names; a name that is no test is passed over.
+# begin before all else, and what mostly waits begins later than its time asks for, as their own COST says. CTest reads
+# this file after the tests that it names; a name that is no test is passed over.
 set(costs
     109 install
     76 instructions
@@ -15,7 +15,6 @@ set(costs
     47 end_to_end/robot_identify
     46 end_to_end/explore
     44 end_to_end/kill
-    43 end_to_end/output
     41 end_to_end/ramp_and_hold
     40 end_to_end/udp
     39 end_to_end/mistakes

@@ -123,6 +123,23 @@ std::vector<Signal> parameters(const Smoothed& s, const std::vector<Size>& sampl
   return least_squares(pick(s.regressors, samples), negative(pick(s.force, samples)));
 }
 
+/// M, B, K and x₀ of P.
+Answer as_answer(const std::vector<Signal>& P, Quad handle_mass) {
+  Answer answer{};
+  for (Size axis = 0; axis < 2; ++axis) {
+    for (Size k = 0; k < 2; ++k) {
+      answer.M[2 * axis + k] = static_cast<double>(P[axis][k] - (axis == k ? handle_mass : 0));
+      answer.B[2 * axis + k] = static_cast<double>(P[axis][2 + k]);
+      answer.K[2 * axis + k] = static_cast<double>(P[axis][4 + k]);
+    }
+  }
+  const Signal &px = P[0], &py = P[1];  // x₀ = −K⁻¹ c, c the coefficients of the 1
+  const Quad determinant = px[4] * py[5] - px[5] * py[4];
+  answer.x0[0] = static_cast<double>(-(py[5] * px[6] - px[5] * py[6]) / determinant);
+  answer.x0[1] = static_cast<double>(-(px[4] * py[6] - py[4] * px[6]) / determinant);
+  return answer;
+}
+
 /// Variance with the n − 1 normalisation.
 Quad variance(const Signal& signal) {
   Quad mean = 0, sum = 0;
@@ -143,7 +160,7 @@ Quad variance_accounted_for(const std::vector<Signal>& Z, const Signal& force, c
 
 }  // namespace
 
-Result<Answer> identify(const Log& log, const Settings& settings) {
+Result<Answers> identify(const Log& log, const Settings& settings) {
   if (const auto valid = check(log, settings); !valid) return tl::unexpected(valid.error());
   const auto smoothed = smooth(log, settings);
   if (!smoothed) return tl::unexpected(smoothed.error());
@@ -159,23 +176,14 @@ Result<Answer> identify(const Log& log, const Settings& settings) {
   const std::vector<Signal> force = pick(smoothed->force, parts->validate);
   std::vector<Size> every = parts->identify;
   every.insert(every.end(), parts->validate.begin(), parts->validate.end());
-  const std::vector<Signal> P = settings.all_samples ? parameters(*smoothed, every) : held_in;
 
-  Answer answer{};
   const Quad handle_mass = settings.handle_mass.value_or(0.0);
+  Answers answers{as_answer(held_in, handle_mass), as_answer(parameters(*smoothed, every), handle_mass)};
   for (Size axis = 0; axis < 2; ++axis) {
-    for (Size k = 0; k < 2; ++k) {
-      answer.M[2 * axis + k] = static_cast<double>(P[axis][k] - (axis == k ? handle_mass : 0));
-      answer.B[2 * axis + k] = static_cast<double>(P[axis][2 + k]);
-      answer.K[2 * axis + k] = static_cast<double>(P[axis][4 + k]);
-    }
-    answer.VAF[axis] = static_cast<double>(variance_accounted_for(Z, force[axis], held_in[axis]));
+    answers.split.VAF[axis] = static_cast<double>(variance_accounted_for(Z, force[axis], held_in[axis]));
   }
-  const Signal &px = P[0], &py = P[1];  // x₀ = −K⁻¹ c, c the coefficients of the 1
-  const Quad determinant = px[4] * py[5] - px[5] * py[4];
-  answer.x0[0] = static_cast<double>(-(py[5] * px[6] - px[5] * py[6]) / determinant);
-  answer.x0[1] = static_cast<double>(-(px[4] * py[6] - py[4] * px[6]) / determinant);
-  return answer;
+  answers.all.VAF = answers.split.VAF;
+  return answers;
 }
 
 }  // namespace mbk::reference

@@ -32,8 +32,6 @@ struct Settings {
   Procedure procedure = Procedure::chapter3;
   Protocol protocol = Protocol::sinusoidal;
   std::optional<double> handle_mass = {};  ///< Λ, removed from the diagonal of M [kg]; chapter 5 asks for one
-  bool all_samples = false;  ///< parameters from identification and validation samples together, VAF from the
-                             ///< split (§3.6.2)
 };
 
 /// M ẍ + B ẋ + K (x − x₀) = −F_h. Matrices row by row: xx, xy, yx, yy.
@@ -45,8 +43,14 @@ struct Answer {
   std::array<double, 2> VAF;  ///< of F_x and F_y on the validation samples [%]
 };
 
+/// Both with the VAF of the split: that of parameters which never saw the validation samples.
+struct Answers {
+  Answer split;  ///< parameters from the identification samples
+  Answer all;    ///< from identification and validation samples together (§3.6.2)
+};
+
 /// @fails  rows differ in length; a value is not finite; the log is too short; fewer than 9 pulses; chapter 5 without
 ///         accelerometer rows or handle mass; too few samples to identify or validate.
-[[nodiscard]] Result<Answer> identify(const Log& log, const Settings& settings);
+[[nodiscard]] Result<Answers> identify(const Log& log, const Settings& settings);
 
 }  // namespace mbk::reference

@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
       "Example: quad_procedure trial.mat --protocol underdamped"};
   std::string path;
   Settings settings;
+  bool all_samples = false;
   const std::map<std::string, Procedure> procedures{{"chapter3", Procedure::chapter3},
                                                     {"chapter5", Procedure::chapter5}};
   const std::map<std::string, Protocol> protocols{{"sinusoidal", Protocol::sinusoidal},
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
       ->option_text("sinusoidal|underdamped");
   app.add_option("--handle-mass", settings.handle_mass, "removed from the diagonal of M; chapter 5 needs it")
       ->option_text("KG");
-  app.add_flag("--all", settings.all_samples, "parameters from all samples, VAF from the split");
+  app.add_flag("--all", all_samples, "parameters from all samples, VAF from the split");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -56,9 +57,10 @@ int main(int argc, char** argv) {
 
   const auto log = read_log(path);
   if (!log) return report(log.error());
-  const auto answer = identify(*log, settings);
-  if (!answer) return report(answer.error());
-  fmt::print("{{\"M\": {}, \"B\": {}, \"K\": {}, \"x0\": {}, \"VAF\": {}}}\n", as_text(answer->M), as_text(answer->B),
-             as_text(answer->K), as_text(answer->x0), as_text(answer->VAF));
+  const auto answers = identify(*log, settings);
+  if (!answers) return report(answers.error());
+  const Answer& answer = all_samples ? answers->all : answers->split;
+  fmt::print("{{\"M\": {}, \"B\": {}, \"K\": {}, \"x0\": {}, \"VAF\": {}}}\n", as_text(answer.M), as_text(answer.B),
+             as_text(answer.K), as_text(answer.x0), as_text(answer.VAF));
   return 0;
 }
