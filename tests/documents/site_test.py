@@ -59,7 +59,9 @@ class Site(unittest.TestCase):
         cls.html = pathlib.Path(folder.name) / "html"
         cls.pages = {file: Page(file) for file in cls.html.rglob("*.html")}
 
+    @functools.lru_cache(maxsize=None)
     def name(self, file):
+        """Asked for at every link, for what would be said of it."""
         return file.relative_to(self.html).as_posix()
 
     def test_there_was_no_network(self):
@@ -98,9 +100,8 @@ class Site(unittest.TestCase):
 
     def test_nothing_is_loaded_from_outside(self):
         for file, page in self.pages.items():
-            name = self.name(file)
             for one in page.loads:
-                self.assertNotRegex(one, OUTSIDE, name)
+                self.assertNotRegex(one, OUTSIDE, self.name(file))
         for file in [*self.html.rglob("*.css"), *self.html.rglob("*.html")]:
             styles = file.read_text() if file.suffix == ".css" else "".join(re.findall(r"<style.*?</style>", file.read_text(), re.DOTALL))
             for one in re.findall(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)", styles):
@@ -108,33 +109,31 @@ class Site(unittest.TestCase):
 
     def test_what_is_loaded_is_there(self):
         for file, page in self.pages.items():
-            name = self.name(file)
             for one in page.loads:
-                self.assert_loaded(file, name, one)
+                self.assert_loaded(file, one)
         for file in self.html.rglob("*.css"):
             for one in re.findall(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)", file.read_text()):
-                self.assert_loaded(file, self.name(file), "".join(one))
+                self.assert_loaded(file, "".join(one))
 
-    def assert_loaded(self, file, name, one):
+    def assert_loaded(self, file, one):
         """From the site itself, wherever it stands: not from the root of a server either."""
         target = urllib.parse.unquote(one.split("?")[0].split("#")[0])
         if target and not re.match(r"data:|javascript:", target):
-            self.assertFalse(target.startswith("/"), f"{name} loads {one}")
-            self.assertIsNotNone(standing_at(file.parent, target), f"{name} loads {one}")
+            self.assertFalse(target.startswith("/"), f"{self.name(file)} loads {one}")
+            self.assertIsNotNone(standing_at(file.parent, target), f"{self.name(file)} loads {one}")
 
     def test_links_within_the_site_hold(self):
         checked = 0
         for file, page in self.pages.items():
-            name = self.name(file)
             for one in page.leads:
                 if OUTSIDE.match(one) or re.match(r"(mailto|javascript):", one):
                     continue
                 target, _, place = urllib.parse.unquote(one).partition("#")
                 found = standing_at(file.parent, target.split("?")[0]) if target else file
-                self.assertIsNotNone(found, f"{name} leads to {one}")
+                self.assertIsNotNone(found, f"{self.name(file)} leads to {one}")
                 # Doxygen lists nested types under a heading to which it gives no name.
                 if place and found in self.pages and place != "nested-classes":
-                    self.assertIn(place, self.pages[found].places, f"{name} leads to {one}")
+                    self.assertIn(place, self.pages[found].places, f"{self.name(file)} leads to {one}")
                 checked += 1
         self.assertGreater(checked, 10000)
 

@@ -86,7 +86,8 @@ TEST_P(ReferenceMode, AgreesWithTheTwin) {
                                                           {"VAF", difference(id.fit.vaf, vector2(answer.VAF))}};
     for (const auto& [what, value] : differences) {
       EXPECT_LE(value, kPromised) << what;
-      RecordProperty(what, std::to_string(-std::log10(value + 1e-300)));  // digits that agree
+      // digits that agree
+      RecordProperty(fmt::format("{}_{}", what, word_of(samples)), std::to_string(-std::log10(value + 1e-300)));
     }
     EXPECT_LT(id.fit.vaf.minCoeff(), 99.99);  // noise is there
   }

@@ -123,9 +123,10 @@ std::vector<Signal> parameters(const Smoothed& s, const std::vector<Size>& sampl
   return least_squares(pick(s.regressors, samples), negative(pick(s.force, samples)));
 }
 
-/// M, B, K and x₀ of P.
-Answer as_answer(const std::vector<Signal>& P, Quad handle_mass) {
+/// M, B, K and x₀ of P, beside the VAF of the split.
+Answer as_answer(const std::vector<Signal>& P, Quad handle_mass, const std::array<double, 2>& VAF) {
   Answer answer{};
+  answer.VAF = VAF;
   for (Size axis = 0; axis < 2; ++axis) {
     for (Size k = 0; k < 2; ++k) {
       answer.M[2 * axis + k] = static_cast<double>(P[axis][k] - (axis == k ? handle_mass : 0));
@@ -177,13 +178,12 @@ Result<Answers> identify(const Log& log, const Settings& settings) {
   std::vector<Size> every = parts->identify;
   every.insert(every.end(), parts->validate.begin(), parts->validate.end());
 
-  const Quad handle_mass = settings.handle_mass.value_or(0.0);
-  Answers answers{as_answer(held_in, handle_mass), as_answer(parameters(*smoothed, every), handle_mass)};
+  std::array<double, 2> VAF{};
   for (Size axis = 0; axis < 2; ++axis) {
-    answers.split.VAF[axis] = static_cast<double>(variance_accounted_for(Z, force[axis], held_in[axis]));
+    VAF[axis] = static_cast<double>(variance_accounted_for(Z, force[axis], held_in[axis]));
   }
-  answers.all.VAF = answers.split.VAF;
-  return answers;
+  const Quad handle_mass = settings.handle_mass.value_or(0.0);
+  return Answers{as_answer(held_in, handle_mass, VAF), as_answer(parameters(*smoothed, every), handle_mass, VAF)};
 }
 
 }  // namespace mbk::reference

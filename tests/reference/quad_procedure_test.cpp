@@ -127,6 +127,7 @@ TEST(NoiseFree, GivesTheTruthOfPulsesUpToTheSmoothing) {
   expect_truth(answers->split, options.limb, derivative_mismatch(101, kHighestOfPulse));
   expect_truth(answers->all, options.limb, derivative_mismatch(101, kHighestOfPulse));
   EXPECT_NE(answers->split.M, answers->all.M);
+  EXPECT_EQ(answers->split.VAF, answers->all.VAF);  // of the split in both
   for (const double vaf : answers->split.VAF) EXPECT_GT(vaf, 99.999);
 }
 
