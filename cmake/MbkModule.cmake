@@ -6,7 +6,7 @@ option(MBK_UNITY "Compile several sources of a module at a time" ON)
 # faster. A module whose text takes longer says with OBJECTS how many there are.
 set(MBK_OBJECT_BYTES_library 110000)
 set(MBK_OBJECT_BYTES_loops 70000)
-set(MBK_OBJECT_BYTES_tests 90000)
+set(MBK_OBJECT_BYTES_tests 140000)
 
 # mbk_unity(TARGET library|loops|tests [OBJECTS n] [ALONE SOURCE...]): the sources of TARGET, but for these, become objects
 # of about that size, or n of equal size.

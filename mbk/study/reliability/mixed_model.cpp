@@ -22,6 +22,11 @@ namespace {
 
 constexpr std::size_t kParticipant = 0, kSession = 1, kResidual = 2;
 
+/// The variables of a search: up to three variances or functions of them.
+template <class Scalar>
+using Point = std::array<Scalar, 3>;
+using Derivatives = Jet<3>;
+
 /// Lower triangle of a symmetric matrix, row by row.
 template <class Scalar>
 struct Triangle {
@@ -71,13 +76,15 @@ struct Weighted {
 double value_of(double x) {
   return x;
 }
-double value_of(const Jet& x) {
+template <std::size_t variables>
+double value_of(const Jet<variables>& x) {
   return x.value;
 }
 double logarithm(double x) {
   return std::log(x);
 }
-Jet logarithm(const Jet& x) {
+template <std::size_t variables>
+Jet<variables> logarithm(const Jet<variables>& x) {
   return log(x);
 }
 
@@ -121,8 +128,9 @@ class CommonPart {
 double lifted(double /*variance*/, const std::array<double, 3>& f) {
   return f[0];
 }
-Jet lifted(const Jet& variance, const std::array<double, 3>& f) {
-  return Jet::chain(variance, f[0], f[1], f[2]);
+template <std::size_t variables>
+Jet<variables> lifted(const Jet<variables>& variance, const std::array<double, 3>& f) {
+  return Jet<variables>::chain(variance, f[0], f[1], f[2]);
 }
 
 /// The rows of one session, each with a weight 1/(known + σ_e²): their weight and weighted mean, and what is added to
@@ -271,12 +279,12 @@ constexpr double kOfFit = 1e-12, kOfProfile = 1e-7;
 /// The function to be made small: of `count` variables that are 0 or more.
 struct Objective {
   std::size_t count = 0;
-  std::function<double(const std::array<double, kJetSize>&)> value;
-  std::function<Jet(const std::array<double, kJetSize>&)> jet;
+  std::function<double(const Point<double>&)> value;
+  std::function<Derivatives(const Point<double>&)> jet;
 };
 
 struct Minimum {
-  std::array<double, kJetSize> at{};
+  Point<double> at{};
   double value = kInfinity;
 };
 
@@ -287,9 +295,8 @@ bool held_at_zero(double x, double slope) {
 
 /// A step of the variables that are free, in their logarithms, by the Hessian with the absolute values of its
 /// eigenvalues, no longer than e³ in any of them.
-std::array<double, kJetSize> step_of(const Objective& objective, const std::array<double, kJetSize>& at, const Jet& jet,
-                                     double& slope) {
-  std::array<double, kJetSize> step{};
+Point<double> step_of(const Objective& objective, const Point<double>& at, const Derivatives& jet, double& slope) {
+  Point<double> step{};
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < objective.count; ++i) {
     if (at[i] > 0.0) free.push_back(i);
@@ -326,7 +333,7 @@ Minimum on_grid(const Objective& objective) {
   std::size_t points = 1;
   for (std::size_t i = 0; i < objective.count; ++i) points *= kLevels.size();
   for (std::size_t index = 0; index < points; ++index) {
-    std::array<double, kJetSize> at{};
+    Point<double> at{};
     std::size_t rest = index;
     for (std::size_t i = 0; i < objective.count; ++i) {
       at[i] = kLevels[rest % kLevels.size()];
@@ -342,14 +349,14 @@ Minimum on_grid(const Objective& objective) {
 /// keeps it, and leaves it where the slope says so. It begins at `start`, or, where
 /// that has no likelihood, at the best point of a grid, and ends
 /// where a step promises less than `tolerance`.
-Minimum minimum_from(const Objective& objective, const std::array<double, kJetSize>& start, double tolerance) {
+Minimum minimum_from(const Objective& objective, const Point<double>& start, double tolerance) {
   Minimum best{start, objective.value(start)};
   if (!std::isfinite(best.value)) best = on_grid(objective);
   if (objective.count == 0 || !std::isfinite(best.value)) return best;
   constexpr int kIterations = 200;
   constexpr double kTiny = 1e-10;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const Jet jet = objective.jet(best.at);
+    const Derivatives jet = objective.jet(best.at);
     bool moved = false;
     for (std::size_t i = 0; i < objective.count; ++i) {  // to 0, and from it
       auto at = best.at;
@@ -392,14 +399,26 @@ Minimum minimum_from(const Objective& objective, const std::array<double, kJetSi
   return best;
 }
 
+/// By the first variables only, as the others do not vary.
+template <std::size_t variables, class Function>
+Derivatives derivatives(const Function& function, const Point<double>& at) {
+  Point<Jet<variables>> jets;
+  for (std::size_t i = 0; i < variables; ++i) jets[i] = Jet<variables>::variable(at[i], i);
+  const Jet<variables> found = function(jets);
+  Derivatives all(found.value);  // the triangle of a few variables begins that of all
+  std::ranges::copy(found.gradient, all.gradient.begin());
+  std::ranges::copy(found.hessian, all.hessian.begin());
+  return all;
+}
+
 /// An objective from a template that takes doubles or jets.
 template <class Function>
 Objective objective_of(std::size_t count, const Function& function) {
-  return {count, [function](const std::array<double, kJetSize>& at) { return function(at); },
-          [function, count](const std::array<double, kJetSize>& at) {
-            std::array<Jet, kJetSize> jets;
-            for (std::size_t i = 0; i < count; ++i) jets[i] = Jet::variable(at[i], i);
-            return function(jets);
+  return {count, [function](const Point<double>& at) { return function(at); },
+          [function, count](const Point<double>& at) {
+            if (count == 1) return derivatives<1>(function, at);
+            if (count == 2) return derivatives<2>(function, at);
+            return derivatives<3>(function, at);
           }};
 }
 
@@ -537,7 +556,7 @@ struct Parameters {
   bool participant, session, residual;
 
   template <class Scalar>
-  [[nodiscard]] std::array<Scalar, 3> variances(const std::array<Scalar, kJetSize>& at) const {
+  [[nodiscard]] std::array<Scalar, 3> variances(const Point<Scalar>& at) const {
     std::size_t next = 0;
     std::array<Scalar, 3> all = {Scalar(0.0), Scalar(0.0), Scalar(1.0)};
     if (participant) all[kParticipant] = at[next++];
@@ -562,7 +581,7 @@ struct Fitted {
 
 Result<Fitted> fitted(const Prepared& data) {
   const Parameters parameters{data.has_participant, data.has_session, !profiled(data)};
-  const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
+  const auto function = [&]<class Scalar>(const Point<Scalar>& at) {
     return criterion(data, parameters.variances(at), profiled(data)).value;
   };
   const Objective objective = objective_of(parameters.count(), function);
@@ -582,11 +601,11 @@ Result<Fitted> fitted(const Prepared& data) {
 }
 
 /// The inverse of a triangle of jets that factor() has made L D Lᵀ of, its first `order` rows; full.
-std::vector<std::vector<Jet>> inverse_of(const Triangle<Jet>& factors, std::size_t order) {
-  std::vector<std::vector<Jet>> inverse(order, std::vector<Jet>(order));
+std::vector<std::vector<Derivatives>> inverse_of(const Triangle<Derivatives>& factors, std::size_t order) {
+  std::vector<std::vector<Derivatives>> inverse(order, std::vector<Derivatives>(order));
   for (std::size_t column = 0; column < order; ++column) {
-    std::vector<Jet>& x = inverse[column];
-    x[column] = Jet(1.0);
+    std::vector<Derivatives>& x = inverse[column];
+    x[column] = Derivatives(1.0);
     for (std::size_t i = 0; i < order; ++i) {
       for (std::size_t k = 0; k < i; ++k) x[i] -= factors(i, k) * x[k];
     }
@@ -613,15 +632,15 @@ MixedModel summarised(const Prepared& data, const Fitted& fit) {
   const std::array present = {data.has_participant, data.has_session, true};
 
   std::vector<std::size_t> free;
-  std::array<Jet, 3> variances;
+  Point<Derivatives> variances;
   for (std::size_t i = 0; i < 3; ++i) {
     components[i]->present = present[i];
     components[i]->value = scale2 * fit.variances[i];
-    variances[i] = Jet::variable(fit.variances[i], i);
+    variances[i] = Derivatives::variable(fit.variances[i], i);
     if (fit.variances[i] > 0.0) free.push_back(i);
   }
-  const Jet deviance = criterion(data, variances, false).value;
-  Weighted<Jet> all = weighted(data, variances);
+  const Derivatives deviance = criterion(data, variances, false).value;
+  Weighted<Derivatives> all = weighted(data, variances);
   factor(all.products, p);
   const double degrees = static_cast<double>(data.rows()) - static_cast<double>(p);
   model.deviance = deviance.value + degrees * std::log(2.0 * std::numbers::pi * scale2) +
@@ -654,7 +673,7 @@ MixedModel summarised(const Prepared& data, const Fitted& fit) {
   const auto R = data.R.triangularView<Eigen::Upper>();
   beta = R.solve(data.scale * (beta + data.least_squares));
   const auto inverse = inverse_of(all.products, p);
-  const auto back = [&](const std::function<double(const Jet&)>& part, double factor) {
+  const auto back = [&](const std::function<double(const Derivatives&)>& part, double factor) {
     Matrix one(order, order);
     for (Index i = 0; i < order; ++i) {
       for (Index k = 0; k < order; ++k) {
@@ -664,10 +683,10 @@ MixedModel summarised(const Prepared& data, const Fitted& fit) {
     const Matrix half = R.solve(one);
     return Matrix(R.solve(half.transpose()));
   };
-  model.covariance = back([](const Jet& jet) { return jet.value; }, scale2);
+  model.covariance = back([](const Derivatives& jet) { return jet.value; }, scale2);
   if (informed) {
     for (const std::size_t i : free) {
-      model.covariance_gradient.push_back(back([i](const Jet& jet) { return jet.gradient[i]; }, 1.0));
+      model.covariance_gradient.push_back(back([i](const Derivatives& jet) { return jet.gradient[i]; }, 1.0));
     }
   }
   for (Index k = 0; k < order; ++k) {
@@ -687,10 +706,10 @@ class Profile {
   /// @param estimate  x and the others where the likelihood has its maximum
   template <class VariancesAt>
   Profile(const Prepared& data, bool profiled, std::size_t others, const VariancesAt& variances_at, double estimate,
-          const std::array<double, kJetSize>& others_there)
+          const Point<double>& others_there)
       : estimate_(estimate), last_(others_there) {
-    search_ = [&data, profiled, others, variances_at](double x, const std::array<double, kJetSize>& start) {
-      const auto function = [&]<class Scalar>(const std::array<Scalar, kJetSize>& at) {
+    search_ = [&data, profiled, others, variances_at](double x, const Point<double>& start) {
+      const auto function = [&]<class Scalar>(const Point<Scalar>& at) {
         return criterion(data, variances_at(x, at), profiled).value;
       };
       return minimum_from(objective_of(others, function), start, kOfProfile);
@@ -746,9 +765,9 @@ class Profile {
     return std::exp(0.5 * (inside + outside));
   }
 
-  std::function<Minimum(double, const std::array<double, kJetSize>&)> search_;
+  std::function<Minimum(double, const Point<double>&)> search_;
   double estimate_ = 0.0, minimum_ = 0.0;
-  std::array<double, kJetSize> last_{};
+  Point<double> last_{};
   int last_moved_ = 0;  // 1: the inner end, 2: the outer one
 };
 
@@ -757,14 +776,14 @@ Interval icc_interval(const Prepared& data, const Fitted& fit, double trials) {
   const double typical = data.known.size() > 0 ? data.known.mean() : 0.0;
   const bool by_ratio = profiled(data);
   const Parameters parameters{false, data.has_session, !by_ratio};
-  const auto variances_at = [=]<class Scalar>(double odds, const std::array<Scalar, kJetSize>& at) {
+  const auto variances_at = [=]<class Scalar>(double odds, const Point<Scalar>& at) {
     std::array<Scalar, 3> variances = parameters.variances(at);
     variances[kParticipant] = odds * (variances[kSession] + (variances[kResidual] + Scalar(typical)) * (1.0 / trials));
     return variances;
   };
   const double unit = by_ratio ? fit.variances[kResidual] : 1.0;
   const double between = fit.variances[kSession] + (fit.variances[kResidual] + typical) / trials;
-  std::array<double, kJetSize> others{};
+  Point<double> others{};
   std::size_t next = 0;
   if (parameters.session) others[next++] = fit.variances[kSession] / unit;
   if (parameters.residual) others[next++] = fit.variances[kResidual] / unit;
@@ -776,7 +795,7 @@ Interval icc_interval(const Prepared& data, const Fitted& fit, double trials) {
 /// The interval of σ_s² + σ_e²/m, without what is known.
 Interval between_interval(const Prepared& data, const Fitted& fit, double trials) {
   const bool participant = data.has_participant, session = data.has_session;
-  const auto variances_at = [=]<class Scalar>(double between, const std::array<Scalar, kJetSize>& at) {
+  const auto variances_at = [=]<class Scalar>(double between, const Point<Scalar>& at) {
     std::array<Scalar, 3> variances = {Scalar(0.0), Scalar(0.0), Scalar(trials * between)};
     std::size_t next = 0;
     if (participant) variances[kParticipant] = at[next++];
@@ -786,7 +805,7 @@ Interval between_interval(const Prepared& data, const Fitted& fit, double trials
     variances[kResidual] = Scalar(trials * between) / whole;
     return variances;
   };
-  std::array<double, kJetSize> others{};
+  Point<double> others{};
   std::size_t next = 0;
   if (participant) others[next++] = fit.variances[kParticipant];
   constexpr double kLargeOdds = 1e3;
@@ -800,12 +819,12 @@ Interval between_interval(const Prepared& data, const Fitted& fit, double trials
 /// The interval of σ_e², without what is known.
 Interval residual_interval(const Prepared& data, const Fitted& fit) {
   const Parameters parameters{data.has_participant, data.has_session, false};
-  const auto variances_at = [=]<class Scalar>(double residual, const std::array<Scalar, kJetSize>& at) {
+  const auto variances_at = [=]<class Scalar>(double residual, const Point<Scalar>& at) {
     std::array<Scalar, 3> variances = parameters.variances(at);
     variances[kResidual] = Scalar(residual);
     return variances;
   };
-  std::array<double, kJetSize> others{};
+  Point<double> others{};
   std::size_t next = 0;
   if (parameters.participant) others[next++] = fit.variances[kParticipant];
   if (parameters.session) others[next++] = fit.variances[kSession];
