@@ -3,8 +3,10 @@
 
 They are a tenth of the program and would stand all over it. The kernel maps a program in pieces of 64 kB, so that more
 than half of it would be in memory. What is executed is seen in valgrind. To keep the list short, functions whose names begin
-alike stand in it by that beginning where at least SHARE of their bytes are executed. A name that is no more, or that is
-new, does no harm: such a function stands where it would have stood. tests/end_to_end/memory_test.py holds the memory.
+alike stand in it by that beginning where at least SHARE of their bytes are executed. What other processors execute in
+their place, valgrind's having neither AVX-512 nor instructions for SHA-256, stands beside them. A name that is no more,
+or that is new, does no harm: such a function stands where it would have stood. tests/end_to_end/memory_test.py holds the
+memory.
 
 usage: tools/function-order [--build build/test]
 """
@@ -21,6 +23,7 @@ import callgrind
 HERE = Path(__file__).resolve().parent
 ORDER = HERE.parent / "apps/mbk/function_order.txt"
 SHARE = 0.7  # of their bytes
+ELSEWHERE = ("compress_sha_instructions", "queryCacheSizes_amd")  # what valgrind's processor does by other functions
 
 
 def usual(folder):
@@ -51,6 +54,12 @@ def functions(mbk):
             bytes_of[words[3]] = bytes_of.get(words[3], 0) + int(words[1], 16)
             names_at.setdefault(words[0], []).append(words[3])
     return bytes_of, names_at
+
+
+def on_other_processors(names, used):
+    """Those of the names that are executed there in the place of one that is used here."""
+    wider = {name.replace("v3", "v4").replace("V3", "V4") for name in used}
+    return {name for name in names if name in wider or any(one in name for one in ELSEWHERE)}
 
 
 def patterns(bytes_of, used):
@@ -97,6 +106,7 @@ def main():
         except callgrind.Failed as failure:
             sys.exit(f"function_order.py: {failure}")
     bytes_of, names_at = functions(mbk)
+    used |= on_other_processors(bytes_of, used)
     used = {name for names in names_at.values() if not used.isdisjoint(names) for name in names}
     new = ORDER.with_name(ORDER.name + ".new")
     new.write_text("".join(f"{pattern}\n" for pattern in patterns(bytes_of, used)), encoding="utf-8")

@@ -14,7 +14,7 @@ from command import BAD_DATA, Case, Ran, main, program
 
 ROWS = 19
 MIB = 1 << 20
-LARGEST = 24.5e6  # [bytes]: 24 MB, and what libraries of other versions may take
+LARGEST = 24e6  # [bytes]
 
 
 def element(kind, data):
