@@ -399,7 +399,7 @@ Minimum minimum_from(const Objective& objective, const Point<double>& start, dou
   return best;
 }
 
-/// By the first variables only, as the others do not vary.
+/// Value and derivatives of `function` by the first `variables` entries of `at`; it depends on no others.
 template <std::size_t variables, class Function>
 Derivatives derivatives(const Function& function, const Point<double>& at) {
   Point<Jet<variables>> jets;
