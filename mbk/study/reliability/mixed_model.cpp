@@ -76,15 +76,15 @@ struct Weighted {
 double value_of(double x) {
   return x;
 }
-template <std::size_t variables>
-double value_of(const Jet<variables>& x) {
+template <std::size_t Variables>
+double value_of(const Jet<Variables>& x) {
   return x.value;
 }
 double logarithm(double x) {
   return std::log(x);
 }
-template <std::size_t variables>
-Jet<variables> logarithm(const Jet<variables>& x) {
+template <std::size_t Variables>
+Jet<Variables> logarithm(const Jet<Variables>& x) {
   return log(x);
 }
 
@@ -128,9 +128,9 @@ class CommonPart {
 double lifted(double /*variance*/, const std::array<double, 3>& f) {
   return f[0];
 }
-template <std::size_t variables>
-Jet<variables> lifted(const Jet<variables>& variance, const std::array<double, 3>& f) {
-  return Jet<variables>::chain(variance, f[0], f[1], f[2]);
+template <std::size_t Variables>
+Jet<Variables> lifted(const Jet<Variables>& variance, const std::array<double, 3>& f) {
+  return Jet<Variables>::chain(variance, f[0], f[1], f[2]);
 }
 
 /// The rows of one session, each with a weight 1/(known + σ_e²): their weight and weighted mean, and what is added to
@@ -399,12 +399,12 @@ Minimum minimum_from(const Objective& objective, const Point<double>& start, dou
   return best;
 }
 
-/// Value and derivatives of `function` by the first `variables` entries of `at`; it depends on no others.
-template <std::size_t variables, class Function>
+/// Value and derivatives of `function` by the first `Variables` entries of `at`; it depends on no others.
+template <std::size_t Variables, class Function>
 Derivatives derivatives(const Function& function, const Point<double>& at) {
-  Point<Jet<variables>> jets;
-  for (std::size_t i = 0; i < variables; ++i) jets[i] = Jet<variables>::variable(at[i], i);
-  const Jet<variables> found = function(jets);
+  Point<Jet<Variables>> jets;
+  for (std::size_t i = 0; i < Variables; ++i) jets[i] = Jet<Variables>::variable(at[i], i);
+  const Jet<Variables> found = function(jets);
   Derivatives all(found.value);  // the triangle of a few variables begins that of all
   std::ranges::copy(found.gradient, all.gradient.begin());
   std::ranges::copy(found.hessian, all.hessian.begin());

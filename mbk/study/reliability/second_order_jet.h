@@ -8,11 +8,11 @@ namespace mbk::reliability {
 
 /// A number with its first and second derivatives by so many variables: what is computed with jets has exact
 /// derivatives.
-template <std::size_t variables>
+template <std::size_t Variables>
 struct Jet {
   double value = 0.0;
-  std::array<double, variables> gradient{};
-  std::array<double, variables*(variables + 1) / 2> hessian{};  ///< the lower triangle, row by row
+  std::array<double, Variables> gradient{};
+  std::array<double, Variables*(Variables + 1) / 2> hessian{};  ///< the lower triangle, row by row
 
   Jet() = default;
   Jet(double constant) : value(constant) {}  // NOLINT(google-explicit-constructor): a number is a constant jet
@@ -51,7 +51,7 @@ struct Jet {
   friend Jet operator*(double a, Jet b) { return b *= a; }
   friend Jet operator*(const Jet& a, const Jet& b) {
     Jet product(a.value * b.value);
-    for (std::size_t i = 0, at = 0; i < variables; ++i) {
+    for (std::size_t i = 0, at = 0; i < Variables; ++i) {
       product.gradient[i] = a.value * b.gradient[i] + b.value * a.gradient[i];
       for (std::size_t k = 0; k <= i; ++k, ++at) {
         product.hessian[at] = a.value * b.hessian[at] + b.value * a.hessian[at] + a.gradient[i] * b.gradient[k] +
@@ -63,7 +63,7 @@ struct Jet {
   /// f(a) where f′ and f″ at a are known.
   [[nodiscard]] static Jet chain(const Jet& a, double f, double first, double second) {
     Jet made(f);
-    for (std::size_t i = 0, at = 0; i < variables; ++i) {
+    for (std::size_t i = 0, at = 0; i < Variables; ++i) {
       made.gradient[i] = first * a.gradient[i];
       for (std::size_t k = 0; k <= i; ++k, ++at) {
         made.hessian[at] = first * a.hessian[at] + second * a.gradient[i] * a.gradient[k];
