@@ -632,7 +632,7 @@ MixedModel summarised(const Prepared& data, const Fitted& fit) {
   const std::array present = {data.has_participant, data.has_session, true};
 
   std::vector<std::size_t> free;
-  Point<Derivatives> variances;
+  std::array<Derivatives, 3> variances;
   for (std::size_t i = 0; i < 3; ++i) {
     components[i]->present = present[i];
     components[i]->value = scale2 * fit.variances[i];

@@ -6,7 +6,7 @@
 
 namespace mbk::reliability {
 
-/// A number with its first and second derivatives by so many variables: what is computed with jets has exact
+/// A number with its first and second derivatives by so many `Variables`: what is computed with jets has exact
 /// derivatives.
 template <std::size_t Variables>
 struct Jet {
