@@ -23,8 +23,7 @@ class GramSum {
   [[nodiscard]] Matrix gram() const;
 
  private:
-  Index columns_;
-  Matrix sums_;  ///< in whole tiles, without what is below the diagonal
+  Matrix sums_;  ///< without what is below the diagonal
 };
 
 /// AᵀB.

@@ -27,7 +27,7 @@ TEST(ColumnProducts, AreThoseOfThePlainProductForAnyShape) {
 }
 
 TEST(ColumnProducts, AddUpOverBlocks) {
-  for (const Index columns : {1, 3, 6, 14}) {
+  for (const Index columns : {1, 2, 3, 4, 5, 6, 14, 28}) {
     const Matrix A = Matrix::Random(777, columns);
     GramSum sum(columns);
     Index begin = 0;

@@ -8,7 +8,8 @@
 namespace mbk::numeric {
 namespace {
 
-constexpr Index kTogether = 512;  // rows whose windows stay in the first cache
+constexpr Index kTogether = 512;  // rows whose windows stay in the caches
+constexpr Index kApart = 8;       // more from one column to the next: at a power of two all would share a few lines
 constexpr std::array<double, kTogether> kNothing{};
 
 /// v becomes [v₀, v₀ + v₁, …] + sum, and sum the last of these.
@@ -80,7 +81,7 @@ MBK_X86_64_V4 void move_v4(Moving* columns, std::size_t count, Index rows) {
 class Windows {
  public:
   Windows(Index kinds, Index k, Index lags)
-      : k_(k), before_(lags + 1), windows_(kTogether, kinds * k), moving_(static_cast<std::size_t>(kinds * k)) {
+      : k_(k), before_(lags + 1), windows_(kTogether + kApart, kinds * k), moving_(static_cast<std::size_t>(kinds * k)) {
     for (Index kind = 0; kind < kinds; ++kind) grams_.emplace_back(k);
   }
 

@@ -87,6 +87,7 @@ class Fitter {
   [[nodiscard]] Result<void> choose_handle_mass();
   /// @param fraction  what the instruments explain of the residual, axis by axis
   [[nodiscard]] UnmodelledResponse response_in(const Matrix& residual, const Vector& fraction) const;
+  [[nodiscard]] Index rows_by_cutoff() const;
   [[nodiscard]] const std::vector<AssumptionTest>& assumptions_tested(Method method, const Estimate& estimate);
 
   const std::vector<PreparedTrial>& trials_;
@@ -330,6 +331,17 @@ const Matrix& Fitter::long_run(Method method) {
   return wanted;
 }
 
+/// Of the rows, the first of so many holds all that the filters of every trial leave; 1000 rows are kept at least.
+Index Fitter::rows_by_cutoff() const {
+  constexpr Index kRowsKept = 1000;
+  Index step = std::max<Index>(1, samples_ / kRowsKept);
+  for (const PreparedTrial& trial : trials_) {
+    const auto& cutoff = trial.preparation.cutoff;
+    step = std::min(step, cutoff ? enough_of(Hertz(1.0 / trial.sample_time), *cutoff) : Index{1});
+  }
+  return step;
+}
+
 const Vector& Fitter::coherent_fraction(Method method) {
   Vector& wanted = coherent_[static_cast<std::size_t>(method)];
   if (wanted.size() > 0) return wanted;
@@ -340,7 +352,7 @@ const Vector& Fitter::coherent_fraction(Method method) {
   const Index n = r_.axes();
   std::vector<numeric::MatrixPart> all;
   for (const std::size_t k : full) all.emplace_back(residuals(static_cast<Method>(k)));
-  const Vector fractions = coherent_residual_fraction(r_, *instruments_, all, ranges_);
+  const Vector fractions = coherent_residual_fraction(r_, *instruments_, all, ranges_, rows_by_cutoff());
   for (std::size_t k = 0; k < full.size(); ++k) coherent_[full[k]] = fractions.segment(static_cast<Index>(k) * n, n);
   return wanted;
 }

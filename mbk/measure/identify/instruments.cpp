@@ -19,6 +19,7 @@ constexpr int kPasses = 2;        ///< refinements of the nominal impedance
 constexpr double kFloor = 0.02;   ///< of the nominal impedance's eigenvalues, of the largest: it must be stable
 constexpr double kReach = 0.5;    ///< of an answer to the perturbation [s]
 constexpr Index kLagsOfAnswer = 5;
+constexpr Index kTogether = 1024;  ///< rows, side by side in the second cache
 
 /// The ranges of rows that were put under each other.
 std::vector<RowRange> packed(const std::vector<RowRange>& ranges) {
@@ -182,27 +183,37 @@ Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quan
 
 Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments,
                                   const std::vector<numeric::MatrixPart>& residuals,
-                                  const std::vector<RowRange>& ranges) {
+                                  const std::vector<RowRange>& ranges, Index step) {
   const Index n = r.axes(), p = instruments.R.cols(), k = n * std::ssize(residuals);
-  const Index every = std::max<Index>(1, std::llround(kReach / (r.sample_time * static_cast<double>(kLagsOfAnswer))));
+  const double between = static_cast<double>(step) * r.sample_time;  // rows [s]
+  const Index every = std::max<Index>(1, std::llround(kReach / (between * static_cast<double>(kLagsOfAnswer)))) * step;
   const Index reach = every * kLagsOfAnswer, columns = p + n * kLagsOfAnswer;
-  std::vector<RowRange> rows;  // of ranges, without those that have no whole past
+  std::vector<Eigen::ArithmeticSequence<Index, Index, Index>> rows;  // of ranges, without what has no whole past
   Index count = 0;
   for (const RowRange& range : ranges) {
     if (range.size() <= reach) continue;
-    rows.push_back({range.begin + reach, range.end});
+    rows.push_back(Eigen::seqN(range.begin + reach, (range.size() - reach + step - 1) / step, step));
     count += rows.back().size();
   }
   if (count < 2 * columns) return Vector::Constant(k, std::nan(""));
-  Matrix gram = Matrix::Zero(columns + k, columns + k);  // of [R | the reference before | residuals]
-  for (const RowRange& range : rows) {
-    std::vector<numeric::MatrixPart> parts = {instruments.R.middleRows(range.begin, range.size())};
-    for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) {
-      parts.emplace_back(r.reference.rightCols(n).middleRows(range.begin - lag * every, range.size()));
+  numeric::GramSum sums(columns + k);  // of [R | the reference before | residuals]
+  Matrix block(std::min(count, kTogether), columns + k);
+  for (const auto& range : rows) {
+    for (Index first = 0; first < range.size(); first += kTogether) {
+      const Index size = std::min(kTogether, range.size() - first);
+      Index column = 0;
+      const auto add = [&](const numeric::MatrixPart& part, Index before) {
+        const auto taken = Eigen::seqN(range[first] - before, size, step);
+        block.block(0, column, size, part.cols()) = part(taken, Eigen::all);
+        column += part.cols();
+      };
+      add(instruments.R, 0);
+      for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) add(r.reference.rightCols(n), lag * every);
+      for (const numeric::MatrixPart& one : residuals) add(one, 0);
+      sums.add(block.topRows(size));
     }
-    for (const numeric::MatrixPart& one : residuals) parts.emplace_back(one.middleRows(range.begin, range.size()));
-    gram += numeric::gram_of(parts);
   }
+  const Matrix gram = sums.gram();
   // R has a column of ones, behind the motion.
   const Vector mean = gram.row(p - 1).tail(k).transpose() / static_cast<double>(count);
   const Matrix to_Y = gram.topRightCorner(columns, k) - gram.col(p - 1).head(columns) * mean.transpose();
@@ -219,8 +230,8 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
     const numeric::MatrixPart& one = residuals[static_cast<std::size_t>(j / n)];
     Vector e(count);
     Index row = 0;
-    for (const RowRange& range : rows) {
-      e.segment(row, range.size()) = one.col(j % n).segment(range.begin, range.size()).array() - mean[j];
+    for (const auto& range : rows) {
+      e.segment(row, range.size()) = one.col(j % n)(range).array() - mean[j];
       row += range.size();
     }
     const double power = e.squaredNorm(), memory = memory_of(e, power);

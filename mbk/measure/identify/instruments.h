@@ -29,10 +29,10 @@ struct Instruments {
 
 /// How much of what a model leaves is a linear answer to the known perturbation that no inertia, damping and stiffness
 /// gives: the residual on the instruments and on the reference as it was up to half a second before.
-/// @param residuals  N×n of each model
+/// @param residuals  N×n of each model    @param step  of the rows, the first of so many is taken
 /// @returns share of each column's power, model after model; what chance would give is subtracted
 [[nodiscard]] Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments,
                                                 const std::vector<numeric::MatrixPart>& residuals,
-                                                const std::vector<RowRange>& ranges);
+                                                const std::vector<RowRange>& ranges, Index step);
 
 }  // namespace mbk::identify

@@ -9,14 +9,13 @@
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/filter_chain.h"
 #include "mbk/files/contents/disk_pages.h"
+#include "mbk/model/trial/filtered_band.h"
 
 namespace mbk::preprocess {
 namespace {
 
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
 constexpr double kSmoothingOverCutoff = 4.6;
-/// At ten samples for each period of the cutoff the low-pass leaves 1e-7 above half of their rate.
-constexpr double kRateOverCutoff = 10.0;
 /// Rows of the shortest cut that are kept at least, so that its ends stay where they are.
 constexpr Index kMinRows = 1000;
 
@@ -72,9 +71,7 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
   plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
   if (!options.no_lowpass) {
-    // A clock is read to rounding only: a whole number must not fall below itself.
-    const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff) * (1.0 + 1e-9));
-    plan.every = std::max<Index>(1, std::min(enough, shortest_cut / kMinRows));
+    plan.every = std::max<Index>(1, std::min(enough_of(rate, Hertz(cutoff)), shortest_cut / kMinRows));
   }
   return with_choices(std::move(plan), options);
 }

@@ -11,6 +11,15 @@ namespace mbk {
   return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
 }
 
+/// Of the samples that a low-pass leaves, the first of so many holds all that they hold: at ten for each period of the
+/// cutoff, 1e-7 lies above half of their rate.
+[[nodiscard]] inline Index enough_of(Hertz rate, Hertz cutoff) {
+  constexpr double kRateOverCutoff = 10.0;
+  // A clock is read to rounding only: a whole number must not fall below itself.
+  const auto enough = static_cast<Index>(rate.value / (kRateOverCutoff * cutoff.value) * (1.0 + 1e-9));
+  return std::max<Index>(1, enough);
+}
+
 /// A filter below half of the excited band hides the inertia, and with it what damping and stiffness are.
 [[nodiscard]] inline bool cuts_into_band(const Preparation& how) {
   constexpr double kHalf = 0.5;
