@@ -276,7 +276,7 @@ void Fitter::describe(Identification& result) const {
 
 Result<void> Fitter::find_instruments() {
   if (instruments_) return {};
-  auto made = make_instruments(r_, trials_.front().reference_quantity, ranges_, lags_);
+  auto made = make_instruments(r_, trials_.front().reference_quantity, {ranges_, lags_, rows_by_cutoff()});
   if (!made) return tl::unexpected(made.error());
   instruments_ = std::move(*made);
   return {};
@@ -331,15 +331,16 @@ const Matrix& Fitter::long_run(Method method) {
   return wanted;
 }
 
-/// Of the rows, the first of so many holds all that the filters of every trial leave; 1000 rows are kept at least.
+/// Of the rows, the first of so many holds all that the filters of every trial leave; of each range 1000 are kept.
 Index Fitter::rows_by_cutoff() const {
   constexpr Index kRowsKept = 1000;
-  Index step = std::max<Index>(1, samples_ / kRowsKept);
+  Index step = std::numeric_limits<Index>::max();
+  for (const RowRange& range : ranges_) step = std::min(step, range.size() / kRowsKept);
   for (const PreparedTrial& trial : trials_) {
     const auto& cutoff = trial.preparation.cutoff;
     step = std::min(step, cutoff ? enough_of(Hertz(1.0 / trial.sample_time), *cutoff) : Index{1});
   }
-  return step;
+  return std::max<Index>(1, step);
 }
 
 const Vector& Fitter::coherent_fraction(Method method) {

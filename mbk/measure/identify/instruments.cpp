@@ -21,13 +21,14 @@ constexpr double kReach = 0.5;    ///< of an answer to the perturbation [s]
 constexpr Index kLagsOfAnswer = 5;
 constexpr Index kTogether = 1024;  ///< rows, side by side in the second cache
 
-/// The ranges of rows that were put under each other.
-std::vector<RowRange> packed(const std::vector<RowRange>& ranges) {
+/// Every `step`-th row of the ranges, put under each other.
+std::vector<RowRange> packed(const std::vector<RowRange>& ranges, Index step) {
   std::vector<RowRange> result;
   Index row = 0;
   for (const RowRange& range : ranges) {
-    result.push_back({row, row + range.size()});
-    row += range.size();
+    const Index kept = (range.size() + step - 1) / step;
+    result.push_back({row, row + kept});
+    row += kept;
   }
   return result;
 }
@@ -106,11 +107,18 @@ Matrix with_constant(const Matrix& motion, const std::vector<RowRange>& ranges) 
 }
 
 /// How strong they are, and what they are multiplied with.
-void complete(const Regression& r, const std::vector<RowRange>& ranges, Index lags, Instruments& made) {
-  const SelectedRows R(made.R, ranges), Z(r.Z, ranges), Y(r.Y, ranges);
+void complete(const Regression& r, const InstrumentRows& rows, Instruments& made) {
+  const SelectedRows R(made.R, rows.ranges), Z(r.Z, rows.ranges), Y(r.Y, rows.ranges);
   made.gram = numeric::gram_of({*R, *Z, *Y});
   const Index both = R->cols() + Z->cols();
-  made.strength = numeric::first_stage_strength(*Z, *R, packed(ranges), lags, made.gram.topLeftCorner(both, both));
+  if (rows.step == 1) {
+    made.strength = numeric::first_stage_strength(*Z, *R, packed(rows.ranges, 1), rows.lags,
+                                                  made.gram.topLeftCorner(both, both));
+  } else {
+    const SelectedRows some_R(made.R, rows.ranges, rows.step), some_Z(r.Z, rows.ranges, rows.step);
+    const auto lags = static_cast<Index>(std::llround(static_cast<double>(rows.lags) / static_cast<double>(rows.step)));
+    made.strength = numeric::first_stage_strength(*some_Z, *some_R, packed(rows.ranges, rows.step), lags);
+  }
 }
 
 /// 1 + 2 Σ r[l] over the lags before the autocorrelation first falls below a tenth, of a quarter of the samples at
@@ -130,7 +138,8 @@ double memory_of(const Eigen::Ref<const Vector>& e, double power) {
 }
 
 /// The reference as a force, and what it makes of a nominal limb on the robot.
-Instruments from_force(const Regression& r, const std::vector<RowRange>& ranges, Index lags) {
+Instruments from_force(const Regression& r, const InstrumentRows& rows) {
+  const std::vector<RowRange>& ranges = rows.ranges;
   const Index n = r.axes();
   const Matrix force = with_constant(r.reference.rightCols(n), ranges).leftCols(n);
   const std::vector<RowRange> whole = joined(r.identification, r.validation);
@@ -147,36 +156,37 @@ Instruments from_force(const Regression& r, const std::vector<RowRange>& ranges,
     if (!fit || !fit->coefficients.allFinite()) break;
     total = fit->coefficients;
   }
-  complete(r, ranges, lags, result);
+  complete(r, rows, result);
   return result;
 }
 
-Instruments from_position(const Regression& r, const std::vector<RowRange>& ranges, Index lags) {
-  Instruments result{with_constant(r.reference, ranges), ReferenceQuantity::position, {}};
-  complete(r, ranges, lags, result);
+Instruments from_position(const Regression& r, const InstrumentRows& rows) {
+  Instruments result{with_constant(r.reference, rows.ranges), ReferenceQuantity::position, {}};
+  complete(r, rows, result);
   return result;
 }
 
 }  // namespace
 
 Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity,
-                                     const std::vector<RowRange>& ranges, Index lags) {
+                                     const InstrumentRows& rows) {
   const Index n = r.axes();
   if (r.reference.size() == 0) {
     return bad_data("there is no reference, so that nothing is known that could serve as an instrument",
                     "record the perturbation as channel reference (xr, yr), or use --method ls");
   }
-  const Matrix moves = rows_of(r.reference.rightCols(n), ranges);
+  const SelectedRows reference(r.reference, rows.ranges);
   for (Index j = 0; j < n; ++j) {
-    if (moves.col(j).maxCoeff() > moves.col(j).minCoeff()) continue;
+    const auto moves = reference->col(2 * n + j);
+    if (moves.maxCoeff() > moves.minCoeff()) continue;
     return bad_data("the reference never changes in one axis, so that it cannot serve as an instrument",
                     "perturb in every axis, or use --method ls");
   }
-  if (quantity == ReferenceQuantity::force) return from_force(r, ranges, lags);
-  Instruments position = from_position(r, ranges, lags);
+  if (quantity == ReferenceQuantity::force) return from_force(r, rows);
+  Instruments position = from_position(r, rows);
   if (position.strength.minCoeff() > kStrong) return position;
   // A reference of steps has no derivatives, and one without a unit may be a force: what a system makes of it remains.
-  Instruments response = from_force(r, ranges, lags);
+  Instruments response = from_force(r, rows);
   if (quantity == ReferenceQuantity::position) response.from = ReferenceQuantity::position;
   return response.strength.minCoeff() > position.strength.minCoeff() ? std::move(response) : std::move(position);
 }

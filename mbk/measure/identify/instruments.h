@@ -16,16 +16,23 @@ struct Instruments {
   Matrix gram = {};                                     ///< [R Z Y]ᵀ[R Z Y] of the rows that count
 };
 
+/// Which rows count, and of how many. The products of all of them give the fit; how strong the instruments are is asked
+/// of the rows that the filters' cutoff needs.
+struct InstrumentRows {
+  const std::vector<RowRange>& ranges;
+  Index lags;  ///< of the residuals' covariance, rows
+  Index step;  ///< the first of so many holds all that they hold
+};
+
 /// From a position reference: [r̈ ṙ r 1], filtered as the motion is. From a force: the derivatives of
 ///   x̂ = (M_t s² + B_t s + K_t)⁻¹ F*,
 /// with M_t, B_t, K_t of robot and limb together, found from F* itself by least squares and then twice by the
 /// instruments of the pass before. What is instrumental about them is that they are made from F* alone: a nominal
 /// impedance that is wrong costs strength, not truth (Söderström & Stoica 1983). Where its unit does not say what the
 /// reference is, the stronger of both is taken.
-/// @param ranges rows that count    @param lags of the residuals' covariance, rows
 /// @fails the trials hold no filtered reference; it never changes.
 [[nodiscard]] Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity,
-                                                   const std::vector<RowRange>& ranges, Index lags);
+                                                   const InstrumentRows& rows);
 
 /// How much of what a model leaves is a linear answer to the known perturbation that no inertia, damping and stiffness
 /// gives: the residual on the instruments and on the reference as it was up to half a second before.

@@ -77,24 +77,29 @@ TEST(CoherentResidual, IsNotSaidOfFewRows) {
 }
 
 /// Where nothing was filtered every row counts; those that a low-pass at 5 Hz needs say nearly the same.
-TEST(CoherentResidual, TakesAsManyRowsAsTheCutoffNeeds) {
+TEST(Instruments, AreJudgedByAsManyRowsAsTheCutoffNeeds) {
   PreparedTrial prepared = testing_support::trial(testing_support::arm(), {.noise = 0.3});
+  const PreparedTrial other = testing_support::trial(testing_support::arm(), {.seed = 2});
   prepared.reference_motion.resize(prepared.time.size(), 6);
-  prepared.reference_motion << prepared.acceleration, prepared.velocity, prepared.position;
+  prepared.reference_motion << prepared.acceleration + 0.5 * other.acceleration,
+      prepared.velocity + 0.5 * other.velocity, prepared.position + 0.5 * other.position;
   constexpr Index kLate = 200;
   const Index rows = prepared.time.size() - kLate;
   prepared.force_hand_on_robot.bottomRows(rows) += 30.0 * prepared.position.topRows(rows);
   const auto found = [&] {
     const Comparison both = compare_methods({prepared}, {}).value();
-    return both.instrumental_variables.instrument.value().coherent_residual;
+    return both.instrumental_variables.instrument.value();
   };
   prepared.preparation.cutoff.reset();
-  const Vector of_every_row = found();
+  const InstrumentCheck of_every_row = found();
   prepared.preparation.cutoff = Hertz(5.0);
-  const Vector of_some = found();
-  ASSERT_EQ(of_some.size(), 2);
-  EXPECT_NE(of_some, of_every_row);
-  EXPECT_LE((of_some - of_every_row).cwiseAbs().maxCoeff(), 0.02);  // this noise passed no filter
+  const InstrumentCheck of_some = found();
+  const auto differ = [](const Vector& a, const Vector& b) { return (a - b).cwiseAbs().maxCoeff(); };
+  ASSERT_GT(of_every_row.strength.minCoeff(), 1.0);
+  EXPECT_NE(of_some.strength, of_every_row.strength);
+  EXPECT_LE(differ(of_some.strength.cwiseQuotient(of_every_row.strength), Vector::Ones(6)), 0.05);
+  EXPECT_NE(of_some.coherent_residual, of_every_row.coherent_residual);
+  EXPECT_LE(differ(of_some.coherent_residual, of_every_row.coherent_residual), 0.02);  // this noise passed no filter
 }
 
 }  // namespace instruments_test
