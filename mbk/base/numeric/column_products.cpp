@@ -23,8 +23,8 @@ template <class Lanes>
   return (four_left[0] + four_left[2]) + (four_left[1] + four_left[3]);
 }
 
-/// aᵢᵀ bⱼ of `Left`×`Right` columns over `rows` rows, added to `to` + i + stride·j. Of a triangle, whose `b` is `a`, those
-/// on and above the diagonal.
+/// aᵢᵀ bⱼ of `Left`×`Right` columns over `rows` rows, added to `to` + i + stride·j. Of a triangle, whose `b` is `a`,
+/// those on and above the diagonal.
 template <class Lanes, Index Left, Index Right, bool Triangle = false>
 [[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
                                             Index stride) {

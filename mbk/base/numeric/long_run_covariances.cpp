@@ -81,7 +81,10 @@ MBK_X86_64_V4 void move_v4(Moving* columns, std::size_t count, Index rows) {
 class Windows {
  public:
   Windows(Index kinds, Index k, Index lags)
-      : k_(k), before_(lags + 1), windows_(kTogether + kApart, kinds * k), moving_(static_cast<std::size_t>(kinds * k)) {
+      : k_(k),
+        before_(lags + 1),
+        windows_(kTogether + kApart, kinds * k),
+        moving_(static_cast<std::size_t>(kinds * k)) {
     for (Index kind = 0; kind < kinds; ++kind) grams_.emplace_back(k);
   }
 

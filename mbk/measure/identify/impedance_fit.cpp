@@ -66,7 +66,7 @@ class Fitter {
  private:
   [[nodiscard]] Result<Estimate> estimate(Method method, const std::vector<RowRange>& ranges, Index step = 1) const;
   [[nodiscard]] const Matrix& instruments(Method method) const {
-    return method == Method::least_squares ? r_.Z : instruments_->R;
+    return method == Method::least_squares ? r_.Z : instruments_->columns(r_);
   }
   [[nodiscard]] bool is_full(const Estimate& estimate) const { return estimate.rank == r_.Z.cols(); }
   [[nodiscard]] impedance::Model model_from(const Estimate& estimate) const;
@@ -171,6 +171,7 @@ Result<void> Fitter::prepare() {
       options_.parameters_from.value_or(pulses_by_default ? ParametersFrom::all : ParametersFrom::identification);
   all_ = from == ParametersFrom::all;
   ranges_ = all_ ? joined(r_.identification, r_.validation) : joined(r_.identification, {});
+  centre_reference(r_, ranges_);
   for (const RowRange& range : ranges_) samples_ += range.size();
   const double data_s = static_cast<double>(samples_) * r_.sample_time;
   if (options_.hac_lag_s > std::max(data_s, Options{}.hac_lag_s)) {
@@ -195,7 +196,8 @@ Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ra
   }
   const bool every_row = Y->rows() == samples_;
   auto fit = every_row ? numeric::fit_instrumental_variables(instruments_->gram, r_.Z.cols(), samples_, S_)
-                       : numeric::fit_instrumental_variables(*Z, *SelectedRows(instruments_->R, ranges, step), *Y, S_);
+                       : numeric::fit_instrumental_variables(*Z, *SelectedRows(instruments_->columns(r_), ranges, step),
+                                                             *Y, S_);
   if (!fit) return tl::unexpected(fit.error());
   return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse), fit->rank};
 }

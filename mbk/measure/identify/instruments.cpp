@@ -108,14 +108,15 @@ Matrix with_constant(const Matrix& motion, const std::vector<RowRange>& ranges) 
 
 /// How strong they are, and what they are multiplied with.
 void complete(const Regression& r, const InstrumentRows& rows, Instruments& made) {
-  const SelectedRows R(made.R, rows.ranges), Z(r.Z, rows.ranges), Y(r.Y, rows.ranges);
+  const Matrix& all = made.columns(r);
+  const SelectedRows R(all, rows.ranges), Z(r.Z, rows.ranges), Y(r.Y, rows.ranges);
   made.gram = numeric::gram_of({*R, *Z, *Y});
   const Index both = R->cols() + Z->cols();
   if (rows.step == 1) {
-    made.strength = numeric::first_stage_strength(*Z, *R, packed(rows.ranges, 1), rows.lags,
-                                                  made.gram.topLeftCorner(both, both));
+    made.strength =
+        numeric::first_stage_strength(*Z, *R, packed(rows.ranges, 1), rows.lags, made.gram.topLeftCorner(both, both));
   } else {
-    const SelectedRows some_R(made.R, rows.ranges, rows.step), some_Z(r.Z, rows.ranges, rows.step);
+    const SelectedRows some_R(all, rows.ranges, rows.step), some_Z(r.Z, rows.ranges, rows.step);
     const auto lags = static_cast<Index>(std::llround(static_cast<double>(rows.lags) / static_cast<double>(rows.step)));
     made.strength = numeric::first_stage_strength(*some_Z, *some_R, packed(rows.ranges, rows.step), lags);
   }
@@ -140,8 +141,7 @@ double memory_of(const Eigen::Ref<const Vector>& e, double power) {
 /// The reference as a force, and what it makes of a nominal limb on the robot.
 Instruments from_force(const Regression& r, const InstrumentRows& rows) {
   const std::vector<RowRange>& ranges = rows.ranges;
-  const Index n = r.axes();
-  const Matrix force = with_constant(r.reference.rightCols(n), ranges).leftCols(n);
+  const Matrix force = r.perturbation();
   const std::vector<RowRange> whole = joined(r.identification, r.validation);
   const SelectedRows Z(r.Z, ranges), target(force, ranges);
   Instruments result;
@@ -149,9 +149,9 @@ Instruments from_force(const Regression& r, const InstrumentRows& rows) {
   const double fastest = 0.5 / r.sample_time;  // [rad/s] about the top of the band that the rows carry
   Matrix total = numeric::PivotedQr(*Z).solve(*target);
   for (int pass = 0; pass <= kPasses; ++pass) {
-    result.R = with_constant(simulate(stable(total, fastest), force, r.sample_time, whole), ranges);
+    result.response = with_constant(simulate(stable(total, fastest), force, r.sample_time, whole), ranges);
     if (pass == kPasses) break;
-    const SelectedRows R(result.R, ranges);
+    const SelectedRows R(result.response, ranges);
     const auto fit = numeric::fit_instrumental_variables(*Z, *R, *target);
     if (!fit || !fit->coefficients.allFinite()) break;
     total = fit->coefficients;
@@ -161,15 +161,14 @@ Instruments from_force(const Regression& r, const InstrumentRows& rows) {
 }
 
 Instruments from_position(const Regression& r, const InstrumentRows& rows) {
-  Instruments result{with_constant(r.reference, rows.ranges), ReferenceQuantity::position, {}};
+  Instruments result{{}, ReferenceQuantity::position, {}};
   complete(r, rows, result);
   return result;
 }
 
 }  // namespace
 
-Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity,
-                                     const InstrumentRows& rows) {
+Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity, const InstrumentRows& rows) {
   const Index n = r.axes();
   if (r.reference.size() == 0) {
     return bad_data("there is no reference, so that nothing is known that could serve as an instrument",
@@ -194,7 +193,8 @@ Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quan
 Vector coherent_residual_fraction(const Regression& r, const Instruments& instruments,
                                   const std::vector<numeric::MatrixPart>& residuals,
                                   const std::vector<RowRange>& ranges, Index step) {
-  const Index n = r.axes(), p = instruments.R.cols(), k = n * std::ssize(residuals);
+  const Matrix& R = instruments.columns(r);
+  const Index n = r.axes(), p = R.cols(), k = n * std::ssize(residuals);
   const double between = static_cast<double>(step) * r.sample_time;  // rows [s]
   const Index every = std::max<Index>(1, std::llround(kReach / (between * static_cast<double>(kLagsOfAnswer)))) * step;
   const Index reach = every * kLagsOfAnswer, columns = p + n * kLagsOfAnswer;
@@ -217,8 +217,8 @@ Vector coherent_residual_fraction(const Regression& r, const Instruments& instru
         block.block(0, column, size, part.cols()) = part(taken, Eigen::all);
         column += part.cols();
       };
-      add(instruments.R, 0);
-      for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) add(r.reference.rightCols(n), lag * every);
+      add(R, 0);
+      for (Index lag = 1; lag <= kLagsOfAnswer; ++lag) add(r.perturbation(), lag * every);
       for (const numeric::MatrixPart& one : residuals) add(one, 0);
       sums.add(block.topRows(size));
     }

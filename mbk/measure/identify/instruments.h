@@ -10,10 +10,15 @@ namespace mbk::identify {
 /// What the known perturbation alone makes the limb do: the instruments of the regression, N×(3n+1), row by row beside
 /// its regressors [ẍ ẋ x 1].
 struct Instruments {
-  Matrix R;
+  Matrix response;  ///< what a force makes of a nominal limb, [motion 1]; empty where they are the reference itself
   ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
   Vector strength;                                      ///< 3n, conditional first-stage F of ẍ, ẋ, x
   Matrix gram = {};                                     ///< [R Z Y]ᵀ[R Z Y] of the rows that count
+
+  /// R, whose motion is about its mean in the rows that count.
+  [[nodiscard]] const Matrix& columns(const Regression& r) const {
+    return response.size() > 0 ? response : r.reference;
+  }
 };
 
 /// Which rows count, and of how many. The products of all of them give the fit; how strong the instruments are is asked

@@ -30,7 +30,8 @@ struct Left {
     const double memory = std::exp(-2.0 * M_PI * 1.5 * kSampleTime);
     regression.sample_time = kSampleTime;
     regression.Y.resize(kSamples, 1);
-    regression.reference.setZero(kSamples, 3);
+    regression.reference = Matrix::Zero(kSamples, 4);
+    regression.reference.rightCols(1).setOnes();
     Vector answered = Vector::Zero(kSamples), noise(kSamples);
     double last = 0.0;
     for (Index i = 0; i < kSamples; ++i) {
@@ -45,8 +46,6 @@ struct Left {
       noise[i] = last = memory * last + std::sqrt(1.0 - memory * memory) * normal(random);
     }
     residual.col(0) = answered + noise;
-    instruments.R.resize(kSamples, 4);
-    instruments.R << regression.reference, Vector::Ones(kSamples);
     const auto power = [](const Vector& of) { return (of.array() - of.mean()).square().sum(); };
     share = power(answered) / power(residual.col(0));
   }
@@ -70,8 +69,8 @@ TEST(CoherentResidual, IsTheShareThatAnswersTheReferenceWhicheverRowsAreTaken) {
 
 TEST(CoherentResidual, IsNotSaidOfFewRows) {
   const Left left(0.4);
-  EXPECT_TRUE(std::isnan(left.found({{0, 400}}, 1)));     // no row has a whole past
-  EXPECT_TRUE(std::isnan(left.found({{0, 512}}, 1)));     // less than two rows for each column
+  EXPECT_TRUE(std::isnan(left.found({{0, 400}}, 1)));  // no row has a whole past
+  EXPECT_TRUE(std::isnan(left.found({{0, 512}}, 1)));  // less than two rows for each column
   EXPECT_TRUE(std::isnan(left.found({{0, 860}}, 20)));
   EXPECT_FALSE(std::isnan(left.found({{0, 5000}}, 20)));
 }

@@ -142,8 +142,7 @@ class Tester {
     const Index lags = std::min(most, wanted),
                 ahead = std::llround(kAhead / (kBack + kAhead) * static_cast<double>(lags));
     Matrix around = Matrix::Zero(rows(), lags * n_);
-    const Vector mean = rows_of(r_.reference.rightCols(n_), ranges_).colwise().mean();
-    const Matrix reference = r_.reference.rightCols(n_).rowwise() - mean.transpose();
+    const auto reference = r_.perturbation();
     for (Index k = 0; k < rows(); ++k) {
       const auto place = static_cast<std::size_t>(k);
       for (Index lag = 0; lag < lags; ++lag) {

@@ -56,7 +56,7 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
   const bool known = with_rest && std::ranges::all_of(trials, [](const PreparedTrial& trial) {
                        return trial.reference_motion.size() > 0;
                      });
-  if (known) r.reference.resize(rows, 3 * n);
+  if (known) r.reference.resize(rows, 3 * n + 1);
   const bool computed = with_rest && std::ranges::all_of(trials, [](const PreparedTrial& trial) {
                           return trial.force_sensitivity.size() > 0;
                         });
@@ -76,7 +76,7 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
     r.Z.block(row, 2 * n, size, n) = trial.position.middleRows(begin, size);
     r.Z.block(row, 3 * n, size, 1).setOnes();
     r.Y.middleRows(row, size) = -trial.force_hand_on_robot.middleRows(begin, size);
-    if (known) r.reference.middleRows(row, size) = trial.reference_motion.middleRows(begin, size);
+    if (known) r.reference.middleRows(row, size) << trial.reference_motion.middleRows(begin, size), Vector::Ones(size);
     if (computed) r.force_sensitivity.middleRows(row, size) = trial.force_sensitivity.middleRows(begin, size);
     (segment->purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
     written = row + size;
@@ -96,6 +96,14 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
 }
 
 }  // namespace
+
+void centre_reference(Regression& r, const std::vector<RowRange>& ranges) {
+  if (r.reference.size() == 0) return;
+  auto motion = r.reference.leftCols(3 * r.axes());
+  const Vector mean = SelectedRows(r.reference, ranges)->leftCols(motion.cols()).colwise().mean();
+  motion.rowwise() -= mean.transpose();
+  recording::let_go(r.reference.data(), r.reference.size());
+}
 
 void put_on_disk(Matrix& columns) {
   if (columns.rows() >= kLong) recording::DiskPages().take(columns.data(), columns.size());

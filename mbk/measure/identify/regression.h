@@ -17,14 +17,16 @@ using numeric::RowRange;
 struct Regression {
   Matrix Z;          ///< N×(3n+1)
   Matrix Y;          ///< N×n, −F_h
-  Matrix reference;  ///< N×3n, [r̈ ṙ r] of the known perturbation, filtered like the motion; empty where it is not known
-  Vector centre;             ///< x̄, n
+  Matrix reference;  ///< N×(3n+1), [r̈ ṙ r 1] of the known perturbation, filtered like the motion; empty: not known
+  Vector centre;     ///< x̄, n
   Matrix force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ of a force that rests on a robot's coefficients; empty otherwise
   Matrix robot_covariance;  ///< p×p, of those; all trials rest on the same
   std::vector<RowRange> identification, validation;
   double sample_time = 0;
 
   [[nodiscard]] Index axes() const { return Y.cols(); }
+  /// r of the known perturbation, N×n.
+  [[nodiscard]] auto perturbation() const { return reference.middleCols(2 * axes(), axes()); }
 };
 
 /// The segments of all trials under each other; rows that do not count are left out. A break in time always starts a
@@ -33,6 +35,9 @@ struct Regression {
 
 /// The same without the reference and what the force rests on.
 [[nodiscard]] Regression stack_motion_and_force(const std::vector<PreparedTrial>& trials);
+
+/// Takes the mean of the rows that count from the known perturbation, its derivatives too.
+void centre_reference(Regression& r, const std::vector<RowRange>& ranges);
 
 /// Puts the columns of a long one on disk, and lets go of them until they are read again (disk_pages.h).
 void put_on_disk(Regression& r);
