@@ -54,15 +54,40 @@ inline std::optional<RealMatrix> lower_factor(RealMatrix A) {
 
 /// X of L Lᵀ X = B.
 inline RealMatrix solved(const RealMatrix& L, RealMatrix B) {
-  for (Index i = 0; i < L.rows(); ++i) {
-    for (Index k = 0; k < i; ++k) B.row(i) -= L(i, k) * B.row(k);
-    B.row(i) /= L(i, i);
-  }
-  for (Index i = L.rows(); i-- > 0;) {
-    for (Index k = i + 1; k < L.rows(); ++k) B.row(i) -= L(k, i) * B.row(k);
-    B.row(i) /= L(i, i);
+  const Index n = L.rows();
+  const Real* const l = L.data();  // plain loops, for tests are optimised little
+  for (Index column = 0; column < B.cols(); ++column) {
+    Real* const x = B.data() + column * n;
+    for (Index i = 0; i < n; ++i) {
+      for (Index k = 0; k < i; ++k) x[i] -= l[i + k * n] * x[k];
+      x[i] /= l[i + i * n];
+    }
+    for (Index i = n; i-- > 0;) {
+      for (Index k = i + 1; k < n; ++k) x[i] -= l[k + i * n] * x[k];
+      x[i] /= l[i + i * n];
+    }
   }
   return B;
+}
+
+/// Adds a multiple of `count` numbers.
+inline void add_times(Real factor, const Real* numbers, Index count, Real* to) {
+  for (Index i = 0; i < count; ++i) to[i] += factor * numbers[i];
+}
+
+/// A x
+inline RealVector product_of(const RealMatrix& A, const RealVector& x) {
+  RealVector product = RealVector::Zero(A.rows());
+  for (Index j = 0; j < A.cols(); ++j) add_times(x[j], A.data() + j * A.rows(), A.rows(), product.data());
+  return product;
+}
+
+/// tr(A B) of which Aᵀ is given.
+inline Real trace_of_product(const RealMatrix& A_transposed, const RealMatrix& B) {
+  Real sum = 0;
+  const Real *const a = A_transposed.data(), *const b = B.data();
+  for (Index i = 0; i < B.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
 /// The slow plain twin, which shares nothing with the solver but the statement: the barrier method
@@ -87,11 +112,11 @@ inline Vector minimum_by_barrier(const ConeProgram& program, const Vector& insid
   RealVector x = inside.cast<Real>();
   const auto at = [&](const std::vector<RealMatrix>& part, const RealVector& y) {
     RealMatrix S = part[0];
-    for (Index i = 0; i < v; ++i) S += y[i] * part[static_cast<std::size_t>(i) + 1];
+    for (Index i = 0; i < v; ++i) add_times(y[i], part[static_cast<std::size_t>(i) + 1].data(), S.size(), S.data());
     return S;
   };
   const auto barrier = [&](const RealVector& y, Real mu, bool& allowed) {
-    Real value = Real(0.5) * y.dot(P.lazyProduct(y)) + q.dot(y);
+    Real value = Real(0.5) * y.dot(product_of(P, y)) + q.dot(y);
     allowed = true;
     for (const auto& part : parts) {
       const std::optional<RealMatrix> L = lower_factor(at(part, y));
@@ -105,17 +130,20 @@ inline Vector minimum_by_barrier(const ConeProgram& program, const Vector& insid
   };
   for (Real mu = 10; mu > Real(1e-15); mu *= Real(0.4)) {
     for (int step = 0; step < 100; ++step) {
-      RealVector gradient = P.lazyProduct(x) + q;
+      RealVector gradient = product_of(P, x) + q;
       RealMatrix hessian = P;
       for (const auto& part : parts) {
         const RealMatrix L = lower_factor(at(part, x)).value();
         std::vector<RealMatrix> SA;
         for (Index i = 0; i < v; ++i) SA.push_back(solved(L, part[static_cast<std::size_t>(i) + 1]));
         for (Index i = 0; i < v; ++i) {
-          const auto& a = SA[static_cast<std::size_t>(i)];
+          const RealMatrix& a = SA[static_cast<std::size_t>(i)];
           gradient[i] -= mu * a.trace();
-          for (Index j = 0; j < v; ++j) {
-            hessian(i, j) += mu * (a.transpose().cwiseProduct(SA[static_cast<std::size_t>(j)])).sum();
+          const RealMatrix transposed = a.transpose();
+          for (Index j = 0; j <= i; ++j) {
+            const Real second = mu * trace_of_product(transposed, SA[static_cast<std::size_t>(j)]);
+            hessian(i, j) += second;
+            if (j < i) hessian(j, i) += second;
           }
         }
       }
