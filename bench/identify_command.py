@@ -21,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 
+import against
 import many_files
 import whole_command
 from whole_command import AGREEMENT, HERE, header, largest_difference, row, run
@@ -45,7 +46,8 @@ def peak(command, runs=9):
 
 
 def ratios(name, values):
-    print(f"  {name:<52}{min(values):10.2f}{statistics.median(values):10.2f}{max(values):10.2f}")
+    low, high = against.interval(values)
+    print(f"  {name:<52}{statistics.median(values):8.2f}   {low:5.2f} to {high:5.2f}   {min(values):7.2f}{max(values):9.2f}")
 
 
 def pairs_of(ours, theirs, turns):
@@ -99,7 +101,7 @@ def main():
     def over(pairs, which=1):
         return [b / a for a, b in zip(pairs[0], pairs[which])]
 
-    print("\nSciPy over mbk, pair by pair\n")
+    print(f"\nSciPy over mbk, pair by pair{'median':>33}   its 95 % interval   least greatest\n")
     ratios("identify, MAT v7", over(v7))
     ratios("identify, HDF5 uncompressed", over(hdf5))
     ratios("identify --mode reference, without Python's imports", over(exact, 2))

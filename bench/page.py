@@ -49,7 +49,7 @@ BIN = ("--bin", "{bin}")
 BENCHMARKS = [
     Benchmark("noise", "page.py", full=("--noise", "15", *BIN), short=("--noise", "6", *BIN)),
     Benchmark("whole_command", "whole_command.py", full=("--runs", "21", *BIN), short=("--runs", "3", *BIN)),
-    Benchmark("identify_command", "identify_command.py", full=("--runs", "21", *BIN), short=("--runs", "3", *BIN)),
+    Benchmark("identify_command", "identify_command.py", full=("--runs", "61", *BIN), short=("--runs", "3", *BIN)),
     Benchmark("pipeline", "pipeline.py", full=("--turns", "21", *BIN), short=("--turns", "3", *BIN)),
     Benchmark("python_layer", "python_layer.py", full=("--turns", "11", *BIN), short=("--turns", "2", *BIN)),
     Benchmark("many_files", "many_files.py", full=BIN, short=("--files", "4", "--runs", "1", *BIN)),
