@@ -28,7 +28,7 @@ template <class Lanes>
 template <class Lanes, Index Left, Index Right, bool Triangle = false>
 [[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
                                             Index stride) {
-  constexpr auto wanted = [](Index i, Index j) { return !Triangle || i <= j; };
+  const auto wanted = [](Index i, Index j) { return !Triangle || i <= j; };
   typename Lanes::V sum[Right][Left] = {};  // in registers, for loops of known length over them are unrolled
   Index t = 0;
   for (; t + Lanes::kWidth <= rows; t += Lanes::kWidth) {
