@@ -117,7 +117,9 @@ void complete(const Regression& r, const InstrumentRows& rows, Instruments& made
         numeric::first_stage_strength(*Z, *R, packed(rows.ranges, 1), rows.lags, made.gram.topLeftCorner(both, both));
   } else {
     const SelectedRows some_R(all, rows.ranges, rows.step), some_Z(r.Z, rows.ranges, rows.step);
-    const auto lags = static_cast<Index>(std::llround(static_cast<double>(rows.lags) / static_cast<double>(rows.step)));
+    // The window of lags + 1 rows stays as long as it is.
+    const auto window = static_cast<double>(rows.lags + 1) / static_cast<double>(rows.step);
+    const Index lags = std::max<Index>(1, std::llround(window)) - 1;
     made.strength = numeric::first_stage_strength(*some_Z, *some_R, packed(rows.ranges, rows.step), lags);
   }
 }
