@@ -333,14 +333,14 @@ const Matrix& Fitter::long_run(Method method) {
   return wanted;
 }
 
-/// Of the rows, the first of so many holds all that the filters of every trial leave; of each range 1000 are kept.
+/// Of the rows, the first of so many holds all that the filters of every trial leave.
 Index Fitter::rows_by_cutoff() const {
-  constexpr Index kRowsKept = 1000;
-  Index step = std::numeric_limits<Index>::max();
-  for (const RowRange& range : ranges_) step = std::min(step, range.size() / kRowsKept);
+  Index shortest = samples_;
+  for (const RowRange& range : ranges_) shortest = std::min(shortest, range.size());
+  Index step = shortest;
   for (const PreparedTrial& trial : trials_) {
     const auto& cutoff = trial.preparation.cutoff;
-    step = std::min(step, cutoff ? enough_of(Hertz(1.0 / trial.sample_time), *cutoff) : Index{1});
+    step = std::min(step, cutoff ? enough_of(Hertz(1.0 / trial.sample_time), *cutoff, shortest) : Index{1});
   }
   return std::max<Index>(1, step);
 }

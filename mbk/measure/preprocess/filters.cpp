@@ -16,8 +16,6 @@ namespace {
 
 /// The smoothing filter's own −3 dB lies this far above the cutoff: (6, 101) at 1 kHz for 5 Hz.
 constexpr double kSmoothingOverCutoff = 4.6;
-/// Rows of the shortest cut that are kept at least, so that its ends stay where they are.
-constexpr Index kMinRows = 1000;
 
 FilterPlan with_choices(FilterPlan plan, const Options& options) {
   if (options.smoothing_order) plan.smoothing.order = *options.smoothing_order;
@@ -70,9 +68,7 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   // A short pulse must keep most of its samples.
   const Index longest = std::max<Index>(shortest_cut / 4, order + 3) | 1;
   plan.smoothing.window = static_cast<int>(std::min<Index>(plan.smoothing.window, longest));
-  if (!options.no_lowpass) {
-    plan.every = std::max<Index>(1, std::min(enough_of(rate, Hertz(cutoff)), shortest_cut / kMinRows));
-  }
+  if (!options.no_lowpass) plan.every = enough_of(rate, Hertz(cutoff), shortest_cut);
   return with_choices(std::move(plan), options);
 }
 
