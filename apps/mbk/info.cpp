@@ -20,17 +20,12 @@ struct InfoArguments {
 };
 
 /// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
-/// @param trial  of the file; "": its only one
-int list_unrecognised(const InfoArguments& arguments, const std::string& trial, const Error& error,
+int list_unrecognised(const InfoArguments& arguments, const RecordingReader& reader, const Error& error,
                       const std::string& before = "") {
   if (arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) return report_error(error);
-  const bool of_trials = recording::open_trials(arguments.reading.files.front()).value_or(nullptr) != nullptr;
-  const bool no_arm = error.kind == ErrorKind::usage && of_trials && arguments.reading.arm.empty();
+  const bool no_arm = error.kind == ErrorKind::usage && reader.of_trials(0) && arguments.reading.arm.empty();
   if (error.kind != ErrorKind::data && !no_arm) return report_error(error);
-  recording::ReadOptions options;
-  options.trial = trial;
-  options.arm = arguments.reading.arm;
-  const auto contents = recording::list_contents(arguments.reading.files.front(), options);
+  const auto contents = reader.list_contents(0);
   if (!contents) return report_error(error);
   const std::string text =
       arguments.output.json ? result::to_json(*contents, error) : before + report::contents_text(*contents, error);
@@ -57,7 +52,7 @@ int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
   const std::string list =
       report::trials_text(arguments.reading.files.front().string(), names) + "\nThe first of them:\n";
   const auto first = reader.read(0);
-  if (!first) return list_unrecognised(arguments, trials.front().name, first.error(), list);
+  if (!first) return list_unrecognised(arguments, reader, first.error(), list);
   const std::string text = list + report::info_text(*first, recording::inspect(*first));
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
@@ -91,7 +86,7 @@ int run(const InfoArguments& arguments) {
       if (one) {
         add(std::move(*one));
       } else if (reader->count() == 1) {
-        return list_unrecognised(arguments, reading.trial, one.error());
+        return list_unrecognised(arguments, *reader, one.error());
       } else {
         code = std::max(code, report_error(one.error()));
       }

@@ -5,12 +5,13 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/mbk/caller.h"
 #include "mbk/base/core/natural_order.h"
+#include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/read.h"
 
 namespace mbk::app {
@@ -18,18 +19,14 @@ namespace named {
 
 namespace fs = std::filesystem;
 
-/// Of files in a folder; a file that is named is known by its content.
-constexpr auto kExtensions =
-    std::to_array<std::string_view>({".mat", ".h5", ".hdf5", ".csv", ".tsv", ".c3d", ".xdf", ".mcap", ".bag", ".kinarm",
-                                     ".zip", ".npy", ".npz", ".sto", ".mot", ".trc"});
-
 bool is_recording(const fs::directory_entry& entry) {
   std::error_code ignored;
   std::string extension = entry.path().extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::vector<std::string_view> known = recording::format_extensions();
   return entry.is_regular_file(ignored) && !entry.path().filename().string().starts_with('.') &&
-         std::ranges::find(kExtensions, extension) != kExtensions.end();
+         std::ranges::find(known, extension) != known.end();
 }
 
 std::vector<fs::path> sorted(std::vector<fs::path> files) {
@@ -39,8 +36,8 @@ std::vector<fs::path> sorted(std::vector<fs::path> files) {
 }
 
 Result<std::vector<fs::path>> files_in(const fs::path& folder) {
-  const auto runs = recording::list_trials(folder);
-  if (runs && !runs->empty()) return std::vector<fs::path>{folder};  // a BIDS data set
+  const auto set = recording::open(folder);
+  if (set && !recording::trials_of(**set).empty()) return std::vector<fs::path>{folder};  // a BIDS data set
   std::vector<fs::path> files;
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), last; !code && entry != last; entry.increment(code)) {
@@ -49,7 +46,7 @@ Result<std::vector<fs::path>> files_in(const fs::path& folder) {
   if (code) return bad_data("the folder cannot be read: " + code.message(), "check its permissions", folder.string());
   if (files.empty()) {
     return bad_data(
-        fmt::format("the folder holds no recording ({})", fmt::join(kExtensions, " ")),
+        fmt::format("the folder holds no recording ({})", fmt::join(recording::format_extensions(), " ")),
         fmt::format("name the files, or a pattern in quotes such as '{}'", (folder / "*" / "*.mat").string()),
         folder.string());
   }

@@ -44,13 +44,14 @@ std::string signals_text(const std::vector<recording::FileSignal>& signals) {
   return text;
 }
 
-Result<Recording> read_with(const NewChannelsArguments& arguments, const std::string& map) {
+Result<Recording> read_with(const recording::RecordingFile& file, const NewChannelsArguments& arguments,
+                            const std::string& map) {
   recording::ReadOptions options;
   auto channels = recording::parse_channel_map(map);
   if (!channels) return tl::unexpected(channels.error());
   options.channels = std::move(*channels);
   if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
-  return recording::read(arguments.file, options);
+  return recording::read(file, options);
 }
 
 /// What a person has to see before saying yes.
@@ -60,7 +61,9 @@ void tell(const std::string& text) {
 
 int run(const NewChannelsArguments& arguments) {
   if (auto ok = arguments.output.check({arguments.file}); !ok) return report_error(ok.error());
-  const auto contents = recording::read_contents(arguments.file);
+  const auto file = recording::open(arguments.file);
+  if (!file) return report_error(file.error());
+  const auto contents = recording::read_contents(**file);
   if (!contents) return report_error(contents.error());
   const auto signals = recording::signals_of(*contents);
   if (signals.empty()) {
@@ -78,7 +81,7 @@ int run(const NewChannelsArguments& arguments) {
 
   std::optional<Recording> recording;
   const auto check = [&](const std::string& map) -> std::string {
-    auto read = read_with(arguments, map);
+    auto read = read_with(**file, arguments, map);
     if (!read) return read.error().line();
     recording = std::move(*read);
     return "";

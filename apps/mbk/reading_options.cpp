@@ -12,6 +12,7 @@
 #include "apps/mbk/option_checks.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/channel_map.h"
+#include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/measure/preprocess/exclusions.h"
@@ -64,9 +65,7 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 void add_reading_options(Command command, ReadingArguments& arguments) {
   command
       .add_option(
-          "FILE", arguments.files,
-          "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d, .xdf, .kinarm, .zip of a KINARM exam, .npy, .npz, .sto, "
-          ".mot, .trc, or the folder of a BIDS data set")
+          "FILE", arguments.files, "recordings: " + recording::readable_files())
       .required();
   command
       .add_option("--channels", arguments.channels,
@@ -119,6 +118,8 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
     return bad_usage("--parts joins files of one record each, --trial takes one of several in a file",
                      "leave one of them out");
   }
+  constexpr std::size_t kMany = 64;  // files that a process may well hold open
+  const bool many = arguments.files.size() > kMany;
   for (const std::filesystem::path& file : arguments.files) {
     if (arguments.parts && recording_in_memory(file)) {
       return fail(ErrorKind::usage, "--parts joins files, and this is in memory", "join the arrays instead",
@@ -126,6 +127,11 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
     }
     auto records = arguments.parts ? Result<std::vector<Record>>({{file, ""}}) : records_of(file, arguments.trial);
     if (!records) return tl::unexpected(records.error());
+    if (many && !arguments.parts) {
+      for (const Record& one : *records) {
+        if (one.open) recording::rest(*one.open);
+      }
+    }
     reader.records_.insert(reader.records_.end(), records->begin(), records->end());
   }
   reader.parts_ = arguments.parts;
@@ -137,36 +143,30 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
 Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
                                                                          const std::string& trial) {
   if (auto given = recording_in_memory(file)) return std::vector<Record>{{file, trial, {}, std::move(given)}};
-  const auto open = recording::open_trials(file);
-  const auto trials = open && *open ? Result<std::vector<recording::TrialName>>(recording::trials_of(**open))
-                                    : recording::list_trials(file);
-  std::vector<Record> records;
-  if (!open || !trials || trials->empty()) {  // what is wrong with a file is said where it is read
-    std::error_code code;
-    if (open && trials && !trial.empty() && std::filesystem::exists(file, code)) {
-      return tl::unexpected(
-          bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out")
-              .value()
-              .in(file.string()));
-    }
-    return std::vector<Record>{{file, ""}};
+  if (journal::is_journal(file)) return std::vector<Record>{{file, ""}};  // which `read` refuses
+  auto open = recording::open(file);
+  if (!open) return std::vector<Record>{{file, "", {}, {}, open.error()}};  // said where it is read
+  const std::vector<recording::TrialName>& trials = recording::trials_of(**open);
+  const auto in_file = [&](tl::unexpected<Error> error) { return tl::unexpected(error.value().in(file.string())); };
+  if (trials.empty() && !trial.empty()) {
+    return in_file(bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out"));
   }
-  for (const recording::TrialName& one : *trials) {
+  std::vector<Record> records;
+  if (trials.empty()) records.push_back({file, "", *open});
+  for (const recording::TrialName& one : trials) {
     if (trial.empty() || one.name == trial) records.push_back({file, one.name, *open});
   }
   if (!records.empty()) return records;
-  return tl::unexpected(bad_usage(fmt::format("there is no trial '{}'", trial),
-                                  fmt::format("there are {} trials, {} to {}; 'mbk info' lists them", trials->size(),
-                                              trials->front().name, trials->back().name))
-                            .value()
-                            .in(file.string()));
+  return in_file(bad_usage(fmt::format("there is no trial '{}'", trial),
+                           fmt::format("there are {} trials, {} to {}; 'mbk info' lists them", trials.size(),
+                                       trials.front().name, trials.back().name)));
 }
 
 std::vector<recording::TrialName> RecordingReader::trials() const {
-  std::vector<recording::TrialName> trials;
-  if (parts_ || records_.size() < 2 || records_.front().file != records_.back().file) return trials;
-  trials = records_.front().open ? recording::trials_of(*records_.front().open)
-                                 : recording::list_trials(records_.front().file).value_or(trials);
+  if (parts_ || records_.size() < 2 || records_.front().file != records_.back().file || !records_.front().open) {
+    return {};
+  }
+  const std::vector<recording::TrialName>& trials = recording::trials_of(*records_.front().open);
   return trials.size() == records_.size() ? trials : std::vector<recording::TrialName>();
 }
 
@@ -180,7 +180,7 @@ Result<Recording> RecordingReader::read(int k) const {
 }
 
 Result<Recording> RecordingReader::read_stored(int k) const {
-  if (const auto& given = records_[static_cast<std::size_t>(k)].in_memory) {
+  if (const auto& given = record(k).in_memory) {
     auto recording = given->read(options_of(k));
     if (!recording) return tl::unexpected(recording.error().in(file(k).string()));
     if (recording->sources.empty()) recording->sources.push_back({file(k).string(), "arrays in memory", ""});
@@ -192,18 +192,30 @@ Result<Recording> RecordingReader::read_stored(int k) const {
   }
   if (is_long(file(k))) give_back_large_blocks();
   const recording::ReadOptions options = options_of(k);
-  return parts_ ? recording::read_parts(files(), options) : recording::read(file(k), options);
+  if (parts_) return recording::read_parts(files(), options);
+  if (record(k).refused) return tl::unexpected(*record(k).refused);
+  return recording::read(*record(k).open, options);
+}
+
+Result<FileContents> RecordingReader::list_contents(int k) const {
+  if (record(k).refused) return tl::unexpected(*record(k).refused);
+  if (!record(k).open) return bad_data("it is no file whose contents could be listed", "", file(k).string());
+  return recording::list_contents(*record(k).open, options_of(k));
+}
+
+bool RecordingReader::of_trials(int k) const {
+  return record(k).open && !recording::trials_of(*record(k).open).empty();
 }
 
 Result<recording::Contents> RecordingReader::read_contents(int k) const {
-  const auto& given = records_[static_cast<std::size_t>(k)].in_memory;
-  return given ? given->contents() : recording::read_contents(file(k), options_of(k));
+  if (const auto& given = record(k).in_memory) return given->contents();
+  if (record(k).refused) return tl::unexpected(*record(k).refused);
+  return recording::read_contents(*record(k).open, options_of(k));
 }
 
 recording::ReadOptions RecordingReader::options_of(int k) const {
   recording::ReadOptions options = options_;
-  options.trial = records_[static_cast<std::size_t>(k)].trial;
-  options.open = records_[static_cast<std::size_t>(k)].open;
+  options.trial = record(k).trial;
   return options;
 }
 

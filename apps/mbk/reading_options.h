@@ -55,6 +55,10 @@ class RecordingReader {
   /// Where --sensor is given, the force is that of its voltages.
   /// @param k  0 … count() − 1    @fails  as recording::read; the error names the file.
   [[nodiscard]] Result<Recording> read(int k) const;
+  /// What the file holds under its own names.   @fails  as recording::list_contents
+  [[nodiscard]] Result<FileContents> list_contents(int k) const;
+  /// Whether FILE holds several trials or arms.
+  [[nodiscard]] bool of_trials(int k) const;
   /// What stands in it, before anything is said about channels.   @fails  as recording::read_contents
   [[nodiscard]] Result<recording::Contents> read_contents(int k) const;
   /// As `read`, of a session's recording only the perturbation.   @fails  data: the person has withdrawn.
@@ -64,12 +68,14 @@ class RecordingReader {
   struct Record {
     std::filesystem::path file;
     std::string trial;                                          ///< "": the only one of the file
-    std::shared_ptr<const recording::OpenTrials> open = {};     ///< the file, where it holds several
+    std::shared_ptr<const recording::RecordingFile> open = {};  ///< the file; nullptr: `refused`, or a journal
     std::shared_ptr<const recording::InMemory> in_memory = {};  ///< in place of a file
+    std::optional<Error> refused = {};                          ///< why it cannot be opened, for whoever reads it
   };
   /// FILE as the records that it holds.
   [[nodiscard]] static Result<std::vector<Record>> records_of(const std::filesystem::path& file,
                                                               const std::string& trial);
+  [[nodiscard]] const Record& record(int k) const { return records_[static_cast<std::size_t>(k)]; }
 
   [[nodiscard]] std::vector<std::filesystem::path> files() const;
   [[nodiscard]] recording::ReadOptions options_of(int k) const;

@@ -65,6 +65,20 @@ bool looks_like_gzip(std::span<const std::byte> file) {
          file[2] == std::byte{8};
 }
 
+std::string gunzip_begin(std::span<const std::byte> file, std::size_t count) {
+  z_stream stream{};
+  if (!looks_like_gzip(file) || inflateInit2(&stream, kGzip) != Z_OK) return {};
+  const std::unique_ptr<z_stream, EndInflating> end(&stream);
+  std::string begin(count, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(file.data()));
+  stream.avail_in = static_cast<uInt>(file.size());
+  stream.next_out = reinterpret_cast<Bytef*>(begin.data());
+  stream.avail_out = static_cast<uInt>(count);
+  inflate(&stream, Z_NO_FLUSH);
+  begin.resize(count - stream.avail_out);
+  return begin;
+}
+
 Result<Buffer> gunzip(std::span<const std::byte> file) {
   if (!looks_like_gzip(file)) return gzip_damaged("it does not begin as one");
   z_stream stream{};

@@ -33,12 +33,12 @@ struct Descriptor {
   }
 };
 
-struct OpenFile {
+struct Opened {
   Descriptor descriptor;
   std::size_t size;
 };
 
-Result<OpenFile> open_file(const std::filesystem::path& file) {
+Result<Opened> open_file(const std::filesystem::path& file) {
   // O_NONBLOCK: opening a pipe must not wait for its writer.
   Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (descriptor.number < 0) {
@@ -54,13 +54,14 @@ Result<OpenFile> open_file(const std::filesystem::path& file) {
     return bad_data(fmt::format("file size {} bytes is above the limit of {}", status.st_size, kLargestFile),
                     "split the recording into numbered parts");
   }
-  return OpenFile{std::move(descriptor), static_cast<std::size_t>(status.st_size)};
+  return Opened{std::move(descriptor), static_cast<std::size_t>(status.st_size)};
 }
 
 /// Reads until all of it is there.
-Result<void> read_bytes(int descriptor, void* to, std::size_t count) {
+Result<void> read_bytes(int descriptor, std::size_t from, void* to, std::size_t count) {
   for (std::size_t done = 0; done < count;) {
-    const ssize_t got = ::read(descriptor, static_cast<std::byte*>(to) + done, count - done);
+    const ssize_t got =
+        ::pread(descriptor, static_cast<std::byte*>(to) + done, count - done, static_cast<off_t>(from + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
     if (got == 0) return bad_data("the file became shorter while it was read", "wait until it is written completely");
@@ -97,37 +98,94 @@ void FreeBytes::operator()(std::byte* bytes) const {
 
 Buffer::Buffer(std::size_t n) : data(n >= std::size_t{16} << 20 ? mapped_bytes(n) : bytes_of_heap(n)), size(n) {}
 
-std::string begin_of(const std::filesystem::path& file, std::size_t count) {
-  const auto open = open_file(file);
-  if (!open) return {};
-  std::string bytes(std::min(count, open->size), '\0');
-  return read_bytes(open->descriptor.number, bytes.data(), bytes.size()) ? bytes : std::string();
+namespace {
+
+Result<Buffer> read_whole(int descriptor, std::size_t size) {
+  // The numbers in it take at least as much again, before its bytes can go.
+  if (auto ok = check_memory(2 * std::uint64_t{size}); !ok) return tl::unexpected(ok.error());
+  Buffer buffer(size);
+  if (auto ok = read_bytes(descriptor, 0, buffer.data.get(), size); !ok) return tl::unexpected(ok.error());
+  return buffer;
 }
+
+}  // namespace
 
 Result<Buffer> read_file(const std::filesystem::path& file) {
   const auto open = open_file(file);
   if (!open) return tl::unexpected(open.error());
-  // The numbers in it take at least as much again, before its bytes can go.
-  if (auto ok = check_memory(2 * std::uint64_t{open->size}); !ok) return tl::unexpected(ok.error());
-  Buffer buffer(open->size);
-  if (auto ok = read_bytes(open->descriptor.number, buffer.data.get(), buffer.size); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  return buffer;
+  return read_whole(open->descriptor.number, open->size);
 }
 
-Result<FileInPassing> FileInPassing::open(const std::filesystem::path& file) {
-  auto open = open_file(file);
-  if (!open) return tl::unexpected(open.error());
-  void* const room =
-      ::mmap(nullptr, open->size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+Result<OpenFile> OpenFile::open(const std::filesystem::path& file) {
+  OpenFile made;
+  made.path_ = file;
+  if (auto ok = made.wake(); !ok) return tl::unexpected(ok.error());
+  made.begin_.resize(std::min(kBegin, made.size_));
+  if (auto ok = read_bytes(made.descriptor_, 0, made.begin_.data(), made.begin_.size()); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  return made;
+}
+
+OpenFile::OpenFile(OpenFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_),
+      begin_(std::move(other.begin_)),
+      bytes_(std::move(other.bytes_)),
+      passing_sum_(std::move(other.passing_sum_)),
+      sum_(std::move(other.sum_)) {}
+
+OpenFile::~OpenFile() {
+  rest();
+}
+
+void OpenFile::rest() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+Result<void> OpenFile::wake() {
+  if (descriptor_ >= 0) return {};
+  auto opened = open_file(path_);
+  if (!opened) return tl::unexpected(opened.error());
+  descriptor_ = std::exchange(opened->descriptor.number, -1);
+  size_ = opened->size;
+  return {};
+}
+
+Result<std::shared_ptr<Buffer>> OpenFile::bytes() {
+  if (bytes_ != nullptr) return bytes_;
+  if (auto ok = wake(); !ok) return tl::unexpected(ok.error());
+  auto all = read_whole(descriptor_, size_);
+  if (!all) return tl::unexpected(all.error());
+  sum_ = recording::sha256(all->bytes());
+  bytes_ = std::make_shared<Buffer>(std::move(*all));
+  return bytes_;
+}
+
+Result<std::shared_ptr<Buffer>> OpenFile::take() {
+  auto all = bytes();
+  bytes_.reset();
+  return all;
+}
+
+Result<FileInPassing> OpenFile::in_passing() {
+  if (auto ok = wake(); !ok) return tl::unexpected(ok.error());
+  void* const room = ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();
-  ::madvise(room, open->size, MADV_HUGEPAGE);  // only advice: it may fail
-  return FileInPassing(std::exchange(open->descriptor.number, -1), open->size, static_cast<char*>(room));
+  ::madvise(room, size_, MADV_HUGEPAGE);  // only advice: it may fail
+  passing_sum_ = std::make_shared<Sha256>();
+  return FileInPassing(descriptor_, size_, static_cast<char*>(room), passing_sum_);
+}
+
+const std::string& OpenFile::sha256() {
+  if (sum_.empty() && passing_sum_ != nullptr) sum_ = passing_sum_->hex();
+  return sum_;
 }
 
 FileInPassing::FileInPassing(FileInPassing&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)),
+    : descriptor_(other.descriptor_),
       size_(other.size_),
       read_(other.read_),
       forgotten_(other.forgotten_),
@@ -138,15 +196,14 @@ FileInPassing::FileInPassing(FileInPassing&& other) noexcept
 
 FileInPassing::~FileInPassing() {
   if (ahead_.valid()) ahead_.wait();
-  if (descriptor_ >= 0) ::close(descriptor_);
   if (data_ != nullptr) ::munmap(data_, size_);
 }
 
 void FileInPassing::read_ahead() {
   use_spare();
-  const auto read = [descriptor = descriptor_, to = data_ + read_, count = std::min(kPiece, size_ - read_),
-                     sum = sum_.get()]() -> Result<void> {
-    if (auto ok = read_bytes(descriptor, to, count); !ok) return ok;
+  const auto read = [descriptor = descriptor_, from = read_, to = data_ + read_,
+                     count = std::min(kPiece, size_ - read_), sum = sum_.get()]() -> Result<void> {
+    if (auto ok = read_bytes(descriptor, from, to, count); !ok) return ok;
     sum->add(std::as_bytes(std::span(to, count)));
     return {};
   };

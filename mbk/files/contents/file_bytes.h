@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <future>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,8 +46,6 @@ class FileInPassing {
  public:
   static constexpr std::size_t kPiece = std::size_t{4} << 20;  ///< that is read at a time
 
-  /// @fails  as read_file
-  [[nodiscard]] static Result<FileInPassing> open(const std::filesystem::path& file);
   FileInPassing(FileInPassing&& other) noexcept;
   FileInPassing(const FileInPassing&) = delete;
   FileInPassing& operator=(const FileInPassing&) = delete;
@@ -61,28 +60,71 @@ class FileInPassing {
   [[nodiscard]] Result<void> read_on();
   /// The bytes before that place are needed no more, but for the first piece.
   void forget(std::size_t before);
-  /// Of the whole file, which must have been read.
-  [[nodiscard]] std::string sha256() { return sum_->hex(); }
 
  private:
-  FileInPassing(int descriptor, std::size_t size, char* data) : descriptor_(descriptor), size_(size), data_(data) {}
+  friend class OpenFile;
+  FileInPassing(int descriptor, std::size_t size, char* data, std::shared_ptr<Sha256> sum)
+      : descriptor_(descriptor), size_(size), data_(data), sum_(std::move(sum)) {}
   /// Reads the next piece and adds it to the sum, beside whoever works on what is there.
   void read_ahead();
   void use_spare();
 
-  int descriptor_;
+  int descriptor_;  ///< of the OpenFile
   std::size_t size_, read_ = 0, forgotten_ = kPiece;
   char* data_;             ///< as much room as the file needs, of which only what is written to takes memory
   char* spare_ = nullptr;  ///< a piece that was forgotten, in memory
-  std::unique_ptr<Sha256> sum_ = std::make_unique<Sha256>();
+  std::shared_ptr<Sha256> sum_;
   std::future<Result<void>> ahead_;  ///< of the piece behind what was read
 };
 
-/// The first bytes of a file, or as many as it has; none of what is no file, or cannot be read.
-[[nodiscard]] std::string begin_of(const std::filesystem::path& file, std::size_t count);
+/// A regular file that is opened once, whatever is read of it. For one thread at a time.
+class OpenFile {
+ public:
+  static constexpr std::size_t kBegin = std::size_t{64} << 10;
+
+  /// @fails  data: missing, a folder or device, not readable, empty, larger than kLargestFile.
+  [[nodiscard]] static Result<OpenFile> open(const std::filesystem::path& file);
+  OpenFile(OpenFile&& other) noexcept;
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  OpenFile& operator=(OpenFile&&) = delete;
+  ~OpenFile();
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// The first kBegin bytes, or all where there are fewer.
+  [[nodiscard]] std::string_view begin() const { return begin_; }
+  [[nodiscard]] std::span<const std::byte> begin_bytes() const { return std::as_bytes(std::span(begin_)); }
+
+  /// The whole file, which stays in memory until `take` or the end of this.
+  /// @fails  data: it cannot be read, became shorter, or there is not enough memory.
+  [[nodiscard]] Result<std::shared_ptr<Buffer>> bytes();
+  /// The same, so that it goes when its last user lets it go.
+  [[nodiscard]] Result<std::shared_ptr<Buffer>> take();
+  /// The file from its first byte on. This object must outlive it.
+  /// @fails  data: it cannot be read.
+  [[nodiscard]] Result<FileInPassing> in_passing();
+
+  /// 64 hexadecimal digits, of bytes that were read to the end; "" before.
+  [[nodiscard]] const std::string& sha256();
+
+  /// Closes the file until it is read again: for whoever holds hundreds of them.
+  void rest();
+
+ private:
+  OpenFile() = default;
+  [[nodiscard]] Result<void> wake();
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::size_t size_ = 0;
+  std::string begin_;
+  std::shared_ptr<Buffer> bytes_;
+  std::shared_ptr<Sha256> passing_sum_;
+  std::string sum_;
+};
 
 /// The whole file.
-/// @fails  data: missing, a directory or device, not readable, empty, larger than kLargestFile.
+/// @fails  as OpenFile
 [[nodiscard]] Result<Buffer> read_file(const std::filesystem::path& file);
 
 }  // namespace mbk::recording

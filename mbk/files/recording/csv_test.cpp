@@ -371,11 +371,11 @@ TEST(DecodeCsv, OfAFileInPassingIsThatOfTheWholeText) {
   while (wide.size() < kPiece) wide += fmt::format("{:.100f},{:.100f},3\n", 0.25, 0.5);
   for (const std::string& text : {long_table(3 * kPiece + 100, header), long_table(2 * kPiece, header) + "12,5",
                                   long_table(kPiece, header), std::string("1,2,3\n"), wide + long_table(kPiece, "")}) {
-    const auto file = folder.write("table.csv", text);
-    auto passing = FileInPassing::open(file).value();
+    auto file = OpenFile::open(folder.write("table.csv", text)).value();
+    auto passing = file.in_passing().value();
     ASSERT_TRUE(passing.read_on());
     const Contents found = decode_csv(passing).value(), expected = csv(text).value();
-    EXPECT_EQ(passing.sha256(), sha256(std::as_bytes(std::span(text))));
+    EXPECT_EQ(file.sha256(), sha256(std::as_bytes(std::span(text))));
     EXPECT_EQ(found.notes, expected.notes);
     ASSERT_EQ(found.arrays.size(), expected.arrays.size());
     for (std::size_t k = 0; k < found.arrays.size(); ++k) {
@@ -389,7 +389,8 @@ TEST(DecodeCsv, OfALongFileInPassingHoldsNoMoreThanItsEnd) {
   const test::Folder folder;
   std::string text = "t,x\n";
   for (Index row = 0; row < kLong + kLong / 4; ++row) text += row % 2 == 0 ? "0.25,-3\n" : "7,1.5\n";
-  auto passing = FileInPassing::open(folder.write("table.csv", text)).value();
+  auto file = OpenFile::open(folder.write("table.csv", text)).value();
+  auto passing = file.in_passing().value();
   ASSERT_TRUE(passing.read_on());
   const Contents found = decode_csv(passing).value(), expected = csv(text).value();
   const Index all = found.arrays[0].values.rows() / 512;  // pages of 4 kB
@@ -404,7 +405,8 @@ TEST(DecodeCsv, OfALongFileInPassingHoldsNoMoreThanItsEnd) {
 TEST(DecodeCsv, OfAFileInPassingNamesTheLineOfAnErrorBehindTheFirstPiece) {
   const test::Folder folder;
   const std::string text = long_table(2 * FileInPassing::kPiece, "t,x,F\n") + "1,2\n4,5,6\n";
-  auto passing = FileInPassing::open(folder.write("table.csv", text)).value();
+  auto file = OpenFile::open(folder.write("table.csv", text)).value();
+  auto passing = file.in_passing().value();
   ASSERT_TRUE(passing.read_on());
   const auto found = decode_csv(passing);
   ASSERT_FALSE(found);
@@ -415,7 +417,8 @@ TEST(DecodeCsv, OfAFileInPassingNamesTheLineOfAnErrorBehindTheFirstPiece) {
 TEST(DecodeCsv, OfAFileThatBecomesShorterSaysSo) {
   const test::Folder folder;
   const auto file = folder.write("table.csv", long_table(3 * FileInPassing::kPiece, "t,x,F\n"));
-  auto passing = FileInPassing::open(file).value();
+  auto open = OpenFile::open(file).value();
+  auto passing = open.in_passing().value();
   ASSERT_TRUE(passing.read_on());
   std::filesystem::resize_file(file, FileInPassing::kPiece + 1000);
   const auto found = decode_csv(passing);

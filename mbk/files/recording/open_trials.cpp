@@ -18,7 +18,7 @@ namespace {
 
 class ExamTrials : public OpenTrials {
  public:
-  ExamTrials(KinarmExam exam, std::shared_ptr<const Buffer> file) : exam_(std::move(exam)), file_(std::move(file)) {}
+  ExamTrials(KinarmExam exam, std::string sha256) : exam_(std::move(exam)), sha256_(std::move(sha256)) {}
 
   [[nodiscard]] const std::vector<TrialName>& trials() const override { return exam_.trials(); }
 
@@ -28,25 +28,16 @@ class ExamTrials : public OpenTrials {
     if (!options.arm.empty()) choice.arm = options.arm == "left" ? Arm::left : Arm::right;
     auto contents = exam_.decode(choice);
     if (!contents) return tl::unexpected(contents.error());
-    SourceFile source{file.string(), contents->format, sum()};
+    SourceFile source{file.string(), contents->format, sha256_};
     if (trials().size() > 1) source.trial = options.trial;
     return Decoded{std::move(*contents), std::move(source)};
   }
 
  private:
-  /// Of the file; computed when it is asked for first.
-  [[nodiscard]] std::string sum() const {
-    std::call_once(once_, [&] { sum_ = sha256(file_->bytes()); });
-    return sum_;
-  }
-
   KinarmExam exam_;
-  std::shared_ptr<const Buffer> file_;
-  mutable std::once_flag once_;
-  mutable std::string sum_;
+  std::string sha256_;  ///< of the file
 };
 
-/// The recordings of a BIDS data set.
 class BidsTrials : public OpenTrials {
  public:
   explicit BidsTrials(std::vector<BidsRun> runs) : runs_(std::move(runs)) {
@@ -91,23 +82,16 @@ class BidsTrials : public OpenTrials {
 
 }  // namespace
 
-Result<std::shared_ptr<const OpenTrials>> open_as_trials(const std::filesystem::path& file) {
-  if (may_be_bids(file)) {
-    auto runs = find_bids_runs(file);
-    if (!runs) return tl::unexpected(runs.error());
-    return std::make_shared<const BidsTrials>(std::move(*runs));
-  }
-  const std::string begin = begin_of(file, 64);
-  if (!ZipArchive::looks_like_zip(std::as_bytes(std::span(begin)))) return std::shared_ptr<const OpenTrials>();
-  auto bytes = read_file(file);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const auto shared = std::make_shared<const Buffer>(std::move(*bytes));
-  const auto archive = ZipArchive::open(shared->bytes());
-  if (!archive) return tl::unexpected(archive.error());
-  if (!KinarmExam::is_exam(*archive)) return std::shared_ptr<const OpenTrials>();
-  auto exam = KinarmExam::open(shared);
+Result<std::shared_ptr<const OpenTrials>> exam_trials(std::shared_ptr<const Buffer> file, std::string sha256) {
+  auto exam = KinarmExam::open(std::move(file));
   if (!exam) return tl::unexpected(exam.error());
-  return std::make_shared<const ExamTrials>(std::move(*exam), shared);
+  return std::make_shared<const ExamTrials>(std::move(*exam), std::move(sha256));
+}
+
+Result<std::shared_ptr<const OpenTrials>> bids_trials(const std::filesystem::path& folder) {
+  auto runs = find_bids_runs(folder);
+  if (!runs) return tl::unexpected(runs.error());
+  return std::make_shared<const BidsTrials>(std::move(*runs));
 }
 
 }  // namespace mbk::recording

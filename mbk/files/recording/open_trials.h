@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mbk/files/contents/contents.h"
+#include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/recording/read.h"
 
 namespace mbk::recording {
@@ -30,8 +31,12 @@ class OpenTrials {
                                                bool needs_arm) const = 0;
 };
 
-/// The file as one that can hold several records; nullptr where it is of a format that holds one.
-/// @fails  data: it is such a file, and cannot be read
-[[nodiscard]] Result<std::shared_ptr<const OpenTrials>> open_as_trials(const std::filesystem::path& file);
+/// The trials of a KINARM exam.
+/// @param sha256  of the file    @fails  data: it is damaged.
+[[nodiscard]] Result<std::shared_ptr<const OpenTrials>> exam_trials(std::shared_ptr<const Buffer> file,
+                                                                    std::string sha256);
+
+/// The recordings of a BIDS data set.   @fails  data: the folder cannot be read.
+[[nodiscard]] Result<std::shared_ptr<const OpenTrials>> bids_trials(const std::filesystem::path& folder);
 
 }  // namespace mbk::recording

@@ -15,9 +15,9 @@
 
 namespace mbk::recording {
 
-/// A file of several trials that was opened once, so that reading one of them opens nothing anew. May be used by
-/// several threads.
-class OpenTrials;
+/// A file or folder that was opened once for a command: its bytes, its hash, its format, the trials that it holds.
+/// Whatever is read of it opens nothing anew. May be used by several threads.
+class RecordingFile;
 
 struct ReadOptions {
   std::vector<ChannelSource> channels;  ///< empty: the file is recognised automatically
@@ -31,11 +31,23 @@ struct ReadOptions {
                          ///< "": they must come from one
   std::string trial;     ///< which record of a file or folder that holds several (`list_trials`); "": its only one
   std::string arm;       ///< "right" or "left": whose hand is the hand in a file of two arms; "": the only one
-  std::shared_ptr<const OpenTrials> open;  ///< the file, as `open_trials` gave it; nullptr: it is opened anew
 };
 
-/// Reads MAT (v4, v5, v6, v7, v7.3), HDF5, CSV and other tables, C3D, XDF, MCAP, bags of ROS 1, NumPy, OpenSim, KINARM
-/// exams and BIDS data sets; the format is decided by the content, never by the name of the file.
+/// Opens a recording: any format of `file_formats()`, which the content decides, never the name of the file.
+/// @fails  data: the file cannot be read or is of no known format.
+[[nodiscard]] Result<std::shared_ptr<const RecordingFile>> open(const std::filesystem::path& file);
+
+/// The records of a file or folder that can hold several: a KINARM exam, a BIDS data set. None where it is of a format
+/// that holds one.
+[[nodiscard]] const std::vector<TrialName>& trials_of(const RecordingFile& file);
+
+/// The first bytes; none of a folder.
+[[nodiscard]] std::string_view begin_of(const RecordingFile& file);
+
+/// Closes the file until it is read: for whoever holds hundreds of them.
+void rest(const RecordingFile& file);
+
+/// Reads one record of a file as a recording.
 ///
 /// Without a channel map these are recognised: a 19-row `logs` matrix (or the only matrix of 19 rows), and columns or
 /// variables that carry the names of the channel table ("hand_x", "Fx", "hand_x_mm", "time [ms]"). With a map, a number
@@ -49,27 +61,19 @@ struct ReadOptions {
 /// what there is); no time and no rate; a named source is not there; lengths differ.
 ///         usage: a rate that contradicts the time by more than 0.1 %; several matrices could be
 ///         meant; axes is not 0, 1 or 2.
+[[nodiscard]] Result<Recording> read(const RecordingFile& file, const ReadOptions& options);
+/// The same of a file that nobody else needs open.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options);
 
-/// The records of a file or folder that can hold several: a KINARM exam, a BIDS data set. Nothing where it is of a
-/// format that holds one.
-/// @fails  data: the file cannot be read or is damaged.
-[[nodiscard]] Result<std::vector<TrialName>> list_trials(const std::filesystem::path& file);
-
-/// The file, for `ReadOptions::open`; nullptr where it is of a format that holds one record, or is a folder.
-/// @fails  as list_trials
-[[nodiscard]] Result<std::shared_ptr<const OpenTrials>> open_trials(const std::filesystem::path& file);
-[[nodiscard]] const std::vector<TrialName>& trials_of(const OpenTrials& open);
-
 /// What the file holds under its own names, whether or not any of it is recognised as a channel.
-/// @param options  of which `trial`, `arm` and `open` count
-/// @fails  data: the file cannot be read, is damaged or of another format.
-[[nodiscard]] Result<FileContents> list_contents(const std::filesystem::path& file, const ReadOptions& options = {});
+/// @param options  of which `trial` and `arm` count
+/// @fails  data: the file is damaged.
+[[nodiscard]] Result<FileContents> list_contents(const RecordingFile& file, const ReadOptions& options = {});
 
 /// The same with all numbers, as they stand: for a file of which nothing is recognised, and which is to be copied.
 /// @param options  as of list_contents
 /// @fails  as list_contents
-[[nodiscard]] Result<Contents> read_contents(const std::filesystem::path& file, const ReadOptions& options = {});
+[[nodiscard]] Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& options = {});
 
 /// Whether `read` refused a sound file for this alone, that no channel of it is recognised.
 [[nodiscard]] bool nothing_is_recognised(const Error& error);

@@ -594,7 +594,7 @@ TEST(ReadRealFiles, MatricesOfEveryVersionHoldTheSameNumbers) {
 
 TEST(ListContents, ShowsWhatIsThereUnderItsOwnNames) {
   const test::Folder folder;
-  const auto contents = list_contents(folder.write("trial.csv", "u,v\n1,nan\n-3,5\n"));
+  const auto contents = list_contents(*open(folder.write("trial.csv", "u,v\n1,nan\n-3,5\n")).value());
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_TRUE(contents->table);
   ASSERT_EQ(contents->arrays.size(), 2u);
@@ -602,7 +602,7 @@ TEST(ListContents, ShowsWhatIsThereUnderItsOwnNames) {
   EXPECT_EQ(contents->arrays[0].rows, 2);
   EXPECT_EQ(contents->arrays[0].minimum, -3.0);
   EXPECT_EQ(contents->arrays[1].minimum, 5.0);  // NaN is left out
-  EXPECT_FALSE(list_contents(folder / "none.csv"));
+  EXPECT_FALSE(open(folder / "none.csv"));
 }
 
 TEST(ReadRealFiles, AKneeAsAnalogChannels) {

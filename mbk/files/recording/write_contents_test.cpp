@@ -53,7 +53,7 @@ class WriteContents : public testing::Test {
     EXPECT_TRUE(written) << written.error().line();
     if (!written) return {};
     said = *written;
-    auto read = read_contents(folder_ / name);
+    auto read = read_contents(*open(folder_ / name).value());
     EXPECT_TRUE(read) << read.error().line();
     return read ? std::move(*read) : Contents{};
   }

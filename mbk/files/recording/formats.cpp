@@ -1,0 +1,226 @@
+#include "mbk/files/recording/formats.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "mbk/files/archive/gzip.h"
+#include "mbk/files/archive/zip_archive.h"
+#include "mbk/files/c3d/c3d.h"
+#include "mbk/files/contents/memory.h"
+#include "mbk/files/hdf5/read_hdf5.h"
+#include "mbk/files/kinarm/kinarm_exam.h"
+#include "mbk/files/recording/csv.h"
+#include "mbk/files/recording/hdf5_recording.h"
+#include "mbk/files/recording/likely_format.h"
+#include "mbk/files/recording/mat_level4.h"
+#include "mbk/files/recording/mat_level5.h"
+#include "mbk/files/recording/open_trials.h"
+#include "mbk/files/ros/bag.h"
+#include "mbk/files/ros/mcap.h"
+#include "mbk/files/tables/npy.h"
+#include "mbk/files/tables/octave_text.h"
+#include "mbk/files/tables/opensim.h"
+#include "mbk/files/xdf/xdf.h"
+
+namespace mbk::recording {
+namespace {
+
+bool is_text(std::string_view bytes) {
+  return std::ranges::none_of(bytes, [](char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return code < 0x20 && c != '\t' && c != '\n' && c != '\r';
+  });
+}
+
+// ---- what a file looks like ----
+
+template <bool (*looks_like)(std::span<const std::byte>)>
+bool begins_as(OpenFile& file) {
+  return looks_like(file.begin_bytes());
+}
+
+template <bool (*looks_like)(std::string_view)>
+bool text_begins_as(OpenFile& file) {
+  return is_text(file.begin()) && looks_like(file.begin());
+}
+
+template <bool (*is_such)(const ZipArchive&)>
+bool zip_holds(OpenFile& file) {
+  if (!ZipArchive::looks_like_zip(file.begin_bytes())) return false;
+  const auto bytes = file.bytes();
+  if (!bytes) return false;
+  const auto archive = ZipArchive::open((*bytes)->bytes());
+  return archive && is_such(*archive);
+}
+
+bool looks_like_mat(OpenFile& file) {
+  const std::string_view begin = file.begin();
+  return begin.starts_with("MATLAB ") ||
+         (begin.size() >= 128 && (begin.substr(126, 2) == "IM" || begin.substr(126, 2) == "MI")) ||
+         looks_like_mat_level4(file.begin_bytes());
+}
+
+/// XDF is the one format that programs write packed (.xdfz, .xdf.gz).
+bool begins_as_xdf(OpenFile& file) {
+  constexpr std::size_t kEnough = 64;
+  if (looks_like_xdf(file.begin_bytes())) return true;
+  const std::string unpacked = gunzip_begin(file.begin_bytes(), kEnough);
+  return looks_like_xdf(std::as_bytes(std::span(unpacked)));
+}
+
+bool begins_as_table(OpenFile& file) {
+  return is_text(file.begin()) || looks_like_utf16(file.begin_bytes());
+}
+
+bool holds_numpy(OpenFile& file) {
+  return looks_like_npy(file.begin_bytes()) || zip_holds<looks_like_npz>(file);
+}
+
+/// Its signature is one byte, so that whatever has a longer one goes first.
+bool begins_as_c3d(OpenFile& file) {
+  return looks_like_c3d(file.begin_bytes()) && !likely_format(file.begin_bytes());
+}
+
+// ---- how it is read ----
+
+template <Result<Contents> (*decode)(std::span<const std::byte>)>
+Result<Contents> whole(OpenFile& file) {
+  const auto bytes = file.take();
+  if (!bytes) return tl::unexpected(bytes.error());
+  return decode((*bytes)->bytes());
+}
+
+template <Result<Contents> (*decode)(FileInPassing&)>
+Result<Contents> in_passing(OpenFile& file) {
+  auto passing = file.in_passing();
+  if (!passing) return tl::unexpected(passing.error());
+  if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
+  return decode(*passing);
+}
+
+Result<Contents> decode_mat(OpenFile& file) {
+  const std::string_view begin = file.begin();
+  if (begin.starts_with("MATLAB 7.3")) {
+    return bad_data("the MAT v7.3 header is not followed by HDF5 data",
+                    "copy the file again from where it was recorded");
+  }
+  if (looks_like_mat_level4(file.begin_bytes())) return whole<decode_mat_level4>(file);
+  auto bytes = file.take();
+  if (!bytes) return tl::unexpected(bytes.error());
+  return decode_mat_level5(std::move(*bytes));  // which keeps of it what it needs
+}
+
+Result<Contents> decode_xdf_file(OpenFile& file) {
+  if (!looks_like_gzip(file.begin_bytes())) return whole<decode_xdf>(file);
+  auto packed = file.take();
+  if (!packed) return tl::unexpected(packed.error());
+  const auto unpacked = gunzip((*packed)->bytes());
+  if (!unpacked) return tl::unexpected(unpacked.error());
+  packed->reset();
+  return decode_xdf(unpacked->bytes());
+}
+
+Result<Contents> decode_numpy(OpenFile& file) {
+  const auto bytes = file.take();
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (looks_like_npy((*bytes)->bytes())) return decode_npy((*bytes)->bytes());
+  const auto archive = ZipArchive::open((*bytes)->bytes());
+  if (!archive) return tl::unexpected(archive.error());
+  return decode_npz(*archive);
+}
+
+Result<std::shared_ptr<const OpenTrials>> open_exam(OpenFile& file) {
+  const auto bytes = file.take();
+  if (!bytes) return tl::unexpected(bytes.error());
+  return exam_trials(*bytes, file.sha256());
+}
+
+/// Text that is no table may be text of another kind, of which that is to be said rather than where it breaks off.
+Result<Contents> decode_table(OpenFile& file) {
+  if (auto ok = check_memory(file.size()); !ok) return tl::unexpected(ok.error());  // what its numbers take at most
+  auto table = looks_like_utf16(file.begin_bytes()) ? whole<decode_csv>(file) : in_passing<decode_csv>(file);
+  if (table) return table;
+  const auto likely = likely_format(file.begin_bytes());
+  return likely ? not_read(*likely) : std::move(table);
+}
+
+constexpr auto kFormats = std::to_array<FileFormat>({
+    {"HDF5", ".h5 .hdf5 .nwb .nc", "mbk's own; h5py, NWB, NetCDF-4", begins_as<hdf5::looks_like_hdf5>,
+     whole<decode_hdf5>},
+    {"MAT", ".mat", "MATLAB v4 to v7.3, Octave, Simulink, QUARC", looks_like_mat, decode_mat},
+    {"XDF", ".xdf .xdfz", "Lab Streaming Layer", begins_as_xdf, decode_xdf_file},
+    {"MCAP", ".mcap", "ROS 2", begins_as<looks_like_mcap>, in_passing<decode_mcap>},
+    {"ROS bag", ".bag", "ROS 1", begins_as<looks_like_bag>, in_passing<decode_bag>},
+    {"Octave text", ".txt", "Octave's save without options", text_begins_as<looks_like_octave_text>,
+     whole<decode_octave_text>},
+    {"TRC", ".trc", "marker paths of OpenSim", text_begins_as<looks_like_trc>, whole<decode_trc>},
+    {"OpenSim", ".sto .mot", "OpenSim's storages and motions", text_begins_as<looks_like_opensim>,
+     whole<decode_opensim>},
+    {"CSV", ".csv .tsv .txt", "any table of numbers as text: spreadsheets, Python, libfranka, RTDE, dSPACE",
+     begins_as_table, decode_table},
+    {"KINARM exam", ".kinarm .zip", "Dexterit-E", zip_holds<KinarmExam::is_exam>, nullptr, open_exam},
+    {"NumPy", ".npy .npz", "numpy.save, numpy.savez", holds_numpy, decode_numpy},
+    {"C3D", ".c3d", "motion capture: Vicon, Qualisys, KINARM", begins_as_c3d, whole<decode_c3d>},
+    {"BIDS Motion", "", "the folder of a data set", nullptr, nullptr},
+});
+
+std::string names_of_formats() {
+  std::vector<std::string_view> names;
+  for (const FileFormat& format : kFormats) names.push_back(format.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// What the first bytes of a file that nothing reads look like.
+std::string looks(std::string_view begin) {
+  if (is_text(begin)) return "text";
+  constexpr std::size_t kShown = 8;
+  std::string hexadecimal;
+  for (const char c : begin.substr(0, kShown)) hexadecimal += fmt::format(" {:02x}", static_cast<unsigned char>(c));
+  return "binary data that begin with the bytes" + hexadecimal;
+}
+
+}  // namespace
+
+std::span<const FileFormat> file_formats() {
+  return kFormats;
+}
+
+Result<const FileFormat*> format_of(OpenFile& file) {
+  for (const FileFormat& format : kFormats) {
+    if (format.looks_like != nullptr && format.looks_like(file)) return &format;
+  }
+  if (const auto likely = likely_format(file.begin_bytes())) return tl::unexpected(not_read(*likely).value());
+  if (ZipArchive::looks_like_zip(file.begin_bytes())) {
+    auto bytes = file.bytes();
+    if (!bytes) return tl::unexpected(bytes.error());
+    if (auto archive = ZipArchive::open((*bytes)->bytes()); !archive) return tl::unexpected(archive.error());
+    return bad_data("the zip archive holds no recording", "unpack it, and name the files in it");
+  }
+  return bad_data(
+      fmt::format("its format is not known: it holds {}; none of {} fits", looks(file.begin()), names_of_formats()),
+      "export it from the program that recorded it: Vicon Nexus and Qualisys QTM as C3D, Dexterit-E as .kinarm or C3D, "
+      "LabVIEW as .lvm or text, Simulink and dSPACE as .mat, Delsys EMGworks as CSV");
+}
+
+std::vector<std::string_view> format_extensions() {
+  std::vector<std::string_view> extensions;
+  for (const FileFormat& format : kFormats) {
+    for (std::string_view left = format.extensions; !left.empty();) {
+      const std::string_view one = left.substr(0, left.find(' '));
+      if (std::ranges::find(extensions, one) == extensions.end()) extensions.push_back(one);
+      left.remove_prefix(std::min(left.size(), one.size() + 1));
+    }
+  }
+  return extensions;
+}
+
+std::string readable_files() {
+  return fmt::format("{} or the folder of a BIDS data set", fmt::join(format_extensions(), ", "));
+}
+
+}  // namespace mbk::recording

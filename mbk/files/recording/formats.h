@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/result.h"
+#include "mbk/files/contents/contents.h"
+#include "mbk/files/contents/file_bytes.h"
+
+namespace mbk::recording {
+
+class OpenTrials;
+
+/// A format that mbk reads. Whatever names formats is written from these rows: which decoder a file goes to, --help,
+/// error messages, the files that a folder is searched for, and the table of `mbk info --formats`.
+struct FileFormat {
+  std::string_view name;        ///< "C3D"
+  std::string_view extensions;  ///< ".sto .mot": what such files are usually called; the content decides
+  std::string_view about;       ///< versions, and the programs that write it
+  bool (*looks_like)(OpenFile& file);          ///< by its content; nullptr: it is no file but a folder
+  Result<Contents> (*decode)(OpenFile& file);  ///< nullptr where a file holds several records
+  Result<std::shared_ptr<const OpenTrials>> (*open)(OpenFile& file) = nullptr;  ///< of such a file
+};
+
+/// In the order in which they are tried.
+[[nodiscard]] std::span<const FileFormat> file_formats();
+
+/// The first format that the content looks like.
+/// @fails  data: none; the message says what the file looks like and what can be done.
+[[nodiscard]] Result<const FileFormat*> format_of(OpenFile& file);
+
+/// ".h5", ".mat", …: each once, in the order of the rows.
+[[nodiscard]] std::vector<std::string_view> format_extensions();
+
+/// ".h5, .mat, … or the folder of a BIDS data set": for help and messages.
+[[nodiscard]] std::string readable_files();
+
+}  // namespace mbk::recording
