@@ -52,8 +52,8 @@ Option Option::check(std::function<std::string(const std::string&)> wrong) const
   return check(Check{std::move(wrong)});
 }
 
-Option Option::required() const {
-  option_->required();
+Option Option::required(bool yes) const {
+  option_->required(yes);
   return *this;
 }
 

@@ -34,7 +34,7 @@ class Option {
   Option group(const std::string& heading) const;  ///< of --help that it stands under; "": nowhere
   Option check(const Check& check) const;
   Option check(std::function<std::string(const std::string& given)> wrong) const;
-  Option required() const;
+  Option required(bool yes = true) const;
   Option needs(Option other) const;
   Option remove_needs(Option other) const;
   Option excludes(Option other) const;

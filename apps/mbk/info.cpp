@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -5,6 +7,7 @@
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/reading_options.h"
 #include "mbk/files/journal/journal.h"
+#include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/present/report/text.h"
@@ -17,7 +20,17 @@ struct InfoArguments {
   ReadingArguments reading;
   SensorArguments sensor;
   OutputArguments output;
+  bool formats = false;
 };
+
+/// The formats that are read, one line each.
+std::string formats_text() {
+  std::string text = fmt::format("{:<13}{:<24}{}\n", "format", "usual extensions", "versions; written by");
+  for (const recording::FileFormat& format : recording::file_formats()) {
+    text += fmt::format("{:<13}{:<24}{}\n", format.name, format.extensions, format.about);
+  }
+  return text + "The content of a file decides, not its name.\n";
+}
 
 /// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
 int list_unrecognised(const InfoArguments& arguments, const RecordingReader& reader, const Error& error,
@@ -60,6 +73,13 @@ int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
 
 int run(const InfoArguments& arguments) {
   const ReadingArguments& reading = arguments.reading;
+  if (arguments.formats) {
+    if (auto ok = arguments.output.write(formats_text()); !ok) return report_error(ok.error());
+    return kFine;
+  }
+  if (reading.files.empty()) {
+    return report_error({ErrorKind::usage, "FILE is missing", "name a recording, or see --help", ""});
+  }
   if (auto ok = arguments.output.to.check(reading.files); !ok) return report_error(ok.error());
   int code = kFine;
   std::vector<Recording> recordings;  // of several, without their samples
@@ -70,13 +90,13 @@ int run(const InfoArguments& arguments) {
     recording.time.resize(0);
     recordings.push_back(std::move(recording));
   };
-  if (reading.files.size() == 1 && journal::is_journal(reading.files.front())) {
+  const auto reader = RecordingReader::of(reading, arguments.sensor);
+  if (!reader) return report_error(reader.error());
+  if (reader->count() == 1 && reader->is_journal(0)) {
     auto recording = read_journal(reading.files.front());
     if (!recording) return report_error(recording.error());
     add(std::move(*recording));
   } else {
-    const auto reader = RecordingReader::of(reading, arguments.sensor);
-    if (!reader) return report_error(reader.error());
     const std::vector<recording::TrialName> trials = reader->trials();
     if (!trials.empty() && reading.files.size() == 1 && !arguments.output.json) {
       return show_trials(arguments, *reader, trials);
@@ -117,9 +137,13 @@ Action add_info(Command app) {
       "  mbk info --parts log_1.mat log_2.mat\n"
       "  mbk info exam.kinarm\n"
       "      every trial by its number, and the first in full; --trial 3 shows another\n"
-      "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n\n"
+      "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n"
+      "  mbk info --formats\n"
+      "      every format that mbk reads\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
   add_reading_options(command, arguments->reading);
+  command.get_option("FILE").required(false);
+  command.add_flag("--formats", arguments->formats, "list the formats that mbk reads");
   add_sensor_options(command, arguments->sensor);
   add_output_options(command, arguments->output, "mbk.info/1");
   return [arguments] { return run(*arguments); };

@@ -63,10 +63,7 @@ Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const S
 }  // namespace
 
 void add_reading_options(Command command, ReadingArguments& arguments) {
-  command
-      .add_option(
-          "FILE", arguments.files, "recordings: " + recording::readable_files())
-      .required();
+  command.add_option("FILE", arguments.files, "recordings: " + recording::readable_files()).required();
   command
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
@@ -143,9 +140,15 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
 Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
                                                                          const std::string& trial) {
   if (auto given = recording_in_memory(file)) return std::vector<Record>{{file, trial, {}, std::move(given)}};
-  if (journal::is_journal(file)) return std::vector<Record>{{file, ""}};  // which `read` refuses
   auto open = recording::open(file);
-  if (!open) return std::vector<Record>{{file, "", {}, {}, open.error()}};  // said where it is read
+  if (!open) {  // reported by whoever reads it
+    Record record{file, "", {}, {}, open.error(), journal::is_journal(file)};
+    if (record.is_journal) {
+      record.refused = Error{ErrorKind::data, "is the journal of a session that was cut off, or is still running",
+                             fmt::format("'mbk recover {}' makes a recording of it", file.string()), file.string()};
+    }
+    return std::vector<Record>{std::move(record)};
+  }
   const std::vector<recording::TrialName>& trials = recording::trials_of(**open);
   const auto in_file = [&](tl::unexpected<Error> error) { return tl::unexpected(error.value().in(file.string())); };
   if (trials.empty() && !trial.empty()) {
@@ -185,10 +188,6 @@ Result<Recording> RecordingReader::read_stored(int k) const {
     if (!recording) return tl::unexpected(recording.error().in(file(k).string()));
     if (recording->sources.empty()) recording->sources.push_back({file(k).string(), "arrays in memory", ""});
     return recording;
-  }
-  if (!parts_ && journal::is_journal(file(k))) {
-    return bad_data("is the journal of a session that was cut off, or still runs",
-                    fmt::format("'mbk recover {}' makes a recording of it", file(k).string()), file(k).string());
   }
   if (is_long(file(k))) give_back_large_blocks();
   const recording::ReadOptions options = options_of(k);

@@ -57,6 +57,8 @@ class RecordingReader {
   [[nodiscard]] Result<Recording> read(int k) const;
   /// What the file holds under its own names.   @fails  as recording::list_contents
   [[nodiscard]] Result<FileContents> list_contents(int k) const;
+  /// Whether FILE is the journal of a session, which `read` refuses.
+  [[nodiscard]] bool is_journal(int k) const { return record(k).is_journal; }
   /// Whether FILE holds several trials or arms.
   [[nodiscard]] bool of_trials(int k) const;
   /// What stands in it, before anything is said about channels.   @fails  as recording::read_contents
@@ -68,9 +70,10 @@ class RecordingReader {
   struct Record {
     std::filesystem::path file;
     std::string trial;                                          ///< "": the only one of the file
-    std::shared_ptr<const recording::RecordingFile> open = {};  ///< the file; nullptr: `refused`, or a journal
+    std::shared_ptr<const recording::RecordingFile> open = {};  ///< the file; nullptr: `refused`
     std::shared_ptr<const recording::InMemory> in_memory = {};  ///< in place of a file
     std::optional<Error> refused = {};                          ///< why it cannot be opened, for whoever reads it
+    bool is_journal = false;                                    ///< of a session, which `mbk recover` reads
   };
   /// FILE as the records that it holds.
   [[nodiscard]] static Result<std::vector<Record>> records_of(const std::filesystem::path& file,

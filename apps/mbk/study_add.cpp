@@ -14,6 +14,7 @@
 #include "mbk/files/c3d/c3d.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/kinarm/exam_parameters.h"
+#include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/study/store/identifying.h"
@@ -379,7 +380,7 @@ Action add_study_add(Command group) {
       "      a recording of 'mbk run' says itself whose it is\n\n"
       "A file is copied into the study's folder; of its name only the end (.h5) is kept. One that is there\n"
       "already is not stored twice. The study's default options (mbk study defaults) say how it is read.");
-  command.add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d").required();
+  command.add_option("FILE", arguments->files, "recordings: " + recording::readable_files()).required();
   constexpr long kLargest = 999999999;
   command.add_option("--participant", arguments->facts.participant, "a number, never a name")
       .type_name("N")
@@ -408,7 +409,7 @@ Action add_study_import(Command group) {
       "      a BIDS data set (Motion): sub-07_ses-2_task-relaxed_run-1 is participant 7, session 2, condition\n"
       "      relaxed, trial 1\n\n"
       "What neither name, sheet nor options say is taken from the recording's metadata.");
-  command.add_option("FILE", arguments->files, "recordings: .mat (v4 to v7.3), .h5, .csv, .c3d");
+  command.add_option("FILE", arguments->files, "recordings: " + recording::readable_files());
   const Option pattern =
       command.add_option("--pattern", arguments->pattern, "what the names of the files say; nothing else is kept")
           .type_name("PATTERN")

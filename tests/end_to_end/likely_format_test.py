@@ -36,7 +36,7 @@ class LikelyFormat(Case):
         for name, content, says in (
                 ("a.ods", zipped("mimetypeapplication/vnd.oasis.opendocument.spreadsheet"), "an OpenDocument sheet"),
                 ("a.zip", zipped("a.txt"), "a zip archive, which is not read; unpack it"),
-                ("a.csv.gz", gzip.compress(b"time,x\n0,1\n"), "packed with gzip and holds no XDF; unpack it first, with gzip -d"),
+                ("a.csv.gz", gzip.compress(b"time,x\n0,1\n"), "packed by gzip, which is not read; unpack it with gunzip"),
                 ("a.csv.xz", lzma.compress(b"time,x\n0,1\n"), "packed by xz"),
                 ("a.pickle", pickle.dumps([1.0, 2.0]), "a Python pickle"),
                 ("bag.db3", None, "an SQLite database"),

@@ -115,7 +115,7 @@ class Xdf(Case):
         listings = [self.fine("info", "--json", path).json for path in (bare, packed)]
         self.assertEqual(listings[0]["arrays"], listings[1]["arrays"])
         self.assertEqual(listings[0]["notes"], listings[1]["notes"])
-        self.bad_data(self.file("text.gz", gzip.compress(b"t,x\n0,1\n")), command="info", says=("gzip -d",))
+        self.bad_data(self.file("text.gz", gzip.compress(b"t,x\n0,1\n")), command="info", says=("gunzip",))
         self.bad_data(self.file("cut.xdfz", packed.read_bytes()[:-9]), command="info", says=("ends early",))
 
     def test_behind_damage_the_file_is_read_on(self):

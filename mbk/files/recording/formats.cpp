@@ -156,12 +156,12 @@ constexpr auto kFormats = std::to_array<FileFormat>({
     {"XDF", ".xdf .xdfz", "Lab Streaming Layer", begins_as_xdf, decode_xdf_file},
     {"MCAP", ".mcap", "ROS 2", begins_as<looks_like_mcap>, in_passing<decode_mcap>},
     {"ROS bag", ".bag", "ROS 1", begins_as<looks_like_bag>, in_passing<decode_bag>},
-    {"Octave text", ".txt", "Octave's save without options", text_begins_as<looks_like_octave_text>,
+    {"Octave text", "", "Octave's save without options", text_begins_as<looks_like_octave_text>,
      whole<decode_octave_text>},
     {"TRC", ".trc", "marker paths of OpenSim", text_begins_as<looks_like_trc>, whole<decode_trc>},
     {"OpenSim", ".sto .mot", "OpenSim's storages and motions", text_begins_as<looks_like_opensim>,
      whole<decode_opensim>},
-    {"CSV", ".csv .tsv .txt", "any table of numbers as text: spreadsheets, Python, libfranka, RTDE, dSPACE",
+    {"CSV", ".csv .tsv", "tables of numbers as text, also .txt, .dat: spreadsheets, Python, libfranka, dSPACE",
      begins_as_table, decode_table},
     {"KINARM exam", ".kinarm .zip", "Dexterit-E", zip_holds<KinarmExam::is_exam>, nullptr, open_exam},
     {"NumPy", ".npy .npz", "numpy.save, numpy.savez", holds_numpy, decode_numpy},
@@ -202,7 +202,8 @@ Result<const FileFormat*> format_of(OpenFile& file) {
     return bad_data("the zip archive holds no recording", "unpack it, and name the files in it");
   }
   return bad_data(
-      fmt::format("its format is not known: it holds {}; none of {} fits", looks(file.begin()), names_of_formats()),
+      fmt::format("it is of no known format: it holds {}, and none of {} fits", looks(file.begin()),
+                  names_of_formats()),
       "export it from the program that recorded it: Vicon Nexus and Qualisys QTM as C3D, Dexterit-E as .kinarm or C3D, "
       "LabVIEW as .lvm or text, Simulink and dSPACE as .mat, Delsys EMGworks as CSV");
 }

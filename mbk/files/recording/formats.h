@@ -17,9 +17,9 @@ class OpenTrials;
 /// A format that mbk reads. Whatever names formats is written from these rows: which decoder a file goes to, --help,
 /// error messages, the files that a folder is searched for, and the table of `mbk info --formats`.
 struct FileFormat {
-  std::string_view name;        ///< "C3D"
-  std::string_view extensions;  ///< ".sto .mot": what such files are usually called; the content decides
-  std::string_view about;       ///< versions, and the programs that write it
+  std::string_view name;                       ///< "C3D"
+  std::string_view extensions;                 ///< ".sto .mot": what such files are usually called; the content decides
+  std::string_view about;                      ///< versions, and the programs that write it
   bool (*looks_like)(OpenFile& file);          ///< by its content; nullptr: it is no file but a folder
   Result<Contents> (*decode)(OpenFile& file);  ///< nullptr where a file holds several records
   Result<std::shared_ptr<const OpenTrials>> (*open)(OpenFile& file) = nullptr;  ///< of such a file

@@ -75,8 +75,7 @@ TEST(LikelyFormat, IsSaidByTheReader) {
     EXPECT_FALSE(recording);
     return recording ? "" : recording.error().line();
   };
-  EXPECT_THAT(line("LabVIEW Measurement\t\nWriter_Version\t2\n***End_of_Header***\t\n"), HasSubstr(".lvm"));
-  EXPECT_THAT(line("\x01\x7F\x03"), HasSubstr("no known format; MAT (v4 to v7.3), HDF5, CSV, C3D"));
+  EXPECT_THAT(line("\x01\x7F\x03"), HasSubstr("no known format"));
   // A table is a table, whatever its first letters.
   const auto table = read(folder.write("trial.csv", "ID;Pressure\n0;1\n1;2\n"), {});
   ASSERT_FALSE(table);

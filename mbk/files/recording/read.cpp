@@ -60,7 +60,7 @@ class RecordingFile {
       if (!trials) return tl::unexpected(trials.error());
       made->trials_ = std::move(*trials);
     } else {
-      made->file_ = std::move(*file);
+      made->file_.emplace(std::move(*file));
     }
     return made;
   }

@@ -468,7 +468,7 @@ TEST_F(Read, DecidesByContentNotByName) {
 TEST_F(Read, RefusesWhatIsNotARecording) {
   EXPECT_THAT(bad("").message, HasSubstr("empty"));
   EXPECT_THAT(bad(std::string("\x7f\x46LF\x02\x01\x01\0\0\0", 10)).line(),
-              HasSubstr("no known format; MAT (v4 to v7.3), HDF5, CSV, C3D"));
+              HasSubstr("no known format"));
   EXPECT_THAT(bad("\x89HDF\r\n\x1a\n....").message, HasSubstr("HDF5"));
   EXPECT_THAT(bad(std::string("\x02\x50") + std::string(600, '\0')).message, HasSubstr("C3D"));
   EXPECT_THAT(bad(header5()).message, HasSubstr("no channel is recognised; it has no numeric variable"));

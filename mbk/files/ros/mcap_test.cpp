@@ -117,7 +117,7 @@ TEST(Mcap, IsTheSameInPassing) {
     EXPECT_EQ(numbers(*contents, "/camera.width")[19], 640.0);
     EXPECT_THAT(contents->notes, Contains(HasSubstr("/camera.data")));
     const std::string bytes = test::bytes_of(path);
-    EXPECT_EQ(file->sha256(), sha256(std::as_bytes(std::span(bytes))));
+    EXPECT_EQ(whole.sha256(), sha256(std::as_bytes(std::span(bytes))));
   }
 }
 
