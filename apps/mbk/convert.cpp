@@ -198,6 +198,7 @@ Action add_convert(Command app) {
       "unit\n\n"
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
       "What was ignored in reading, or has no place in the new format, is said on standard error.");
+  arguments->reading.as_recorded = true;
   add_reading_options(command, arguments->reading);
   add_sensor_options(command, arguments->sensor);
   command.get_option("FILE").description("the recording to read (several with --parts), and last the one to write");

@@ -141,6 +141,7 @@ Action add_info(Command app) {
       "  mbk info --formats\n"
       "      every format that mbk reads\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
+  arguments->reading.as_recorded = true;
   add_reading_options(command, arguments->reading);
   command.get_option("FILE").required(false);
   command.add_flag("--formats", arguments->formats, "list the formats that mbk reads");

@@ -39,6 +39,7 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
   options.axes = arguments.axes;
   options.untimed = arguments.untimed;
+  options.own_samples = !arguments.as_recorded;
   options.variable = arguments.variable;
   options.clock = arguments.clock;
   options.arm = arguments.arm;

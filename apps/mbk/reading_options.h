@@ -27,7 +27,8 @@ struct ReadingArguments {
   std::vector<std::string> requested;  ///< channels that are taken by name, beside those of the map; empty: all
   std::optional<double> rate_hz;
   int axes = 0;
-  bool untimed = false;  ///< rows without a time are welcome
+  bool untimed = false;      ///< rows without a time are welcome
+  bool as_recorded = false;  ///< held and missing samples stay as they are: for whoever shows or copies a recording
 
   [[nodiscard]] bool operator==(const ReadingArguments&) const = default;
 };

@@ -12,7 +12,9 @@ Result<Measurement> measure_recording(const Recording& recording) {
 }
 
 Result<Measurement> measure_trial(const std::filesystem::path& file, const Measure& measure) {
-  auto recording = recording::read(file, {});
+  recording::ReadOptions options;
+  options.own_samples = true;
+  auto recording = recording::read(file, options);
   if (!recording) return tl::unexpected(recording.error());
   return measure(preprocess::perturbation_only(std::move(*recording)));
 }

@@ -25,8 +25,8 @@ struct Array {
   bool signal = false;     ///< the file says that it is one, even with a single sample
   double rate_hz = 0.0;    ///< of its samples, as the file says it; 0 where it does not
   int clock = -1;          ///< whose samples these are: an index into Contents::clocks; -1 in a file without clocks
-  std::string means = {};  ///< channel that the type of what was stored says it is ("force_x" of a wrench); "" where
-                           ///< the name alone may say it
+  std::string means = {};  ///< channel that the type of what was stored says it is ("force_x" of a wrench, "-force_x"
+                           ///< of one that the robot exerts); "" where the name alone may say it
   std::optional<Error> obstacle = {};  ///< why its numbers cannot be used, for whoever asks for it: a column of words;
                                        ///< `values` then are empty
 };

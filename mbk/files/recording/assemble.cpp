@@ -14,9 +14,12 @@
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/annotations.h"
+#include "mbk/files/recording/believable_time.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/one_clock.h"
+#include "mbk/files/recording/own_samples.h"
+#include "mbk/files/recording/robot_logs.h"
 
 namespace mbk::recording {
 namespace {
@@ -170,6 +173,7 @@ class Assembler {
   Assembler(Contents contents, const ReadOptions& options) : contents_(std::move(contents)), options_(options) {}
 
   Result<Recording> run() {
+    name_robot_log(contents_);
     recording_.notes = contents_.notes;
     recording_.metadata = contents_.metadata;
     recording_.events = contents_.events;
@@ -181,8 +185,9 @@ class Assembler {
           fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
           "name its columns with --channels");
     }
-    if (options_.channels.empty() || !options_.requested.empty()) {
+    if (options_.channels.empty() || !options_.requested.empty() || maps_time_alone()) {
       if (auto ok = recognise(); !ok) return tl::unexpected(ok.error());
+      if (maps_time_alone()) std::erase_if(signals_, [](const Signal& signal) { return is_time(signal.kind); });
     }
     if (!options_.channels.empty()) {
       if (auto ok = follow_map(); !ok) return tl::unexpected(ok.error());
@@ -194,12 +199,25 @@ class Assembler {
     if (clock_ != nullptr && recording_.time.size() == 0) {
       if (auto ok = settle_clock(); !ok) return tl::unexpected(ok.error());
     }
+    if (clock_ == nullptr) unwrap_time(recording_);
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
-    return std::move(recording_);
+    if (clock_ == nullptr) {
+      const bool said = std::ranges::any_of(options_.channels, [](const ChannelSource& entry) {
+        return !entry.unit.empty() && is_time(kinds_called(entry.channel).front());
+      });
+      if (auto ok = check_unit_of_time(recording_, said); !ok) return tl::unexpected(ok.error());
+    }
+    find_updates(recording_);
+    return options_.own_samples ? at_own_samples(std::move(recording_)) : std::move(recording_);
   }
 
  private:
   static bool is_time(const ChannelKind* kind) { return kind->name == "time"; }
+
+  /// A map of the time alone, as to say its unit, leaves all else to its name.
+  [[nodiscard]] bool maps_time_alone() const {
+    return options_.channels.size() == 1 && kinds_called(options_.channels.front().channel).front()->name == "time";
+  }
 
   // ---- which signals ----
 
@@ -324,6 +342,9 @@ class Assembler {
     });
   }
 
+  /// 1 where the file says that the array is the negative of a channel, else 0.
+  static std::size_t turned(const Array& array) { return array.means.starts_with('-') ? 1 : 0; }
+
   Result<void> take_names() {
     struct Candidate {
       const Array* array;
@@ -333,7 +354,7 @@ class Assembler {
     std::vector<std::vector<const ChannelKind*>> meanings;
     std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
-      ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means)
+      ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means).substr(turned(array))
                                           : contents_.table    ? std::string_view(array.name)
                                                                : leaf(array.name));
       std::erase_if(name.kinds, [&](const ChannelKind* kind) {
@@ -356,8 +377,9 @@ class Assembler {
       } else if (is_requested(*kind)) {
         const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
         if (!unit) return tl::unexpected(unit.error());
-        signals_.push_back(
-            {kind, vector_of(*candidate.array), *unit, false, candidate.array->name, candidate.array->name});
+        const Array& array = *candidate.array;
+        const bool negate = turned(array) == 1;
+        signals_.push_back({kind, vector_of(array), *unit, negate, array.name, (negate ? "-" : "") + array.name});
       }
     }
     drop_second_names();

@@ -8,6 +8,7 @@
 
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/channel_table.h"
+#include "mbk/files/recording/own_samples.h"
 
 namespace mbk::recording {
 namespace {
@@ -103,7 +104,9 @@ Contents InMemory::contents() const {
 }
 
 Result<Recording> InMemory::read(const ReadOptions& options) const {
-  if (recording_ && without_options(options)) return *recording_;
+  if (recording_ && without_options(options)) {
+    return options.own_samples ? at_own_samples(*recording_) : *recording_;
+  }
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
   auto recording = assemble(contents(), options);
   if (recording && recording_) recording->sources = recording_->sources;

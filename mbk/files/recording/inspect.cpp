@@ -12,6 +12,7 @@
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
+#include "mbk/files/recording/own_samples.h"
 
 namespace mbk::recording {
 namespace {
@@ -220,7 +221,10 @@ Inspection inspect(const Recording& recording) {
   for (const Channel& channel : recording.channels) {
     const numeric::Extremes finite = numeric::finite_extremes(channel.values);
     find_non_finite(channel.name, channel.values, finite, facts.non_finite);
-    facts.channels.push_back(inspect_channel(channel, channel.values, finite));
+    ChannelFacts& here = facts.channels.emplace_back(inspect_channel(channel, channel.values, finite));
+    here.updates = channel.updates;
+    here.update_hz = facts.rate_hz / channel.updates.interval;
+    here.stale = stale_text(channel, facts.rate_hz);
     let_go(channel.values);
   }
   return facts;

@@ -25,6 +25,8 @@ struct ReadOptions {
                                         ///< map all, and with one none
   std::optional<Hertz> rate;            ///< needed where the file holds no time; must agree with the time where it does
   int axes = 0;          ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
+  bool own_samples = false;  ///< measured channels that are held or lack samples are taken at their own samples
+                             ///< (`at_own_samples`): for whoever computes something of them
   bool untimed = false;  ///< rows without a time and a rate are taken as they are; otherwise that is an error
   std::string variable;  ///< the MAT variable that is meant, where several could be
   std::string clock;     ///< the stream or topic whose time stamps the recording has, where channels come from several;

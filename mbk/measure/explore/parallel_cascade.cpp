@@ -81,6 +81,14 @@ class Cascade {
     result_.sample_time = T_;
     result_.instruments = s_.explained.size() > 0;
     result_.held_out = !s_.validation.empty();
+    if (T_ > kEarliest) {
+      result_.found = DelayedResponse::not_identifiable;
+      result_.why = fmt::format(
+          "samples {:.3g} ms apart cannot separate a reflex after {:g} to {:g} ms from the intrinsic response; {:g} Hz "
+          "are needed at least",
+          1e3 * T_, 1e3 * kEarliest, 1e3 * kLatest, 1.0 / kEarliest);
+      return result_;
+    }
     const Index coefficients = n_ * (2 * L_ + 1) + (n_ + 1) * (last_ - first_ + 1);
     rows_ = rows_inside(s_.identification, s_.pieces, last_, L_);
     const Index count = row_count(rows_);

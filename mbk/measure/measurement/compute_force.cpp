@@ -76,6 +76,7 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
   computed.recording = std::move(made->recording);
   computed.summary.sources = computed.recording.sources;
   computed.summary.notes = computed.recording.notes;
+  for (const Warning& warning : recording.warnings) computed.summary.notes.push_back(warning.message);
   cut_to(computed.recording, first, first + rows);
   std::vector<Channel>& channels = computed.recording.channels;
   for (Index axis = 0; axis < axes; ++axis) {

@@ -295,6 +295,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
   for (const Recording& recording : recordings) {
     found->sources.insert(found->sources.end(), recording.sources.begin(), recording.sources.end());
     found->notes.insert(found->notes.end(), recording.notes.begin(), recording.notes.end());
+    found->warnings.insert(found->warnings.end(), recording.warnings.begin(), recording.warnings.end());
   }
   return found;
 }

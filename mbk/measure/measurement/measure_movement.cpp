@@ -83,6 +83,7 @@ Result<MovementQuality> movement_quality(const Recording& recording, const Movem
   if (!recording.sources.empty()) found->source = recording.sources.front();
   found->notes = recording.notes;
   found->warnings = std::move(warnings);
+  found->warnings.insert(found->warnings.end(), recording.warnings.begin(), recording.warnings.end());
   return found;
 }
 

@@ -100,6 +100,7 @@ Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const 
   }
   trial.recorded_handle_mass = recorded_handle_mass(recording);
   trial.notes = recording.notes;
+  trial.warnings.insert(trial.warnings.end(), recording.warnings.begin(), recording.warnings.end());
   return trial;
 }
 

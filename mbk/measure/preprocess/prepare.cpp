@@ -118,6 +118,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   PreparedTrial trial;
   trial.sources = recording.sources;
   trial.notes = recording.notes;
+  trial.warnings = recording.warnings;
   trial.recorded_handle_mass = recorded_handle_mass(recording);
   trial.conditions = {recording.noted("participant"), recording.noted("condition"), recording.noted("posture")};
   trial.recording_duration = inspection.duration + inspection.interval_median;

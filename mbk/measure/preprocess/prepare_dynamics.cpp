@@ -164,6 +164,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   PreparedDynamics made;
   made.sources = recording.sources;
   made.notes = recording.notes;
+  made.warnings = recording.warnings;
   made.recording_rate = rate.value;
   made.recording_duration = inspection.duration + inspection.interval_median;
   const auto plan = default_windows(Protocol::free, {}, clock, options.signals.window);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/model/trial/recording.h"
 
 namespace mbk {
 
@@ -37,6 +38,9 @@ struct ChannelFacts {
   bool constant = false;          ///< one value throughout
   bool clipped = false;           ///< a force, reaction, acceleration or torque that rests at its extremes
   double clipped_fraction = 0.0;  ///< of the samples: those in long runs at the extremes
+  double update_hz = 0.0;         ///< how often it was measured; NaN where the recording has no rate
+  Updates updates = {};           ///< how, where that is not once a sample
+  std::string stale;              ///< the same as a sentence; "" where every sample is a measurement
 };
 
 /// Facts about a recording; nothing is judged or repaired. Intervals that are not positive or not finite count as

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/words.h"
+#include "mbk/model/trial/warning.h"
 
 namespace mbk {
 
@@ -17,6 +20,32 @@ struct ChannelOrigin {
   std::string called;  ///< channel that the file itself calls this column, where that is another one: "reference_x"
 };
 
+/// Why samples of a channel are no measurements of their own.
+enum class Staleness {
+  none,         ///< every sample is one, as far as the values show
+  held,         ///< the channel is updated at a lower rate than the recording, and each value repeats until the next
+  repeated,     ///< values repeat now and then, as where updates are lost
+  frozen,       ///< the channel stands still for a while in the midst of motion or noise
+  placeholder,  ///< one value, such as 0 or -1, stands where nothing was measured
+};
+
+[[nodiscard]] constexpr auto word_table(Staleness) {
+  using enum Staleness;
+  return std::to_array<Word<Staleness>>({{none, "none"},
+                                         {held, "held"},
+                                         {repeated, "repeated"},
+                                         {frozen, "frozen"},
+                                         {placeholder, "placeholder"}});
+}
+
+/// How often a channel was measured, where that is not once a sample.
+struct Updates {
+  Staleness staleness = Staleness::none;
+  double interval = 1.0;     ///< [samples] from one measurement to the next, on average
+  double share = 0.0;        ///< of the samples, those that are no measurement
+  double placeholder = 0.0;  ///< the value, in the unit of the channel
+};
+
 /// One measured signal, as recorded, in SI units and radians.
 struct Channel {
   std::string name;   ///< as in the channel table of the documentation: hand_x, force_y, joint_1, reaction, …
@@ -24,6 +53,7 @@ struct Channel {
   std::string frame;  ///< "base" for hand_*, force_*, reference_*, acceleration_*; "joint" for joint_*, torque_*
   Vector values;      ///< one value per sample of Recording::time
   ChannelOrigin origin = {};
+  Updates updates = {};  ///< as `recording::find_stale` found them when the recording was read
 };
 
 /// Something that happened at an instant: the onset of a perturbation, its offset, its direction.
@@ -56,6 +86,7 @@ struct Recording {
   std::map<std::string, std::string> metadata;  ///< participant number, posture, protocol, robot, …
   std::vector<SourceFile> sources;              ///< one, or several for numbered parts
   std::vector<std::string> notes;               ///< what the reader wants its user to know, in words
+  std::vector<Warning> warnings;                ///< what makes results of it doubtful, whatever is computed
 
   [[nodiscard]] Index samples() const { return time.size(); }
   /// What the metadata say of it; "" where they say nothing.

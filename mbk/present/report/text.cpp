@@ -405,6 +405,10 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     std::string remark;
     if (facts.constant) {
       remark = "constant";
+    } else if (facts.updates.staleness == Staleness::held) {
+      remark = fmt::format("! updated at {:.4g} Hz", facts.update_hz);
+    } else if (!facts.stale.empty()) {
+      remark = fmt::format("! {:.2g} % of the samples are no measurements", 100.0 * facts.updates.share);
     } else if (facts.clipped) {
       remark = "! rests at its extreme again and again: clipped?";
     }
@@ -452,6 +456,9 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     problems.push_back(fmt::format("and {} gaps more", inspection.gaps.size() - kShown));
   if (inspection.interval_standard_deviation > 0.01 * inspection.interval_median && inspection.gaps.empty()) {
     problems.push_back("the clock jitters by more than 1 % of its interval");
+  }
+  for (const ChannelFacts& facts : inspection.channels) {
+    if (!facts.stale.empty()) problems.push_back(facts.stale);
   }
   if (!std::isfinite(inspection.rate_hz)) problems.emplace_back("no rate can be told from the time");
   text += problems.empty() ? "\n  no gap, no jitter to speak of, time runs on\n" : "\n";

@@ -262,7 +262,11 @@ Json info_json(const Recording& recording, const Inspection& inspection) {
                                 {"minimum", number(facts.min)},
                                 {"maximum", number(facts.max)},
                                 {"constant", facts.constant},
-                                {"clipped", facts.clipped}});
+                                {"clipped", facts.clipped},
+                                {"update_hz", number(facts.update_hz)}});
+    if (facts.updates.staleness == Staleness::none) continue;
+    json["channels"].back()["stale"] = {{"kind", word_of(facts.updates.staleness)},
+                                        {"share", number(facts.updates.share)}};
   }
   json["events"] = Json::array();
   for (const Event& event : recording.events) {

@@ -137,6 +137,14 @@ export const plainWarnings: PlainWarnings = {
     title: "The recording was put on an even clock first",
     meaning: "Between the samples there are straight lines, which nobody measured.",
   },
+  "held-signal": {
+    title: "A channel was recorded more often than it was measured",
+    meaning: "Each value repeats until the next one. The channel was interpolated between its own samples; the message says how often it was measured.",
+  },
+  "missing-samples": {
+    title: "Samples of a channel are missing",
+    meaning: "Repeated or constant values stand where nothing was measured. They were interpolated from their neighbours, or left empty where the gap is long.",
+  },
   clipping: {
     title: "A sensor was at its limit",
     meaning: "Parts of the signal are cut off, and the numbers suffer from it.",

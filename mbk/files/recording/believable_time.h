@@ -1,0 +1,20 @@
+#pragma once
+
+#include "mbk/base/core/result.h"
+#include "mbk/model/trial/recording.h"
+
+namespace mbk::recording {
+
+/// Adds what a counter lost where it began anew, so that time runs on: a counter of 16, 24, 31 or 32 bits of any unit
+/// of time (signed ones, too), midnight, and an hour set back. Each is a note. Only where the step across it is then
+/// one that the clock makes elsewhere; a time that begins again at its first value is another trial, and stays.
+void unwrap_time(Recording& recording);
+
+/// A time whose unit nobody said, or whose file says seconds, must run as time in seconds can: at more than 3 Hz and at
+/// most 50 kHz, for less than 12 hours.
+/// @param said_by_user  the unit was given with --channels: then whatever it is is believed
+/// @fails  data: it does not; the message says what the time would be in milliseconds, microseconds, …, and how to say
+/// so.
+[[nodiscard]] Result<void> check_unit_of_time(const Recording& recording, bool said_by_user);
+
+}  // namespace mbk::recording

@@ -1,0 +1,392 @@
+#include "mbk/files/recording/stale_samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "mbk/base/numeric/statistics.h"
+
+namespace mbk::recording {
+namespace {
+
+constexpr Index kMinSamples = 200, kMinChanges = 40;
+
+double quantile(std::vector<double> values, double part) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+/// A run of equal values between two changes.
+struct Run {
+  Index begin = 0, length = 0;
+  double value = 0.0;
+  double before = 0.0, after = 0.0;  ///< the changes that lead to it and away from it, with their signs
+};
+
+/// The runs of a channel that have a change on either side, and what is known of all changes.
+struct Runs {
+  std::vector<Run> runs;       ///< run k lies between changes k and k + 1
+  std::vector<Index> changes;  ///< samples whose value is not that of the sample before
+  std::vector<double> jumps;   ///< by how much
+  double step = 0.0;           ///< size of a small change: the 5 % quantile
+  double varied = 0.0;         ///< share of the changes that are at least twice as large
+  double low = 0.0, high = 0.0;
+};
+
+/// @param values  finite
+Runs runs_of(const Eigen::Ref<const Vector>& values) {
+  Runs all;
+  std::vector<double> sizes;
+  for (Index i = 1; i < values.size(); ++i) {
+    if (values[i] == values[i - 1]) continue;
+    all.changes.push_back(i);
+    all.jumps.push_back(values[i] - values[i - 1]);
+    sizes.push_back(std::abs(all.jumps.back()));
+  }
+  if (std::ssize(all.changes) < kMinChanges) return all;
+  all.step = quantile(sizes, 0.05);
+  const auto large = std::ranges::count_if(sizes, [&](double size) { return size >= 2.0 * all.step; });
+  all.varied = static_cast<double>(large) / static_cast<double>(sizes.size());
+  all.low = values.minCoeff();
+  all.high = values.maxCoeff();
+  all.runs.resize(all.changes.size() - 1);
+  for (std::size_t k = 0; k < all.runs.size(); ++k) {
+    const Index begin = all.changes[k];
+    all.runs[k] = {begin, all.changes[k + 1] - begin, values[begin], all.jumps[k], all.jumps[k + 1]};
+  }
+  return all;
+}
+
+/// The four changes before a run and the four after it.
+struct Around {
+  double scale = 0.0;    ///< median of their sizes
+  double small = 0.0;    ///< lower quartile
+  int turns = 0;         ///< how many have another sign than the one before, on the same side
+  double spacing = 0.0;  ///< [samples] between them, without this run
+};
+
+Around around(const Runs& all, std::size_t run) {
+  constexpr Index kEachSide = 4;
+  const Index k = static_cast<Index>(run), count = std::ssize(all.jumps);
+  const Index first = std::max<Index>(0, k + 1 - kEachSide), last = std::min(count - 1, k + kEachSide);
+  std::array<double, 2 * kEachSide> sizes{};
+  std::size_t found = 0;
+  Around result;
+  for (Index j = first; j <= last; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const double size = std::abs(all.jumps[at]);
+    std::size_t place = found++;
+    for (; place > 0 && sizes[place - 1] > size; --place) sizes[place] = sizes[place - 1];
+    sizes[place] = size;
+    const bool same_side = j > first && j != k + 1;
+    if (same_side && (all.jumps[at] < 0.0) != (all.jumps[at - 1] < 0.0)) ++result.turns;
+  }
+  result.scale = found % 2 == 1 ? sizes[found / 2] : 0.5 * (sizes[found / 2 - 1] + sizes[found / 2]);
+  result.small = sizes[found / 4];
+  const Index reach = all.changes[static_cast<std::size_t>(last)] - all.changes[static_cast<std::size_t>(first)];
+  result.spacing =
+      static_cast<double>(reach - all.runs[run].length) / static_cast<double>(std::max<Index>(1, last - first - 1));
+  return result;
+}
+
+/// The value that most of some runs have.
+struct Common {
+  double value = 0.0;
+  Index runs = 0, of = 0;
+};
+
+template <class Chosen>
+Common most_common(const Runs& all, const Chosen& chosen) {
+  std::unordered_map<double, Index> counts;
+  Common common;
+  for (std::size_t k = 0; k < all.runs.size(); ++k) {
+    if (!chosen(k)) continue;
+    ++common.of;
+    const Index count = ++counts[all.runs[k].value];
+    if (count > common.runs) common = {all.runs[k].value, count, common.of};
+  }
+  return common;
+}
+
+void mark(const Run& run, Index from, std::vector<bool>& samples) {
+  std::fill(samples.begin() + run.begin + from, samples.begin() + run.begin + run.length, true);
+}
+
+double share_of(const std::vector<bool>& samples) {
+  return static_cast<double>(std::ranges::count(samples, true)) / static_cast<double>(samples.size());
+}
+
+// ---- a value that stands where nothing was measured ----
+
+std::optional<Stale> find_placeholder(const Eigen::Ref<const Vector>& values, const Runs& all) {
+  constexpr Index kFewest = 5, kLongestRun = 10;
+  constexpr double kFar = 20.0, kShare = 0.002, kRank = 0.15;
+  const auto is_odd = [&](std::size_t k) {
+    const Run& run = all.runs[k];
+    const double nearest = std::min(std::abs(run.before), std::abs(run.after));
+    return run.length <= kLongestRun && (run.before < 0.0) != (run.after < 0.0) &&
+           std::abs(run.before + run.after) < 0.5 * nearest && nearest > kFar * all.step &&
+           nearest > kFar * around(all, k).small;
+  };
+  const auto [value, count, odd] = most_common(all, is_odd);
+  if (count < kFewest || 2 * count < odd) return std::nullopt;
+  // What is lost is lost wherever the signal is; a converter with a dead band returns to 0 from its edge alone.
+  std::vector<double> away, lost;
+  for (const double one : values) {
+    if (one != value) away.push_back(std::abs(one - value));
+  }
+  for (std::size_t k = 0; k < all.runs.size(); ++k) {
+    if (all.runs[k].value == value && is_odd(k)) lost.push_back(std::abs(all.runs[k].before));
+  }
+  const double edge = quantile(away, kRank);
+  if (!(numeric::median(lost) > edge)) return std::nullopt;
+  Stale stale{{Staleness::placeholder, 1.0, 0.0, value}, std::vector<bool>(static_cast<std::size_t>(values.size()))};
+  for (Index i = 0; i < values.size(); ++i) stale.samples[static_cast<std::size_t>(i)] = values[i] == value;
+  stale.updates.share = share_of(stale.samples);
+  if (stale.updates.share < kShare) return std::nullopt;
+  return stale;
+}
+
+// ---- updates at a lower rate than the recording's ----
+
+/// The largest number of samples of which nearly all changes are a whole multiple apart; 0: there is none.
+Index period_of(const Runs& all) {
+  constexpr double kNearlyAll = 0.95;
+  constexpr std::size_t kLongest = 4000, kCommon = 3;
+  std::vector<Index> counts(kLongest + 1);
+  for (const Run& run : all.runs) ++counts[std::min<std::size_t>(kLongest, static_cast<std::size_t>(run.length))];
+  std::vector<Index> common(kLongest);
+  std::iota(common.begin(), common.end(), Index{1});
+  std::ranges::partial_sort(common, common.begin() + kCommon, std::greater(),
+                            [&](Index length) { return counts[static_cast<std::size_t>(length)]; });
+  Index best = 0;
+  for (std::size_t a = 0; a < kCommon; ++a) {
+    for (std::size_t b = a; b < kCommon; ++b) {
+      const Index period = std::gcd(common[a], common[b]);
+      if (period < 2 || counts[static_cast<std::size_t>(common[b])] == 0 || period <= best) continue;
+      std::vector<Index> phases(static_cast<std::size_t>(period));
+      for (const Index change : all.changes) ++phases[static_cast<std::size_t>(change % period)];
+      const auto most = static_cast<double>(std::ranges::max(phases));
+      if (most >= kNearlyAll * static_cast<double>(all.changes.size())) best = period;
+    }
+  }
+  return best;
+}
+
+/// The mean interval where nearly all are whole multiples of one, to within a sample or 15 %; 0: they are not.
+double mean_period(const Runs& all) {
+  constexpr double kShortest = 4.0, kNearlyAll = 0.95, kLoose = 0.15;
+  std::vector<double> lengths;
+  for (const Run& run : all.runs) lengths.push_back(static_cast<double>(run.length));
+  const double median = numeric::median(lengths);
+  double sum = 0.0, count = 0.0;
+  for (const double length : lengths) {
+    if (length < 0.5 * median || length > 1.5 * median) continue;
+    sum += length;
+    count += 1.0;
+  }
+  const double period = sum / count;
+  if (!(period >= kShortest)) return 0.0;
+  const auto near = std::ranges::count_if(lengths, [&](double length) {
+    const double multiple = std::max(1.0, std::round(length / period));
+    return std::abs(length - multiple * period) <= std::max(1.0, kLoose * period);
+  });
+  return static_cast<double>(near) >= kNearlyAll * static_cast<double>(lengths.size()) ? period : 0.0;
+}
+
+/// Of runs that are longer than a period, a measurement follows every period: it had the same value.
+Stale held(double period, const Runs& all, Index samples) {
+  Stale stale{{Staleness::held, period}, std::vector<bool>(static_cast<std::size_t>(samples), true)};
+  const auto begin_at = [&](Index begin, Index length) {
+    for (double at = 0.0; at <= static_cast<double>(length) - 0.5 * period || at == 0.0; at += period) {
+      stale.samples[static_cast<std::size_t>(begin + std::min(length - 1, std::lround(at)))] = false;
+    }
+  };
+  begin_at(0, all.changes.front());
+  for (const Run& run : all.runs) begin_at(run.begin, run.length);
+  begin_at(all.changes.back(), samples - all.changes.back());
+  stale.updates.share = share_of(stale.samples);
+  return stale;
+}
+
+std::optional<Stale> find_held(const Runs& all, Index samples) {
+  const auto count = static_cast<double>(all.runs.size());
+  const auto part = [&](auto is) { return static_cast<double>(std::ranges::count_if(all.runs, is)) / count; };
+  if (part([](const Run& run) { return run.length >= 2; }) <= 0.5) return std::nullopt;
+  if (const Index period = period_of(all); period > 0) {
+    const double multiples = part([&](const Run& run) { return 10 * run.length >= 17 * period; });
+    if (all.varied > 0.1 || multiples > 0.05) return held(static_cast<double>(period), all, samples);
+  }
+  const double period = all.varied > 0.3 ? mean_period(all) : 0.0;
+  if (period == 0.0) return std::nullopt;
+  return held(period, all, samples);
+}
+
+// ---- repeats and freezes ----
+
+/// Finds repeats and freezes among samples that move.
+class Repeats {
+ public:
+  Repeats(const Runs& all, Index samples) : all_(all), samples_(samples) {
+    for (std::size_t k = 0; k < all.runs.size(); ++k) around_.push_back(around(all, k));
+    rest_ = most_common(all, [&](std::size_t k) { return moves(k) && all.runs[k].length >= 2; });
+  }
+
+  [[nodiscard]] std::optional<Stale> find() const {
+    if (auto stale = repeated()) return stale;
+    return frozen();
+  }
+
+ private:
+  static constexpr Index kShortRun = 10;
+
+  [[nodiscard]] double share(Index count) const { return static_cast<double>(count) / static_cast<double>(samples_); }
+  [[nodiscard]] bool at_extreme(const Run& run) const { return run.value == all_.low || run.value == all_.high; }
+  /// A signal in steps moves by many of them in each sample.
+  [[nodiscard]] bool moves(std::size_t k) const {
+    constexpr double kSteps = 4.0;
+    return around_[k].scale >= kSteps * all_.step && !at_extreme(all_.runs[k]);
+  }
+  /// At the value to which the channel returns again and again.
+  [[nodiscard]] bool rests(const Run& run) const {
+    constexpr Index kFewest = 5;
+    constexpr double kOften = 0.3;
+    return rest_.runs >= kFewest && static_cast<double>(rest_.runs) > kOften * static_cast<double>(rest_.of) &&
+           run.value == rest_.value;
+  }
+
+  [[nodiscard]] std::optional<Stale> repeated() const {
+    constexpr double kRepeats = 0.12, kMinShare = 0.03;
+    Index moving = 0, longer = 0, short_runs = 0, in_short = 0, stale_short = 0, stale_all = 0;
+    for (std::size_t k = 0; k < all_.runs.size(); ++k) {
+      const Run& run = all_.runs[k];
+      if (!moves(k) || rests(run)) continue;
+      ++moving;
+      longer += run.length >= 2 ? 1 : 0;
+      stale_all += run.length - 1;
+      if (run.length > kShortRun) continue;
+      ++short_runs;
+      in_short += run.length;
+      stale_short += run.length - 1;
+    }
+    const bool in_passing = short_runs >= kMinChanges && share(stale_short) >= kMinShare &&
+                            static_cast<double>(stale_short) > kRepeats * static_cast<double>(in_short);
+    const bool mostly = moving >= kMinChanges && share(stale_all) >= kMinShare && all_.varied > 0.3 &&
+                        static_cast<double>(longer) > 0.6 * static_cast<double>(moving);
+    if (!in_passing && !mostly) return std::nullopt;
+    Stale stale{{Staleness::repeated}, std::vector<bool>(static_cast<std::size_t>(samples_))};
+    for (std::size_t k = 0; k < all_.runs.size(); ++k) {
+      const Run& run = all_.runs[k];
+      if (moves(k) && !rests(run) && (mostly || run.length <= kShortRun)) mark(run, 1, stale.samples);
+    }
+    stale.updates.share = share_of(stale.samples);
+    stale.updates.interval = 1.0 / (1.0 - stale.updates.share);
+    return stale;
+  }
+
+  [[nodiscard]] bool freezes(std::size_t k) const {
+    constexpr Index kFreeze = 5, kQuietFreeze = 10;
+    constexpr int kNoisy = 3;
+    const Run& run = all_.runs[k];
+    const Around& here = around_[k];
+    if (at_extreme(run) || rests(run)) return false;
+    const bool noisy = here.turns >= kNoisy, catches_up = std::abs(run.after) >= 3.0 * here.scale;
+    if (moves(k) && run.length >= kFreeze && (noisy || catches_up)) return true;
+    // Noise of a step or two: a freeze is many times longer than the usual repeats.
+    return here.scale >= 1.5 * all_.step && noisy && run.length >= kQuietFreeze &&
+           static_cast<double>(run.length) >= 20.0 * here.spacing;
+  }
+
+  [[nodiscard]] std::optional<Stale> frozen() const {
+    constexpr Index kFewest = 3;
+    constexpr double kMinShare = 0.01, kOften = 0.3;
+    const Common common = most_common(all_, [&](std::size_t k) { return freezes(k); });
+    const bool one_value =
+        common.runs > 1 && static_cast<double>(common.runs) > kOften * static_cast<double>(common.of);
+    std::vector<double> lengths;
+    for (std::size_t k = 0; k < all_.runs.size(); ++k) {
+      const Run& run = all_.runs[k];
+      if (freezes(k) && !(one_value && run.value == common.value)) lengths.push_back(static_cast<double>(run.length));
+    }
+    if (std::ssize(lengths) < kFewest) return std::nullopt;
+    // A channel that freezes does so in other runs of that length, too.
+    const double as_long = 0.5 * numeric::median(std::move(lengths));
+    Stale stale{{Staleness::frozen}, std::vector<bool>(static_cast<std::size_t>(samples_))};
+    for (std::size_t k = 0; k < all_.runs.size(); ++k) {
+      const Run& run = all_.runs[k];
+      if ((one_value && run.value == common.value) || at_extreme(run) || rests(run)) continue;
+      if (freezes(k) || static_cast<double>(run.length) >= as_long) mark(run, 1, stale.samples);
+    }
+    stale.updates.share = share_of(stale.samples);
+    if (stale.updates.share < kMinShare) return std::nullopt;
+    return stale;
+  }
+
+  const Runs& all_;
+  Index samples_;
+  std::vector<Around> around_;
+  Common rest_;
+};
+
+/// Whether enough values repeat for anything to be found: most channels need no closer look.
+bool repeats_enough(const Runs& all, Index samples) {
+  Index stale = 0, in_long = 0;
+  for (const Run& run : all.runs) {
+    stale += run.length - 1;
+    if (run.length >= 5) in_long += run.length;
+  }
+  return 33 * stale >= samples || 100 * in_long >= samples;
+}
+
+/// Whether a channel hardly ever repeats a value and has no jumps to speak of, as most channels.
+bool is_plain(const Eigen::Ref<const Vector>& values) {
+  constexpr Index kLooked = 1024, kSpikes = 10;
+  constexpr double kFar = 20.0;
+  const Index n = values.size() - 1;
+  const auto changes = (values.tail(n) - values.head(n)).array().abs();
+  if (100 * (changes == 0.0).count() > n) return false;
+  std::vector<double> some;
+  for (Index k = 0; k < kLooked; ++k) some.push_back(changes[k * (n - 1) / (kLooked - 1)]);
+  return (changes > kFar * quantile(std::move(some), 0.25)).count() < kSpikes;
+}
+
+Stale find_in_finite(const Eigen::Ref<const Vector>& values) {
+  if (values.size() < kMinSamples || is_plain(values)) return {};
+  const Runs all = runs_of(values);
+  if (std::ssize(all.changes) < kMinChanges) return {};
+  if (auto stale = find_placeholder(values, all)) return std::move(*stale);
+  if (auto stale = find_held(all, values.size())) return std::move(*stale);
+  if (!repeats_enough(all, values.size())) return {};
+  if (auto stale = Repeats(all, values.size()).find()) return std::move(*stale);
+  return {};
+}
+
+}  // namespace
+
+Stale find_stale(const Eigen::Ref<const Vector>& values) {
+  if (values.allFinite()) return find_in_finite(values);
+  std::vector<Index> finite;
+  for (Index i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) finite.push_back(i);
+  }
+  Stale some = find_in_finite(values(finite));
+  if (some.samples.empty()) return some;
+  Stale all{some.updates, std::vector<bool>(static_cast<std::size_t>(values.size()))};
+  for (std::size_t k = 0; k < finite.size(); ++k) {
+    all.samples[static_cast<std::size_t>(finite[k])] = some.samples[k];
+  }
+  return all;
+}
+
+}  // namespace mbk::recording
