@@ -69,7 +69,8 @@ class Decoder {
     say_what_there_is();
     take_points();
     take_analog();
-    contents_.events = c3d_events(file_, parameters_, layout_.point_rate, first_frame_, contents_.notes);
+    const double seconds = layout_.point_rate > 0.0 ? static_cast<double>(layout_.frames) / layout_.point_rate : 0.0;
+    contents_.events = c3d_events(file_, parameters_, layout_.point_rate, first_frame_, seconds, contents_.notes);
     return std::move(contents_);
   }
 

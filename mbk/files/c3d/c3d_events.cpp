@@ -24,6 +24,36 @@ std::string named(std::string name) {
   return name.empty() ? "event" : name;
 }
 
+struct MinutesAndSeconds {
+  double minutes = 0.0, seconds = 0.0;
+};
+
+/// TIMES of a group of `count` events. The two numbers of an event are adjacent if the dimensions are 2×n, or n with
+/// two numbers for each event and whole minutes. If they are n×2, the minutes of all events precede the seconds.
+std::vector<MinutesAndSeconds> times_of(const C3dParameters& parameters, std::string_view group, std::size_t count) {
+  const C3dParameter* stored = parameters.find(group, "TIMES");
+  if (stored == nullptr) return {};
+  const auto numbers = parameters.numbers(group, "TIMES");
+  const auto& dimensions = stored->dimensions;
+  const bool table = dimensions.size() == 2 && numbers.size() % 2 == 0;
+  bool whole = true;
+  for (std::size_t k = 0; k < numbers.size(); k += 2) whole = whole && numbers[k] == std::floor(numbers[k]);
+  const bool pairs = (table && dimensions[0] == 2) || (!table && numbers.size() == 2 * count && whole);
+  const bool columns = table && !pairs && dimensions[1] == 2 && numbers.size() != count;
+  const std::size_t n = pairs || columns ? numbers.size() / 2 : numbers.size();
+  std::vector<MinutesAndSeconds> times(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (pairs) {
+      times[k] = {numbers[2 * k], numbers[2 * k + 1]};
+    } else if (columns) {
+      times[k] = {numbers[k], numbers[n + k]};
+    } else {
+      times[k].seconds = numbers[k];
+    }
+  }
+  return times;
+}
+
 void add(std::vector<Event>& events, Event event) {
   const bool known = std::ranges::any_of(events, [&](const Event& other) {
     return other.name == event.name && std::abs(other.time - event.time) < kSameTime;
@@ -34,24 +64,24 @@ void add(std::vector<Event>& events, Event event) {
 }  // namespace
 
 std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& parameters, double rate_hz, double first_frame,
-                              std::vector<std::string>& notes) {
+                              double seconds, std::vector<std::string>& notes) {
   std::vector<Event> events;
   std::size_t no_time = 0;
   const double from = rate_hz > 0.0 && first_frame > 1.0 ? (first_frame - 1.0) / rate_hz : 0.0;
-  bool shifted = false, row_ignored = false;
+  const auto recorded = [&](double time) { return seconds > 0.0 && time >= from && time <= from + seconds; };
+  bool shifted = false, minutes_ignored = false;
   for (const std::string_view group : {"EVENT", "EVENTS"}) {
-    const C3dParameter* stored = parameters.find(group, "TIMES");
-    if (stored == nullptr) continue;
-    const auto times = parameters.numbers(group, "TIMES");
     const auto labels = parameters.texts(group, "LABELS");
     const auto contexts = parameters.texts(group, "CONTEXTS");
-    const std::size_t each = stored->dimensions.size() == 2 && stored->dimensions.front() == 2 ? 2 : 1;
     const std::size_t used =
         static_cast<std::size_t>(std::clamp(parameters.number(group, "USED").value_or(65535.0), 0.0, 65535.0));
-    for (std::size_t k = 0; k < std::min(used, times.size() / each); ++k) {
-      const double minutes = each == 2 && group == "EVENT" ? times[2 * k] : 0.0;
-      const double time = 60.0 * minutes + times[each * k + each - 1];
-      row_ignored = row_ignored || (each == 2 && group == "EVENTS" && times[2 * k] != 0.0);
+    const std::vector<MinutesAndSeconds> times = times_of(parameters, group, labels.empty() ? used : labels.size());
+    for (std::size_t k = 0; k < std::min(used, times.size()); ++k) {
+      double time = 60.0 * times[k].minutes + times[k].seconds;
+      if (group == "EVENTS" && times[k].minutes != 0.0 && !recorded(time) && recorded(times[k].seconds)) {
+        time = times[k].seconds;
+        minutes_ignored = true;
+      }
       if (!std::isfinite(time)) {
         ++no_time;
         continue;
@@ -78,7 +108,10 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
     notes.push_back(fmt::format("the header speaks of {} events and has room for {}", in_header, kMaxInHeader));
   }
   if (no_time > 0) notes.push_back(fmt::format("{} events have no time and were ignored", no_time));
-  if (row_ignored) notes.emplace_back("the first of the two rows of EVENTS:TIMES is no time and was ignored");
+  if (minutes_ignored) {
+    notes.emplace_back(
+        "the first row of EVENTS:TIMES was ignored: read as minutes, it leads beyond the end of the recording");
+  }
   if (shifted) {
     notes.push_back(fmt::format("the first frame is number {}; the times of events count from there", first_frame));
   }

@@ -8,12 +8,14 @@
 
 namespace mbk::recording {
 
-/// The events of a C3D file, in the order of their times, on a clock that is 0 at the first frame that the file holds.
-/// Those of the header count from that frame; those of the groups EVENT and EVENTS (KINARM) from frame 1, whatever the
-/// first frame is: the former in minutes and seconds, the latter in seconds alone, in the second of two rows where
-/// there are two. An event of both stands once. What cannot be an event is named in `notes`.
-/// @param file  at least a header; `rate` 0 where it is not known
+/// The events of a C3D file in the order of their times, on a clock that is 0 at the first frame that the file holds.
+/// Events in the header count from that frame, those in the groups EVENT and EVENTS (KINARM) from frame 1, whatever the
+/// first frame is. TIMES holds whole minutes and seconds for each event (C3D User Guide, EVENT:TIMES), or seconds only.
+/// Dexterit-E does not use the first of the two rows of EVENTS: minutes there are ignored if they lead beyond the
+/// recording and the seconds alone do not. An event in both header and group appears once. `notes` says what cannot be
+/// an event.
+/// @param file  at least a header; `rate` 0 where it is not known    @param seconds  of the recording; 0: not known
 [[nodiscard]] std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& parameters, double rate_hz,
-                                            double first_frame, std::vector<std::string>& notes);
+                                            double first_frame, double seconds, std::vector<std::string>& notes);
 
 }  // namespace mbk::recording

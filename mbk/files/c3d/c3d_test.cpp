@@ -227,6 +227,46 @@ TEST(DecodeC3d, EventsOfTheGroupCountFromFrameOneAndThoseOfTheHeaderFromTheFirst
   EXPECT_THAT(contents.notes, Contains(HasSubstr("the first frame is number 301")));
 }
 
+/// Times of the events of the group `name`, in a file of 100 s.
+std::vector<double> times_of_events(const std::string& name, const std::vector<int>& dimensions,
+                                    const std::vector<double>& values, int labels, std::string* notes = nullptr) {
+  constexpr int kGroup = 30;
+  C3d file = small_c3d();
+  const auto n = file.numbers();
+  file.rate = 0.06;
+  file.events.clear();
+  std::string times;
+  for (const double value : values) times += n.real(value);
+  file.records = n.group(kGroup, name) + n.words(kGroup, "USED", {static_cast<double>(labels)}) +
+                 n.texts(kGroup, "LABELS", std::vector<std::string>(static_cast<std::size_t>(labels), "GO")) +
+                 n.parameter(kGroup, "TIMES", 4, dimensions, times);
+  const Contents contents = good(file.bytes());
+  std::vector<double> found;
+  for (const Event& event : contents.events) found.push_back(event.time);
+  for (const std::string& note : contents.notes) {
+    if (notes != nullptr) *notes += note + "\n";
+  }
+  return found;
+}
+
+TEST(DecodeC3d, TimesOfEventsAreMinutesAndSecondsInEitherGroup) {
+  for (const char* group : {"EVENT", "EVENTS"}) {
+    EXPECT_THAT(times_of_events(group, {2, 2}, {1, 2.5, 0, 8}, 2), ElementsAre(8.0, 62.5)) << group;
+    EXPECT_THAT(times_of_events(group, {4}, {1, 2.5, 0, 8}, 2), ElementsAre(8.0, 62.5)) << group;  // as Vicon had it
+    EXPECT_THAT(times_of_events(group, {3, 2}, {1, 0, 0, 2.5, 8, 9}, 3), ElementsAre(8.0, 9.0, 62.5)) << group;
+    EXPECT_THAT(times_of_events(group, {2}, {2.5, 8}, 2), ElementsAre(2.5, 8.0)) << group;  // seconds alone
+    EXPECT_THAT(times_of_events(group, {1, 2}, {2.5, 8}, 2), ElementsAre(2.5, 8.0)) << group;
+    EXPECT_THAT(times_of_events(group, {4}, {2.5, 8, 0, 0}, 2), ElementsAre(2.5, 8.0)) << group;  // room for four
+  }
+}
+
+TEST(DecodeC3d, TheRowThatDexteritEDoesNotUseIsIgnoredWhereItIsNoMinutes) {
+  std::string notes;
+  EXPECT_THAT(times_of_events("EVENTS", {2, 2}, {7, 2.5, 7, 8}, 2, &notes), ElementsAre(2.5, 8.0));
+  EXPECT_THAT(notes, HasSubstr("read as minutes, it leads beyond the end of the recording"));
+  EXPECT_THAT(times_of_events("EVENT", {2, 2}, {7, 2.5, 7, 8}, 2), ElementsAre(422.5, 428.0));
+}
+
 // ---- how many frames ----
 
 /// One channel of one sample for each of so many frames.
