@@ -101,6 +101,13 @@ class C3d(Case):
         self.assert_relative(model["K"], [[STIFFNESS]], 0.01)
         self.assertEqual(ran.json["units"]["K"], "N·m/rad")
 
+    def test_a_label_that_repeats_means_neither(self):
+        points = {"Hand": [(0.001 * k, 0.0, 1.0) for k in range(500)]}
+        path = write_c3d(self.folder / "twice.c3d", points, {"Torqua": [0.5] * 500, "Torque": [1.0] * 500}, ["Nm", "Nm"])
+        path.write_bytes(path.read_bytes().replace(b"Torqua", b"Torque"))
+        self.bad_data(path, "--axes", "1", "--channels", "x=Hand.x,F=Torque", command="info",
+                      says=("the name 'Torque' is not unique: 'Torque#1' (column 4), 'Torque#2' (column 5)", "name one of them"))
+
     def test_two_rates_are_refused_and_the_way_out_works(self):
         path = self.limb_file(samples=10)
         channels = "q1=Knee angle,x=Hand.x"

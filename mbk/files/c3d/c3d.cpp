@@ -202,30 +202,38 @@ class Decoder {
 
   // ---- what it holds ----
 
-  /// Labels of `count` points or channels, none of them empty, twice there or among `taken`.
+  /// Labels of `count` points or channels, made unique and different from `others`. A label that repeats is numbered
+  /// everywhere, so that the plain label does not silently mean the first.
   std::vector<std::string> labels(std::string_view group, std::uint64_t count, std::string_view nameless,
-                                  std::set<std::string> taken) {
+                                  const std::set<std::string>& others) {
     std::vector<std::string> names = parameters_.texts(group, "LABELS");
     names.resize(static_cast<std::size_t>(count));
-    std::map<std::string, std::size_t> copies;
     std::size_t missing = 0;
-    std::vector<std::string> renamed;
+    std::map<std::string, std::size_t> times;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      std::string& name = names[k];
-      if (name.empty()) name = fmt::format("{}_{}", nameless, k + 1), ++missing;
+      if (names[k].empty()) names[k] = fmt::format("{}_{}", nameless, k + 1), ++missing;
+      ++times[names[k]];
+    }
+    std::set<std::string> taken = others;
+    taken.insert(names.begin(), names.end());
+    std::map<std::string, std::size_t> copies;
+    std::vector<std::string> numbered;
+    for (std::string& name : names) {
       const std::string label = name;
-      for (std::size_t& n = copies.try_emplace(label, 1).first->second; !taken.insert(name).second;) {
+      if (times[label] == 1 && !others.contains(label)) continue;
+      std::size_t& n = copies.try_emplace(label, others.contains(label) ? 1 : 0).first->second;
+      do {
         name = fmt::format("{}#{}", label, ++n);
-      }
-      if (name != label) renamed.push_back(name);
+      } while (!taken.insert(name).second);
+      numbered.push_back(name);
     }
     if (missing > 0) {
       note(fmt::format("{} of {} {} labels are missing; those are called {}_1, {}_2, … by their place", missing, count,
                        nameless, nameless, nameless));
     }
-    if (!renamed.empty()) {
-      note(fmt::format("{} {} labels repeat; the first of them is called '{}'", renamed.size(), nameless,
-                       renamed.front()));
+    if (!numbered.empty()) {
+      note(fmt::format("{} {} labels are not unique and are numbered ('{}' is the first)", numbered.size(), nameless,
+                       numbered.front()));
     }
     return names;
   }
@@ -297,9 +305,9 @@ class Decoder {
     const auto offsets = parameters_.numbers("ANALOG", "OFFSET", unsigned_words);
     const auto units = parameters_.texts("ANALOG", "UNITS");
     const double general = parameters_.number("ANALOG", "GEN_SCALE").value_or(1.0);
-    std::set<std::string> taken;
-    for (const Array& array : contents_.arrays) taken.insert(array.name);
-    const auto names = labels("ANALOG", layout_.channels, "analog", std::move(taken));
+    std::set<std::string> points;
+    for (const Array& array : contents_.arrays) points.insert(array.name);
+    const auto names = labels("ANALOG", layout_.channels, "analog", points);
     const std::uint64_t each = layout_.number_size();
     for (std::size_t c = 0; c < names.size(); ++c) {
       const bool scaled = c < scales.size();

@@ -20,8 +20,8 @@ namespace mbk::recording {
 /// A point gives the arrays LABEL.x, LABEL.y and LABEL.z in POINT:UNITS, or in the units of its type (ANGLES and
 /// ANGLE_UNITS, …); they are NaN where the point is marked invalid. An analog channel gives the array LABEL with
 /// (stored − OFFSET)·SCALE·GEN_SCALE in its ANALOG:UNITS. Labels that are missing become point_7 or analog_7, and those
-/// that repeat get #2, #3, …. Arrays know their rate. Events come from the header and from the groups EVENT and EVENTS,
-/// on a clock that is 0 at the first frame of the file. Contents::notes says what is unusual.
+/// that repeat LABEL#1, LABEL#2, …. Arrays know their rate. Events come from the header and from the groups EVENT and
+/// EVENTS, on a clock that is 0 at the first frame of the file. Contents::notes says what is unusual.
 ///
 /// The parameters go before the header, and where the two disagree on frames or on where the data begin, a note says
 /// so.

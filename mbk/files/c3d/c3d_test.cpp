@@ -183,9 +183,26 @@ TEST(DecodeC3d, RepeatedAndMissingLabelsBecomeUnique) {
   const Contents contents = good(file.bytes());
   std::vector<std::string> names;
   for (const Array& one : contents.arrays) names.push_back(one.name);
-  EXPECT_THAT(names, ElementsAre("*.x", "*.y", "*.z", "*#2.x", "*#2.y", "*#2.z", "EMG", "analog_2", "*.x#2"));
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("point labels repeat; the first of them is called '*#2'")));
+  // Neither keeps a label that repeats: whoever asks for it has to say which one.
+  EXPECT_THAT(names, ElementsAre("*#1.x", "*#1.y", "*#1.z", "*#2.x", "*#2.y", "*#2.z", "EMG", "analog_2", "*.x"));
+  EXPECT_THAT(contents.notes,
+              Contains(HasSubstr("2 point labels are not unique and are numbered ('*#1' is the first)")));
   EXPECT_THAT(contents.notes, Contains(HasSubstr("1 of 3 analog labels are missing")));
+}
+
+TEST(DecodeC3d, NumbersOfRepeatedLabelsAvoidLabelsThatAreThere) {
+  C3d file = small_c3d();
+  file.points = {"A", "B"};
+  file.channels = {"B.x", "E", "E"};
+  const auto names = [&] {
+    const Contents contents = good(file.bytes());
+    std::vector<std::string> found;
+    for (std::size_t k = 3; k < contents.arrays.size(); ++k) found.push_back(contents.arrays[k].name);
+    return found;
+  };
+  EXPECT_THAT(names(), ElementsAre("B.x", "B.y", "B.z", "B.x#2", "E#1", "E#2"));
+  file.channels = {"E#1", "E ", "E"};  // blanks around a label are none of it
+  EXPECT_THAT(names(), ElementsAre("B.x", "B.y", "B.z", "E#1", "E#2", "E#3"));
 }
 
 TEST(DecodeC3d, PointsOfAModelHaveTheUnitOfTheirType) {

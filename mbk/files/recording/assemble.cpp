@@ -590,6 +590,10 @@ class Assembler {
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
         error != std::errc() || stop != end) {
+      if (const std::string alike = numbered_alike(entry.source); !alike.empty()) {
+        return bad_data(fmt::format("channel {}: the name '{}' is not unique: {}", entry.channel, entry.source, alike),
+                        "name one of them, or give its column number");
+      }
       const std::string neither = asked == entry.source ? "" : fmt::format("'{}' and no ", asked);
       return bad_data(fmt::format("channel {}: there is no {}'{}'; {}", entry.channel, neither, entry.source,
                                   inventory(contents_)));
@@ -605,6 +609,24 @@ class Assembler {
     const auto matrix = numbered_matrix(entry);
     if (!matrix) return tl::unexpected(matrix.error());
     return line_of(entry, **matrix, number);
+  }
+
+  /// Columns that the reader numbered because their name repeats: "'EMG#1' (column 3), 'EMG#2' (column 7)" for EMG.
+  [[nodiscard]] std::string numbered_alike(std::string_view name) const {
+    constexpr int kShown = 12;
+    std::string found;
+    int count = 0;
+    for (std::size_t k = 0; contents_.table && k < contents_.arrays.size(); ++k) {
+      std::string bare = contents_.arrays[k].name;
+      const auto sign = bare.rfind('#');
+      if (sign == bare.npos) continue;
+      const auto end = bare.find_first_not_of("0123456789", sign + 1);
+      bare.erase(sign, std::min(end, bare.size()) - sign);
+      if (bare != name || ++count > kShown) continue;
+      found += fmt::format("{}'{}' (column {})", found.empty() ? "" : ", ", contents_.arrays[k].name, k + 1);
+    }
+    if (count > kShown) found += fmt::format(" and {} more", count - kShown);
+    return found;
   }
 
   /// Row or column `number` of a matrix, counted from 1 across its longer side.

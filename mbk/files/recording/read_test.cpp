@@ -446,6 +446,20 @@ TEST_F(Read, RefusesAUnitOfTheFileThatIsUnknownOrOfAnotherDimensionUntilTheMapSa
   }
 }
 
+TEST_F(Read, AsksWhichOfSeveralColumnsOfOneLabelIsMeant) {
+  test::C3d file = test::small_c3d();
+  file.points = {"HAND", "HAND"};
+  file.channels = {"Fx", "EMG", "Fx"};
+  file.analog_units = {"N", "", "N"};
+  const Error error = bad(file.bytes(), with_channels("Fx=Fx"));
+  EXPECT_EQ(error.message, "channel force_x: the name 'Fx' is not unique: 'Fx#1' (column 7), 'Fx#2' (column 9)");
+  EXPECT_EQ(error.remedy, "name one of them, or give its column number");
+  EXPECT_THAT(bad(file.bytes(), with_channels("x=HAND.x")).message, HasSubstr("'HAND#2.x' (column 4)"));
+  EXPECT_THAT(bad(file.bytes()).message, HasSubstr("no channel is recognised"));
+  EXPECT_EQ(good(file.bytes(), with_channels("Fx=Fx#2")).find("force_x")->values[0],
+            good(file.bytes(), with_channels("Fx=9")).find("force_x")->values[0]);
+}
+
 TEST_F(Read, NamesMayHoldColons) {
   test::C3d file = test::small_c3d();
   file.points = {"Arm:HAND", "Arm:m"};
