@@ -30,19 +30,21 @@ def words(group, name, *values):
     return parameter(group, name, 2, (len(values),), struct.pack(f"<{len(values)}H", *values))
 
 
-def write_c3d(path, points, channels, units, samples=1):
-    """Intel reals. points: {label: [(x, y, z), ...]}, channels: {label: [...]} with `samples` to a frame."""
+def write_c3d(path, points, channels, units, samples=1, data_start=4, frames_said=None, scale=1.0, more=b""):
+    """Intel reals. points: {label: [(x, y, z), ...]}, channels: {label: [...]} with `samples` to a frame. POINT:DATA_START,
+    POINT:FRAMES and ANALOG:SCALE may say something wrong; `more`: further records of the parameters."""
     frames = len(next(iter(points.values()))) if points else len(next(iter(channels.values()))) // samples
     rate = RATE / samples
     section = b"\x05\xffPOINT\x03\0\0\x06\xfeANALOG\x03\0\0"
-    section += words(1, "USED", len(points)) + words(1, "FRAMES", frames) + words(1, "DATA_START", 4)
+    section += words(1, "USED", len(points)) + words(1, "FRAMES", (frames_said or frames) % 65536)
+    section += words(1, "DATA_START", data_start) + more
     section += reals(1, "SCALE", -1.0) + reals(1, "RATE", rate) + texts(1, "UNITS", ["mm"])
     section += words(2, "USED", len(channels)) + reals(2, "RATE", RATE) + reals(2, "GEN_SCALE", 1.0)
-    section += reals(2, "SCALE", *[1.0] * len(channels)) + words(2, "OFFSET", *[0] * len(channels))
+    section += reals(2, "SCALE", *[scale] * len(channels)) + words(2, "OFFSET", *[0] * len(channels))
     section += texts(2, "LABELS", list(channels)) + texts(2, "UNITS", units)
     if points:
         section += texts(1, "LABELS", list(points))
-    header = struct.pack("<BBHHHHHfHHf", 2, 0x50, len(points), len(channels) * samples, 1, frames, 0, -1.0, 4,
+    header = struct.pack("<BBHHHHHfHHf", 2, 0x50, len(points), len(channels) * samples, 1, min(frames, 65535), 0, -1.0, 4,
                          samples, rate)
     data = bytearray()
     for f in range(frames):
@@ -69,11 +71,11 @@ def limb(samples=20000):
 
 
 class C3d(Case):
-    def limb_file(self, samples=1):
+    def limb_file(self, samples=1, **wrong):
         angle, torque = limb()
         points = {"Hand": [(angle[k], 0.0, 1.0) for k in range(0, len(angle), samples)]}
         return write_c3d(self.folder / "limb.c3d", points, {"Knee angle": angle, "Torque": torque}, ["deg", "Nm"],
-                         samples)
+                         samples, **wrong)
 
     def test_info_lists_names_units_and_rates(self):
         path = self.limb_file(samples=10)
@@ -100,6 +102,24 @@ class C3d(Case):
         self.assert_relative(model["B"], [[DAMPING]], 0.01)
         self.assert_relative(model["K"], [[STIFFNESS]], 0.01)
         self.assertEqual(ran.json["units"]["K"], "N·m/rad")
+
+    def test_a_data_start_among_the_parameters_changes_no_number(self):
+        measure = ("measure", "--json", "--axes", "1", "--channels", "x=Knee angle,F=Torque")
+        right = run(*measure, self.limb_file()).json["model"]
+        wrong = run(*measure, self.limb_file(data_start=2, frames_said=20000 - 1)).json
+        self.assertEqual(wrong["model"], right)
+        notes = " ".join(self.fine("info", "--json", self.limb_file(data_start=2, frames_said=20000 - 1)).json["notes"])
+        self.assertIn("the data are read from block 4 (the header, which fits the file size)", notes)
+        self.assertIn("the number of frames is 20000 (the header", notes)
+
+    def test_frames_beyond_a_word_are_not_lost(self):
+        force = [float(k % 1000) for k in range(70000)]
+        field = words(3, "ACTUAL_START_FIELD", 1, 0) + words(3, "ACTUAL_END_FIELD", 70000 % 65536, 1)
+        path = write_c3d(self.folder / "long.c3d", {}, {"F": force}, ["N"], more=b"\x05\xfdTRIAL\x03\0\0" + field)
+        listing = self.fine("info", "--json", path).json
+        self.assertEqual(listing["samples"], 70000)
+        self.assertIn("is 70000 (TRIAL:ACTUAL_END_FIELD, which fits the file size); POINT:FRAMES says 4464",
+                      " ".join(listing["notes"]))
 
     def test_a_label_that_repeats_means_neither(self):
         points = {"Hand": [(0.001 * k, 0.0, 1.0) for k in range(500)]}

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "mbk/files/c3d/c3d_events.h"
+#include "mbk/files/c3d/c3d_layout.h"
 #include "mbk/files/c3d/c3d_parameters.h"
 
 namespace mbk::recording {
@@ -19,41 +20,7 @@ constexpr std::byte kFirstBlock{2};  ///< of the parameters; block 1 is the head
 constexpr std::byte kLastBlock{31};  ///< beyond it, the byte could be one of a text
 constexpr std::size_t kParameterHeader = 4;
 constexpr std::size_t kCoordinates = 3;
-constexpr std::size_t kPointNumbers = 4;  ///< x, y, z, and a word of residual and cameras
-constexpr double kRateTolerance = 1e-3;   ///< relative: what rates of 32 bits and rounded digits differ by
-constexpr std::uint64_t kMaxInWord = 0xFFFF;
-
-/// Word k of the header, counted from 1 as the format does.
-constexpr std::size_t header_word(std::size_t k) {
-  return 2 * (k - 1);
-}
-
-/// How the data section is laid out.
-struct Layout {
-  std::uint64_t points = 0, channels = 0, samples = 0, frames = 0;  ///< samples of each channel in a frame
-  double point_rate = 0.0, analog_rate = 0.0;                       ///< [Hz]; 0: not said
-  double scale = 0.0;                                               ///< < 0: numbers are reals, and coordinates scaled
-  std::uint64_t data = 0;                                           ///< first byte
-
-  [[nodiscard]] bool real() const { return scale < 0.0; }
-  [[nodiscard]] std::size_t number_size() const { return real() ? 4 : 2; }
-  [[nodiscard]] std::uint64_t frame_size() const {
-    return (kPointNumbers * points + channels * samples) * number_size();
-  }
-};
-
-tl::unexpected<Error> contradiction(std::string_view what, double header, double parameters, std::string where = "") {
-  return bad_data(fmt::format("the header says {} {}, the parameters {}", header, what, parameters),
-                  "write the file again with the program that recorded it", std::move(where));
-}
-
-std::uint64_t whole(double value) {
-  return value >= 0.0 && value < 1e15 ? static_cast<std::uint64_t>(value) : 0;
-}
-
-double positive_or_zero(double value) {
-  return value > 0.0 && std::isfinite(value) ? value : 0.0;
-}
+constexpr std::size_t kPointNumbers = C3dLayout::kPointNumbers;
 
 class Decoder {
  public:
@@ -62,131 +29,33 @@ class Decoder {
   Result<Contents> run() {
     contents_.format = "C3D";
     contents_.table = true;
-    if (auto ok = find_numbers(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = find_analog(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = find_frames(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = find_data(); !ok) return tl::unexpected(ok.error());
+    auto layout = c3d_layout(file_, parameters_, file_.view.size(), contents_.notes);
+    if (!layout) return tl::unexpected(layout.error());
+    layout_ = std::move(*layout);
+    if (auto ok = check_room(); !ok) return tl::unexpected(ok.error());
     say_what_there_is();
     take_points();
     take_analog();
     const double seconds = layout_.point_rate > 0.0 ? static_cast<double>(layout_.frames) / layout_.point_rate : 0.0;
-    contents_.events = c3d_events(file_, parameters_, layout_.point_rate, first_frame_, seconds, contents_.notes);
+    contents_.events =
+        c3d_events(file_, parameters_, layout_.point_rate, layout_.first_frame, seconds, contents_.notes);
     return std::move(contents_);
   }
 
-  Result<C3dLength> length() {
-    if (auto ok = find_numbers(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = find_analog(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = find_frames(); !ok) return tl::unexpected(ok.error());
-    return C3dLength{layout_.frames, layout_.point_rate};
-  }
-
  private:
-  [[nodiscard]] double header(std::size_t k) const { return file_.word(header_word(k)); }
   void note(std::string text) { contents_.notes.push_back(std::move(text)); }
 
-  // ---- how it is laid out ----
-
-  Result<void> find_numbers() {
-    const double points = parameters_.number("POINT", "USED").value_or(header(2));
-    if (points != header(2)) return contradiction("points", header(2), points);
-    layout_.points = whole(points);
-
-    const double header_scale = file_.real(header_word(7));
-    layout_.scale = parameters_.number("POINT", "SCALE").value_or(header_scale);
-    if (!std::isfinite(layout_.scale) || layout_.scale == 0.0) {
-      return bad_data(fmt::format("POINT:SCALE is {}, which leaves open how numbers are stored", layout_.scale),
-                      std::string(kC3dRemedy));
-    }
-    if (header_scale != 0.0 && std::signbit(header_scale) != std::signbit(layout_.scale)) {
-      return contradiction("as scale of the points, whose sign says how numbers are stored,", header_scale,
-                           layout_.scale);
-    }
-    layout_.point_rate = positive_or_zero(parameters_.number("POINT", "RATE").value_or(file_.real(header_word(11))));
-    return {};
-  }
-
-  Result<void> find_analog() {
-    const double in_frame = header(3), header_samples = header(10);
-    layout_.analog_rate = positive_or_zero(parameters_.number("ANALOG", "RATE").value_or(0.0));
-    const double ratio = layout_.point_rate > 0.0 ? layout_.analog_rate / layout_.point_rate : 0.0;
-    const double samples = header_samples > 0.0 ? header_samples : std::max(std::round(ratio), 1.0);
-    const double channels = parameters_.number("ANALOG", "USED").value_or(std::floor(in_frame / samples));
-    if (std::max(channels, samples) > static_cast<double>(kMaxInWord) || channels != std::floor(channels)) {
-      return bad_data(fmt::format("{} analog channels of {} samples in a frame are not possible", channels, samples),
-                      std::string(kC3dRemedy));
-    }
-    if (channels * samples != in_frame && channels * samples <= static_cast<double>(kMaxInWord)) {
-      return contradiction(fmt::format("analog numbers in a frame, of {} samples each,", samples), in_frame,
-                           channels * samples);
-    }
-    layout_.channels = whole(channels);
-    layout_.samples = whole(samples);
-    if (layout_.channels == 0 || layout_.point_rate == 0.0) return {};
-    const double by_points = layout_.point_rate * samples;
-    if (layout_.analog_rate == 0.0) layout_.analog_rate = by_points;
-    if (std::abs(layout_.analog_rate - by_points) > kRateTolerance * by_points) {
-      return bad_data(fmt::format("ANALOG:RATE is {} Hz, but a frame holds {} samples and POINT:RATE is {} Hz",
-                                  layout_.analog_rate, samples, layout_.point_rate),
-                      "write the file again with the program that recorded it");
-    }
-    return {};
-  }
-
-  /// The number of frames that the parameters say; nothing where they do not.
-  [[nodiscard]] std::optional<double> frames_of_parameters() const {
-    const auto frames = parameters_.number("POINT", "FRAMES");
-    if (frames && *frames != static_cast<double>(kMaxInWord)) return frames;
-    if (const auto frames_long = parameters_.number("POINT", "LONG_FRAMES")) return frames_long;
-    const auto first = field("ACTUAL_START_FIELD"), last = field("ACTUAL_END_FIELD");
-    if (first && last && *last >= *first) return *last - *first + 1.0;
-    return frames;
-  }
-
-  /// A count in two words, the lower first.
-  [[nodiscard]] std::optional<double> field(std::string_view name) const {
-    const auto words = parameters_.numbers("TRIAL", name, true);
-    if (words.empty()) return std::nullopt;
-    return words[0] + (words.size() > 1 ? 65536.0 * words[1] : 0.0);
-  }
-
-  Result<void> find_frames() {
-    const double first = header(4), last = header(5);
-    const double in_header = last >= first ? last - first + 1.0 : 0.0;
-    const double frames = frames_of_parameters().value_or(in_header);
-    first_frame_ = field("ACTUAL_START_FIELD").value_or(first);
-    layout_.frames = whole(frames);
-    if (layout_.frames == 0 || static_cast<double>(layout_.frames) != frames) {
-      return bad_data(fmt::format("it says that it holds {} frames", frames), "nothing was recorded, or it is damaged");
-    }
-    if (frames != in_header && frames < static_cast<double>(kMaxInWord)) {
-      note(fmt::format("the header counts {} frames ({} to {}), the parameters {}, which are taken", in_header, first,
-                       last, frames));
-    }
-    return {};
-  }
-
-  Result<void> find_data() {
-    const double block = parameters_.number("POINT", "DATA_START").value_or(header(9));
-    if (header(9) != block) {
-      note(fmt::format("the header begins the data at block {}, POINT:DATA_START at {}, which is taken", header(9),
-                       block));
-    }
-    if (!(block >= 2.0)) {
-      return bad_data(fmt::format("the data are said to begin at block {}", block), std::string(kC3dRemedy));
-    }
-    layout_.data = (whole(block) - 1) * kC3dBlock;
-    const std::uint64_t left = file_.view.size() - std::min<std::uint64_t>(layout_.data, file_.view.size());
-    if (layout_.frame_size() == 0) return bad_data("it holds neither points nor analog channels");
-    if (layout_.frames > left / layout_.frame_size()) {
+  Result<void> check_room() {
+    const std::uint64_t room = layout_.end - layout_.data, size = layout_.frame_size();
+    if (layout_.frames > room / size) {
       return bad_data(fmt::format("{} frames of {} bytes need more than the {} bytes from block {} on", layout_.frames,
-                                  layout_.frame_size(), left, block),
+                                  size, room, layout_.data / kC3dBlock + 1),
                       std::string(kC3dRemedy));
     }
-    if (const std::uint64_t room = left / layout_.frame_size() - layout_.frames;
-        room > 0 && room * layout_.frame_size() >= kC3dBlock) {
+    const std::uint64_t rest = room - layout_.frames * size;
+    if (rest >= std::max<std::uint64_t>(kC3dBlock, size)) {
       note(fmt::format("it has more bytes than its {} frames need, enough for {} more; they were ignored",
-                       layout_.frames, room));
+                       layout_.frames, rest / size));
     }
     return {};
   }
@@ -238,31 +107,37 @@ class Decoder {
     return names;
   }
 
-  /// Units of the points that are no markers: those that POINT:ANGLES lists are in POINT:ANGLE_UNITS, and so on.
+  /// Units of the points that are not markers: those in POINT:ANGLES are in POINT:ANGLE_UNITS, and so on. The unit is
+  /// empty if that parameter is missing.
   [[nodiscard]] std::map<std::string, std::string> units_of_types() const {
     constexpr std::string_view kEnd = "_UNITS";
-    std::map<std::string, std::string> units;
+    std::set<std::string> types = {"ANGLE", "FORCE", "MOMENT", "POWER", "REACTION", "SCALAR"};
     for (const std::string_view name : parameters_.names("POINT")) {
-      if (!name.ends_with(kEnd)) continue;
-      const auto unit = parameters_.texts("POINT", name);
-      const std::string type = std::string(name.substr(0, name.size() - kEnd.size())) + "S";
-      for (const std::string& label : parameters_.texts("POINT", type)) units[label] = unit.empty() ? "" : unit.front();
+      if (name.ends_with(kEnd)) types.emplace(name.substr(0, name.size() - kEnd.size()));
+    }
+    std::map<std::string, std::string> units;
+    for (const std::string& type : types) {
+      const auto unit = parameters_.texts("POINT", fmt::format("{}{}", type, kEnd));
+      for (const std::string& label : parameters_.texts("POINT", type + "S")) {
+        units[label] = unit.empty() ? "" : unit.front();
+      }
     }
     return units;
   }
 
-  Array& add(std::string name, std::string unit, double rate, std::uint64_t samples) {
+  /// An array without values.
+  Array& add(std::string name, std::string unit, double rate, std::optional<Error> obstacle) {
     Array& array = contents_.arrays.emplace_back();
     array.name = std::move(name);
     array.unit = std::move(unit);
     array.rate_hz = rate;
-    array.values.resize(static_cast<Index>(samples), 1);
+    array.obstacle = std::move(obstacle);
     return array;
   }
 
   [[nodiscard]] double number(std::uint64_t offset, bool unsigned_words = false) const {
     const auto at = static_cast<std::size_t>(offset);
-    if (layout_.real()) return file_.real(at);
+    if (layout_.real) return file_.real(at);
     return unsigned_words ? file_.word(at) : file_.signed_word(at);
   }
 
@@ -271,7 +146,7 @@ class Decoder {
     const auto types = units_of_types();
     const auto markers = parameters_.texts("POINT", "UNITS");
     const auto names = labels("POINT", layout_.points, "point", {});
-    const double scale = layout_.real() ? 1.0 : layout_.scale;
+    const double scale = layout_.scale;
     const std::uint64_t each = layout_.number_size();
     std::size_t lost = 0;
     for (std::size_t p = 0; p < names.size(); ++p) {
@@ -279,8 +154,10 @@ class Decoder {
       const std::string unit = type != types.end() ? type->second : (markers.empty() ? "" : markers.front());
       const std::size_t first = contents_.arrays.size();
       for (const char axis : {'x', 'y', 'z'}) {
-        add(fmt::format("{}.{}", names[p], axis), unit, layout_.point_rate, layout_.frames);
+        Array& array = add(fmt::format("{}.{}", names[p], axis), unit, layout_.point_rate, layout_.no_scale);
+        if (!layout_.no_scale) array.values.resize(static_cast<Index>(layout_.frames), 1);
       }
+      if (layout_.no_scale) continue;
       bool invalid = false;
       for (std::uint64_t f = 0; f < layout_.frames; ++f) {
         const std::uint64_t at = layout_.data + f * layout_.frame_size() + p * kPointNumbers * each;
@@ -292,6 +169,10 @@ class Decoder {
         }
       }
       lost += invalid ? 1 : 0;
+    }
+    if (layout_.no_scale) note(fmt::format("{}; the points cannot be used", layout_.no_scale->message));
+    if (!names.empty() && (markers.empty() || markers.front().empty())) {
+      note(fmt::format("POINT:UNITS is missing; give the unit with the channel, as in x={}.x:mm", names.front()));
     }
     if (lost > 0) {
       note(fmt::format("{} of {} points are marked invalid in some frames; they are NaN there", lost, layout_.points));
@@ -311,8 +192,8 @@ class Decoder {
     const std::uint64_t each = layout_.number_size();
     for (std::size_t c = 0; c < names.size(); ++c) {
       const bool scaled = c < scales.size();
-      Array& array = add(names[c], scaled && c < units.size() ? units[c] : "", layout_.analog_rate,
-                         layout_.frames * layout_.samples);
+      Array& array = add(names[c], scaled && c < units.size() ? units[c] : "", layout_.analog_rate, {});
+      array.values.resize(static_cast<Index>(layout_.frames * layout_.samples), 1);
       const double scale = (scaled ? scales[c] : 1.0) * general;
       const double offset = c < offsets.size() ? offsets[c] : 0.0;
       Index sample = 0;
@@ -332,8 +213,7 @@ class Decoder {
 
   C3dBytes file_;
   C3dParameters parameters_;
-  Layout layout_;
-  double first_frame_ = 1.0;
+  C3dLayout layout_;
   Contents contents_;
 };
 
@@ -365,10 +245,16 @@ Result<Parameters> parameters_of(std::span<const std::byte> bytes) {
   const C3dBytes file(bytes, C3dProcessor{static_cast<std::uint8_t>(processor)});
   // The count of blocks is one byte and often wrong; the data begin behind the parameters in any case.
   const std::size_t counted = begin + std::to_integer<std::size_t>(bytes[begin + 2]) * kC3dBlock;
-  const std::size_t data = std::max<std::size_t>(file.word(header_word(9)), 1) * kC3dBlock - kC3dBlock;
-  const std::size_t end = data > begin ? data : counted;
-  auto parameters = C3dParameters::read(file, begin + kParameterHeader, end);
+  const std::size_t data = std::max<std::size_t>(file.word(c3d_header_word(9)), 1) * kC3dBlock - kC3dBlock;
+  auto parameters = C3dParameters::read(file, begin, data > begin ? data : counted);
   if (!parameters) return tl::unexpected(parameters.error());
+  const double start = parameters->number("POINT", "DATA_START").value_or(0.0);
+  if (!parameters->terminated() && start != file.word(c3d_header_word(9))) {
+    // The header's block may be inside the parameters. Read on if the rest of the section has an end.
+    const auto other = start >= 2.0 && start <= 65535.0 ? (static_cast<std::size_t>(start) - 1) * kC3dBlock : 0;
+    auto longer = C3dParameters::read(file, begin, std::max(counted, other));
+    if (longer && longer->terminated()) parameters = std::move(longer);
+  }
   return Parameters{file, std::move(*parameters)};
 }
 
@@ -380,10 +266,13 @@ Result<C3dParameters> decode_c3d_parameters(std::span<const std::byte> bytes) {
   return std::move(found->parameters);
 }
 
-Result<C3dLength> decode_c3d_length(std::span<const std::byte> bytes) {
-  auto found = parameters_of(bytes);
+Result<C3dLength> decode_c3d_length(std::span<const std::byte> bytes, std::uint64_t size) {
+  const auto found = parameters_of(bytes);
   if (!found) return tl::unexpected(found.error());
-  return Decoder(found->file, std::move(found->parameters)).length();
+  std::vector<std::string> notes;
+  const auto layout = c3d_layout(found->file, found->parameters, size, notes);
+  if (!layout) return tl::unexpected(layout.error());
+  return C3dLength{layout->frames, layout->point_rate};
 }
 
 Result<Contents> decode_c3d(std::span<const std::byte> bytes) {

@@ -14,8 +14,7 @@ namespace mbk::recording {
 [[nodiscard]] bool looks_like_c3d(std::span<const std::byte> file);
 
 /// Reads a C3D file (The C3D File Format, User Guide, Motion Lab Systems, 2008 and c3d.org): written on Intel, DEC or
-/// SGI processors, with integers or reals, up to 65535 points and channels, and more than 65535 frames where
-/// POINT:LONG_FRAMES, TRIAL:ACTUAL_END_FIELD or a real POINT:FRAMES says so.
+/// SGI processors, with integers or reals, up to 65535 points and channels, and any number of frames (c3d_layout.h).
 ///
 /// A point gives the arrays LABEL.x, LABEL.y and LABEL.z in POINT:UNITS, or in the units of its type (ANGLES and
 /// ANGLE_UNITS, …); they are NaN where the point is marked invalid. An analog channel gives the array LABEL with
@@ -23,12 +22,10 @@ namespace mbk::recording {
 /// that repeat LABEL#1, LABEL#2, …. Arrays know their rate. Events come from the header and from the groups EVENT and
 /// EVENTS, on a clock that is 0 at the first frame of the file. Contents::notes says what is unusual.
 ///
-/// The parameters go before the header, and where the two disagree on frames or on where the data begin, a note says
-/// so.
+/// Arrays whose scale is 0, or differs between header and parameters, have an obstacle instead of values.
 ///
-/// @fails  data: an unknown processor; a damaged parameter section; header and parameters disagree on the number of
-/// points, channels or samples in a frame, or on whether numbers are integers or reals; there are no frames, or neither
-/// points nor channels; the file ends before the last frame.
+/// @fails  data: an unknown processor; a damaged parameter section; no layout (c3d_layout.h); the file ends before the
+/// last frame.
 [[nodiscard]] Result<Contents> decode_c3d(std::span<const std::byte> file);
 
 /// The parameters of a C3D file alone. They refer to its bytes; those before the data are enough.
@@ -36,12 +33,13 @@ namespace mbk::recording {
 /// there.
 [[nodiscard]] Result<C3dParameters> decode_c3d_parameters(std::span<const std::byte> file);
 
-/// How much a C3D file says that it holds; the bytes before its data are enough.
+/// How much a C3D file holds; the bytes before its data are enough.
 struct C3dLength {
   std::uint64_t frames = 0;
   double rate_hz = 0.0;  ///< of the frames; 0 where it is not said
 };
+/// @param size  [bytes] of the whole file
 /// @fails  data: as decode_c3d, but that the data need not be there.
-[[nodiscard]] Result<C3dLength> decode_c3d_length(std::span<const std::byte> file);
+[[nodiscard]] Result<C3dLength> decode_c3d_length(std::span<const std::byte> file, std::uint64_t size);
 
 }  // namespace mbk::recording

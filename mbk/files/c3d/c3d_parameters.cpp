@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 namespace mbk::recording {
 namespace {
 
+constexpr std::size_t kSectionHeader = 4;
 constexpr std::size_t kMaxDimensions = 7;
 
 double vax_real(std::uint32_t words) {
@@ -96,10 +98,15 @@ C3dBytes C3dBytes::part(std::size_t offset, std::size_t count) const {
 Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begin, std::size_t end) {
   std::map<int, std::string> group_names;
   std::map<std::pair<int, std::string>, C3dParameter> found;
-  for (std::size_t at = begin; at < end;) {
+  C3dParameters parameters;
+  parameters.begin_ = begin;
+  parameters.end_ = begin + kSectionHeader;
+  for (std::size_t at = parameters.end_; at < end;) {
     const auto damaged = [&](std::string_view what) {
-      return bad_data(fmt::format("{} at byte {} of the parameter section", what, at - begin), std::string(kC3dRemedy));
+      return bad_data(fmt::format("{} at byte {} of the parameter section", what, at - begin - kSectionHeader),
+                      std::string(kC3dRemedy));
     };
+    parameters.terminated_ = true;
     if (!file.view.holds(at, 1)) return damaged("the file ends");
     const auto name_size = static_cast<std::size_t>(std::abs(int{file.view.at<std::int8_t>(at)}));  // < 0: locked
     if (name_size == 0) break;
@@ -117,12 +124,13 @@ Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begi
       content_end += 2 + parameter->dimensions.size() + parameter->data.view.size();
       found.try_emplace({id, std::move(name)}, std::move(*parameter));
     }
+    parameters.end_ = std::min(content_end, end);
     if (distance == 0) break;
     if (link + distance < content_end) return damaged("a record does not lead to the next one");
     at = link + distance;
+    parameters.terminated_ = false;
   }
-  C3dParameters parameters;  // a group's record may stand behind its parameters
-  for (auto& [key, parameter] : found) {
+  for (auto& [key, parameter] : found) {  // a group's record may stand behind its parameters
     const auto group = group_names.find(key.first);
     if (group != group_names.end()) parameters.groups_[group->second].try_emplace(key.second, std::move(parameter));
   }

@@ -15,9 +15,16 @@ namespace mbk::recording {
 /// C3D files count in blocks of 512 bytes, from 1.
 inline constexpr std::size_t kC3dBlock = 512;
 
+/// Offset of word k of the header, counted from 1 as the format does.
+constexpr std::size_t c3d_header_word(std::size_t k) {
+  return 2 * (k - 1);
+}
+
 /// What helps where its bytes contradict themselves.
 inline constexpr std::string_view kC3dRemedy =
     "the file is damaged or cut short: copy it again from where it was recorded";
+/// What to do about a file that its program wrote wrong.
+inline constexpr std::string_view kC3dWriteAgain = "write the file again with the program that recorded it";
 
 /// What wrote the numbers of a C3D file; the value is that of the file's fourth parameter byte.
 enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, sgi = 86 };
@@ -49,10 +56,16 @@ struct C3dParameter {
 /// The parameter section of a C3D file. Its parameters refer to the file's bytes.
 class C3dParameters {
  public:
-  /// Groups and parameters are called by their names in capitals; the first of a name counts. Reads the records from
-  /// `begin` to the terminator, the last record, or `end`.
+  /// Groups and parameters are called by their names in capitals; the first of a name counts. Reads the records of the
+  /// section at `begin` up to the terminator, the last record, or `end`.
   /// @fails  data: a record reaches beyond the file or does not lead forward; an unknown type; too many dimensions.
   [[nodiscard]] static Result<C3dParameters> read(const C3dBytes& file, std::size_t begin, std::size_t end);
+
+  /// Where the section is in the file [bytes].
+  [[nodiscard]] std::size_t begin() const { return begin_; }
+  [[nodiscard]] std::size_t end() const { return end_; }
+  /// Whether the records ended before `end`.
+  [[nodiscard]] bool terminated() const { return terminated_; }
 
   [[nodiscard]] const C3dParameter* find(std::string_view group, std::string_view name) const;
 
@@ -74,6 +87,8 @@ class C3dParameters {
   void for_each_part(std::string_view group, std::string_view name, const Use& use) const;
 
   std::map<std::string, std::map<std::string, C3dParameter, std::less<>>, std::less<>> groups_;
+  std::size_t begin_ = 0, end_ = 0;
+  bool terminated_ = false;
 };
 
 }  // namespace mbk::recording

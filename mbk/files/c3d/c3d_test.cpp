@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/contents/test_files.h"
@@ -212,6 +214,10 @@ TEST(DecodeC3d, PointsOfAModelHaveTheUnitOfTheirType) {
   const Contents contents = good(file.bytes());
   EXPECT_EQ(array(contents, "ELBOW.y").unit, "deg");
   EXPECT_EQ(array(contents, "HAND.y").unit, "mm");
+  file.records = file.numbers().texts(C3d::kPoint, "MOMENTS", {"ELBOW"});  // in no known unit, and not in mm
+  EXPECT_EQ(array(good(file.bytes()), "ELBOW.y").unit, "");
+  file.point_units = "";
+  EXPECT_THAT(good(file.bytes()).notes, Contains(HasSubstr("as in x=HAND.x:mm")));
 }
 
 // ---- events ----
@@ -314,28 +320,213 @@ TEST(DecodeC3d, MoreFramesThan65535) {
     EXPECT_EQ(contents.arrays[0].values(kFrames - 1, 0), (kFrames - 1) % 30000);
     EXPECT_THAT(contents.notes, Each(Not(HasSubstr("the header counts"))));
   }
-  file.records.clear();  // nothing says that there are more
-  const Contents cut = good(file.bytes());
-  EXPECT_EQ(cut.arrays[0].values.rows(), 65535);
-  EXPECT_THAT(cut.notes, Contains(HasSubstr("more bytes than its 65535 frames need")));
+}
+
+/// Rows and notes of a file of 70000 frames with these records and this last frame in its header.
+std::pair<Index, std::string> frames_and_notes(const C3d& file, int last_in_header = 65535) {
+  std::string bytes = file.bytes();
+  bytes.replace(8, 2, file.numbers().word(last_in_header));
+  const Contents contents = good(bytes);
+  std::string notes;
+  for (const std::string& note : contents.notes) notes += note + "\n";
+  return {contents.arrays.empty() ? 0 : contents.arrays[0].values.rows(), notes};
+}
+
+TEST(DecodeC3d, ACountThatLostItsUpperWordIsCorrectedAndSaid) {
+  constexpr int kFrames = 70000, kLower = kFrames % 65536;
+  C3d file = long_file(kFrames);
+  const auto n = file.numbers();
+  const std::string field =
+      n.words(C3d::kTrial, "ACTUAL_START_FIELD", {1, 0}) + n.words(C3d::kTrial, "ACTUAL_END_FIELD", {kLower, 1});
+  file.records = n.words(C3d::kPoint, "FRAMES", {kLower}) + field;
+  auto [frames, notes] = frames_and_notes(file);
+  EXPECT_EQ(frames, kFrames);
+  EXPECT_THAT(notes, HasSubstr("the number of frames is 70000 (TRIAL:ACTUAL_END_FIELD, which fits the file size); "
+                               "POINT:FRAMES says 4464\n"));
+  std::tie(frames, notes) = frames_and_notes(file, kLower);
+  EXPECT_EQ(frames, kFrames);
+  EXPECT_THAT(notes, HasSubstr("; POINT:FRAMES says 4464, the header says 4464"));
+  file.records = n.words(C3d::kPoint, "FRAMES", {kLower});  // every count lost it
+  std::tie(frames, notes) = frames_and_notes(file, kLower);
+  EXPECT_EQ(frames, kFrames);
+  EXPECT_THAT(notes, HasSubstr("is 70000 (the file size); POINT:FRAMES says 4464"));
+  // Something else stands behind the frames: the size does not decide, but what is lost does.
+  file.records = n.words(C3d::kPoint, "FRAMES", {kLower}) + field;
+  EXPECT_EQ(good(file.bytes() + std::string(3000, 'x')).arrays[0].values.rows(), kFrames);
+  // A file cut short does not become one of 4464 frames.
+  EXPECT_THAT(refusal(file.bytes().substr(0, 100000)), HasSubstr("70000 frames of 2 bytes need more than"));
+}
+
+TEST(DecodeC3d, AFullCountGivesWayToWhatTheFileHolds) {
+  C3d file = long_file(70000);
+  for (Index k = 0; k < 70000; ++k) file.analog(k, 0) += 1.0;
+  auto [frames, notes] = frames_and_notes(file);  // POINT:FRAMES and the header say 65535, as Vicon and ezc3d write it
+  EXPECT_EQ(frames, 70000);                       // and not the padding of the last block
+  EXPECT_THAT(notes, HasSubstr("the file states 65535 frames, the largest number in 16 bits, but holds 70000"));
+  std::tie(frames, notes) = frames_and_notes(long_file(65535));
+  EXPECT_EQ(frames, 65535);
+  EXPECT_THAT(notes, Not(HasSubstr("16 bits")));
+  const auto n = file.numbers();  // rotations begin in their own section
+  constexpr int kRotation = 40;
+  file.records = n.group(kRotation, "ROTATION") + n.words(kRotation, "DATA_START", {260});
+  EXPECT_EQ(frames_and_notes(file).first, (259 - 2) * 512 / 2);
+  file.records =
+      n.words(C3d::kTrial, "ACTUAL_START_FIELD", {1, 0}) + n.words(C3d::kTrial, "ACTUAL_END_FIELD", {80000 % 65536, 1});
+  EXPECT_THAT(refusal(file.bytes()), HasSubstr("80000 frames of 2 bytes need more than"));
+}
+
+TEST(DecodeC3d, NeverReadsBehindTheFile) {
+  C3d file = long_file(3000);
+  const auto n = file.numbers();
+  file.records = n.words(C3d::kPoint, "FRAMES", {4000});
+  const auto [frames, notes] = frames_and_notes(file, 3000);
+  EXPECT_EQ(frames, 3000);
+  EXPECT_THAT(notes, HasSubstr("is 3000 (the header, which fits the file size); POINT:FRAMES says 4000"));
+  std::string bytes = file.bytes();
+  bytes.replace(8, 2, n.word(4000));  // nothing says 3000
+  EXPECT_THAT(refusal(bytes), HasSubstr("4000 frames of 2 bytes need more than"));
 }
 
 TEST(DecodeC3d, SaysWhereHeaderAndParametersCountDifferentFrames) {
   C3d file = small_c3d();
-  file.records = file.numbers().words(C3d::kPoint, "FRAMES", {4});
-  const Contents contents = good(file.bytes());
-  EXPECT_EQ(contents.arrays[0].values.rows(), 4);
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("the header counts 6 frames (1 to 6), the parameters 4")));
+  for (const int said : {4, 5, 7, 8}) {  // the last block has room for as many
+    file.records = file.numbers().words(C3d::kPoint, "FRAMES", {static_cast<double>(said)});
+    const Contents contents = good(file.bytes());
+    EXPECT_EQ(contents.arrays[0].values.rows(), 6) << said;  // followed by zeros
+    EXPECT_THAT(contents.notes,
+                Contains("the number of frames is 6 (the header, which fits the file size); POINT:FRAMES says " +
+                         std::to_string(said)));
+  }
+  std::string bytes = file.bytes();
+  bytes.back() = 'x';  // the padding does not decide: POINT:FRAMES goes first
+  EXPECT_EQ(good(bytes).arrays[0].values.rows(), 8);
+}
+
+// ---- where the data begin, and how ----
+
+/// A file of 300 frames, whose size says how it is laid out.
+C3d longer_c3d(bool real = true) {
+  C3d file = small_c3d(84, real);
+  file.coordinates = Matrix::Constant(300, 8, 2.0);
+  file.analog = Matrix::Constant(600, 3, 7.0);
+  for (Index k = 0; k < 300; ++k) file.coordinates(k, 0) = static_cast<double>(k);
+  return file;
 }
 
 TEST(DecodeC3d, SaysWhereHeaderAndParametersBeginTheDataDifferently) {
+  const Contents before = good(small_c3d().bytes());
+  ASSERT_EQ(before.notes.size(), 2u);
   std::string bytes = small_c3d().bytes();
-  ASSERT_EQ(good(bytes).notes.size(), 2u);
-  const Contents before = good(bytes);
   bytes[16] = static_cast<char>(bytes[16] + 1);
   const Contents contents = good(bytes);
   EXPECT_EQ(difference(contents.arrays[6], before.arrays[6]), 0.0);
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("POINT:DATA_START")));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("(POINT:DATA_START")));
+}
+
+TEST(DecodeC3d, ADataStartThatCannotBeGivesWayToTheHeader) {
+  C3d file = longer_c3d();
+  const Contents before = good(file.bytes());
+  const int right = file.bytes()[16];
+  for (const double block : {0.0, 1.0, 2.0, 3.0, right - 1.0, right + 1.0, right + 7.0, 60000.0}) {
+    file.records = file.numbers().words(C3d::kPoint, "DATA_START", {block});
+    std::string bytes = file.bytes();  // the record that was added may need a block
+    if (static_cast<double>(bytes[16]) == block) continue;
+    const Contents contents = good(bytes);
+    ASSERT_EQ(contents.arrays.size(), before.arrays.size()) << block;
+    for (std::size_t k = 0; k < before.arrays.size(); ++k) {
+      EXPECT_EQ(difference(contents.arrays[k], before.arrays[k]), 0.0) << block << " " << before.arrays[k].name;
+    }
+    EXPECT_THAT(contents.notes,
+                Contains(HasSubstr("(the header, which fits the file size); POINT:DATA_START says block")))
+        << block;
+  }
+}
+
+TEST(DecodeC3d, AHeaderThatPointsIntoTheParametersLosesNone) {
+  C3d file = longer_c3d();
+  for (int k = 0; k < 100; ++k) file.records += file.numbers().reals(C3d::kTrial, "P" + std::to_string(k), {1.0, 2.0});
+  const Contents before = good(file.bytes());
+  for (const char block : {0, 1, 2, 3, 4}) {
+    std::string bytes = file.bytes();
+    ASSERT_GT(bytes[16], 5);
+    bytes[16] = block;
+    const Contents contents = good(bytes);
+    ASSERT_EQ(contents.arrays.size(), before.arrays.size()) << int{block};
+    for (std::size_t k = 0; k < before.arrays.size(); ++k) {
+      EXPECT_EQ(contents.arrays[k].name, before.arrays[k].name);
+      EXPECT_EQ(contents.arrays[k].unit, before.arrays[k].unit);
+      EXPECT_EQ(difference(contents.arrays[k], before.arrays[k]), 0.0) << int{block} << " " << before.arrays[k].name;
+    }
+    EXPECT_THAT(contents.notes, Contains(HasSubstr("(POINT:DATA_START"))) << int{block};
+  }
+}
+
+TEST(DecodeC3d, TheSizeOfTheFileDecidesBetweenHeaderAndParameters) {
+  const C3d right = longer_c3d();
+  const auto n = right.numbers();
+  const Contents before = good(right.bytes());
+  const auto same = [&](const std::string& bytes, std::string_view said) {
+    const Contents contents = good(bytes);
+    ASSERT_EQ(contents.arrays.size(), before.arrays.size()) << said;
+    for (std::size_t k = 0; k < before.arrays.size(); ++k) {
+      EXPECT_EQ(difference(contents.arrays[k], before.arrays[k]), 0.0) << said << " " << before.arrays[k].name;
+    }
+    EXPECT_THAT(contents.notes, Contains(HasSubstr(std::string(said))));
+  };
+  const auto in_header = [&](std::size_t at, const std::string& number) {
+    std::string bytes = right.bytes();
+    return bytes.replace(at, number.size(), number);
+  };
+  same(in_header(2, n.word(3)), "the header says 3 points, the parameters 2; only the parameters fit");
+  same(in_header(4, n.word(3)), "the header says 3 analog numbers in a frame, the parameters 6; only the parameters");
+  same(in_header(18, n.word(1)), "the header says 1 for the analog samples in a frame; 2 is used");
+  same(in_header(12, n.real(0.5)),
+       "whose sign tells reals from integers, the parameters -0.5; only the parameters fit");
+  C3d wrong = right;
+  wrong.records = n.words(C3d::kPoint, "USED", {3});
+  same(wrong.bytes(), "the header says 2 points, the parameters 3; only the header fits the file size");
+  wrong.records = n.reals(C3d::kPoint, "SCALE", {0.5});
+  same(wrong.bytes(), "; only the header fits the file size");
+  wrong.records = n.reals(C3d::kPoint, "SCALE", {0.0});  // no scale is 0: the header's sign is the one there is
+  EXPECT_EQ(good(wrong.bytes()).arrays[0].values, before.arrays[0].values);
+  wrong.records = n.reals(C3d::kAnalog, "RATE", {300.0});  // the frame holds two samples, whatever the rate is
+  EXPECT_THAT(refusal(wrong.bytes()), HasSubstr("ANALOG:RATE is 300 Hz, but a frame holds 2 samples"));
+}
+
+TEST(DecodeC3d, RatesThatContradictEachOtherAreDecidedByAThirdOrByNobody) {
+  C3d file = longer_c3d();
+  const auto n = file.numbers();
+  file.records = n.reals(C3d::kPoint, "RATE", {50.0}) + n.reals(C3d::kAnalog, "RATE", {200.0});
+  Contents contents = good(file.bytes());
+  EXPECT_EQ(array(contents, "HAND.x").rate_hz, 100.0);
+  EXPECT_EQ(array(contents, "EMG").rate_hz, 200.0);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("100 Hz is used, which agrees with ANALOG:RATE")));
+  std::string bytes = longer_c3d().bytes();
+  bytes.replace(20, 4, n.real(50.0));
+  EXPECT_EQ(array(good(bytes), "HAND.x").rate_hz, 100.0);
+  file.channels.clear();
+  contents = good(file.bytes());
+  EXPECT_EQ(array(contents, "HAND.x").rate_hz, 0.0);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("neither is used: pass the right rate with --rate")));
+  file.records = n.reals(C3d::kPoint, "RATE", {0.0});
+  EXPECT_EQ(array(good(file.bytes()), "HAND.x").rate_hz, 100.0);  // as the header says
+}
+
+// ---- scales ----
+
+TEST(DecodeC3d, IntegerPointsOfTwoScalesCannotBeUsed) {
+  C3d file = small_c3d(84, false);
+  file.records = file.numbers().reals(C3d::kPoint, "SCALE", {0.2});
+  const Contents contents = good(file.bytes());
+  ASSERT_TRUE(array(contents, "HAND.x").obstacle);
+  EXPECT_THAT(array(contents, "HAND.x").obstacle->line(),
+              HasSubstr("the header scales points by 0.5, POINT:SCALE by 0.2"));
+  EXPECT_FALSE(array(contents, "Angle").obstacle);
+  EXPECT_EQ(array(contents, "Angle").values.rows(), 12);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("the points cannot be used")));
+  C3d real = small_c3d();  // which are scaled already
+  real.records = real.numbers().reals(C3d::kPoint, "SCALE", {-0.2});
+  EXPECT_EQ(good(real.bytes()).arrays[0].values, good(small_c3d().bytes()).arrays[0].values);
 }
 
 // ---- refusals ----
@@ -347,14 +538,27 @@ TEST(DecodeC3d, RefusesWhereHeaderAndParametersContradictEachOther) {
     file.records = record;
     return refusal(file.bytes());
   };
+  // The file is short: its last block has room for either.
   EXPECT_THAT(with(n.words(C3d::kPoint, "USED", {3})), HasSubstr("the header says 2 points, the parameters 3"));
-  EXPECT_THAT(with(n.words(C3d::kAnalog, "USED", {4})), HasSubstr("the header says 6 analog numbers"));
-  EXPECT_THAT(with(n.reals(C3d::kPoint, "SCALE", {0.5})), HasSubstr("scale of the points"));
-  EXPECT_THAT(with(n.reals(C3d::kPoint, "SCALE", {0.0})), HasSubstr("leaves open how numbers are stored"));
-  EXPECT_THAT(with(n.reals(C3d::kAnalog, "RATE", {300.0})), HasSubstr("ANALOG:RATE is 300 Hz"));
-  EXPECT_THAT(with(n.words(C3d::kPoint, "FRAMES", {0})), HasSubstr("it holds 0 frames"));
-  EXPECT_THAT(with(n.words(C3d::kPoint, "FRAMES", {60000})), HasSubstr("60000 frames of 56 bytes need more than"));
-  EXPECT_THAT(with(n.words(C3d::kPoint, "DATA_START", {0})), HasSubstr("begin at block 0"));
+  EXPECT_THAT(with(n.words(C3d::kAnalog, "USED", {4})),
+              HasSubstr("the header says 6 analog numbers in a frame, the parameters 8"));
+  EXPECT_THAT(with(n.reals(C3d::kPoint, "SCALE", {0.5})), HasSubstr("for the point scale"));
+  EXPECT_THAT(with(n.reals(C3d::kAnalog, "RATE", {300.0})),
+              HasSubstr("2 analog samples in a frame, the parameters 3 (ANALOG:RATE is 300 Hz, POINT:RATE 100 Hz)"));
+  const auto with_both = [&](const std::string& record, std::size_t at, const std::string& number) {
+    C3d file = small_c3d();
+    file.records = record;
+    return refusal(file.bytes().replace(at, number.size(), number));
+  };
+  EXPECT_THAT(with_both(n.reals(C3d::kPoint, "SCALE", {0.0}), 12, n.real(0.0)),
+              HasSubstr("unknown whether numbers are integers or reals"));
+  EXPECT_THAT(with_both(n.words(C3d::kPoint, "FRAMES", {0}), 6, n.word(7) + n.word(6)), HasSubstr("it holds 0 frames"));
+  EXPECT_THAT(with_both(n.words(C3d::kPoint, "FRAMES", {60000}), 8, n.word(60000)),
+              HasSubstr("60000 frames of 56 bytes need more than"));
+  EXPECT_THAT(with_both(n.words(C3d::kPoint, "DATA_START", {0}), 16, n.word(0)),
+              HasSubstr("the data cannot start at block 0 (POINT:DATA_START)"));
+  EXPECT_THAT(with_both(n.words(C3d::kPoint, "DATA_START", {2}), 16, n.word(2)),
+              HasSubstr("the data cannot start at block 2 (POINT:DATA_START): the parameters take bytes 512 to"));
 }
 
 TEST(DecodeC3d, RefusesUnknownProcessorsTypesAndDimensions) {

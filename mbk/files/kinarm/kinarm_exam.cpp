@@ -185,7 +185,7 @@ struct KinarmExam::Open {
     for (bool whole = part.size <= kBeginOfC3d;; whole = true) {
       if (!looks_like_c3d(bytes->bytes())) return bad_data("is no C3D file");
       const auto parameters = decode_c3d_parameters(bytes->bytes());
-      const auto length = decode_c3d_length(bytes->bytes());
+      const auto length = decode_c3d_length(bytes->bytes(), part.size);
       if (parameters && length) {
         take_numbers(part, ExamParameters::of(*parameters));
         part.frames = static_cast<double>(length->frames);
@@ -416,7 +416,7 @@ struct KinarmExam::Open {
     trial.notes = std::move(contents->notes);
     for (Array& array : contents->arrays) {
       const bool needed = wanted == everything || wanted(array.name) || array.name.find("_Hand") != std::string::npos;
-      if (!needed) continue;
+      if (!needed || array.obstacle) continue;  // the notes say so
       ExamSignal& signal = trial.signals.emplace_back();
       signal.name = std::move(array.name);
       signal.unit = std::move(array.unit);

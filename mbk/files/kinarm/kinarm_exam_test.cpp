@@ -440,6 +440,17 @@ TEST(KinarmExam, AnExamOfC3dFilesIsTheSame) {
   EXPECT_FALSE(c3d.metadata.contains("LOAD_TABLE_LEFT"));
 }
 
+TEST(KinarmExam, CountsOfFramesOfAC3dFileAreSettledByItsSize) {
+  const ExamOfTest exam = small_exam();
+  test::C3d file = c3d_of(exam.trials.front());
+  file.records = file.numbers().words(test::C3d::kPoint, "FRAMES", {399});  // of 400, as the header says
+  const std::string bytes = exam_of_c3d(file.bytes(), test::small_c3d().bytes());
+  EXPECT_THAT(opened(bytes).trials().front().description, HasSubstr("400 frames"));
+  const Contents contents = decoded(bytes);
+  EXPECT_EQ(values(contents, "Right_FS_ForceX").size(), 400);
+  EXPECT_THAT(notes(contents), HasSubstr("the number of frames is 400 (the header"));
+}
+
 // ---- what cannot be read ----
 
 TEST(KinarmExam, RefusesWhatIsNoExamOrHoldsNoTrial) {
