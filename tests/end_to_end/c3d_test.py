@@ -121,6 +121,10 @@ class C3d(Case):
         self.assertIn("is 70000 (TRIAL:ACTUAL_END_FIELD, which fits the file size); POINT:FRAMES says 4464",
                       " ".join(listing["notes"]))
 
+    def test_a_scale_of_zero_is_refused_where_it_is_asked_for(self):
+        self.bad_data(self.limb_file(scale=0.0), "--axes", "1", "--channels", "x=Knee angle,F=Torque", command="measure",
+                      says=("'Knee angle' has ANALOG:SCALE 0", "write the file again"))
+
     def test_a_label_that_repeats_means_neither(self):
         points = {"Hand": [(0.001 * k, 0.0, 1.0) for k in range(500)]}
         path = write_c3d(self.folder / "twice.c3d", points, {"Torqua": [0.5] * 500, "Torque": [1.0] * 500}, ["Nm", "Nm"])

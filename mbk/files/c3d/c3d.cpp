@@ -11,6 +11,7 @@
 #include "mbk/files/c3d/c3d_events.h"
 #include "mbk/files/c3d/c3d_layout.h"
 #include "mbk/files/c3d/c3d_parameters.h"
+#include "mbk/files/c3d/c3d_words.h"
 
 namespace mbk::recording {
 namespace {
@@ -135,10 +136,9 @@ class Decoder {
     return array;
   }
 
-  [[nodiscard]] double number(std::uint64_t offset, bool unsigned_words = false) const {
+  [[nodiscard]] double number(std::uint64_t offset) const {
     const auto at = static_cast<std::size_t>(offset);
-    if (layout_.real) return file_.real(at);
-    return unsigned_words ? file_.word(at) : file_.signed_word(at);
+    return layout_.real ? file_.real(at) : file_.signed_word(at);
   }
 
   void take_points() {
@@ -180,35 +180,70 @@ class Decoder {
   }
 
   void take_analog() {
-    const auto format = parameters_.texts("ANALOG", "FORMAT");
-    const bool unsigned_words = !format.empty() && format.front() == "UNSIGNED";
     const auto scales = parameters_.numbers("ANALOG", "SCALE");
-    const auto offsets = parameters_.numbers("ANALOG", "OFFSET", unsigned_words);
     const auto units = parameters_.texts("ANALOG", "UNITS");
-    const double general = parameters_.number("ANALOG", "GEN_SCALE").value_or(1.0);
+    const auto general = parameters_.number("ANALOG", "GEN_SCALE");
+    const auto offsets = parameters_.numbers("ANALOG", "OFFSET", true);
+    const C3dParameter* const stored_offset = parameters_.find("ANALOG", "OFFSET");
+    const bool words = stored_offset != nullptr && stored_offset->type == C3dParameter::Type::word;
+    const auto format = parameters_.texts("ANALOG", "FORMAT");
+    const bool says_unsigned = !format.empty() && (format.front() == "UNSIGNED" || format.front() == "unsigned");
     std::set<std::string> points;
     for (const Array& array : contents_.arrays) points.insert(array.name);
     const auto names = labels("ANALOG", layout_.channels, "analog", points);
-    const std::uint64_t each = layout_.number_size();
+    std::vector<std::string> unscaled, without_offset, unusable, misread;
     for (std::size_t c = 0; c < names.size(); ++c) {
       const bool scaled = c < scales.size();
-      Array& array = add(names[c], scaled && c < units.size() ? units[c] : "", layout_.analog_rate, {});
-      array.values.resize(static_cast<Index>(layout_.frames * layout_.samples), 1);
-      const double scale = (scaled ? scales[c] : 1.0) * general;
-      const double offset = c < offsets.size() ? offsets[c] : 0.0;
-      Index sample = 0;
-      for (std::uint64_t f = 0; f < layout_.frames; ++f) {
-        const std::uint64_t frame = layout_.data + f * layout_.frame_size() + kPointNumbers * layout_.points * each;
-        for (std::uint64_t s = 0; s < layout_.samples; ++s, ++sample) {
-          array.values(sample, 0) =
-              (number(frame + (s * layout_.channels + c) * each, unsigned_words) - offset) * scale;
-        }
+      const double scale = (scaled ? scales[c] : 1.0) * general.value_or(1.0);
+      std::optional<Error> obstacle;
+      if (scale == 0.0 || !std::isfinite(scale)) {
+        obstacle =
+            Error{ErrorKind::data,
+                  fmt::format("'{}' has ANALOG:SCALE {} and ANALOG:GEN_SCALE {}, so its physical values are unknown",
+                              names[c], scaled ? scales[c] : 1.0, general.value_or(1.0)),
+                  std::string(kC3dWriteAgain)};
+        unusable.push_back(names[c]);
+      }
+      if (!scaled) unscaled.push_back(names[c]);
+      if (c >= offsets.size()) without_offset.push_back(names[c]);
+      Array& array =
+          add(names[c], scaled && c < units.size() ? units[c] : "", layout_.analog_rate, std::move(obstacle));
+      if (array.obstacle) continue;
+      C3dStored stored{values_of(c), c < offsets.size() ? offsets[c] : 0.0, !layout_.real, words};
+      const bool is_unsigned = words_are_unsigned(stored, says_unsigned);
+      if (is_unsigned != says_unsigned) misread.push_back(names[c]);
+      if (!is_unsigned && stored.offset_is_word) stored.offset = signed_word(stored.offset);
+      if (!is_unsigned && stored.words) stored.values = stored.values.unaryExpr(&signed_word).eval();
+      stored.values = (stored.values.array() - stored.offset) * scale;
+      array.values = SharedMatrix::of_column(std::move(stored.values));
+    }
+    const auto say = [&](const std::vector<std::string>& which, std::string_view what) {
+      if (!which.empty()) {
+        note(fmt::format("{} of {} analog channels {} ('{}' is the first)", which.size(), names.size(), what,
+                         which.front()));
+      }
+    };
+    say(unscaled, "have no SCALE; theirs are the numbers of the converter, without unit");
+    say(unusable, "have a SCALE or GEN_SCALE of 0 or not a number; they cannot be used");
+    say(without_offset, "have no OFFSET; 0 is used");
+    say(misread, fmt::format("are read as {} numbers because their values and OFFSET contradict ANALOG:FORMAT",
+                             says_unsigned ? "signed" : "unsigned"));
+    if (!general && !names.empty()) note("ANALOG:GEN_SCALE is missing; 1 is used");
+  }
+
+  /// An analog channel as stored; integers as words of 0 to 65535.
+  [[nodiscard]] Vector values_of(std::size_t channel) const {
+    const std::uint64_t each = layout_.number_size();
+    Vector values(static_cast<Index>(layout_.frames * layout_.samples));
+    Index sample = 0;
+    for (std::uint64_t f = 0; f < layout_.frames; ++f) {
+      const std::uint64_t frame = layout_.data + f * layout_.frame_size() + kPointNumbers * layout_.points * each;
+      for (std::uint64_t s = 0; s < layout_.samples; ++s, ++sample) {
+        const auto at = static_cast<std::size_t>(frame + (s * layout_.channels + channel) * each);
+        values[sample] = layout_.real ? file_.real(at) : file_.word(at);
       }
     }
-    if (scales.size() < names.size()) {
-      note(fmt::format("{} of {} analog channels have no SCALE; theirs are the numbers of the converter, without unit",
-                       names.size() - scales.size(), names.size()));
-    }
+    return values;
   }
 
   C3dBytes file_;

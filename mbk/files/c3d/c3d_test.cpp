@@ -529,6 +529,110 @@ TEST(DecodeC3d, IntegerPointsOfTwoScalesCannotBeUsed) {
   EXPECT_EQ(good(real.bytes()).arrays[0].values, good(small_c3d().bytes()).arrays[0].values);
 }
 
+TEST(DecodeC3d, AScaleOfZeroIsAnObstacleAndNoChannelOfZeros) {
+  C3d file = small_c3d();
+  file.analog_scale = {0.25, 0.0, 2.0};
+  const Contents contents = good(file.bytes());
+  ASSERT_TRUE(array(contents, "Angle").obstacle);
+  EXPECT_THAT(array(contents, "Angle").obstacle->line(),
+              HasSubstr("'Angle' has ANALOG:SCALE 0 and ANALOG:GEN_SCALE 1"));
+  EXPECT_FALSE(array(contents, "EMG").obstacle);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("1 of 3 analog channels have a SCALE or GEN_SCALE of 0")));
+  for (const double general : {0.0, std::nan("")}) {
+    file.general_scale = general;
+    for (const char* channel : {"Force X", "Angle", "EMG"}) {
+      EXPECT_TRUE(array(good(file.bytes()), channel).obstacle) << channel << general;
+    }
+  }
+}
+
+TEST(DecodeC3d, SaysWhichScalesAndOffsetsAreMissing) {
+  C3d file = small_c3d();
+  file.analog_offset.resize(1);
+  EXPECT_THAT(good(file.bytes()).notes, Contains(HasSubstr("2 of 3 analog channels have no OFFSET; 0 is used")));
+}
+
+// ---- signed or unsigned ----
+
+/// One channel of integers about `level`, its OFFSET, what ANALOG:FORMAT says, and values as they are read.
+Matrix read_words(const std::vector<double>& words, double offset, const std::string& format, bool* said = nullptr) {
+  C3d file = long_file(static_cast<Index>(words.size()));
+  for (std::size_t k = 0; k < words.size(); ++k) file.analog(static_cast<Index>(k), 0) = words[k];
+  file.analog_offset = {offset};
+  file.format = format;
+  const Contents contents = good(file.bytes());
+  if (said != nullptr) {
+    *said = std::ranges::any_of(
+        contents.notes, [](const std::string& note) { return note.find("contradict ANALOG:FORMAT") != note.npos; });
+  }
+  return contents.arrays.at(0).values;
+}
+
+std::vector<double> wave(double middle, double amplitude) {
+  std::vector<double> words;
+  for (int k = 0; k < 400; ++k) words.push_back(std::round(middle + amplitude * std::sin(0.05 * k)));
+  return words;
+}
+
+Matrix less(const std::vector<double>& words, double offset) {
+  Matrix values(static_cast<Index>(words.size()), 1);
+  for (std::size_t k = 0; k < words.size(); ++k) values(static_cast<Index>(k), 0) = words[k] - offset;
+  return values;
+}
+
+TEST(DecodeC3d, WordsAreReadAsTheirNumbersShowWhereTheFormatIsWrong) {
+  bool said = false;
+  for (const char* format : {"SIGNED", ""}) {
+    for (const auto& words : {wave(32768, 40), wave(33000, 20000), wave(20000, 500), std::vector<double>(9, 32768)}) {
+      EXPECT_EQ(read_words(words, 32768, format, &said), less(words, 32768)) << format;
+    }
+    EXPECT_EQ(read_words(wave(33000, 20000), 0, format, &said), less(wave(33000, 20000), 0)) << format;
+    EXPECT_TRUE(said);
+    EXPECT_EQ(read_words(wave(32700, 300), 32700, format, &said), less(wave(32700, 300), 32700)) << format;
+    EXPECT_TRUE(said);
+  }
+  EXPECT_EQ(read_words(wave(0, 3000), -3, "UNSIGNED", &said), less(wave(0, 3000), -3));
+  EXPECT_TRUE(said);
+  EXPECT_EQ(read_words(wave(0, 20000), 0, "UNSIGNED", &said), less(wave(0, 20000), 0));
+  EXPECT_TRUE(said);
+}
+
+TEST(DecodeC3d, WordsAreReadAsTheFormatSaysWhereTheyMayBe) {
+  const std::vector<double> rails = {-32768, -32760, 32767, 32760, -32768}, unsigned_rails = {0, 3, 65535, 65530, 0};
+  std::vector<double> counter;
+  for (int k = 0; k < 1000; ++k) counter.push_back(k * 97 % 65536);
+  bool said = true;
+  EXPECT_EQ(read_words(wave(0, 32000), 0, "SIGNED", &said), less(wave(0, 32000), 0));
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(wave(-9000, 20000), 2000, "SIGNED", &said), less(wave(-9000, 20000), 2000));
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(wave(30000, 500), -5000, "SIGNED", &said), less(wave(30000, 500), -5000));
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(rails, 0, "SIGNED", &said), less(rails, 0));  // a switch, at either end of the range
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(wave(32768, 30000), 32768, "UNSIGNED", &said), less(wave(32768, 30000), 32768));
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(wave(2048, 2000), 2048, "UNSIGNED", &said), less(wave(2048, 2000), 2048));
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(unsigned_rails, 0, "UNSIGNED", &said), less(unsigned_rails, 0));
+  EXPECT_FALSE(said);
+  EXPECT_EQ(read_words(counter, 0, "UNSIGNED", &said), less(counter, 0));  // which starts anew at 65536
+  EXPECT_FALSE(said);
+}
+
+TEST(DecodeC3d, TheOffsetOfRealsIsReadAsTheirNumbersShow) {
+  C3d file = small_c3d();
+  file.analog.col(0).setConstant(32768.0);
+  file.analog_offset = {32768, 0, 0};
+  const Contents contents = good(file.bytes());
+  EXPECT_EQ(array(contents, "Force X").values.norm(), 0.0);
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("1 of 3 analog channels are read as unsigned numbers")));
+  file.analog.col(0).setConstant(5.0);
+  file.analog_offset = {-3, 0, 0};
+  file.format = "UNSIGNED";
+  EXPECT_EQ(array(good(file.bytes()), "Force X").values(0, 0), 8.0 * 0.25);
+}
+
 // ---- refusals ----
 
 TEST(DecodeC3d, RefusesWhereHeaderAndParametersContradictEachOther) {

@@ -440,14 +440,18 @@ TEST(KinarmExam, AnExamOfC3dFilesIsTheSame) {
   EXPECT_FALSE(c3d.metadata.contains("LOAD_TABLE_LEFT"));
 }
 
-TEST(KinarmExam, CountsOfFramesOfAC3dFileAreSettledByItsSize) {
+TEST(KinarmExam, AC3dChannelWithoutScaleIsLeftOutAndCountsOfFramesAreSettledByTheSize) {
   const ExamOfTest exam = small_exam();
   test::C3d file = c3d_of(exam.trials.front());
+  ASSERT_EQ(file.channels.at(9), "Right_FS_ForceY");
+  file.analog_scale[9] = 0.0;
   file.records = file.numbers().words(test::C3d::kPoint, "FRAMES", {399});  // of 400, as the header says
   const std::string bytes = exam_of_c3d(file.bytes(), test::small_c3d().bytes());
   EXPECT_THAT(opened(bytes).trials().front().description, HasSubstr("400 frames"));
   const Contents contents = decoded(bytes);
+  EXPECT_EQ(find(contents, "Right_FS_ForceY"), nullptr);
   EXPECT_EQ(values(contents, "Right_FS_ForceX").size(), 400);
+  EXPECT_THAT(notes(contents), HasSubstr("('Right_FS_ForceY' is the first)"));
   EXPECT_THAT(notes(contents), HasSubstr("the number of frames is 400 (the header"));
 }
 
