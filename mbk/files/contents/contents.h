@@ -29,6 +29,8 @@ struct Array {
                            ///< of one that the robot exerts); "" where the name alone may say it
   std::optional<Error> obstacle = {};  ///< why its numbers cannot be used, for whoever asks for it: a column of words;
                                        ///< `values` then are empty
+  std::string unapplied = {};  ///< what the file says that may scale its numbers, and not how: "gain = 4.448"; they are
+                               ///< taken only with a gain that the map states
 };
 
 /// Text of a file, in UTF-8 without control characters: the rows of a char array, or the entries of a cell array of

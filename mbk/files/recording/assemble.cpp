@@ -55,7 +55,8 @@ struct Signal {
   std::string source;  ///< for messages
   std::string entry;   ///< the same as --channels would say it
   double gain = 1.0;
-  double offset = 0.0;  ///< in `unit`
+  double offset = 0.0;     ///< in `unit`
+  bool is_scaled = false;  ///< the map states a gain or offset, if only *1
 
   [[nodiscard]] bool is_plain() const { return gain == 1.0 && offset == 0.0; }
 };
@@ -465,9 +466,10 @@ class Assembler {
       const auto found = resolve(entry);
       if (!found) return tl::unexpected(found.error());
       const Line* const line = &found->line;
-      Signal signal{kind,         *line,        nullptr,
-                    entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
-                    found->gain,  found->offset};
+      Signal signal{kind,         *line,         nullptr,
+                    entry.negate, entry.source,  (entry.negate ? "-" : "") + entry.source,
+                    found->gain,  found->offset, found->is_scaled};
+      states_time_ = states_time_ || (is_time(kind) && !entry.unit.empty());
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
         if (signal.unit == nullptr || !kind->accepts(*signal.unit)) {
@@ -510,6 +512,7 @@ class Assembler {
   struct Found {
     Line line;
     double gain, offset;
+    bool is_scaled;
   };
 
   /// The longest name of `entry` that the file has, and what is to be done with its numbers.
@@ -523,7 +526,7 @@ class Assembler {
         return bad_usage(fmt::format("channel {}: the gain 0 leaves nothing of '{}'", entry.channel, way.name),
                          "give another gain");
       }
-      return Found{*line, way.gain, way.offset};
+      return Found{*line, way.gain, way.offset, way.name.size() < entry.source.size()};
     }
     return bad_usage(fmt::format("channel {} names no source", entry.channel));
   }
@@ -553,7 +556,7 @@ class Assembler {
     std::vector<const Array*> called, last_part_called;
     for (const Array& array : contents_.arrays) {
       if (array.clock >= 0) continue;  // the clock says it
-      if (is_called_time(array, array.name)) called.push_back(&array);
+      if (is_called_time(array, array.means.empty() ? array.name : array.means)) called.push_back(&array);
       if (!contents_.table && is_called_time(array, leaf(array.name))) last_part_called.push_back(&array);
     }
     if (called.empty() && last_part_called.size() == 1) called = std::move(last_part_called);
@@ -740,6 +743,7 @@ class Assembler {
     for (const Signal& signal : signals_) {
       if (signal.line.array->obstacle)
         return tl::unexpected(signal.line.array->obstacle->in(fmt::format("channel {}", signal.kind->name)));
+      if (auto ok = check_scale(signal); !ok) return ok;
     }
     if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
       return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
@@ -761,6 +765,18 @@ class Assembler {
     }
     if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
     return {};
+  }
+
+  /// What may scale the numbers, and does not say how, is for the user to decide.
+  static Result<void> check_scale(const Signal& signal) {
+    const std::string& unapplied = signal.line.array->unapplied;
+    if (unapplied.empty() || signal.is_scaled) return {};
+    return bad_data(fmt::format("the file says {} of '{}', and not whether its numbers include that already", unapplied,
+                                signal.line.array->name),
+                    fmt::format("state their scale, as in --channels {0}={1}*GAIN, or {0}={1}*1 if they are in their "
+                                "unit already",
+                                signal.kind->alias, signal.source),
+                    fmt::format("channel {}", signal.kind->name));
   }
 
   static Result<void> check_rates(const Signal& a, const Signal& b) {
@@ -972,7 +988,7 @@ class Assembler {
                        "pass the sample rate: --rate 1000");
     }
     if (recording_.time.size() == 0) {
-      const double own = signals_.front().line.rate_hz();
+      const double own = said_rate();
       if (own == 0.0 && !options_.rate && options_.untimed) {
         const Index rows = recording_.channels.front().values.size();
         recording_.time = Vector::LinSpaced(rows, 0.0, static_cast<double>(rows - 1));
@@ -993,7 +1009,9 @@ class Assembler {
           Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / (own > 0.0 ? own : options_.rate->value);
       return {};
     }
-    if (!options_.rate || recording_.time.size() < 2) return {};
+    if (recording_.time.size() < 2) return {};
+    if (auto ok = check_said_rate(); !ok) return ok;
+    if (!options_.rate) return {};
     const double own = inspect(recording_).rate_hz;
     if (same_rate(own, options_.rate->value)) return {};
     return bad_usage(
@@ -1001,10 +1019,38 @@ class Assembler {
         "leave --rate out, or correct the unit of time (--channels time=…:ms)");
   }
 
+  /// [Hz] of the signals, which have one; 0 where the file says none.
+  [[nodiscard]] double said_rate() const {
+    const auto said = std::ranges::find_if(signals_, [](const Signal& s) { return s.line.rate_hz() > 0.0; });
+    return said == signals_.end() ? 0.0 : said->line.rate_hz();
+  }
+
+  /// A rate that the file says beside its time. Devices miss their rate by some per cent; a time in another unit, or of
+  /// another signal, differs by more.
+  [[nodiscard]] Result<void> check_said_rate() const {
+    constexpr double kNominal = 0.1;
+    const auto differs = [](double rate_hz, double said_hz) {
+      return !(std::abs(rate_hz - said_hz) <= kNominal * said_hz);
+    };
+    const double said = said_rate();
+    if (said == 0.0 || clock_ != nullptr || states_time_) return {};
+    const Index last = recording_.time.size() - 1;
+    if (!differs(static_cast<double>(last) / (recording_.time[last] - recording_.time[0]), said)) return {};
+    const double own = inspect(recording_).rate_hz;
+    if (!differs(own, said)) return {};
+    const double ratio = said / own;
+    const std::string_view unit = !differs(ratio, 1e9) ? "ns" : !differs(ratio, 1e6) ? "us" : "ms";
+    return bad_data(
+        fmt::format("the file says a rate of {} Hz, and its time '{}' runs at {:.6g} Hz", said,
+                    recording_.time_origin.source, own),
+        fmt::format("say the unit of the time, as in --channels time={}:{}", recording_.time_origin.source, unit));
+  }
+
   Contents contents_;
   const ReadOptions& options_;
   std::vector<Signal> signals_;
   const Clock* clock_ = nullptr;  ///< of the recording, where the file has clocks
+  bool states_time_ = false;      ///< the map states the unit of time
   Recording recording_;
 };
 

@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
@@ -15,6 +18,7 @@
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/hdf5_attributes.h"
 #include "mbk/files/recording/hdf5_tree.h"
 #include "mbk/files/recording/mat_hdf5.h"
 #include "mbk/files/recording/without_ones.h"
@@ -56,13 +60,30 @@ class Decoder {
       if (lines > 1) contents.notes.push_back(several_lines_note(printable(name), lines));
     }
     for (const auto& [name, dataset] : root.datasets) in_root_.push_back(name);
+    netcdf_ = root.attributes.contains("_NCProperties");
     group(root, "");
+    const auto is_named_time = [](const Array& array) {
+      const auto kinds = parse_column_name(array.name.substr(array.name.rfind('/') + 1)).kinds;
+      return !kinds.empty() && kinds.front()->name == "time";
+    };
+    if (std::ranges::any_of(contents.arrays, is_named_time)) {  // which then is meant
+      for (Array& array : contents.arrays) {
+        if (array.means == "time") array.means.clear();
+      }
+    }
+    for (std::string& line : notes_.lines()) contents.notes.push_back(std::move(line));
+    give_rates(contents, std::move(rates_));
   }
 
  private:
   void group(hdf5::Group& group, const std::string& prefix) {
     if (!group.damage.empty()) lost(prefix.empty() ? "/" : prefix, group.damage);
-    if (!group.columns.empty()) hand_units_on(group);
+    if (!group.columns.empty()) hand_attributes_on(group);
+    if (!(own_layout_ && prefix.empty())) {  // those are metadata
+      for (SaidRate& rate : rates_of_group(group.attributes, prefix)) rates_.push_back(std::move(rate));
+      if (group.columns.empty()) note_unapplied(group.attributes, prefix, notes_);
+    }
+    find_clock(group, prefix);
     for_each_member(group, [&](const std::string& name, auto& member) {
       const std::string path = prefix.empty() ? printable(name) : prefix + "/" + printable(name);
       if constexpr (std::same_as<std::remove_cvref_t<decltype(member)>, hdf5::Group>) {
@@ -84,7 +105,11 @@ class Decoder {
       contents.texts.push_back({name_of(path), std::move(*texts)});
       return;
     }
-    if (value.shape.empty()) return aside(path, "a single number");
+    if (value.shape.empty()) return single(dataset, path);
+    if (text_attribute(dataset.attributes, "NAME")
+            .starts_with("This is a netCDF dimension but not a netCDF variable")) {
+      return;  // which has no numbers
+    }
     if (const auto squeezed = without_ones(value.shape)) {
       contents.notes.push_back(
           fmt::format("'{}' ({}) was read as {}", path, fmt::join(value.shape, "×"), fmt::join(*squeezed, "×")));
@@ -93,13 +118,80 @@ class Decoder {
     const std::size_t rank = value.shape.size();
     if (rank > 2) return aside(path, fmt::format("an array of {} dimensions", rank));
     auto& numbers = std::get<hdf5::Numbers>(value.data);
+    const std::uint64_t columns = rank == 2 ? value.shape[1] : 1;
+    Array& array = contents.arrays.emplace_back();
+    array.name = name_of(path);
+    array.signal = own_layout_ && (path == "time" || path.starts_with("channels/"));
+    apply_attributes(dataset.attributes, numbers, columns, netcdf_, array, notes_);
+    check_frame(array.name, text_attribute(dataset.attributes, "frame"));
+    if (is_time_scale(dataset.attributes)) array.means = "time";
+    if (const auto series = series_.find(path); series != series_.end()) {
+      array.clock = series->second.clock;
+      array.means = series->second.channel;
+    }
+    array.values = take_rows(numbers, value.shape[0], columns);
+  }
+
+  /// A scale of a dimension that counts time, by the attributes that CF has for that.
+  static bool is_time_scale(const hdf5::Attributes& attributes) {
+    if (text_attribute(attributes, "CLASS") != "DIMENSION_SCALE") return false;
+    return text_attribute(attributes, "standard_name") == "time" || text_attribute(attributes, "axis") == "T" ||
+           text_attribute(attributes, "units").find(" since ") != std::string::npos;
+  }
+
+  /// A number by itself can be a sample rate. Nothing else is made of it.
+  void single(const hdf5::Dataset& dataset, const std::string& path) {
+    if (single_taken_.contains(path)) return;
+    const double number = std::get<hdf5::Numbers>(dataset.value.data).values[0];
+    const auto slash = path.rfind('/');
+    const std::string scope = slash == path.npos ? "" : path.substr(0, slash);
     std::string unit = text_attribute(dataset.attributes, "unit");
     if (unit.empty()) unit = text_attribute(dataset.attributes, "units");
-    const std::uint64_t columns = rank == 2 ? value.shape[1] : 1;
-    const std::string name = name_of(path);
-    check_frame(name, text_attribute(dataset.attributes, "frame"));
-    const bool signal = own_layout_ && (path == "time" || path.starts_with("channels/"));
-    contents.arrays.push_back({name, take_rows(numbers, value.shape[0], columns), std::move(unit), signal});
+    if (const auto rate = rate_called(slash == path.npos ? path : path.substr(slash + 1), number, unit)) {
+      rates_.push_back({scope, fmt::format("'{}'", path), *rate});
+      return;
+    }
+    aside(path, fmt::format("a single number ({})", number));
+  }
+
+  /// A TimeSeries of NWB 2: `data`, whose first dimension is time, and beside them either `timestamps` or
+  /// `starting_time` with its attribute `rate`. Its data have a clock of their own.
+  void find_clock(hdf5::Group& group, const std::string& path) {
+    const auto numbers_of = [&](const char* name) {
+      const auto found = group.datasets.find(name);
+      return found == group.datasets.end() ? nullptr : std::get_if<hdf5::Numbers>(&found->second.value.data);
+    };
+    const hdf5::Numbers* const data = numbers_of("data");
+    if (data == nullptr || path.empty()) return;
+    hdf5::Dataset& dataset = group.datasets["data"];
+    const std::string first = path + "/";
+    Clock clock{path, {}};
+    if (const hdf5::Numbers* const begin = numbers_of("starting_time"); begin != nullptr && begin->values.size() == 1) {
+      const auto rate = number_attribute(group.datasets["starting_time"].attributes, "rate");
+      if (!rate || !(*rate > 0.0) || !std::isfinite(*rate)) return;
+      const auto samples = static_cast<Index>(dataset.value.shape.empty() ? 0 : dataset.value.shape[0]);
+      if (samples > data->values.size()) return;
+      clock.time.resize(samples);
+      for (Index k = 0; k < samples; ++k) clock.time[k] = begin->values[0] + static_cast<double>(k) / *rate;
+      single_taken_.insert(first + "starting_time");
+      notes_.add(fmt::format("starting_time {} s and its rate {} Hz are the time of", begin->values[0], *rate),
+                 first + "data");
+    } else if (const hdf5::Numbers* const stamps = numbers_of("timestamps"); stamps != nullptr) {
+      const std::string said = text_attribute(group.datasets["timestamps"].attributes, "unit");
+      const Unit* const unit = find_unit(said.empty() ? "s" : said);
+      const bool nwb = !said.empty() || group.attributes.contains("neurodata_type");
+      if (!nwb || unit == nullptr || unit->dimension != Dimension::time) return;
+      clock.time = stamps->values.unaryExpr([&](double stamp) { return unit->to_si(stamp); });
+      series_[first + "timestamps"] = {static_cast<int>(contents.clocks.size()), ""};
+    } else {
+      return;
+    }
+    const std::string name = path.substr(path.rfind('/') + 1);
+    series_[first + "data"] = {static_cast<int>(contents.clocks.size()), kinds_called(name).empty() ? "" : name};
+    contents.clocks.push_back(std::move(clock));
+    if (const auto each = group.datasets.find("channel_conversion"); each != group.datasets.end()) {
+      dataset.attributes.try_emplace("channel_conversion", each->second.value);
+    }
   }
 
   /// Channels go by their own names, and events as in MAT files.
@@ -123,23 +215,6 @@ class Decoder {
         kinds.front()->frame.empty() ? "as it stands" : fmt::format("in the frame '{}'", kinds.front()->frame)));
   }
 
-  /// The units of a table, one for all of its columns or one for each, become those of the columns.
-  static void hand_units_on(hdf5::Group& table) {
-    for (const char* const name : {"unit", "units"}) {
-      const auto said = table.attributes.find(name);
-      if (said == table.attributes.end()) continue;
-      const auto* const texts = std::get_if<hdf5::Texts>(&said->second.data);
-      if (texts == nullptr || (texts->size() != 1 && texts->size() != table.columns.size())) continue;
-      for (std::size_t k = 0; k < table.columns.size(); ++k) {
-        const auto column = table.datasets.find(table.columns[k]);
-        if (column != table.datasets.end()) {
-          column->second.attributes.try_emplace("unit",
-                                                hdf5::Value{{}, hdf5::Texts{(*texts)[texts->size() == 1 ? 0 : k]}});
-        }
-      }
-    }
-  }
-
   void lost(const std::string& name, const std::string& why) {
     contents.notes.push_back(lost_note(fmt::format("'{}'", name), why));
     contents.damaged.emplace(name, why);
@@ -149,8 +224,19 @@ class Decoder {
     contents.notes.push_back(fmt::format("'{}' is {}; ignored", path, what));
   }
 
+  /// What the data or time stamps at a path belong to.
+  struct Series {
+    int clock;
+    std::string channel;  ///< Array::means
+  };
+
   bool own_layout_ = false;  ///< as encode_hdf5 writes it
+  bool netcdf_ = false;
   std::vector<std::string> in_root_;
+  std::map<std::string, Series> series_;
+  std::set<std::string> single_taken_;
+  std::vector<SaidRate> rates_;
+  SharedNotes notes_;
 };
 
 /// Whether something of a file is damaged.

@@ -96,7 +96,7 @@ TEST(ContentsOfHdf5, RefusesAUnitThatTheChannelCannotHave) {
   EXPECT_THAT(recorded(root, "x=hand_x").error().line(), HasSubstr("'furlong'"));
   EXPECT_TRUE(recorded(root, "x=hand_x:cm"));
   root = own();
-  root.datasets["time"].attributes["unit"] = {{}, Texts{"seconds since 1970"}};
+  root.datasets["time"].attributes["unit"] = {{}, Texts{"fortnight"}};
   EXPECT_THAT(recorded(root).error().line(), HasSubstr("--channels time=time:UNIT; possible are s, ms"));
   EXPECT_THAT(recorded(root, "x=hand_x").error().line(), HasSubstr("--channels time=time:UNIT"));
 }
@@ -115,7 +115,7 @@ Group other() {
   trial.datasets["pos"] = numbers(Vector::LinSpaced(8, 0, 7), {4, 2});
   trial.datasets["pos"].attributes["units"] = {{}, Texts{"mm"}};
   trial.datasets["force"] = numbers(Vector::LinSpaced(4, 0, 9));
-  root.datasets["rate"] = Dataset{{{}, Numbers{Vector::Constant(1, 1000.0)}}, {}};
+  root.datasets["size"] = Dataset{{{}, Numbers{Vector::Constant(1, 7.0)}}, {}};
   root.datasets["cube"] = numbers(Vector::Zero(8), {2, 2, 2});
   root.datasets["label"] = Dataset{{{1}, Texts{"x"}}, {}};
   root.datasets["table"].value.data = hdf5::Unread{"of a compound type"};
@@ -130,7 +130,7 @@ TEST(ContentsOfHdf5, ListsOtherFilesByTheirPaths) {
   EXPECT_EQ(contents.arrays[2].name, "trial/pos");
   EXPECT_EQ(contents.arrays[2].values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());  // as h5py shows it
   EXPECT_THAT(contents.notes,
-              ElementsAre("'cube' is an array of 3 dimensions; ignored", "'rate' is a single number; ignored",
+              ElementsAre("'cube' is an array of 3 dimensions; ignored", "'size' is a single number (7); ignored",
                           "'table' is of a compound type; ignored", "variable 'label' is text; ignored"));
 }
 
@@ -219,6 +219,198 @@ TEST(ContentsOfHdf5, TakesAChannelThatHasTwoNamesOnce) {
   EXPECT_THAT(recording->notes, Contains("'raw/hand_x' holds the same numbers as 'hand_x', which is read as hand_x"));
   root.groups["raw"].datasets["hand_x"] = numbers(Vector::LinSpaced(5, 0, 3));
   EXPECT_THAT(recorded(root).error().message, HasSubstr("both are hand_x"));
+}
+
+Value one(double value, hdf5::Stored stored = hdf5::Stored::float64) {
+  return {{}, Numbers{Vector::Constant(1, value), stored}};
+}
+
+Value text(const std::string& words) {
+  return {{}, Texts{words}};
+}
+
+/// Time, position and force under the names of channels, the force with such attributes.
+Group with_force(const Vector& force, Attributes attributes, hdf5::Stored stored = hdf5::Stored::float64) {
+  Group root;
+  root.datasets["time"] = numbers(Vector::LinSpaced(force.size(), 0.0, 0.001 * static_cast<double>(force.size() - 1)));
+  root.datasets["hand_x"] = numbers(Vector::LinSpaced(force.size(), 0.0, 1.0));
+  root.datasets["force_x"] = numbers(force);
+  std::get<Numbers>(root.datasets["force_x"].value.data).stored = stored;
+  root.datasets["force_x"].attributes = std::move(attributes);
+  return root;
+}
+
+const Vector kForce = (Vector(4) << 1, 2, -99, 4).finished();
+
+Vector force_of(Group root) {
+  const auto recording = recorded(std::move(root));
+  EXPECT_TRUE(recording) << recording.error().line();
+  return recording ? recording->find("force_x")->values : Vector();
+}
+
+std::string error_of(Group root, const std::string& map = "") {
+  const auto recorded_there = recorded(std::move(root), map);
+  return recorded_there ? "none" : recorded_there.error().line();
+}
+
+TEST(AttributesOfHdf5, ScaleNumbersAsNwbAndCfDefineThem) {
+  const auto nwb = with_force(kForce, {{"conversion", one(2.0)}, {"offset", one(0.5)}, {"unit", text("newtons")}});
+  EXPECT_EQ(force_of(nwb), (2.0 * kForce.array() + 0.5).matrix());
+  EXPECT_THAT(recorded(nwb)->notes, ElementsAre("conversion = 2, offset = 0.5 were applied to 'force_x'"));
+  const auto cf = with_force(kForce, {{"scale_factor", one(0.5)}, {"add_offset", text("-1")}, {"units", text("mN")}});
+  EXPECT_EQ(force_of(cf), ((0.5 * kForce.array() - 1.0) / 1000).matrix());
+  const auto plain = with_force(kForce, {{"conversion", one(1.0)}, {"offset", one(0.0)}, {"resolution", one(-1.0)}});
+  EXPECT_EQ(force_of(plain), kForce);
+  EXPECT_THAT(recorded(plain)->notes, IsEmpty());
+  const auto both = with_force(kForce, {{"conversion", one(2.0)}, {"scale_factor", one(2.0)}});
+  EXPECT_EQ(force_of(both), 2.0 * kForce);
+}
+
+TEST(AttributesOfHdf5, AreRefusedWhereTheyDoNotSayWhatIsToBeDone) {
+  const std::vector<Attributes> unclear = {{{"gain", one(4.448)}},
+                                           {{"Scaling", one(3.0)}},
+                                           {{"offset", one(0.3)}},
+                                           {{"conversion", one(2.0)}, {"scale_factor", one(3.0)}},
+                                           {{"scale_factor", one(2.0)}, {"gain", one(10.0)}},
+                                           {{"conversion", text("ask Anna")}},
+                                           {{"conversion", one(0.0)}},
+                                           {{"scale_factor", {{2}, Numbers{Vector::Constant(2, 3.0)}}}}};
+  for (const Attributes& attributes : unclear) {
+    const Group root = with_force(kForce, attributes);
+    EXPECT_THAT(error_of(root), HasSubstr("channel force_x: the file says " + attributes.begin()->first + " = "));
+    EXPECT_EQ(recorded(root, "x=hand_x,Fx=force_x*1")->find("force_x")->values, kForce);
+    EXPECT_EQ(recorded(root, "x=hand_x,Fx=force_x*2")->find("force_x")->values, 2.0 * kForce);
+    EXPECT_TRUE(recorded(root, "x=hand_x"));
+  }
+  EXPECT_THAT(error_of(with_force(kForce, {{"gain", one(4.448)}}), "x=hand_x,Fx=-force_x"),
+              HasSubstr("--channels Fx=force_x*GAIN, or Fx=force_x*1"));
+  for (const Attributes& attributes : {Attributes{{"gain", one(1.0)}, {"offset", one(0.0)}},
+                                       Attributes{{"calibration", text("2024-03-01")}, {"filter_delay", one(0.004)}}}) {
+    EXPECT_EQ(force_of(with_force(kForce, attributes)), kForce);
+  }
+  EXPECT_THAT(recorded(with_force(kForce, {{"filter_delay", one(0.004)}}))->notes,
+              ElementsAre("filter_delay = 0.004 was not applied to 'force_x'"));
+}
+
+TEST(AttributesOfHdf5, MarkMissingNumbersBeforeTheyAreScaled) {
+  const auto root = with_force(kForce, {{"_FillValue", one(-99.0)}, {"scale_factor", one(0.5)}});
+  const Vector force = force_of(root);
+  EXPECT_TRUE(std::isnan(force[2]));
+  EXPECT_EQ(force[3], 2.0);
+  EXPECT_THAT(recorded(root)->notes,
+              Contains("1 of the numbers is _FillValue (-99) and is missing (NaN) in 'force_x'"));
+  // -99.9 stands in the file as the nearest float32.
+  Vector real = kForce;
+  real[2] = static_cast<double>(-99.9F);
+  EXPECT_TRUE(std::isnan(force_of(with_force(real, {{"missing_value", one(-99.9)}}, hdf5::Stored::float32))[2]));
+  // A valid range of the type of the file is in its numbers, any other in those that they stand for.
+  const Value range{{2}, Numbers{(Vector(2) << 0, 3).finished(), hdf5::Stored::int16}};
+  const Value real_range{{2}, Numbers{(Vector(2) << 0, 3).finished()}};
+  const auto count = [&](const Value& valid) {
+    return force_of(with_force(kForce, {{"valid_range", valid}, {"scale_factor", one(0.5)}}, hdf5::Stored::int16))
+        .array()
+        .isNaN()
+        .count();
+  };
+  EXPECT_EQ(count(range), 2);
+  EXPECT_EQ(count(real_range), 1);
+}
+
+TEST(AttributesOfHdf5, SayThatBytesHaveNoSign) {
+  const auto root = with_force(kForce, {{"_Unsigned", text("true")}, {"_FillValue", one(-99.0)}}, hdf5::Stored::int8);
+  EXPECT_TRUE(std::isnan(force_of(root)[2]));
+  EXPECT_EQ(force_of(with_force(kForce, {{"_Unsigned", text("true")}}, hdf5::Stored::int8))[2], 157.0);
+}
+
+TEST(AttributesOfHdf5, NameUnitsInWordsAndTimesSinceADate) {
+  Group root = with_force(kForce, {});
+  root.datasets["hand_x"].attributes["Units"] = text("Millimeters");
+  root.datasets["time"].attributes["units"] = text("milliseconds since 2024-01-01 00:00:00");
+  const auto recording = recorded(root);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->find("hand_x")->values[3], 0.001);
+  EXPECT_DOUBLE_EQ(recording->time[3], 3e-6);
+  root.datasets["hand_x"].attributes["unit"] = text("m");
+  EXPECT_THAT(error_of(root), HasSubstr("'hand_x' is in 'Millimeters, m'"));
+}
+
+TEST(AttributesOfHdf5, HoldForEachColumnOfAMatrix) {
+  Group root = with_force(kForce, {});
+  root.datasets["data"] = numbers(Vector::LinSpaced(8, 1, 8), {4, 2});
+  root.datasets["data"].attributes = {{"scale_factor", {{2}, Numbers{(Vector(2) << 1, 10).finished()}}},
+                                      {"units", {{2}, Texts{"mm", "N"}}}};
+  EXPECT_THAT(error_of(root, "x=data[1],Fx=data[2]"), HasSubstr("'data' is in 'mm, N'"));
+  const auto recording = recorded(root, "x=data[1]:mm,Fx=data[2]:N");
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->find("hand_x")->values[1], 0.003);
+  EXPECT_EQ(recording->find("force_x")->values[1], 40.0);
+}
+
+/// A TimeSeries of NWB with a force of two columns.
+Group series(double begin_s) {
+  Group group;
+  group.attributes["neurodata_type"] = text("TimeSeries");
+  group.datasets["data"] = numbers(Vector::LinSpaced(8, 1, 8), {4, 2});
+  group.datasets["data"].attributes = {{"conversion", one(2.0)}, {"unit", text("newtons")}};
+  group.datasets["channel_conversion"] = numbers((Vector(2) << 1, 10).finished());
+  group.datasets["starting_time"] = Dataset{one(begin_s), {{"rate", one(1000.0, hdf5::Stored::float32)}}};
+  return group;
+}
+
+TEST(TimeSeriesOfNwb, HaveTheTimeThatTheirStartAndRateSay) {
+  Group root;
+  root.groups["a"] = series(0.5);
+  const auto recording = recorded(root, "Fx=a/data[1],Fy=a/data[2]");
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->time, (Vector(4) << 0.5, 0.501, 0.502, 0.503).finished());
+  EXPECT_EQ(recording->find("force_x")->values[1], 6.0);
+  EXPECT_EQ(recording->find("force_y")->values[1], 80.0);
+  ReadOptions options;
+  options.channels = parse_channel_map("Fx=a/data[1]").value();
+  options.rate = Hertz(500);
+  EXPECT_THAT(assemble(contents_of_hdf5(root), options).error().line(), HasSubstr("rate 500 Hz contradicts the file"));
+}
+
+TEST(TimeSeriesOfNwb, AreNotTakenForSimultaneousWhereTheyStartAtOtherTimes) {
+  Group root;
+  root.groups["a"] = series(0.5);
+  root.groups["b"] = series(0.5);
+  EXPECT_TRUE(recorded(root, "Fx=a/data[1],Fy=b/data[1]"));
+  root.groups["b"] = series(0.6);
+  EXPECT_THAT(error_of(root, "Fx=a/data[1],Fy=b/data[1]"), HasSubstr("clocks of their own"));
+  root.groups["b"].datasets.erase("starting_time");
+  root.groups["b"].datasets["timestamps"] = numbers((Vector(4) << 500, 501, 502, 503).finished(), {}, "ms");
+  EXPECT_TRUE(recorded(root, "Fx=a/data[1],Fy=b/data[1]"));
+}
+
+TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {
+  const auto without_time = [] {
+    Group root = with_force(kForce, {});
+    root.datasets.erase("time");
+    return root;
+  };
+  const auto time_of = [&](Group root) {
+    const auto recording = recorded(std::move(root));
+    return recording ? recording->time[1] : 0.0;
+  };
+  Group attribute = without_time(), number = without_time(), of_one = without_time(), two = without_time();
+  EXPECT_THAT(error_of(without_time()), HasSubstr("no time that is recognised"));
+  attribute.attributes["Sampling rate"] = one(500.0);
+  EXPECT_EQ(time_of(attribute), 0.002);
+  number.datasets["fs_khz"] = Dataset{one(0.5), {}};
+  EXPECT_EQ(time_of(number), 0.002);
+  of_one.datasets["force_x"].attributes["SampleRate"] = one(500.0);
+  EXPECT_EQ(time_of(of_one), 0.002);
+  two.attributes = {{"fs", one(500.0)}, {"sampling_rate", one(1000.0)}};
+  EXPECT_THAT(error_of(two), HasSubstr("no time that is recognised"));
+
+  Group timed = with_force(kForce, {});
+  timed.attributes["fs"] = one(1030.0);  // nominal
+  EXPECT_EQ(time_of(timed), 0.001);
+  timed.datasets["fs"] = Dataset{one(1.0), {}};
+  timed.attributes.clear();
+  EXPECT_THAT(error_of(timed), HasSubstr("a rate of 1 Hz, and its time 'time' runs at 1000 Hz; say the unit"));
+  EXPECT_EQ(recorded(timed, "x=hand_x,time=time:s")->time[1], 0.001);
 }
 
 TEST(ContentsOfHdf5, LeavesSidesOfOneOut) {

@@ -12,6 +12,7 @@
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/lines.h"
 #include "mbk/files/contents/utf16.h"
+#include "mbk/files/recording/hdf5_attributes.h"
 #include "mbk/files/recording/hdf5_tree.h"
 #include "mbk/files/recording/without_ones.h"
 
@@ -51,6 +52,7 @@ class MatDecoder {
  public:
   explicit MatDecoder(hdf5::Group& root) : root_(root) { contents.format = "MAT v7.3"; }
   Contents contents;
+  SharedNotes notes;
 
   void group(hdf5::Group& group, const std::string& prefix, int depth = 0) {
     if (!group.damage.empty()) lost(prefix.empty() ? "/" : prefix, group.damage);
@@ -85,11 +87,12 @@ class MatDecoder {
     if (type == "char") return text(dataset, name);
     if (dataset.attributes.contains("MATLAB_empty")) return;
     if (type == "cell") return cells(dataset, name, depth);
-    if (type.empty() || is_numeric_class(type)) return numbers(dataset.value, name);
+    if (type.empty() || is_numeric_class(type)) return numbers(dataset, name);
     aside(name, fmt::format("of class '{}'", type));
   }
 
-  void numbers(hdf5::Value& value, const std::string& name) {
+  void numbers(hdf5::Dataset& dataset, const std::string& name) {
+    hdf5::Value& value = dataset.value;
     if (references_of(value) != nullptr) return aside(name, "of references");
     auto* const numbers = std::get_if<hdf5::Numbers>(&value.data);
     if (numbers == nullptr) return aside(name, "not numeric");
@@ -100,7 +103,10 @@ class MatDecoder {
       value.shape = *squeezed;
     }
     if (value.shape.size() != 2) return aside(name, fmt::format("an array of {} dimensions", value.shape.size()));
-    contents.arrays.push_back({name, take_columns(*numbers, value.shape[1], value.shape[0])});
+    Array& array = contents.arrays.emplace_back();
+    array.name = name;
+    apply_attributes(dataset.attributes, *numbers, 1, false, array, notes);
+    array.values = take_columns(*numbers, value.shape[1], value.shape[0]);
     value.data = hdf5::Unread{fmt::format("the same as '{}'", name)};  // for a second reference to it
   }
 
@@ -208,6 +214,8 @@ bool is_mat_hdf5(std::span<const std::byte> file, const hdf5::Group& root) {
 Contents contents_of_mat_hdf5(hdf5::Group root) {
   MatDecoder decoder(root);
   decoder.group(root, "");
+  for (std::string& line : decoder.notes.lines()) decoder.contents.notes.push_back(std::move(line));
+  give_rates(decoder.contents);
   return std::move(decoder.contents);
 }
 

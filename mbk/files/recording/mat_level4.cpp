@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "mbk/files/contents/byte_view.h"
+#include "mbk/files/contents/said_rates.h"
 
 namespace mbk::recording {
 namespace {
@@ -117,6 +118,7 @@ Result<Contents> decode_mat_level4(std::span<const std::byte> bytes) {
     }
     offset = header->data_offset + size;
   }
+  give_rates(contents);
   return contents;
 }
 

@@ -13,6 +13,7 @@
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/lines.h"
+#include "mbk/files/contents/said_rates.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/inflate.h"
 #include "mbk/files/recording/without_ones.h"
@@ -439,6 +440,7 @@ Result<Contents> decoded(std::span<const std::byte> file, std::shared_ptr<Buffer
   Decoder decoder(std::move(bytes));
   decoder.contents.format = "MAT v5";
   if (auto done = decoder.top_level({view, kHeaderSize}); !done) return tl::unexpected(done.error());
+  give_rates(decoder.contents);
   return std::move(decoder.contents);
 }
 

@@ -131,6 +131,15 @@ TEST(DecodeMatLevel5, ReadsNumbersWithinStructures) {
   EXPECT_EQ(contents->arrays[1].values, kValues);
 }
 
+TEST(DecodeMatLevel5, TakesTheSampleRateFromAVariable) {
+  const auto contents = decode(
+      header5() + double5("fs", Matrix::Constant(1, 1, 500.0)) + double5("force", kValues) +
+      struct5("emg", {{"SampleRate", double5("", Matrix::Constant(1, 1, 2000.0))}, {"raw", double5("", kValues)}}));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays[1].rate_hz, 500.0);
+  EXPECT_EQ(contents->arrays[3].rate_hz, 2000.0);
+}
+
 TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
   const std::string opaque =
       element5(14, element5(6, raw(std::uint32_t{17}) + raw(std::uint32_t{0})) + element5(1, "nlid") +

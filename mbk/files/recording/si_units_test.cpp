@@ -33,6 +33,30 @@ TEST(Units, HaveTheirSpellings) {
   EXPECT_EQ(si_unit(find_unit("m/s^2")->dimension), "m/s2");
 }
 
+TEST(Units, AreReadWhereTheyAreSpeltOut) {
+  for (const auto& [spelt, symbol] : {std::pair{"seconds", "s"},
+                                      {"Milliseconds", "ms"},
+                                      {"msec", "ms"},
+                                      {"microsecond", "us"},
+                                      {"meters", "m"},
+                                      {"millimetre", "mm"},
+                                      {"inches", "in"},
+                                      {"Degrees", "deg"},
+                                      {"radian", "rad"},
+                                      {"Newtons", "N"},
+                                      {"kilonewton", "kN"},
+                                      {"newton-meters", "N.m"},
+                                      {"volts", "V"},
+                                      {"millivolts", "mV"},
+                                      {"m s-2", "m/s2"}}) {
+    ASSERT_NE(find_unit(spelt), nullptr) << spelt;
+    EXPECT_EQ(find_unit(spelt)->name, symbol);
+  }
+  for (const char* other : {"", "minutes", "kiloseconds", "newtonssss", "seconds since 1970", "milli", "s s"}) {
+    EXPECT_EQ(find_unit(other), nullptr) << other;
+  }
+}
+
 TEST(Units, CaseCounts) {
   EXPECT_EQ(find_unit("MN"), nullptr);
   EXPECT_EQ(find_unit("counts"), nullptr);

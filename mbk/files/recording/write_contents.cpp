@@ -10,6 +10,7 @@
 #include "mbk/files/hdf5/write_hdf5.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/hdf5_attributes.h"
 #include "mbk/files/recording/mat_variables.h"
 #include "mbk/files/recording/write_file.h"
 
@@ -98,6 +99,9 @@ Result<std::string> encode_contents_hdf5(const Contents& contents, std::vector<s
     hdf5::Dataset dataset = dataset_of(array.values);
     if (!array.unit.empty()) dataset.attributes["unit"] = hdf5::one_text(array.unit);
     if (array.rate_hz > 0.0) dataset.attributes["rate_hz"] = one_number(array.rate_hz);
+    if (!array.unapplied.empty()) {
+      dataset.attributes[std::string(kUnapplied)] = hdf5::one_text(array.unapplied);
+    }
     if (array.clock >= 0)
       dataset.attributes["clock"] = hdf5::one_text("clocks/" + clocks[static_cast<std::size_t>(array.clock)]);
     const std::string from = name_of(contents, k);

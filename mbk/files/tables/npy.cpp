@@ -18,6 +18,7 @@
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/said_rates.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/tables/npy_header.h"
 
@@ -322,6 +323,7 @@ Result<Contents> decode_npz(const ZipArchive& archive) {
     if (auto ok = NpyDecoder(contents).add(bytes->bytes(), name.empty() ? "array" : name); !ok)
       return tl::unexpected(ok.error());
   }
+  give_rates(contents);
   return contents;
 }
 

@@ -15,6 +15,7 @@
 #include "mbk/files/contents/cells.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/said_rates.h"
 #include "mbk/files/contents/text_lines.h"
 
 namespace mbk::recording {
@@ -49,6 +50,7 @@ class OctaveDecoder {
       }
       if (auto ok = variable(printable(std::string(*name)), 0); !ok) return tl::unexpected(ok.error());
     }
+    give_rates(contents_);
     return std::move(contents_);
   }
 

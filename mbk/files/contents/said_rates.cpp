@@ -1,0 +1,108 @@
+#include "mbk/files/contents/said_rates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mbk::recording {
+namespace {
+
+constexpr double kSame = 1e-6;  ///< relative: rates that are said twice
+
+/// The small letters and digits of a name: "samplingrate" of "Sampling_Rate".
+std::string letters_of(std::string_view name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c >= 'A' && c <= 'Z') {
+      letters += static_cast<char>(c + ('a' - 'A'));
+    } else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+      letters += c;
+    }
+  }
+  return letters;
+}
+
+/// "trial" of "trial.fs" and "trial/fs"; "" of "fs".
+std::string_view scope_of(std::string_view name) {
+  const auto end = name.find_last_of("./");
+  return end == name.npos ? std::string_view() : name.substr(0, end);
+}
+
+bool holds_for(std::string_view scope, std::string_view name) {
+  if (scope.empty()) return true;
+  return name.starts_with(scope) && name.size() > scope.size() &&
+         (name[scope.size()] == '.' || name[scope.size()] == '/');
+}
+
+}  // namespace
+
+std::optional<double> rate_called(std::string_view name, double number, std::string_view unit) {
+  constexpr auto kRates = std::to_array<std::string_view>({"fs", "rate", "srate", "sfreq", "samplerate", "samplingrate",
+                                                           "samplefrequency", "samplingfrequency", "samplefreq",
+                                                           "samplingfreq", "samplespersecond", "acquisitionrate"});
+  constexpr auto kPeriods = std::to_array<std::string_view>(
+      {"dt", "sampletime", "sampleperiod", "samplingperiod", "sampleinterval", "samplinginterval"});
+  std::string letters = letters_of(name), in = letters_of(unit);
+  for (const std::string_view ending : {"khz", "hz"}) {
+    if (!letters.ends_with(ending)) continue;
+    if (in.empty()) in = ending;
+    letters.resize(letters.size() - ending.size());
+    break;
+  }
+  if (!(number > 0.0) || !std::isfinite(number)) return std::nullopt;
+  if (std::ranges::find(kRates, letters) != kRates.end()) {
+    if (in.empty() || in == "hz" || in == "hertz" || in == "1s" || in == "s1" || in == "samplespersecond") {
+      return number;
+    }
+    return in == "khz" || in == "kilohertz" ? std::optional(1000.0 * number) : std::nullopt;
+  }
+  if (std::ranges::find(kPeriods, letters) == kPeriods.end()) return std::nullopt;
+  constexpr double kLongest = 0.02, kShortest = 1e-5;  // of milliseconds, these would be 50 kHz and more
+  const bool seconds = in == "s" || in == "sec" || in == "second" || in == "seconds";
+  if (seconds || (in.empty() && number >= kShortest && number <= kLongest)) return 1.0 / number;
+  return in == "ms" || in == "milliseconds" ? std::optional(1000.0 / number) : std::nullopt;
+}
+
+void give_rates(Contents& contents, std::vector<SaidRate> said) {
+  if (contents.table) return;
+  for (const Array& array : contents.arrays) {
+    if (array.values.size() != 1 || array.signal) continue;
+    const std::string_view scope = scope_of(array.name);
+    const auto rate = rate_called(std::string_view(array.name).substr(scope.empty() ? 0 : scope.size() + 1),
+                                  array.values(0, 0), array.unit);
+    if (rate) said.push_back({std::string(scope), fmt::format("'{}'", array.name), *rate});
+  }
+  std::ranges::stable_sort(said, {}, [](const SaidRate& one) { return one.scope.size(); });
+  std::vector<bool> taken(said.size());
+  for (Array& array : contents.arrays) {
+    if (array.rate_hz > 0.0 || array.values.size() < 2 || array.clock >= 0) continue;
+    // Those of the innermost place stand last.
+    const auto nearest =
+        std::find_if(said.rbegin(), said.rend(), [&](const SaidRate& one) { return holds_for(one.scope, array.name); });
+    if (nearest == said.rend()) continue;
+    const auto differs = [&](const SaidRate& one) {
+      return one.scope == nearest->scope && std::abs(one.hz - nearest->hz) > kSame * nearest->hz;
+    };
+    if (const auto other = std::ranges::find_if(said, differs); other != said.end()) {
+      const auto index = static_cast<std::size_t>(other - said.begin());
+      if (!taken[index]) {
+        contents.notes.push_back(fmt::format("{} says a rate of {} Hz and {} one of {} Hz; neither was taken",
+                                             other->source, other->hz, nearest->source, nearest->hz));
+      }
+      taken[index] = true;
+      continue;
+    }
+    array.rate_hz = nearest->hz;
+    const auto index = static_cast<std::size_t>(said.rend() - nearest) - 1;
+    if (!taken[index]) {
+      contents.notes.push_back(fmt::format("the sample rate{} is {} Hz, as {} says",
+                                           nearest->scope.empty() ? "" : fmt::format(" of '{}'", nearest->scope),
+                                           nearest->hz, nearest->source));
+    }
+    taken[index] = true;
+  }
+}
+
+}  // namespace mbk::recording
