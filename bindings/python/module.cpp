@@ -107,6 +107,28 @@ py::array real_array(const std::string& name, const py::object& given) {
   return array;
 }
 
+/// What doubles leave of integers of 64 bits.
+template <class Number>
+Rests rests_of(const py::array& array, const py::array& doubles) {
+  const auto numbers = py::array_t<Number, py::array::f_style>::ensure(array);
+  if (!numbers) throw py::error_already_set();
+  const auto count = static_cast<std::size_t>(numbers.size());
+  const Number* const at = numbers.data();
+  const auto* const rounded = static_cast<const double*>(doubles.data());
+  Rests rests;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (std::abs(rounded[k]) >= kExactWhole) rests.put(k, rest_of(at[k]), count);
+  }
+  return rests;
+}
+
+Rests rests_of(const py::array& array, const py::array& doubles) {
+  if (array.dtype().itemsize() < 8) return {};
+  if (array.dtype().kind() == 'i') return rests_of<std::int64_t>(array, doubles);
+  if (array.dtype().kind() == 'u') return rests_of<std::uint64_t>(array, doubles);
+  return {};
+}
+
 InMemory::Signal signal_of(const std::string& name, const std::string& unit, const py::object& given) {
   const py::array array = real_array(name, given);
   InMemory::Signal signal{name, unit, {}, 0};
@@ -114,6 +136,7 @@ InMemory::Signal signal_of(const std::string& name, const std::string& unit, con
     // NumPy makes a copy where the numbers stand apart, turned around or as another type.
     auto plain = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
     if (!plain) throw py::error_already_set();
+    signal.rests = rests_of(array, plain);
     const double* const data = plain.data();
     const Index size = plain.size();
     signal.values = Samples(data, size, keep(std::move(plain)));
@@ -121,6 +144,7 @@ InMemory::Signal signal_of(const std::string& name, const std::string& unit, con
   }
   auto plain = py::array_t<double, py::array::f_style | py::array::forcecast>::ensure(array);
   if (!plain) throw py::error_already_set();
+  signal.rests = rests_of(array, plain);
   signal.rows = plain.shape(0);
   const double* const data = plain.data();
   const Index size = plain.size();

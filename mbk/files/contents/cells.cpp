@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mbk/base/core/trimmed.h"
+#include "mbk/base/core/whole_numbers.h"
 
 namespace mbk::recording {
 namespace {
@@ -109,6 +110,22 @@ std::optional<double> general_number(std::string_view cell) {
   value = std::strtod(std::string(cell).c_str(), nullptr);  // too small is 0 or subnormal; too large is not a number
   if (std::isinf(value)) return std::nullopt;
   return value;
+}
+
+std::int16_t rest_of_cell(std::string_view cell) {
+  cell = without_quotes(cell);
+  if (const auto point = cell.find_first_of(".,"); point != cell.npos) {
+    if (cell.find_first_not_of('0', point + 1) != cell.npos) return 0;
+    cell = cell.substr(0, point);
+  }
+  take(cell, '+');
+  const auto rest = [cell](auto whole) -> std::optional<std::int16_t> {
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), whole);
+    if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
+    return rest_of(whole);
+  };
+  const auto found = cell.starts_with('-') ? rest(std::int64_t{}) : rest(std::uint64_t{});
+  return found.value_or(0);
 }
 
 std::optional<CommaNumber> comma_number(std::string_view cell) {

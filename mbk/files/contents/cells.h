@@ -43,6 +43,10 @@ struct NumberAhead {
   return general_number(cell);
 }
 
+/// What a double leaves of the whole number in a cell (rest_of), written with digits alone or with a point and zeros; 0
+/// where the cell holds none.
+[[nodiscard]] std::int16_t rest_of_cell(std::string_view cell);
+
 /// A number with a decimal comma and without a point, or without either.
 struct CommaNumber {
   double value;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/whole_numbers.h"
 #include "mbk/files/contents/shared_matrix.h"
 #include "mbk/model/trial/recording.h"
 
@@ -29,6 +30,7 @@ struct Array {
                            ///< of one that the robot exerts); "" where the name alone may say it
   std::optional<Error> obstacle = {};  ///< why its numbers cannot be used, for whoever asks for it: a column of words;
                                        ///< `values` then are empty
+  Rests rests = {};                    ///< what `values` leave of whole numbers above 2^53, in their order
   std::string unapplied = {};  ///< what the file says that may scale its numbers, and not how: "gain = 4.448"; they are
                                ///< taken only with a gain that the map states
 };

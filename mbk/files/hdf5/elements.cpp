@@ -27,6 +27,21 @@ void copy_numbers(Bytes bytes, bool big_endian, double* out) {
   }
 }
 
+/// What doubles leave of integers of 64 bits.
+template <class Number>
+void put_rests(Bytes bytes, bool big_endian, std::size_t first, const Vector& numbers, Rests& rests) {
+  const bool swapped = big_endian != (std::endian::native == std::endian::big);
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(Number), ++first) {
+    if (std::abs(numbers[static_cast<Index>(first)]) < kExactWhole) continue;
+    std::byte raw[sizeof(Number)];
+    std::memcpy(raw, bytes.data() + at, sizeof raw);
+    if (swapped) std::reverse(raw, raw + sizeof raw);
+    Number number;
+    std::memcpy(&number, raw, sizeof number);
+    rests.put(first, rest_of(number), static_cast<std::size_t>(numbers.size()));
+  }
+}
+
 /// IEEE 754 binary16.
 double half(std::uint16_t bits) {
   const int exponent = bits >> 10u & 0x1F;
@@ -101,7 +116,9 @@ Result<void> Elements::allocate(std::uint64_t count) {
   }
   if (!multiply(count, type_.values, count)) return damaged("it claims more than the file can hold");
   const bool are_texts = type_.kind == Kind::text || type_.kind == Kind::long_text;
-  if (auto ok = file_.budget.keep(count, are_texts ? sizeof(std::string) : sizeof(double)); !ok) return ok;
+  const bool may_leave_rests = type_.stored == Stored::int64 || type_.stored == Stored::uint64;
+  const std::size_t number = sizeof(double) + (may_leave_rests ? sizeof(std::int16_t) : 0);
+  if (auto ok = file_.budget.keep(count, are_texts ? sizeof(std::string) : number); !ok) return ok;
   if (are_texts) {
     texts_.resize(static_cast<std::size_t>(count));
   } else if (type_.kind == Kind::reference) {
@@ -123,6 +140,9 @@ Result<void> Elements::put(std::uint64_t first, Bytes bytes) {
     return {};
   }
   copy_stored(bytes, type_, numbers_.data() + at);
+  if (type_.kind != Kind::number) return {};
+  if (type_.stored == Stored::int64) put_rests<std::int64_t>(bytes, type_.big_endian, at, numbers_, rests_);
+  if (type_.stored == Stored::uint64) put_rests<std::uint64_t>(bytes, type_.big_endian, at, numbers_, rests_);
   return {};
 }
 
@@ -180,7 +200,7 @@ Value Elements::value(std::vector<std::uint64_t> shape) {
   } else if (type_.kind == Kind::reference) {
     value.data = References{Texts(addresses_.size())};
   } else {
-    value.data = Numbers{std::move(numbers_), type_.stored};
+    value.data = Numbers{std::move(numbers_), type_.stored, std::move(rests_)};
   }
   return value;
 }

@@ -39,6 +39,7 @@ class Elements {
   GlobalHeap& heap_;
   const Datatype& type_;
   Vector numbers_;
+  Rests rests_;
   Texts texts_;
   std::vector<std::uint64_t> addresses_;
   std::vector<Elements> columns_;    ///< of a compound type, in the order of its members

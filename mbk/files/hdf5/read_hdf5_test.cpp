@@ -70,6 +70,25 @@ TEST(ReadHdf5, ReadsEveryOrdinaryNumber) {
   }
 }
 
+TEST(ReadHdf5, KeepsWhatDoublesLeaveOfWholeNumbers) {
+  constexpr std::int64_t kOdd = (std::int64_t{1} << 60) + 1;
+  const std::int64_t stored[] = {5, kOdd, -kOdd, kOdd - 1};
+  for (const hid_t type : {H5T_STD_I64LE, H5T_STD_I64BE}) {
+    const Group root = good(written(Writer::latest, [&](hid_t file) {
+      const test::Id space(test::make_space({{4}}), H5Sclose);
+      const test::Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      const hsize_t chunk = 3;
+      H5Pset_chunk(properties, 1, &chunk);
+      const test::Id set(H5Dcreate2(file, "n", type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+      EXPECT_GE(H5Dwrite(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, stored), 0);
+      put_numbers(file, "small", counted(4), {{4}}, type);
+    }));
+    const Rests& rests = std::get<Numbers>(root.datasets.at("n").value.data).rests;
+    EXPECT_THAT((std::vector<int>{rests[0], rests[1], rests[2], rests[3]}), ElementsAre(0, 1, -1, 0));
+    EXPECT_TRUE(std::get<Numbers>(root.datasets.at("small").value.data).rests.empty());
+  }
+}
+
 TEST(ReadHdf5, KeepsDoublesBitForBit) {
   const Vector values =
       (Vector(5) << 0.1, -0.0, std::numeric_limits<double>::denorm_min(), HUGE_VAL, std::nan("")).finished();

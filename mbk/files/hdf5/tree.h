@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/whole_numbers.h"
 
 namespace mbk::hdf5 {
 
@@ -18,6 +19,7 @@ enum class Stored { float64, float32, int8, uint8, int16, uint16, int32, uint32,
 struct Numbers {
   Vector values;
   Stored stored = Stored::float64;
+  Rests rests = {};  ///< of integers of 64 bits
 };
 
 using Texts = std::vector<std::string>;  ///< UTF-8, without the padding of strings of fixed length

@@ -13,6 +13,7 @@
 #include "mbk/base/core/ordinal.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/disk_pages.h"
+#include "mbk/files/contents/whole_numbers.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/believable_time.h"
 #include "mbk/files/recording/channel_table.h"
@@ -886,6 +887,7 @@ class Assembler {
       if (std::ranges::none_of(signals_, [&](const Signal& s) { return s.line.array == &array; })) forget(array);
     }
     std::vector<Vector> values(signals_.size());
+    const Rests rests = rests_of_time();
     DiskPages disk;  // arrays with clocks are columns
     if (clock_ != nullptr || std::ranges::none_of(signals_, [](const Signal& s) { return is_matrix(*s.line.array); })) {
       take_one_by_one(values);
@@ -896,6 +898,11 @@ class Assembler {
       const Signal& signal = signals_[s];
       Vector& channel = values[s];
       const bool other_unit = signal.unit != nullptr && signal.unit->multiply != signal.unit->divide;
+      if (is_time(signal.kind)) {
+        count_from_first(signal, rests, channel);
+      } else if (!signal.line.array->rests.empty()) {
+        recording_.notes.push_back(rounded_note(signal.source));
+      }
       if (signal.negate) channel = -channel;
       if (!signal.is_plain()) channel = (signal.gain * channel.array() + signal.offset).matrix();
       if (other_unit) channel = channel.unaryExpr([&](double v) { return signal.unit->to_si(v); });
@@ -912,6 +919,37 @@ class Assembler {
       recording_.channels.push_back({std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame),
                                      std::move(channel), origin_of(signal)});
     }
+  }
+
+  /// What doubles leave of the time, sample by sample.
+  [[nodiscard]] Rests rests_of_time() const {
+    Rests rests;
+    for (const Signal& signal : signals_) {
+      const Line& line = signal.line;
+      if (!is_time(signal.kind) || line.array->rests.empty()) continue;
+      const Index rows = line.array->values.rows();
+      for (Index k = 0; k < line.size(); ++k) {
+        const Index at = line.row ? line.index + k * line.step * rows : line.index * rows + k * line.step;
+        rests.put(static_cast<std::size_t>(k), line.array->rests[static_cast<std::size_t>(at)]);
+      }
+    }
+    return rests;
+  }
+
+  /// Whole numbers above 2^53, as nanoseconds since 1970 are: their differences are exact where they are taken before
+  /// anything is rounded.
+  void count_from_first(const Signal& signal, const Rests& rests, Vector& time) {
+    const double first = time.size() > 0 ? time[0] : 0.0;
+    if (!(std::abs(first) >= kExactWhole) || !std::isfinite(first)) return;
+    for (Index k = 0; k < time.size(); ++k) {
+      time[k] = (time[k] - first) + (rests[static_cast<std::size_t>(k)] - rests[0]);
+    }
+    const std::string_view unit = signal.unit != nullptr ? signal.unit->name : signal.kind->default_unit();
+    recording_.time_zero =
+        (signal.negate ? -1.0 : 1.0) * signal.gain * (signal.unit != nullptr ? signal.unit->to_si(first) : first);
+    for (Event& event : recording_.events) event.time -= recording_.time_zero;
+    recording_.notes.push_back(
+        fmt::format("time counts from its first stamp, {} {}", whole_text(first, rests[0]), unit));
   }
 
   /// The numbers of an array that are needed no more.

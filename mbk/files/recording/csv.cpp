@@ -83,6 +83,7 @@ struct CsvColumn {
   double latest = 0.0;  ///< [s] the last time of day
   int midnights = 0;
   bool mixed = false;  ///< times with and without a date
+  Rests rests;         ///< of whole numbers
 };
 
 class Table {
@@ -222,12 +223,20 @@ class Table {
       const NumberAhead ahead = plain_number_ahead(at, end);
       at += ahead.length;
       if (ahead.length == 0 || at == end) return nullptr;
-      rows_[c] = ahead.value;
+      keep(c, {at - ahead.length, ahead.length}, ahead.value);
       if (c + 1 < columns_ && *at++ != head_.separator) return nullptr;
     }
     if (*at == '\r') ++at;
     return at != end && *at == '\n' ? at + 1 : nullptr;
   }
+
+  /// The number of a cell in the row that is worked on.
+  void keep(std::size_t column, std::string_view cell, double value) {
+    rows_[column] = value;
+    if (std::abs(value) >= kExactWhole) [[unlikely]]
+      kinds_[column].rests.put(row_index(), rest_of_cell(cell));
+  }
+  [[nodiscard]] std::size_t row_index() const { return static_cast<std::size_t>(rows_.rows()); }
 
   /// A line, as far as it is known.
   struct Row {
@@ -245,7 +254,7 @@ class Table {
       row.last_is_empty = value && std::isnan(*value) && without_quotes(cell).empty();
       if (row.count > columns_) return row.count <= columns_ + 64;
       row.odd = row.odd || !value;
-      rows_[row.count - 1] = value.value_or(kNone);
+      keep(row.count - 1, cell, value.value_or(kNone));
       return true;
     };
     if (head_.separator == kBlanks) {
@@ -315,7 +324,7 @@ class Table {
         kinds_[c].obstacle = not_a_number(line.number, c + 1, one.cell, decimal_commas_);
       }
     }
-    for (std::size_t c = 0; c < odd_.size(); ++c) rows_[c] = odd_[c].value;
+    for (std::size_t c = 0; c < odd_.size(); ++c) keep(c, odd_[c].cell, odd_[c].value);
     return {};
   }
 
@@ -379,6 +388,7 @@ class Table {
       } else {
         any = true;
         array.values = SharedMatrix::of_column(rows_.take(c));
+        array.rests = std::move(kinds_[c].rests);
       }
     }
     if (!any) return tl::unexpected(*first);

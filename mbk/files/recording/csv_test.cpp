@@ -55,6 +55,25 @@ std::vector<std::string> names_of(std::string_view text) {
   return names;
 }
 
+TEST(DecodeCsv, KeepsWhatDoublesLeaveOfWholeNumbers) {
+  const auto contents =
+      csv("t,n,x\n1709288130000000001,-9007199254740993,0.1\n"
+          "1709288130001000001,\"9007199254740993.0\",2\n18446744073709551615,5,3\n");
+  ASSERT_TRUE(contents) << contents.error().line();
+  const auto rest = [&](std::size_t column, std::size_t row) { return contents->arrays[column].rests[row]; };
+  const auto exact = [&](std::size_t row, std::uint64_t whole) {
+    EXPECT_EQ(contents->arrays[0].values(static_cast<Index>(row), 0), static_cast<double>(whole));
+    EXPECT_EQ(rest(0, row), rest_of(whole));
+  };
+  exact(0, 1709288130000000001);
+  exact(1, 1709288130001000001);
+  exact(2, 18446744073709551615U);
+  EXPECT_EQ(rest(1, 0), -1);
+  EXPECT_EQ(rest(1, 1), 1);
+  EXPECT_EQ(rest(1, 2), 0);
+  EXPECT_TRUE(contents->arrays[2].rests.empty());
+}
+
 Matrix values_of(std::string_view text) {
   const auto contents = csv(text);
   EXPECT_TRUE(contents) << contents.error().line();

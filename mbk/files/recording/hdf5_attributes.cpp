@@ -397,6 +397,10 @@ class Applier {
       }
     }
     if (applied.empty()) return;
+    if (!numbers_.rests.empty()) {  // which are no whole numbers any more
+      notes_.add("whole numbers above 2^53 were rounded in", array_.name);
+      numbers_.rests = {};
+    }
     notes_.add(fmt::format("{} {} applied to", fmt::join(applied, ", "), applied.size() == 1 ? "was" : "were"),
                array_.name);
   }

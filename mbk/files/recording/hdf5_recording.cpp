@@ -129,6 +129,7 @@ class Decoder {
       array.clock = series->second.clock;
       array.means = series->second.channel;
     }
+    array.rests = take_rests(numbers, value.shape[0], columns);
     array.values = take_rows(numbers, value.shape[0], columns);
   }
 

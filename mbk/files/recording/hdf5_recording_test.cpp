@@ -383,6 +383,30 @@ TEST(TimeSeriesOfNwb, AreNotTakenForSimultaneousWhereTheyStartAtOtherTimes) {
   EXPECT_TRUE(recorded(root, "Fx=a/data[1],Fy=b/data[1]"));
 }
 
+TEST(ContentsOfHdf5, TakesDifferencesOfTimesBeforeTheyAreRounded) {
+  constexpr std::int64_t kBegin = 1709288130'000000001;
+  Group root = with_force(kForce, {});
+  Group matrix = root;
+  hdf5::Numbers stamps{Vector(4), hdf5::Stored::int64}, table{Vector(8), hdf5::Stored::int64};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::int64_t stamp = kBegin + 1000000 * static_cast<std::int64_t>(k);
+    stamps.values[static_cast<Index>(k)] = table.values[static_cast<Index>(2 * k + 1)] = static_cast<double>(stamp);
+    table.values[static_cast<Index>(2 * k)] = 7.0;
+    stamps.rests.put(k, rest_of(stamp));
+    table.rests.put(2 * k + 1, rest_of(stamp));
+  }
+  root.datasets["time"] = Dataset{{{4}, stamps}, {{"unit", text("ns")}}};
+  root.datasets["hand_x"] = Dataset{{{4}, stamps}, {}};
+  matrix.datasets["log"] = Dataset{{{4, 2}, table}, {}};
+  for (const auto& recording : {recorded(root), recorded(matrix, "time=log[2]:ns,x=hand_x")}) {
+    ASSERT_TRUE(recording) << recording.error().line();
+    EXPECT_EQ(recording->time, (Vector(4) << 0, 0.001, 0.002, 0.003).finished());
+    EXPECT_THAT(recording->notes, Contains("time counts from its first stamp, 1709288130000000001 ns"));
+    EXPECT_NEAR(recording->time_zero, 1709288130.0, 1e-6);
+  }
+  EXPECT_THAT(recorded(root)->notes, Contains("'hand_x' holds whole numbers above 2^53, which were rounded"));
+}
+
 TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {
   const auto without_time = [] {
     Group root = with_force(kForce, {});

@@ -34,6 +34,16 @@ SharedMatrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t
   return matrix;
 }
 
+Rests take_rests(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns) {
+  Rests stored = std::move(numbers.rests);
+  if (stored.empty() || rows == 1 || columns == 1) return stored;
+  Rests by_columns;
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t c = 0; c < columns; ++c) by_columns.put(c * rows + r, stored[r * columns + c], rows * columns);
+  }
+  return by_columns;
+}
+
 std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name) {
   const auto found = attributes.find(std::string(name));
   if (found == attributes.end()) return {};

@@ -32,6 +32,9 @@ void for_each_member(Group& group, const Use& use) {
 /// The same, row by row.
 [[nodiscard]] SharedMatrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
 
+/// What the numbers leave, row by row, for a matrix that take_rows gives.
+[[nodiscard]] Rests take_rests(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
+
 /// The text of an attribute that holds one, in UTF-8 without control characters; "" where there is none.
 [[nodiscard]] std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name);
 

@@ -95,6 +95,7 @@ Contents InMemory::contents() const {
     Array array{.name = signal.name, .values = shared(signal)};
     array.unit = signal.unit;
     array.signal = true;
+    array.rests = signal.rests;
     array.rate_hz = rate_hz_;
     contents.arrays.push_back(std::move(array));
   }

@@ -24,6 +24,7 @@ class InMemory {
     std::string unit;  ///< "mm"; "" where only the name may say it
     Samples values;    ///< of a matrix column by column
     Index rows = 0;    ///< of a matrix; 0: one signal
+    Rests rests = {};  ///< what `values` leave of whole numbers above 2^53
   };
 
   /// @param signals  with "time" [s] among them, or a rate in the options of `read` or here

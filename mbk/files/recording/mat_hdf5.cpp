@@ -106,6 +106,7 @@ class MatDecoder {
     Array& array = contents.arrays.emplace_back();
     array.name = name;
     apply_attributes(dataset.attributes, *numbers, 1, false, array, notes);
+    array.rests = std::move(numbers->rests);
     array.values = take_columns(*numbers, value.shape[1], value.shape[0]);
     value.data = hdf5::Unread{fmt::format("the same as '{}'", name)};  // for a second reference to it
   }

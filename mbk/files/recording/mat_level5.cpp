@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -113,6 +114,15 @@ void copy_doubles(const Element& element, std::size_t count, double* out) {
       return element.data.copy_doubles<std::uint64_t>(count, out);
     default:
       return element.data.copy_doubles<double>(count, out);
+  }
+}
+
+template <class Stored>
+void put_rests(const Element& element, Array& array) {
+  const auto count = static_cast<std::size_t>(array.values.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    if (std::abs(array.values.data()[k]) < kExactWhole) continue;
+    array.rests.put(k, rest_of(element.data.at<Stored>(k * sizeof(Stored))), count);
   }
 }
 
@@ -379,6 +389,8 @@ class Decoder {
     }
     array.values.resize(rows, columns);
     copy_doubles(*real, static_cast<std::size_t>(*count), array.values.data());
+    if (real->type == kInt64) put_rests<std::int64_t>(*real, array);
+    if (real->type == kUint64) put_rests<std::uint64_t>(*real, array);
     return {};
   }
 

@@ -131,6 +131,17 @@ TEST(DecodeMatLevel5, ReadsNumbersWithinStructures) {
   EXPECT_EQ(contents->arrays[1].values, kValues);
 }
 
+TEST(DecodeMatLevel5, KeepsWhatDoublesLeaveOfWholeNumbers) {
+  constexpr std::int64_t kOdd = (std::int64_t{1} << 60) + 1;
+  for (const bool swapped : {false, true}) {
+    const std::string stored = element5(12, raw(kOdd, swapped) + raw(kOdd - 1, swapped), swapped);
+    const auto contents = decode(header5(swapped) + matrix5("t", {2, 1}, stored, 14, swapped));
+    ASSERT_TRUE(contents) << contents.error().line();
+    EXPECT_EQ(contents->arrays[0].rests[0], 1);
+    EXPECT_EQ(contents->arrays[0].rests[1], 0);
+  }
+}
+
 TEST(DecodeMatLevel5, TakesTheSampleRateFromAVariable) {
   const auto contents = decode(
       header5() + double5("fs", Matrix::Constant(1, 1, 500.0)) + double5("force", kValues) +

@@ -150,6 +150,11 @@ Result<Recording> read_parts(std::vector<std::filesystem::path> files, const Rea
       part->time = Vector::LinSpaced(part->samples(), offset, offset + last) / *rate;
       for (Event& event : part->events) event.time += offset / *rate;
     }
+    if (part->time_zero != 0.0 && joined->time_zero != 0.0) {
+      const double later = part->time_zero - joined->time_zero;
+      part->time.array() += later;
+      for (Event& event : part->events) event.time += later;
+    }
     if (auto ok = check_time_runs_on(*joined, *part); !ok) return tl::unexpected(ok.error().in(name));
     append(*joined, std::move(*part));
   }

@@ -48,6 +48,19 @@ TEST_F(ReadParts, KeepsAPauseBetweenPartsAsAGap) {
   EXPECT_EQ(inspect(*recording).gaps.at(0).sample, 9);
 }
 
+TEST_F(ReadParts, GoOnOnAClockOfNanosecondsSince1970) {
+  ReadOptions options;
+  options.channels = parse_channel_map("time=t:ns,x=x").value();
+  const auto recording = read_parts({folder_.write("a1.csv", "t,x\n1709288130000000001,1\n1709288130001000001,2\n"),
+                                     folder_.write("a2.csv", "t,x\n1709288130002000001,3\n1709288130003000001,4\n")},
+                                    options);
+  ASSERT_TRUE(recording) << recording.error().line();
+  constexpr double kSeconds = 3e-7;  // what a double can tell apart of seconds since 1970
+  EXPECT_EQ(recording->time[1], 0.001);
+  EXPECT_NEAR(recording->time[2], 0.002, kSeconds);
+  EXPECT_NEAR(recording->time[3], 0.003, kSeconds);
+}
+
 TEST_F(ReadParts, CountsTimeOnWhereTheRateGivesIt) {
   ReadOptions options;
   options.rate = Hertz(100);

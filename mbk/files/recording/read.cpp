@@ -13,6 +13,7 @@
 
 #include "mbk/files/bids/read_run.h"
 #include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/whole_numbers.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/formats.h"
@@ -116,7 +117,16 @@ double rate_of_array(const Contents& contents, const Array& array) {
   return array.clock >= 0 ? rate_of(contents.clocks[static_cast<std::size_t>(array.clock)]) : array.rate_hz;
 }
 
+void note_rounded(Contents& contents) {
+  for (std::size_t k = 0; k < contents.arrays.size(); ++k) {
+    const Array& array = contents.arrays[k];
+    if (array.rests.empty()) continue;
+    contents.notes.push_back(rounded_note(array.name.empty() ? std::to_string(k + 1) : array.name));
+  }
+}
+
 FileContents listed(Decoded decoded) {
+  note_rounded(decoded.contents);
   FileContents listing{std::move(decoded.source), decoded.contents.table, {}, std::move(decoded.contents.notes)};
   for (const Array& array : decoded.contents.arrays) {
     StoredArray stored{array.name,
@@ -188,6 +198,7 @@ Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& opt
   return with_file(file.path(), [&]() -> Result<Contents> {
     auto decoded = file.decode(options, false);
     if (!decoded) return tl::unexpected(decoded.error());
+    note_rounded(decoded->contents);
     return std::move(decoded->contents);
   });
 }

@@ -195,10 +195,25 @@ class NpyDecoder {
     }
     Array& array = contents_.arrays.emplace_back();
     array.name = std::move(name);
+    if (field.kind == 'i' && field.size == 8) put_rests<std::int64_t>(field, header, view, values, array.rests);
+    if (field.kind == 'u' && field.size == 8) put_rests<std::uint64_t>(field, header, view, values, array.rests);
     array.unit = field.kind == 'M' ? "s" : unit.name;
     array.values =
         values.cols() == 1 ? SharedMatrix::of_column(Vector(values.reshaped())) : SharedMatrix(std::move(values));
     return {};
+  }
+
+  template <class Stored>
+  static void put_rests(const NpyField& field, const NpyHeader& header, const ByteView& view, const Matrix& values,
+                        Rests& rests) {
+    for (Index c = 0; c < values.cols(); ++c) {
+      for (Index r = 0; r < values.rows(); ++r) {
+        if (std::abs(values(r, c)) < kExactWhole) continue;
+        const auto stored = view.at<Stored>(offset(field, header, values, r, c));
+        rests.put(static_cast<std::size_t>(c * values.rows() + r), rest_of(stored),
+                  static_cast<std::size_t>(values.size()));
+      }
+    }
   }
 
   /// Where the number of a row and column stands.

@@ -62,6 +62,14 @@ TEST(DecodeNpy, ReadsEveryNumber) {
   EXPECT_EQ(values_of(npy("'|b1'", "(2,)", std::string("\0\5", 2))), (Vector(2) << 0, 1).finished());
 }
 
+TEST(DecodeNpy, KeepsWhatDoublesLeaveOfWholeNumbers) {
+  const std::int64_t odd = (std::int64_t{1} << 60) + 1;
+  const auto contents = decoded(npy("'<i8'", "(2, 2)", raw(odd) + raw(std::int64_t{5}) + raw(-odd) + raw(odd - 1)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  const Rests& rests = contents->arrays.front().rests;  // column by column
+  EXPECT_EQ((std::vector<int>{rests[0], rests[1], rests[2], rests[3]}), (std::vector<int>{1, -1, 0, 0}));
+}
+
 TEST(DecodeNpy, TakesFieldsAsColumns) {
   const std::string data = raw(0.5) + raw(3.0F) + raw(4.0F) + std::string("\xb5\0\0\0x\0\0\0", 8) + raw(1.5) +
                            raw(5.0F) + raw(6.0F) + std::string("\0\0\0\0\0\0\0\0", 8);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -163,7 +164,9 @@ class OctaveDecoder {
     const auto found = words(line_->text);
     const auto value = octave_number(found.front());
     if (found.size() != 1 || !value) return wrong(name, line_->text);
-    add(name, 1, 1).values(0, 0) = *value;
+    Array& added = add(name, 1, 1);
+    added.values(0, 0) = *value;
+    added.rests.put(0, rest_of_cell(found.front()));
     line_ = lines_.next();
     return {};
   }
@@ -192,6 +195,7 @@ class OctaveDecoder {
     if (!columns) return tl::unexpected(columns.error());
     if (auto ok = check_size(name, *rows, *columns); !ok) return ok;
     Matrix values(static_cast<Index>(*rows), static_cast<Index>(*columns));
+    Rests rests;
     for (Index r = 0; r < (*columns > 0 ? values.rows() : 0); ++r) {
       line_ = lines_.next_filled();
       if (!line_) return cut(name);
@@ -204,10 +208,14 @@ class OctaveDecoder {
         const auto value = octave_number(found[static_cast<std::size_t>(c)]);
         if (!value) return wrong(name, found[static_cast<std::size_t>(c)]);
         values(r, c) = *value;
+        if (std::abs(*value) >= kExactWhole) {
+          rests.put(static_cast<std::size_t>(c * values.rows() + r), rest_of_cell(found[static_cast<std::size_t>(c)]));
+        }
       }
     }
     Array& added = contents_.arrays.emplace_back();
     added.name = name;
+    added.rests = std::move(rests);
     added.values = SharedMatrix(std::move(values));
     line_ = lines_.next();
     return {};
@@ -233,6 +241,8 @@ class OctaveDecoder {
     }
     if (auto ok = check_size(name, lengths[0], lengths[1]); !ok) return ok;
     Matrix values(static_cast<Index>(lengths[0]), static_cast<Index>(lengths[1]));
+    Rests rests;
+    std::size_t at = 0;
     for (double& value : values.reshaped()) {
       line_ = lines_.next_filled();
       if (!line_) return cut(name);
@@ -240,9 +250,12 @@ class OctaveDecoder {
       const auto number = octave_number(found.front());
       if (found.size() != 1 || !number) return wrong(name, line_->text);
       value = *number;
+      if (std::abs(value) >= kExactWhole) rests.put(at, rest_of_cell(found.front()));
+      ++at;
     }
     Array& added = contents_.arrays.emplace_back();
     added.name = name;
+    added.rests = std::move(rests);
     added.values = SharedMatrix(std::move(values));
     line_ = lines_.next();
     return {};

@@ -80,6 +80,7 @@ struct Recording {
   Vector time;                  ///< [s], as recorded; not necessarily even or increasing
   ChannelOrigin time_origin;    ///< of `time`
   bool time_from_rate = false;  ///< true where the file holds no time, but it or the user gave the rate
+  double time_zero = 0.0;       ///< [s] of the file's own clock where `time` counts from; 0 where `time` is that clock
   bool untimed = false;  ///< true where the rows are no samples but loads or places by themselves: `time` counts them
   std::vector<Channel> channels;  ///< each as long as `time`
   std::vector<Event> events;
