@@ -51,12 +51,20 @@ std::string unit_as_written(const std::string& unit) {
   return spelled == kSpelledUnits.end() ? unit : std::string(spelled->second);
 }
 
-/// `name`, or with #2, #3, … where it is taken.
-std::string unique(const std::string& name, std::set<std::string>& taken) {
-  std::string found = name;
-  for (std::size_t n = 2; !taken.insert(found).second; ++n) found = fmt::format("{}#{}", name, n);
-  return found;
-}
+/// Gives each name once.
+class UniqueNames {
+ public:
+  /// `name`, or with #2, #3, … where it is taken.
+  std::string take(const std::string& name) {
+    std::string found = name;
+    for (std::size_t& next = next_[name]; !taken_.insert(found).second;) found = fmt::format("{}#{}", name, ++next + 1);
+    return found;
+  }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, std::size_t> next_;  ///< numbers that a name was given, less one
+};
 
 /// The number that a marker is; 0 where it is a word.
 double number_in(std::string_view text) {
@@ -73,9 +81,9 @@ class Decoder {
     contents_.format = "XDF";
     contents_.notes = std::move(file_.notes);
     if (!file_.recorded.empty()) contents_.metadata["start"] = file_.recorded;
-    std::set<std::string> names;
+    UniqueNames names;
     for (XdfStream& stream : file_.streams) {
-      stream.name = unique(stream.name.empty() ? fmt::format("stream_{}", stream.id) : stream.name, names);
+      stream.name = names.take(stream.name.empty() ? fmt::format("stream_{}", stream.id) : stream.name);
       take(stream);
     }
     std::ranges::stable_sort(contents_.events, {}, &Event::time);
@@ -204,7 +212,8 @@ class Decoder {
   void take_numbers(XdfStream& stream, const Vector& raw, Vector time) {
     const int clock = static_cast<int>(contents_.clocks.size());
     contents_.clocks.push_back({stream.name, std::move(time)});
-    std::set<std::string> labels{"raw_time"};
+    UniqueNames labels;
+    labels.take("raw_time");
     const auto add = [&](const std::string& label, const std::string& unit, Vector values) {
       Array array{fmt::format("{}.{}", stream.name, label), SharedMatrix::of_column(std::move(values)), unit};
       array.signal = true;
@@ -214,7 +223,7 @@ class Decoder {
     for (std::size_t c = 0; c < stream.channels.size(); ++c) {
       const XdfChannel& channel = stream.channels[c];
       const std::string label = channel.label.empty() ? fmt::format("channel_{}", c + 1) : channel.label;
-      add(unique(label, labels), unit_as_written(channel.unit), std::move(stream.values[c]));
+      add(labels.take(label), unit_as_written(channel.unit), std::move(stream.values[c]));
     }
     add("raw_time", "s", raw);
   }

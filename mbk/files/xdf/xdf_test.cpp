@@ -170,6 +170,13 @@ TEST(DecodeXdf, GivesNamelessAndRepeatedNamesOfTheirOwn) {
   EXPECT_EQ(contents.clocks[2].name, "stream_3");
 }
 
+TEST(DecodeXdf, NamesManyStreamsOfOneName) {
+  Xdf file;
+  for (std::uint32_t id = 1; id <= 30'000; ++id) file.stream(id, "S", "int8", 1, 0);
+  file.samples(30'000, {Xdf::stamped(1) + "a"});
+  EXPECT_EQ(contents_of(file).clocks[0].name, "S#30000");
+}
+
 TEST(DecodeXdf, ReadsOnFromTheNextBoundaryBehindDamage) {
   Xdf file;
   file.header().stream(1, "S", "int8", 1, 0).samples(1, {Xdf::stamped(1) + "a"});
