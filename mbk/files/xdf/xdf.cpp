@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mbk/base/core/units.h"
+#include "mbk/files/contents/whole_numbers.h"
 #include "mbk/files/xdf/xdf_chunks.h"
 #include "mbk/files/xdf/xdf_clocks.h"
 
@@ -65,6 +66,23 @@ class UniqueNames {
   std::set<std::string> taken_;
   std::map<std::string, std::size_t> next_;  ///< numbers that a name was given, less one
 };
+
+/// [s] of a unit of time; 0 of another one.
+double seconds_of(std::string_view unit) {
+  constexpr auto kTimes = std::to_array<std::pair<std::string_view, double>>({
+      {"s", 1.0},
+      {"seconds", 1.0},
+      {"ms", 1e-3},
+      {"milliseconds", 1e-3},
+      {"us", 1e-6},
+      {"µs", 1e-6},
+      {"microseconds", 1e-6},
+      {"ns", 1e-9},
+      {"nanoseconds", 1e-9},
+  });
+  const auto found = std::ranges::find(kTimes, unit, &std::pair<std::string_view, double>::first);
+  return found == kTimes.end() ? 0.0 : found->second;
+}
 
 /// The number that a marker is; 0 where it is a word.
 double number_in(std::string_view text) {
@@ -223,9 +241,19 @@ class Decoder {
     for (std::size_t c = 0; c < stream.channels.size(); ++c) {
       const XdfChannel& channel = stream.channels[c];
       const std::string label = channel.label.empty() ? fmt::format("channel_{}", c + 1) : channel.label;
-      add(labels.take(label), unit_as_written(channel.unit), std::move(stream.values[c]));
+      const std::string name = labels.take(label);
+      if (channel.rounded > 0) say_rounded(fmt::format("{}.{}", stream.name, name), channel);
+      add(name, unit_as_written(channel.unit), std::move(stream.values[c]));
     }
     add("raw_time", "s", raw);
+  }
+
+  void say_rounded(const std::string& name, const XdfChannel& channel) {
+    std::string note = fmt::format("{}: by up to {}", rounded_note(name), channel.rounded);
+    if (const double unit = seconds_of(channel.unit); unit > 0.0) {
+      note += fmt::format("; as times they are exact to {:.3g} µs", channel.rounded * unit * kMicroseconds);
+    }
+    contents_.notes.push_back(std::move(note));
   }
 
   /// A text is the name of an event; of several channels it is said which.

@@ -15,6 +15,7 @@
 #include "mbk/base/core/trimmed.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/whole_numbers.h"
 #include "mbk/files/xdf/xdf.h"
 
 namespace mbk::recording {
@@ -96,7 +97,8 @@ class Reader {
   bool failed_ = false;
 };
 
-double take_value(Reader& reader, XdfValue value) {
+/// @param rounded  by which doubles changed whole numbers, at most
+double take_value(Reader& reader, XdfValue value, std::int16_t& rounded) {
   switch (value) {
     case XdfValue::int8:
       return reader.take<std::int8_t>();
@@ -104,8 +106,12 @@ double take_value(Reader& reader, XdfValue value) {
       return reader.take<std::int16_t>();
     case XdfValue::int32:
       return reader.take<std::int32_t>();
-    case XdfValue::int64:
-      return static_cast<double>(reader.take<std::int64_t>());
+    case XdfValue::int64: {
+      const auto whole = reader.take<std::int64_t>();
+      const std::int16_t rest = rest_of(whole);
+      rounded = std::max(rounded, static_cast<std::int16_t>(rest < 0 ? -rest : rest));
+      return static_cast<double>(whole);
+    }
     case XdfValue::float32:
       return static_cast<double>(reader.take<float>());
     case XdfValue::double64:
@@ -356,7 +362,7 @@ class Parser {
           if (stream.value == XdfValue::string) {
             stream.texts.push_back(printable(std::string(reader.take_text(reader.take_length()))));
           } else {
-            stream.values[c][at] = take_value(reader, stream.value);
+            stream.values[c][at] = take_value(reader, stream.value, stream.channels[c].rounded);
           }
         }
       }

@@ -17,7 +17,8 @@ namespace mbk::recording {
 enum class XdfValue { int8, int16, int32, int64, float32, double64, string };
 
 struct XdfChannel {
-  std::string label, unit;  ///< as the header says them; may be empty
+  std::string label, unit;   ///< as the header says them; may be empty
+  std::int16_t rounded = 0;  ///< by which doubles changed its whole numbers, at most
 };
 
 /// A stream as it stands in the file.

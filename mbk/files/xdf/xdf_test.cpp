@@ -177,6 +177,19 @@ TEST(DecodeXdf, NamesManyStreamsOfOneName) {
   EXPECT_EQ(contents_of(file).clocks[0].name, "S#30000");
 }
 
+TEST(DecodeXdf, SaysByHowMuchWholeNumbersWereRounded) {
+  constexpr std::int64_t kLarge = (std::int64_t{1} << 60) + 100;  // numbers there are 256 apart
+  Xdf file;
+  file.header().stream(1, "S", "int64", 4, 0, Xdf::labels({{"count", ""}, {"stamp", "ns"}, {"even", ""}, {"low", ""}}));
+  file.samples(1, {Xdf::stamped(1) + raw(kLarge) + raw(-kLarge) + raw(kLarge - 100) + raw(std::int64_t{1} << 53)});
+  const Contents contents = contents_of(file);
+  const std::string rounded = "holds whole numbers above 2^53, which were rounded: by up to 100";
+  EXPECT_THAT(contents.notes, Contains("'S.count' " + rounded));
+  EXPECT_THAT(contents.notes, Contains("'S.stamp' " + rounded + "; as times they are exact to 0.1 µs"));
+  EXPECT_THAT(contents.notes, Not(Contains(HasSubstr("S.even"))));
+  EXPECT_THAT(contents.notes, Not(Contains(HasSubstr("S.low"))));
+}
+
 TEST(DecodeXdf, ReadsOnFromTheNextBoundaryBehindDamage) {
   Xdf file;
   file.header().stream(1, "S", "int8", 1, 0).samples(1, {Xdf::stamped(1) + "a"});
