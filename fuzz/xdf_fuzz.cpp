@@ -24,6 +24,17 @@ std::vector<std::string> seeds() {
   reset.samples(3, {Xdf::stamped(4) + Xdf::text("go") + Xdf::text("")}).boundary();
   reset.offset(2, 99.0, 7.0).append("\x07 damage").boundary().chunk(9, "new").footer(1, 16).footer(2, 12).footer(3, 1);
   files.push_back(reset.bytes());
+  // A clock that is set twice, drifts unevenly and whose samples are out of order.
+  Xdf set;
+  set.header().stream(1, "S", "int64", 1, 10);
+  for (const int second : {0, 1, 3, 2, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23}) {
+    const double ahead = 1e-4 * second * second + (second > 7 ? 0.5 : 0.0) - (second > 15 ? 0.3 : 0.0);
+    std::vector<std::string> samples;
+    for (int k = 0; k < 10; ++k)
+      samples.push_back(Xdf::stamped(second + k / 10.0 + ahead) + raw(std::int64_t{1} << 60));
+    set.samples(1, samples).offset(1, second + ahead, -ahead);
+  }
+  files.push_back(set.bytes());
   return files;
 }
 

@@ -48,16 +48,18 @@ def markers(number, stamps, texts):
     return chunk(3, content)
 
 
-def two_streams(seconds=20.0, force_clock=37.25, drift=2e-5):
-    """An arm at 1000 Hz, a cell at 500 Hz whose clock is elsewhere and runs fast, and markers."""
+def two_streams(seconds=20.0, force_clock=37.25, drift=2e-5, step=0.0, swapped=()):
+    """An arm at 1000 Hz, a cell at 500 Hz whose clock is elsewhere and runs fast, and markers. The clock of the cell is
+    set by `step` after half of the time; seconds of the arm that are `swapped` come one after the next."""
     parts = [b"XDF:", chunk(1, b"<?xml version='1.0'?><info><version>1.0</version></info>"),
              header(1, "Arm", [("angle", "radians")], 1000), header(2, "Cell", [("torque", "N.m")], 500),
              header(3, "Task", [("marker", "")], 0, "string")]
     begin = 100.0
-    on_cell = lambda t: (t - force_clock) * (1.0 + drift)
+    on_cell = lambda t: (t - force_clock) * (1.0 + drift) + (step if t >= begin + seconds / 2 else 0.0)
     jitter = lambda k: 2e-4 * math.sin(12.9898 * k)
     for second in range(int(seconds)):
-        arm = [begin + second + k / 1000 for k in range(1000)]
+        arm_second = second + (1 if second in swapped else -1 if second - 1 in swapped else 0)
+        arm = [begin + arm_second + k / 1000 for k in range(1000)]
         cell = [begin + second + 0.0007 + k / 500 for k in range(500)]
         parts.append(samples(1, [t + jitter(k) for k, t in enumerate(arm)], [angle(t) for t in arm]))
         parts.append(samples(2, [on_cell(t) + jitter(k) for k, t in enumerate(cell)], [torque(t) for t in cell]))
@@ -98,6 +100,15 @@ class Xdf(Case):
         written = run("convert", *CHANNELS, "--clock", "Arm", path, self.folder / "arm.h5")
         self.assertEqual(written.code, 0)
         self.assertIn("2 channels, 4 events", written.out)
+
+    def test_a_step_of_the_senders_clock_is_taken_out(self):
+        for step in (0.02, -0.02, 0.8, 3.0):
+            path = self.file("arm.xdf", two_streams(step=step))
+            result = run("measure", "--json", *CHANNELS, "--clock", "Arm", path).json
+            self.assert_relative(result["model"]["K"], [[STIFFNESS]], 0.01)
+            self.assert_relative(result["model"]["B"], [[DAMPING]], 0.02)
+            self.assert_relative(result["model"]["M"], [[INERTIA]], 0.02)
+            self.assertIn("'Cell': the sender's clock was set by", run("measure", *CHANNELS, "--clock", "Arm", path).out)
 
     def test_raw_stamps_can_be_taken_instead(self):
         path = self.file("arm.xdf", two_streams())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr std::size_t kMaxPartsListed = 3;  ///< segments of a clock that are described one by one
 constexpr double kRatesDiffer = 0.1;        ///< relative, beyond which effective and nominal rate do not agree
-constexpr double kManySamples = 5.0;        ///< moved by that much, stamps are said to be doubtful
+constexpr double kLongUncovered = 30.0;     ///< [s], from the nearest clock offset
 constexpr double kMicroseconds = 1e6;
 
 /// Units as stream headers spell them out, and as mbk writes them.
@@ -91,6 +92,12 @@ double number_in(std::string_view text) {
   return error == std::errc() && stop == text.data() + text.size() && std::isfinite(value) ? value : 0.0;
 }
 
+/// "+20.000 ms", "-3.000 s".
+std::string signed_duration(double seconds) {
+  if (std::abs(seconds) < 1.0) return fmt::format("{:+.3f} ms", seconds * kMilliseconds);
+  return fmt::format("{:+.6f} s", seconds);
+}
+
 class Decoder {
  public:
   explicit Decoder(XdfFile file) : file_(std::move(file)) {}
@@ -104,6 +111,7 @@ class Decoder {
       stream.name = names.take(stream.name.empty() ? fmt::format("stream_{}", stream.id) : stream.name);
       take(stream);
     }
+    std::ranges::move(details_, std::back_inserter(contents_.notes));
     std::ranges::stable_sort(contents_.events, {}, &Event::time);
     if (contents_.arrays.empty() && contents_.events.empty()) {
       return bad_data(file_.streams.empty() ? "no stream is in it" : "none of its streams has a sample",
@@ -114,32 +122,66 @@ class Decoder {
 
  private:
   void take(XdfStream& stream) {
-    const Index samples = stream.stamps.size();
-    std::vector<std::string> said;
-    const Vector raw = stream.stamps;
+    const bool text = stream.value == XdfValue::string;
+    std::vector<std::string> doubts, said;
+    Vector raw = stream.stamps;
     fill_missing_stamps(stream, said);
     const Synchronised clock = synchronise(stream.stamps, stream.offsets, stream.total);
-    say_clock(stream, clock, said);
+    say_clock(stream, clock, doubts, said);
+    say_steps(stream, clock.steps, doubts);
     Vector time = clock.time;
     double effective_hz = 0.0;
-    if (stream.nominal_hz > 0.0 && samples > 0) {
-      Dejittered even = dejitter(clock.time, stream.nominal_hz, clock.segments);
+    if (stream.nominal_hz > 0.0 && time.size() > 0) {
+      Dejittered even = evened(stream, clock);
       effective_hz = even.effective_hz;
       if (stream.can_drop_samples) {
         said.emplace_back("its stamps were not evened out, as it says that it can drop samples");
       } else {
-        say_dejittered(stream, clock.time, even, said);
+        say_dejittered(stream, clock.time, even, doubts, said);
+        say_backward(clock.time, even, said);
         time = std::move(even.time);
       }
     }
-    contents_.notes.push_back(summary(stream, effective_hz));
-    for (const std::string& what : said) contents_.notes.push_back(fmt::format("'{}': {}", stream.name, what));
-    if (samples == 0) return;
-    if (stream.value == XdfValue::string) {
-      take_markers(stream, time);
-    } else {
-      take_numbers(stream, raw, std::move(time));
+    details_.push_back(summary(stream, effective_hz));
+    const auto note = [&](const std::string& what) { return fmt::format("'{}': {}", stream.name, what); };
+    std::ranges::transform(doubts, std::back_inserter(contents_.notes), note);
+    std::ranges::transform(said, std::back_inserter(details_), note);
+    if (text) {
+      if (time.size() > 0) take_markers(stream, time);
+      return;
     }
+    leave_out_unsure(stream, clock.steps, raw, time);
+    if (time.size() > 0) take_numbers(stream, raw, std::move(time));
+  }
+
+  /// Stamps of the recorder's clock, evened out on the clock on which they are more even: where the drift of the
+  /// sender's changes, its samples are even on one of the two alone.
+  static Dejittered evened(const XdfStream& stream, const Synchronised& clock) {
+    const std::vector<Index> breaks = clock.breaks();
+    Dejittered even = dejitter(clock.time, stream.nominal_hz, breaks);
+    const auto bends = [](const ClockSegment& segment) { return segment.correction.bend > 0.0; };
+    if (std::ranges::none_of(clock.segments, bends)) return even;
+    Dejittered of_sender = dejitter(clock.stamps, stream.nominal_hz, breaks);
+    if ((of_sender.time - clock.stamps).squaredNorm() >= (even.time - clock.time).squaredNorm()) return even;
+    of_sender.time = clock.on_recorder(of_sender.time);
+    of_sender.effective_hz = even.effective_hz;
+    of_sender.largest_shift = (of_sender.time - clock.time).cwiseAbs().maxCoeff();
+    return of_sender;
+  }
+
+  /// Leaves out samples of which it is not known whether they stand before or behind a step of a clock.
+  static void leave_out_unsure(XdfStream& stream, const std::vector<ClockStep>& steps, Vector& raw, Vector& time) {
+    std::vector<Index> kept;
+    Index next = 0;
+    for (const ClockStep& step : steps) {
+      while (next < step.first - step.unsure) kept.push_back(next++);
+      next = std::max(next, step.first);
+    }
+    if (kept.empty() && next == 0) return;
+    while (next < time.size()) kept.push_back(next++);
+    if (std::ssize(kept) == time.size()) return;
+    for (Vector* values : {&raw, &time}) *values = Vector((*values)(kept));
+    for (Vector& values : stream.values) values = Vector(values(kept));
   }
 
   static void fill_missing_stamps(XdfStream& stream, std::vector<std::string>& said) {
@@ -159,7 +201,8 @@ class Decoder {
                                           : "they were given that of the one before"));
   }
 
-  static void say_clock(const XdfStream& stream, const Synchronised& clock, std::vector<std::string>& said) {
+  static void say_clock(const XdfStream& stream, const Synchronised& clock, std::vector<std::string>& doubts,
+                        std::vector<std::string>& said) {
     if (clock.not_finite > 0)
       said.push_back(fmt::format("{} clock offsets that are no times were ignored", clock.not_finite));
     if (clock.last_was_corrupt) {
@@ -176,31 +219,82 @@ class Decoder {
       return;
     }
     if (const std::size_t resets = clock.segments.size() - 1; resets > 0) {
-      said.push_back(fmt::format("the sender's clock was reset {}: each part was synchronised separately",
-                                 resets == 1 ? "once" : fmt::format("{} times", resets)));
+      doubts.push_back(fmt::format("the sender's clock was reset {}: each part was synchronised separately",
+                                   resets == 1 ? "once" : fmt::format("{} times", resets)));
     }
     for (std::size_t k = 0; k < std::min(clock.segments.size(), kMaxPartsListed); ++k) {
       const ClockSegment& segment = clock.segments[k];
+      const ClockCorrection& correction = segment.correction;
       const std::string where =
           clock.segments.size() == 1 ? "" : fmt::format(" of samples {} to {}", segment.first + 1, segment.last + 1);
       said.push_back(fmt::format("time stamps{} were put on the recorder's clock: {:+.6f} s, drift {:+.3g} µs/s", where,
-                                 segment.offset, segment.slope * kMicroseconds));
+                                 correction.line.offset, correction.line.slope * kMicroseconds));
+      if (correction.bend > 0.0) {
+        said.push_back(
+            fmt::format("its drift{} changes: a curve through the clock offsets was added, which is up to "
+                        "{:.2g} ms from a straight line",
+                        where, correction.bend * kMilliseconds));
+      }
+      if (correction.outliers > 0) {
+        said.push_back(
+            correction.outliers == 1
+                ? fmt::format("one clock offset{} is an outlier and counts little", where)
+                : fmt::format("{} clock offsets{} are outliers and count little", correction.outliers, where));
+      }
+      if (correction.doubt > 0.0) {
+        doubts.push_back(
+            fmt::format("its clock offsets{} differ by more than clocks drift ({:.0f} µs/s) and do not show why: their "
+                        "median was added, and its time may be off by {:.3g} ms",
+                        where, kLargestDrift * kMicroseconds, correction.doubt * kMilliseconds));
+      } else if (std::abs(correction.line.slope) > kLargestDrift) {
+        doubts.push_back(
+            fmt::format("its clock{} drifts by {:+.3g} µs/s, more than quartz does ({:.0f} µs/s): check "
+                        "the clock of the sender",
+                        where, correction.line.slope * kMicroseconds, kLargestDrift * kMicroseconds));
+      }
+    }
+    if (clock.uncovered > kLongUncovered) {
+      said.push_back(fmt::format("its nearest clock offset is up to {:.0f} s from its samples: the drift was continued",
+                                 clock.uncovered));
+    }
+  }
+
+  static void say_steps(const XdfStream& stream, const std::vector<ClockStep>& steps,
+                        std::vector<std::string>& doubts) {
+    for (std::size_t k = 0; k < std::min(steps.size(), kMaxPartsListed); ++k) {
+      const ClockStep& step = steps[k];
+      if (step.unsure == 0) {
+        doubts.push_back(
+            fmt::format("the sender's clock was set by {} behind sample {}, as its clock offsets show: this was taken "
+                        "out of the time stamps behind it",
+                        signed_duration(-step.size), step.first));
+        continue;
+      }
+      doubts.push_back(
+          fmt::format("its clock offsets step by {}, and its time stamps do not show at which of samples {} to {}: {}",
+                      signed_duration(step.size), step.first - step.unsure + 1, step.first,
+                      stream.value == XdfValue::string ? "their times may be off by as much" : "these were left out"));
+    }
+    if (steps.size() > kMaxPartsListed) {
+      doubts.push_back(fmt::format("its clock offsets show {} such steps", steps.size()));
     }
   }
 
   static void say_dejittered(const XdfStream& stream, const Vector& before, const Dejittered& even,
-                             std::vector<std::string>& said) {
+                             std::vector<std::string>& doubts, std::vector<std::string>& said) {
     const std::size_t breaks = even.segments.size() - 1;
     const double shift = even.largest_shift * kMilliseconds;
     std::string moved = fmt::format("time stamps were evened out, which moved them by {}",
                                     shift < 1e-3 ? "less than 0.001 ms" : fmt::format("{:.3g} ms at most", shift));
-    if (const double samples = even.largest_shift * stream.nominal_hz; samples > kManySamples) {
+    const double samples = even.lasting_shift * stream.nominal_hz;
+    const bool wander = samples > kManySamples && even.lasting_shift > even.largest_shift / 2.0;  // and do not jitter
+    if (wander) {
       moved += fmt::format(
-          ", {:.0f} samples: where samples were lost, those behind them stand at wrong times; compare "
-          "with '{}.raw_time'",
+          ", and for two seconds and more by {:.0f} samples: where samples were lost, those behind them stand at "
+          "wrong times; compare with '{}.raw_time'",
           samples, stream.name);
     }
-    said.push_back(std::move(moved));
+    (wander ? doubts : said).push_back(std::move(moved));
     if (breaks == 0) return;
     std::string what = fmt::format("{} break{} in its time", breaks, breaks == 1 ? "" : "s");
     for (std::size_t k = 0; k < std::min(breaks, kMaxPartsListed); ++k) {
@@ -209,7 +303,25 @@ class Decoder {
           fmt::format("{} {:.6g} s behind sample {}", k == 0 ? ":" : ",", before[last + 1] - before[last], last + 1);
     }
     if (breaks > kMaxPartsListed) what += ", …";
-    said.push_back(what + "; each part was evened out separately");
+    doubts.push_back(what + "; each part was evened out separately");
+  }
+
+  /// Stamps that ran backward before they were evened out, and did not show that samples are out of order.
+  static void say_backward(const Vector& before, const Dejittered& even, std::vector<std::string>& said) {
+    Index places = 0;
+    double farthest = 0.0;
+    for (const EvenSegment& segment : even.segments) {
+      for (Index k = segment.first + 1; k <= segment.last; ++k) {
+        if (before[k] >= before[k - 1]) continue;
+        ++places;
+        farthest = std::max(farthest, before[k - 1] - before[k]);
+      }
+    }
+    if (places == 0) return;
+    said.push_back(
+        fmt::format("its time stamps run backward in {} places, by up to {:.3g} ms, as if they jitter: its samples "
+                    "were kept in the order of the file",
+                    places, farthest * kMilliseconds));
   }
 
   static std::string summary(const XdfStream& stream, double effective_hz) {
@@ -270,11 +382,12 @@ class Decoder {
       contents_.events.push_back({time[static_cast<Index>(k / channels)], std::move(name), number_in(text)});
       ++taken;
     }
-    contents_.notes.push_back(fmt::format("the texts of '{}' are {} events", stream.name, taken));
+    details_.push_back(fmt::format("the texts of '{}' are {} events", stream.name, taken));
   }
 
   XdfFile file_;
   Contents contents_;
+  std::vector<std::string> details_;  ///< notes that are to follow those of what may be wrong
 };
 
 }  // namespace

@@ -17,12 +17,15 @@ namespace mbk::recording {
 /// says, and STREAM.raw_time, its time stamps as they stand in the file. Channels without a label are called channel_1,
 /// channel_2, …; names that repeat get #2, #3, …. A stream of texts gives events.
 ///
-/// The clock of a stream is what its raw stamps become by these steps, each of which is said in Contents::notes:
+/// The clock of a stream is what its raw stamps become by these steps, each of which is reported in Contents::notes:
 /// 1. A stamp that is missing is the last one plus 1/nominal rate.
-/// 2. The clock offsets put the stamps on the recorder's clock, segment by segment between resets of the sender's clock
-///    (`synchronise`).
+/// 2. The clock offsets put the stamps on the recorder's clock, segment by segment between resets of the sender's
+/// clock,
+///    and without the steps of either (`synchronise`). Samples that may be on either side of a step are left out.
 /// 3. The stamps of a stream with a nominal rate become evenly spaced between its breaks (`dejitter`), unless its
 ///    header says that it can drop samples.
+///
+/// Notes of what may be wrong stand before the others.
 ///
 /// Behind damage the file is read on from the next boundary chunk; a note says how many bytes were lost.
 ///

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
+#include "mbk/files/xdf/xdf_steps.h"
 
 namespace mbk::recording {
 
 /// [s] A stamp or an offset beyond it is no time.
 inline constexpr double kLargestTime = 1e12;
 inline constexpr double kLargestRate = 1e9;  ///< [Hz]
+inline constexpr double kManySamples = 5.0;  ///< stamps that are off by more samples are no jitter
 
 /// What the recorder found when it compared clocks: recorder = sender + value.
 struct ClockOffset {
@@ -21,18 +23,55 @@ struct ClockOffset {
   Index samples_before = 0;  ///< of the stream, that stand before it in the file
 };
 
+/// The straight line a + b·time that fits values by Huber's loss, which is linear beyond `threshold`.
+struct RobustLine {
+  double offset = 0.0;  ///< at `at`
+  double slope = 0.0;
+  double at = 0.0;  ///< [s], the mean of the times
+};
+[[nodiscard]] RobustLine huber_line(const Vector& time, const Vector& values, double threshold);
+
+/// What is added to stamps of a sender's clock: a straight line, or a curve where its drift changes.
+struct ClockCorrection {
+  RobustLine line;
+  Vector times, values;           ///< [s], points of the curve; empty where the line is added
+  double begin = 0.0, end = 0.0;  ///< [s/s], slopes of the curve before its first point and behind its last one
+  double bend = 0.0;              ///< [s], between curve and line, at most
+  Index outliers = 0;             ///< offsets that are more than 1 ms and six standard deviations off
+  double doubt = 0.0;             ///< [s], by which offsets contradict each other; 0 where they do not
+
+  [[nodiscard]] double at(double stamp) const;
+};
+
+/// Fits a correction to the offsets of one clock.
+///
+/// The line is that of Huber's loss, linear beyond 0.1 ms. One that is steeper than 200 µs/s, which no quartz is, holds
+/// only if there are four offsets or more and half of them are within 5 % of its rise: else the median offset is added.
+///
+/// The drift changes where the median of nine residuals in a row is beyond 0.1 ms and two standard deviations of single
+/// offsets. Then the offsets are smoothed, by lines through the medians of half of them, of a quarter, … of nine, until
+/// that is so no more. Offsets that only repeat the one before were not measured and have no part in this.
+[[nodiscard]] ClockCorrection fit_correction(const Vector& times, const Vector& values);
+
 /// Samples first … last without a reset of the sender's clock, and what was added to their stamps.
 struct ClockSegment {
   Index first = 0, last = -1;
-  double offset = 0.0;  ///< [s], added to the stamp in the middle of the offsets
-  double slope = 0.0;   ///< [s/s], of it on time
+  ClockCorrection correction;
 };
 
 struct Synchronised {
   Vector time;                         ///< [s], on the recorder's clock
-  std::vector<ClockSegment> segments;  ///< in the order of time; empty where there is no offset
+  Vector stamps;                       ///< [s], on the sender's, with its steps taken out
+  std::vector<ClockSegment> segments;  ///< in the order of samples; empty where there is no offset
+  std::vector<ClockStep> steps;        ///< in the order of samples
   bool last_was_corrupt = false;       ///< the last offset was left out
   std::size_t not_finite = 0;          ///< offsets that are no numbers, which were left out
+  double uncovered = 0.0;              ///< [s], of stamps that are before the first offset or behind the last one
+
+  /// Stamps on the sender's clock, its steps taken out, on that of the recorder.
+  [[nodiscard]] Vector on_recorder(const Vector& sender) const;
+  /// Samples at which something else begins that the stamps alone may not show: rising.
+  [[nodiscard]] std::vector<Index> breaks() const;
 };
 
 /// Puts stamps of the sender's clock on that of the recorder.
@@ -43,10 +82,10 @@ struct Synchronised {
 ///
 /// The sender's clock was reset where the time of the offsets runs backward, or where both their time and their value
 /// jump: the interval is off its median by more than 5 s and five median absolute deviations, and the step of the value
-/// by more than 1 s and ten of them. In each segment a straight line is fitted to the offsets, a + b·time, by Huber's
-/// loss that is linear beyond 0.1 ms; a + b·stamp is added to the stamps of the segment. A sample belongs to the
-/// segment among whose offsets it stands in the file; between the last offset of one and the first of the next, to that
-/// whose offsets are nearer in time.
+/// by more than 1 s and ten of them. A sample belongs to the segment among whose offsets it stands in the file; between
+/// the last offset of one and the first of the next, to that whose offsets are nearer in time. Where the file has the
+/// offsets before or behind all samples, time alone decides. In each segment steps are taken out (`take_out_steps`),
+/// and the correction that fits the offsets (`fit_correction`) is added.
 ///
 /// @param raw    [s], finite
 /// @param total  samples, as the footer says
@@ -63,19 +102,16 @@ struct Dejittered {
   std::vector<EvenSegment> segments;
   double effective_hz = 0.0;   ///< intervals over the duration of all segments; 0 where that is none
   double largest_shift = 0.0;  ///< [s], of any stamp
+  double lasting_shift = 0.0;  ///< [s], of those of two seconds (at least 100) on average, at most
 };
 
 /// Replaces the stamps of a stream by the straight line of least squares on their index, between breaks. A break is
-/// where the sender's clock was reset, and where two stamps differ by more than 1 s and 500 samples.
+/// - where two stamps differ by more than 1 s and 500 samples;
+/// - where an interval is off the median one by more than five of these, and the stamps stay off: their distance from
+///   an even grid, on average over 0.25 s (at least 100 samples), then changes by half of that or more, and by more
+///   than six standard deviations of such changes. Samples were lost there, or the clock was set.
 /// @param nominal_hz  > 0
-[[nodiscard]] Dejittered dejitter(const Vector& time, double nominal_hz, std::span<const ClockSegment> clock_segments);
-
-/// The straight line a + b·time that fits values by Huber's loss, which is linear beyond `threshold`.
-struct RobustLine {
-  double offset = 0.0;  ///< at `at`
-  double slope = 0.0;
-  double at = 0.0;  ///< [s], the mean of the times
-};
-[[nodiscard]] RobustLine huber_line(const Vector& time, const Vector& values, double threshold);
+/// @param breaks      samples at which one more begins, rising
+[[nodiscard]] Dejittered dejitter(const Vector& time, double nominal_hz, std::span<const Index> breaks);
 
 }  // namespace mbk::recording
