@@ -110,6 +110,18 @@ class Xdf(Case):
             self.assert_relative(result["model"]["M"], [[INERTIA]], 0.02)
             self.assertIn("'Cell': the sender's clock was set by", run("measure", *CHANNELS, "--clock", "Arm", path).out)
 
+    def test_samples_out_of_order_are_sorted(self):
+        ordered, swapped = self.file("ordered.xdf", two_streams()), self.file("swapped.xdf", two_streams(swapped=(7,)))
+        tables = []
+        for path in (ordered, swapped):
+            self.assertEqual(run("convert", "--axes", "1", "--channels", "x=Arm.angle", path, self.folder / "x.csv").code, 0)
+            tables.append([line.split(",")[1] for line in (self.folder / "x.csv").read_text().splitlines()
+                           if not line.startswith("#")])
+            (self.folder / "x.csv").unlink()
+        self.assertEqual(*tables)
+        self.assertIn("2000 of 20000 samples were put in the order of their time stamps",
+                      " ".join(self.fine("info", "--json", swapped).json["notes"]))
+
     def test_raw_stamps_can_be_taken_instead(self):
         path = self.file("arm.xdf", two_streams())
         one = ("info", "--json", "--axes", "1")

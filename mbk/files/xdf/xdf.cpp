@@ -17,6 +17,7 @@
 #include "mbk/files/contents/whole_numbers.h"
 #include "mbk/files/xdf/xdf_chunks.h"
 #include "mbk/files/xdf/xdf_clocks.h"
+#include "mbk/files/xdf/xdf_order.h"
 
 namespace mbk::recording {
 namespace {
@@ -126,6 +127,7 @@ class Decoder {
     std::vector<std::string> doubts, said;
     Vector raw = stream.stamps;
     fill_missing_stamps(stream, said);
+    if (stream.nominal_hz > 0.0 && !text) put_in_order(stream, raw, doubts);
     const Synchronised clock = synchronise(stream.stamps, stream.offsets, stream.total);
     say_clock(stream, clock, doubts, said);
     say_steps(stream, clock.steps, doubts);
@@ -152,6 +154,20 @@ class Decoder {
     }
     leave_out_unsure(stream, clock.steps, raw, time);
     if (time.size() > 0) take_numbers(stream, raw, std::move(time));
+  }
+
+  /// Puts samples in the order of their stamps where the file holds groups of them out of order.
+  static void put_in_order(XdfStream& stream, Vector& raw, std::vector<std::string>& doubts) {
+    const std::vector<Index> order = order_by_stamps(stream.stamps);
+    if (order.empty()) return;
+    for (Vector* values : {&raw, &stream.stamps}) *values = Vector((*values)(order));
+    for (Vector& values : stream.values) values = Vector(values(order));
+    Index moved = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) moved += order[k] != static_cast<Index>(k);
+    doubts.push_back(
+        fmt::format("groups of samples are out of order in the file: {} of {} samples were put in the order of their "
+                    "time stamps",
+                    moved, order.size()));
   }
 
   /// Stamps of the recorder's clock, evened out on the clock on which they are more even: where the drift of the

@@ -19,10 +19,11 @@ namespace mbk::recording {
 ///
 /// The clock of a stream is what its raw stamps become by these steps, each of which is reported in Contents::notes:
 /// 1. A stamp that is missing is the last one plus 1/nominal rate.
-/// 2. The clock offsets put the stamps on the recorder's clock, segment by segment between resets of the sender's
+/// 2. Groups of samples that are out of order are sorted (`order_by_stamps`), in a stream with a nominal rate.
+/// 3. The clock offsets put the stamps on the recorder's clock, segment by segment between resets of the sender's
 /// clock,
 ///    and without the steps of either (`synchronise`). Samples that may be on either side of a step are left out.
-/// 3. The stamps of a stream with a nominal rate become evenly spaced between its breaks (`dejitter`), unless its
+/// 4. The stamps of a stream with a nominal rate become evenly spaced between its breaks (`dejitter`), unless its
 ///    header says that it can drop samples.
 ///
 /// Notes of what may be wrong stand before the others.

@@ -296,6 +296,47 @@ TEST(XdfClocks, OffsetsThatContradictEachOtherSayHowFarTimeMayBeOff) {
   EXPECT_THAT(read(fast).doubts, Contains(HasSubstr("drifts by -400 µs/s, more than quartz does")));
 }
 
+// ---- order ----
+
+TEST(XdfClocks, ChunksOutOfOrderAreSorted) {
+  using Chunks = std::vector<std::vector<std::string>>;
+  const std::pair<std::string, std::function<void(Chunks&)>> shuffles[] = {
+      {"two swapped", [](Chunks& chunks) { std::swap(chunks[100], chunks[101]); }},
+      {"two far ones swapped", [](Chunks& chunks) { std::swap(chunks[40], chunks[150]); }},
+      {"one late", [](Chunks& chunks) { std::rotate(chunks.begin() + 60, chunks.begin() + 61, chunks.begin() + 70); }},
+      {"reversed", [](Chunks& chunks) { std::ranges::reverse(chunks); }},
+      {"shuffled", [](Chunks& chunks) { std::shuffle(chunks.begin(), chunks.end(), std::mt19937(3)); }},
+      {"the second half first",
+       [](Chunks& chunks) { std::rotate(chunks.begin(), chunks.begin() + 150, chunks.end()); }},
+  };
+  for (const auto& [name, shuffle] : shuffles) {
+    for (const int in_chunk : {200, 5}) {
+      Scene scene;
+      scene.in_chunk = in_chunk;
+      scene.shuffle = shuffle;
+      scene.offsets_last = true;
+      const Outcome outcome = read(scene);
+      EXPECT_LT(outcome.worst(), kRight) << name;
+      EXPECT_EQ(outcome.number, Vector::LinSpaced(60000, 0.0, 59999.0)) << name;
+      EXPECT_THAT(outcome.doubts, Contains(HasSubstr("were put in the order of their time stamps"))) << name;
+    }
+  }
+}
+
+TEST(XdfClocks, ChunksOutOfOrderAreSortedThoughStampsJitter) {
+  for (const double deviation : {0.002, 0.008}) {
+    Scene scene;
+    scene.hz = 500.0;
+    scene.in_chunk = 64;
+    scene.jitter = 0.0;
+    scene.late = [=](int k) { return deviation * normal(k / 64); };
+    scene.shuffle = [](auto& chunks) { std::swap(chunks[100], chunks[101]); };
+    const Outcome outcome = read(scene);
+    EXPECT_LT(outcome.worst(), 1e-3);  // what is left of the jitter
+    EXPECT_THAT(outcome.doubts, Contains(HasSubstr("128 of 30000 samples were put in the order"))) << deviation;
+  }
+}
+
 TEST(XdfClocks, AChunkThatIsThereTwiceIsABreak) {
   Scene scene;
   scene.shuffle = [](auto& chunks) { chunks.insert(chunks.begin() + 100, chunks[100]); };

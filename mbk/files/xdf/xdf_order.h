@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+
+namespace mbk::recording {
+
+/// The order of samples by their time stamps, where a file holds groups of them out of order.
+///
+/// Stamps are cut into runs where an interval is off the median one by more than half of it and by more than six
+/// standard deviations of all intervals. Runs are sorted by their first stamp. Where that moves runs, they stay moved
+/// only if they fit together again: intervals between them are off by a quarter, in all, of what they were, and on
+/// average by a quarter of the length of a run; runs overlap by no more than a fifth of what intervals were off; and
+/// that is five times as far as stamps which still run backward do. Stamps that jitter, a clock that was set back and
+/// samples that are there twice do not fit, and keep the order of the file.
+///
+/// @param stamps  [s], finite, of samples that were taken evenly
+/// @returns  for each place the sample of the file that belongs there; empty where nothing is to be moved
+[[nodiscard]] std::vector<Index> order_by_stamps(const Vector& stamps);
+
+}  // namespace mbk::recording
