@@ -267,6 +267,52 @@ TEST(Mcap, AnotherClockIsSaid) {
               Contains(HasSubstr("after the time when they were recorded: they come from another clock")));
 }
 
+/// Wrenches with these stamps [s], recorded at 100 s, 1 ms after each other.
+Result<Contents> stamped(const std::vector<double>& stamps, std::uint64_t recorded = 100'000'000'000) {
+  std::string records = mcap::schema(1, "geometry_msgs/msg/WrenchStamped", test::kWrench2) + mcap::channel(1, 1, "/ft");
+  double x = 0.0;
+  for (const double stamp : stamps) {
+    const auto seconds = static_cast<std::uint32_t>(stamp);
+    const auto rest = static_cast<std::uint32_t>(std::lround(1e9 * (stamp - seconds)));
+    records += mcap::message(1, recorded += 1'000'000, test::wrench(Message::cdr(), seconds, rest, x += 1, 2).bytes());
+  }
+  return decoded(mcap::file(records));
+}
+
+TEST(Mcap, AnotherClockIsNotToldByTheFirstMessage) {
+  const auto late_start = stamped({2, 100.001, 100.002, 100.003});
+  ASSERT_TRUE(late_start) << late_start.error().line();
+  EXPECT_THAT(late_start->notes, Not(Contains(HasSubstr("another clock"))));
+  const auto other = stamped({100, 500.001, 500.002, 500.003});
+  ASSERT_TRUE(other) << other.error().line();
+  EXPECT_THAT(other->notes, Contains(HasSubstr("are 399.999 s after the time when they were recorded")));
+}
+
+TEST(Mcap, MessagesWhoseStampWasNotSetAreLeftOut) {
+  const auto contents = stamped({0, 0, 100.003, 100.004});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(time_of(*contents, "/ft"), (Vector(2) << 0.0, 0.001).finished());
+  EXPECT_EQ(numbers(*contents, "/ft.wrench.force.x"), (std::vector<double>{3, 4}));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("2 of 4 messages of '/ft' are left out, as the time in the header of "
+                                                  "them was not set (0)")));
+  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("another clock"))));
+}
+
+TEST(Mcap, ASimulationMayBeginAtZero) {
+  const auto contents = stamped({0, 0.001, 0.002});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/ft.wrench.force.x"), (std::vector<double>{1, 2, 3}));
+}
+
+TEST(Mcap, MessagesThatWereRecordedBeforeTheClockRanAreLeftOut) {
+  std::string records = mcap::channel(1, 0, "/js", "json");
+  for (const std::uint64_t time : {0, 0, 7'000'000, 8'000'000}) records += mcap::message(1, time, R"({"a": 1})");
+  const auto contents = decoded(mcap::file(records));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(time_of(*contents, "/js"), (Vector(2) << 0.0, 0.001).finished());
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("2 of 4 messages of '/js' are left out, as the time of recording")));
+}
+
 TEST(Mcap, ArraysOfNothingAreNoWork) {
   // A thousand million elements of a type without fields, and of one that is within itself a thousand times.
   const std::string definition = "Void[] nothing\nVoid[1000000000] more\nfloat64 a" + kLineOfTypes + "MSG: lab/Void\n";

@@ -47,7 +47,7 @@ class MessageStream {
   /// Whose columns have as many numbers as there are messages.
   std::vector<NumberColumn> columns;
   std::vector<std::int64_t> log_times;  ///< [ns]
-  std::vector<std::int64_t> stamps;     ///< [ns] of header.stamp; empty: messages have none
+  std::vector<std::int64_t> stamps;     ///< [ns] of header.stamp, 0 where nobody set it; empty: messages have none
   std::set<std::string> frames;         ///< header.frame_id, at most kMostFrames
   std::vector<std::string> joints;      ///< of a JointState
   std::set<std::string> bulky;          ///< arrays that are too long to be kept

@@ -35,6 +35,7 @@ class StreamOfJson : public MessageStream {
 
  private:
   void take_header(const Json& object) {
+    stamps.push_back(0);
     const auto header = object.find("header");
     if (header == object.end() || !header->is_object()) return;
     if (const auto frame = header->find("frame_id"); frame != header->end() && frame->is_string()) {
@@ -52,7 +53,7 @@ class StreamOfJson : public MessageStream {
     const auto seconds = part({"sec", "secs"}), nanoseconds = part({"nanosec", "nsec", "nsecs"});
     constexpr std::int64_t kMostSeconds = std::numeric_limits<std::uint32_t>::max();
     if (!seconds || !nanoseconds || std::abs(*seconds) > kMostSeconds || std::abs(*nanoseconds) > 4 * kSecond) return;
-    stamps.push_back(*seconds * kSecond + *nanoseconds);
+    stamps.back() = *seconds * kSecond + *nanoseconds;
   }
 
   void take(const Json& value, const std::string& path, int element, const std::string& array, int depth) {

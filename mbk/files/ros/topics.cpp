@@ -87,8 +87,55 @@ bool has_stamps(const MessageStream& messages) {
          std::ranges::any_of(messages.stamps, [](std::int64_t stamp) { return stamp != 0; });
 }
 
-const std::vector<std::int64_t>& times_of(const MessageStream& messages) {
-  return has_stamps(messages) ? messages.stamps : messages.log_times;
+/// The times of a stream, and which of its messages have one.
+struct Times {
+  const std::vector<std::int64_t>* all = nullptr;
+  std::vector<std::size_t> unset = {};  ///< messages whose time is 0, which nobody set
+
+  [[nodiscard]] bool is_set(std::size_t message) const { return !std::ranges::binary_search(unset, message); }
+};
+
+/// Nodes and recorders that still wait for their clock write 0. A simulation that starts at 0 writes it once, and its
+/// next time follows soon.
+Times times_of(const MessageStream& messages) {
+  constexpr std::int64_t kSoon = 10 * kSecond;
+  Times times{has_stamps(messages) ? &messages.stamps : &messages.log_times};
+  const std::vector<std::int64_t>& all = *times.all;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (all[k] == 0) times.unset.push_back(k);
+  }
+  const bool begins = times.unset.size() == 1 && all[0] == 0 && (all.size() == 1 || std::abs(all[1]) < kSoon);
+  if (begins || times.unset.size() == all.size()) times.unset.clear();
+  return times;
+}
+
+std::int64_t first_of(const Times& times) {
+  std::int64_t first = kLatest;
+  for (std::size_t k = 0; k < times.all->size(); ++k) {
+    if (times.is_set(k)) first = std::min(first, (*times.all)[k]);
+  }
+  return first;
+}
+
+/// [ns] from stamp to record, the median of all messages.
+std::int64_t lag_of(const MessageStream& messages, const Times& times) {
+  std::vector<std::int64_t> lags;
+  for (std::size_t k = 0; k < messages.stamps.size(); ++k) {
+    if (times.is_set(k)) lags.push_back(messages.log_times[k] - messages.stamps[k]);
+  }
+  const auto middle = lags.begin() + std::ssize(lags) / 2;
+  std::ranges::nth_element(lags, middle);
+  return *middle;
+}
+
+Vector without(Vector values, const std::vector<std::size_t>& rows) {
+  if (rows.empty()) return values;
+  Vector kept(values.size() - std::ssize(rows));
+  Index to = 0;
+  for (Index from = 0; from < values.size(); ++from) {
+    if (!std::ranges::binary_search(rows, static_cast<std::size_t>(from))) kept[to++] = values[from];
+  }
+  return kept;
 }
 
 bool has_numbers(const MessageStream& messages) {
@@ -278,20 +325,26 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
 
 void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Contents& contents) {
   MessageStream& messages = *stream.messages;
-  const std::vector<std::int64_t>& times = times_of(messages);
-  Vector time(std::ssize(times));
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    time[static_cast<Index>(k)] = static_cast<double>(times[k] - begin) / static_cast<double>(kSecond);
+  Times times = times_of(messages);
+  if (own) times.unset.clear();  // its exact times stand in the messages
+  Vector time(std::ssize(*times.all));
+  for (std::size_t k = 0; k < times.all->size(); ++k) {
+    time[static_cast<Index>(k)] = static_cast<double>((*times.all)[k] - begin) / static_cast<double>(kSecond);
   }
   const auto clock = static_cast<int>(contents.clocks.size());
-  contents.clocks.push_back({stream.name, std::move(time)});
+  contents.clocks.push_back({stream.name, without(std::move(time), times.unset)});
+  if (!times.unset.empty()) {
+    contents.notes.push_back(printable(fmt::format(
+        "{} of {} messages of '{}' are left out, as the time {} them was not set (0)", times.unset.size(),
+        times.all->size(), stream.name, times.all == &messages.stamps ? "in the header of" : "of recording")));
+  }
   const std::string type = plain_type(topic.description.type);
   for (NumberColumn& column : messages.columns) {
     if (!column.kept) continue;
     Meaning meaning = meaning_of(type, column);
     Array array;
     array.name = fmt::format("{}.{}", stream.name, column.path);
-    array.values = SharedMatrix::of_column(column.numbers.take());
+    array.values = SharedMatrix::of_column(without(column.numbers.take(), times.unset));
     array.unit = std::move(meaning.unit);
     array.signal = true;
     array.clock = clock;
@@ -330,9 +383,7 @@ Contents Topics::contents(std::string format, bool exact_times) {
   }
 
   std::int64_t begin = kLatest;
-  for (const auto& [topic, stream] : streams) {
-    begin = std::min(begin, *std::ranges::min_element(times_of(*stream->messages)));
-  }
+  for (const auto& [topic, stream] : streams) begin = std::min(begin, first_of(times_of(*stream->messages)));
   const auto own = std::ranges::find(streams, kChannelsType,
                                      [](const auto& one) { return std::string_view(one.first->description.type); });
   const bool exact = exact_times && own != streams.end() && std::ranges::all_of(streams, [&](const auto& one) {
@@ -353,7 +404,7 @@ Contents Topics::contents(std::string format, bool exact_times) {
     const bool stamps = has_stamps(*stream->messages);
     (stamps ? stamped : logged).push_back(fmt::format("'{}'", stream->name));
     if (stamps && !exact) {
-      const std::int64_t lag = stream->messages->log_times.front() - stream->messages->stamps.front();
+      const std::int64_t lag = lag_of(*stream->messages, times_of(*stream->messages));
       if (std::abs(lag) > kLongLag) {
         contents.notes.push_back(printable(fmt::format(
             "the stamps of '{}' are {:.6g} s {} the time when they were recorded: they come from another clock",
