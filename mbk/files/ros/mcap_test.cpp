@@ -194,6 +194,19 @@ TEST(Mcap, JsonIsRead) {
   EXPECT_THAT(contents->notes, Contains(HasSubstr("as no message has a stamp")));
 }
 
+TEST(Mcap, NumbersThatJsonWritesAsTextAreRead) {
+  std::string records = mcap::channel(1, 0, "/js", "json");
+  records += mcap::message(1, 5'000'000'000, R"({"force_x": "12.5", "rest": "NaN", "name": "a1", "odd": "3 N"})");
+  records += mcap::message(1, 5'500'000'000, R"({"force_x": " +1e1", "rest": "Infinity", "name": "a2", "odd": "4 N"})");
+  const auto contents = decoded(mcap::file(records));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/js.force_x"), (std::vector<double>{12.5, 10}));
+  EXPECT_TRUE(std::isnan(numbers(*contents, "/js.rest")[0]));
+  EXPECT_EQ(find(*contents, "/js.name"), nullptr);
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("written as text and read as numbers: /js.force_x, /js.rest")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("left out, as they are text: /js.odd")));
+}
+
 TEST(Mcap, ChecksumsAreChecked) {
   const std::string records = mcap::schema(1, "lab/msg/A", "float64 a") + mcap::channel(1, 1, "/a");
   EXPECT_THAT(error_of(mcap::file(mcap::chunk(records, "zstd", 1234))),

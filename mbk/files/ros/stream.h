@@ -52,6 +52,8 @@ class MessageStream {
   std::vector<std::string> joints;      ///< of a JointState
   std::set<std::string> bulky;          ///< arrays that are too long to be kept
   std::set<std::string> changing;       ///< numbers and arrays that not every message has, or not as many of
+  std::set<std::string> from_text;      ///< numbers that the messages write as text
+  std::set<std::string> only_text;      ///< texts that begin as numbers do and are none
   bool rounded = false;                 ///< whole numbers above 2⁵³ were
 
   static constexpr std::size_t kMostFrames = 4;

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/base/core/trimmed.h"
 #include "mbk/files/ros/stream.h"
 
 namespace mbk::recording {
@@ -16,6 +19,22 @@ using Json = nlohmann::json;
 constexpr int kDeepestObject = 16;
 constexpr std::size_t kLongestJson = std::size_t{1} << 20;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// The number that a text is, as protocol buffers write large ones, NaN and infinity; nothing where it is none.
+std::optional<double> number_in(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (text.empty() || error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+bool begins_as_a_number(std::string_view text) {
+  text = trimmed(text);
+  return !text.empty() && std::string_view("0123456789+-.,").find(text.front()) != std::string_view::npos;
+}
 
 class StreamOfJson : public MessageStream {
  public:
@@ -46,7 +65,10 @@ class StreamOfJson : public MessageStream {
     const auto part = [&](std::initializer_list<const char*> names) -> std::optional<std::int64_t> {
       for (const char* name : names) {
         const auto found = stamp->find(name);
-        if (found != stamp->end() && found->is_number_integer()) return found->get<std::int64_t>();
+        if (found == stamp->end()) continue;
+        if (found->is_number_integer()) return found->get<std::int64_t>();
+        const auto in_text = found->is_string() ? number_in(found->get<std::string>()) : std::nullopt;
+        if (in_text && std::abs(*in_text) < 1e15) return static_cast<std::int64_t>(*in_text);
       }
       return std::nullopt;
     };
@@ -60,10 +82,26 @@ class StreamOfJson : public MessageStream {
     if (value.is_number() || value.is_boolean() || value.is_null()) {
       if (path.starts_with("header.stamp.")) return;
       keep(value, path, element, array);
+    } else if (value.is_string()) {
+      take_text(value.get_ref<const std::string&>(), path, element, array);
     } else if (value.is_object() && depth < kDeepestObject) {
       for (const auto& [key, inner] : value.items()) take(inner, path + "." + key, -1, "", depth + 1);
     } else if (value.is_array() && depth < kDeepestObject) {
       take_array(value, path, depth);
+    }
+  }
+
+  void take_text(const std::string& value, const std::string& path, int element, const std::string& array) {
+    if (path.starts_with("header.")) return;
+    const std::string name = printable(array.empty() ? path : array);
+    const auto number = number_in(value);
+    if (number) {
+      constexpr double kExact = 9007199254740992.0;  // 2⁵³
+      rounded = rounded || (std::abs(*number) > kExact && value.find_first_of(".eEiI") == value.npos);
+      if (from_text.size() < kMostColumns) from_text.insert(name);
+      keep(Json(*number), path, element, array);
+    } else if (begins_as_a_number(value) && only_text.size() < kMostColumns) {
+      only_text.insert(name);
     }
   }
 

@@ -318,6 +318,10 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
   if (!messages.changing.empty()) {
     note(fmt::format("left out, as not every message has them, or not as many of them: {}", list(messages.changing)));
   }
+  if (!messages.from_text.empty()) {
+    note(fmt::format("written as text and read as numbers: {}", list(messages.from_text)));
+  }
+  if (!messages.only_text.empty()) note(fmt::format("left out, as they are text: {}", list(messages.only_text)));
   if (messages.rounded) {
     note(fmt::format("'{}' holds whole numbers above 2^53, which were rounded", stream.name));
   }
