@@ -12,6 +12,10 @@ std::vector<std::string> seeds() {
   files.push_back(mcap::file(mcap::channel(1, 0, "/js", "json") +
                              mcap::message(1, 5, R"({"force_x": 1.5, "deep": {"list": [1, 2]}})") +
                              mcap::message(1, 9, R"({"force_x": null, "deep": {"list": [1, 2]}})")));
+  files.push_back(mcap::file(
+      mcap::schema(1, "sensor_msgs/msg/JointState", "{}", "jsonschema") + mcap::channel(1, 1, "/js", "json") +
+      mcap::message(1, 5, R"({"header": {"stamp": {"sec": "1"}}, "name": ["a", "b"], "position": ["1.5", 2]})") +
+      mcap::message(1, 9, R"({"name": ["b", "a"], "position": [2, 1e9]})")));
   using recording::test::Message;
   const std::string joints =
       Message::cdr().header(9, 0, "a").add(1U).text("j").add(1U).add(2.0).add(0U).add(0U).bytes();

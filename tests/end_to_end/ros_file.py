@@ -19,6 +19,8 @@ TYPES = {
     "geometry_msgs/msg/WrenchStamped": "std_msgs/Header header\n" + WRENCH + HEADER,
     "geometry_msgs/msg/PoseStamped": "std_msgs/Header header\n" + POSE + HEADER,
     "sensor_msgs/msg/Image": "std_msgs/Header header\n" + IMAGE,
+    "sensor_msgs/msg/JointState": "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\n"
+                                  "float64[] effort" + HEADER,
 }
 MAGIC = b"\x89MCAP0\r\n"
 
@@ -59,6 +61,18 @@ def wrench(nanoseconds, x, y, frame="tool0"):
 
 def pose(nanoseconds, x, y, frame="base_link"):
     return Cdr(nanoseconds, frame).add("d", x, y, 0.5, 0.0, 0.0, 0.0, 1.0).bytes()
+
+
+def joint_state(nanoseconds, joints):
+    """joints: {name: (position, effort)}, in the order of the message."""
+    message = Cdr(nanoseconds, "").add("I", len(joints))
+    for name in joints:
+        message.string(name)
+    for values in ([one[0] for one in joints.values()], [], [one[1] for one in joints.values()]):
+        message.add("I", len(values))
+        if values:
+            message.add("d", *values)
+    return message.bytes()
 
 
 class Mcap:

@@ -22,7 +22,7 @@ def nanoseconds(seconds):
 
 
 class Ros(Case):
-    def two_topics(self, log, turned=False):
+    def two_topics(self, log, turned=False, frame="base_link"):
         """The same log as a robot records it: poses at 1 kHz, and wrenches at 1 kHz that lie 0.2 ms behind them."""
         time, x, y, fx, fy = table_of(log)[:5]
         path = self.folder / "trial.mcap"
@@ -32,7 +32,8 @@ class Ros(Case):
             file.add("/pose", nanoseconds(at), ros_file.pose(nanoseconds(at), x[k], y[k]))
             now = at + 0.0002
             late = [0.8 * one[k] + 0.2 * one[k + 1] for one in (fx, fy)]
-            file.add("/ft", nanoseconds(now), ros_file.wrench(nanoseconds(now), *(sign * one for one in late)))
+            force = [sign * one for one in late]
+            file.add("/ft", nanoseconds(now), ros_file.wrench(nanoseconds(now), *force, frame))
         file.close()
         return path
 
@@ -54,6 +55,24 @@ class Ros(Case):
         want = self.model(log.path)
         for symbol in ("M", "B", "K"):
             self.assert_relative(got[symbol], want[symbol], 0.02)
+
+    def test_a_force_in_the_frame_of_the_tool_is_not_taken_as_one_in_that_of_the_base(self):
+        path = self.two_topics(make_log("sinusoidal", "--seed", "3"), turned=True, frame="tool0")
+        self.refused(BAD_DATA, "measure", path, says=("'force_x' and 'force_y' is missing", "frame 'tool0'",
+                                                      "'/pose' in frame 'base_link'"))
+        self.assertIn("'/ft' is not taken as force_x and force_y", " ".join(self.mbk("info", path).out.split()))
+        # Their axes are parallel, says the user.
+        self.mbk("measure", "--clock", "/pose", "--channels", SENSOR_OPPOSITE, path)
+
+    def test_stamps_that_were_not_set_are_left_out(self):
+        path = self.folder / "late.mcap"
+        file = ros_file.Mcap(path, {"/ft": "geometry_msgs/msg/WrenchStamped"})
+        for k in range(50):
+            file.add("/ft", nanoseconds(k / 1000), ros_file.wrench(nanoseconds(k / 1000) if k >= 5 else 0, k, -k))
+        file.close()
+        flat = " ".join(self.mbk("info", path).out.split())
+        self.assertIn("samples 45, 0.044 s", flat)
+        self.assertIn("5 of 50 messages of '/ft' are left out", flat)
 
     def model(self, *arguments):
         return self.mbk("measure", "--json", *arguments).json["model"]

@@ -28,6 +28,7 @@ struct Array {
   int clock = -1;          ///< whose samples these are: an index into Contents::clocks; -1 in a file without clocks
   std::string means = {};  ///< channel that the type of what was stored says it is ("force_x" of a wrench, "-force_x"
                            ///< of one that the robot exerts); "" where the name alone may say it
+  std::string joint = {};  ///< name of the joint that it belongs to: "elbow_joint"; "" where the file names none
   std::optional<Error> obstacle = {};  ///< why its numbers cannot be used, for whoever asks for it: a column of words;
                                        ///< `values` then are empty
   Rests rests = {};                    ///< what `values` leave of whole numbers above 2^53, in their order

@@ -143,24 +143,156 @@ TEST(Mcap, EveryTypeOfNumberInBothByteOrders) {
   }
 }
 
-TEST(Mcap, JointsGoByTheirNamesInWhateverOrder) {
-  const auto state = [](std::vector<std::string> names, std::vector<double> position) {
-    Message message = Message::cdr();
-    message.header(100, 0, "").add(static_cast<std::uint32_t>(names.size()));
-    for (const std::string& name : names) message.text(name);
-    message.add(static_cast<std::uint32_t>(position.size()));
-    for (const double value : position) message.add(value);
-    return message.add(std::uint32_t{0}).add(std::uint32_t{0});
+Message state(const std::vector<std::string>& names, const std::vector<double>& position,
+              const std::vector<double>& effort = {}) {
+  Message message = Message::cdr();
+  message.header(100, 0, "").add(static_cast<std::uint32_t>(names.size()));
+  for (const std::string& name : names) message.text(name);
+  const auto sequence = [&](const std::vector<double>& values) {
+    message.add(static_cast<std::uint32_t>(values.size()));
+    for (const double value : values) message.add(value);
   };
-  const auto contents = decoded(
-      one_topic("sensor_msgs/msg/JointState", test::kJoints2,
-                {state({"shoulder", "elbow"}, {1, 2}), state({"gripper"}, {9}), state({"elbow", "shoulder"}, {4, 3})}));
+  sequence(position);
+  sequence({});
+  sequence(effort);
+  return message;
+}
+
+Result<Contents> joint_states(const std::vector<Message>& messages) {
+  return decoded(one_topic("sensor_msgs/msg/JointState", test::kJoints2, messages));
+}
+
+TEST(Mcap, JointsGoByTheirNamesInWhateverOrder) {
+  const auto contents = joint_states(
+      {state({"shoulder", "elbow"}, {1, 2}), state({"gripper"}, {9}), state({"elbow", "shoulder"}, {4, 3})});
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(numbers(*contents, "/topic.position.shoulder"), (std::vector<double>{1, 3}));
   EXPECT_EQ(numbers(*contents, "/topic.position.elbow"), (std::vector<double>{2, 4}));
   EXPECT_EQ(find(*contents, "/topic.position.elbow")->means, "joint_2");
+  EXPECT_EQ(find(*contents, "/topic.position.elbow")->joint, "elbow");
   EXPECT_EQ(numbers(*contents, "/topic/2.position.gripper"), (std::vector<double>{9}));
+  EXPECT_EQ(find(*contents, "/topic/2.position.gripper")->joint, "gripper");
   EXPECT_THAT(contents->notes, Contains(HasSubstr("in the order of its first message: 1 shoulder, 2 elbow")));
+  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("more or fewer"))));
+}
+
+TEST(Mcap, JointsWithoutNamesAreCounted) {
+  for (const std::vector<std::string>& names : {std::vector<std::string>{}, {"", ""}}) {
+    const auto contents = joint_states({state(names, {1, 2}, {3, 4})});
+    ASSERT_TRUE(contents) << contents.error().line();
+    EXPECT_EQ(find(*contents, "/topic.effort[1]")->means, "torque_2");
+    EXPECT_EQ(find(*contents, "/topic.effort[1]")->joint, "");
+    EXPECT_THAT(contents->notes, Contains(HasSubstr("its messages do not name the joints")));
+  }
+}
+
+TEST(Mcap, JointsOfOneNameAreNoChannels) {
+  const auto contents = joint_states({state({"elbow", "elbow"}, {1, 2})});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(find(*contents, "/topic.position[0]")->means, "/topic.position[0]");
+  EXPECT_THAT(contents->notes,
+              Contains(HasSubstr("'/topic' is not taken as joint_1 …, torque_1 …: its messages name a joint twice")));
+}
+
+TEST(Mcap, EffortsThatAreNotAsManyAsJointsAreNobodys) {
+  const auto contents = joint_states({state({"shoulder", "elbow"}, {1, 2}, {3})});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(find(*contents, "/topic.position.elbow")->means, "joint_2");
+  EXPECT_EQ(find(*contents, "/topic.effort[0]")->means, "/topic.effort[0]");
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/topic.effort' is not taken as torque_1 …: it has more or fewer")));
+}
+
+TEST(Mcap, EffortsThatNotEveryMessageHasAreSaid) {
+  const auto contents =
+      joint_states({state({"shoulder", "elbow"}, {1, 2}), state({"shoulder", "elbow"}, {1, 2}, {3, 4})});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(find(*contents, "/topic.effort.elbow"), nullptr);
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/topic.effort' is not taken as torque_1 …: its length changes")));
+}
+
+TEST(Mcap, EveryJointOfManyHasItsName) {
+  std::vector<std::string> names;
+  std::vector<double> position;
+  for (int k = 1; k <= 14; ++k) {
+    names.push_back("arm_" + std::to_string(k));
+    position.push_back(k);
+  }
+  const auto contents = joint_states({state(names, position)});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(find(*contents, "/topic.position.arm_14")->means, "joint_14");
+  EXPECT_EQ(find(*contents, "/topic.position.arm_14")->joint, "arm_14");
+}
+
+TEST(Mcap, JointStatesInJsonGoByTheirNamesToo) {
+  std::string records =
+      mcap::schema(1, "sensor_msgs/msg/JointState", "{}", "jsonschema") + mcap::channel(1, 1, "/js", "json");
+  records += mcap::message(1, 5'000'000'000, R"({"name": ["7", "b"], "position": [1, 2], "effort": [3, 4]})");
+  records += mcap::message(1, 5'500'000'000, R"({"name": ["b", "7"], "position": [20, 10], "effort": [40, 30]})");
+  const auto contents = decoded(mcap::file(records));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(numbers(*contents, "/js.position.7"), (std::vector<double>{1, 10}));
+  EXPECT_EQ(numbers(*contents, "/js.effort.b"), (std::vector<double>{4, 40}));
+  EXPECT_EQ(find(*contents, "/js.effort.b")->means, "torque_2");
+  EXPECT_EQ(find(*contents, "/js.effort.b")->joint, "b");
+  EXPECT_EQ(find(*contents, "/js.name[0]"), nullptr);
+}
+
+/// /pose in one frame and /ft in others.
+Result<Contents> with_frames(std::string_view of_pose, const std::vector<std::string_view>& of_wrench) {
+  std::string records = mcap::schema(1, "geometry_msgs/msg/WrenchStamped", test::kWrench2) +
+                        mcap::channel(1, 1, "/ft") + mcap::schema(2, "geometry_msgs/msg/PoseStamped", test::kPose2) +
+                        mcap::channel(2, 2, "/pose");
+  std::uint32_t time = 0;
+  for (const std::string_view frame : of_wrench) {
+    records += mcap::message(1, 10, test::wrench(Message::cdr(), 100, time += 1000, 1, 2, frame).bytes());
+    Message pose = Message::cdr().header(100, time, of_pose);
+    for (int rest = 0; rest < 7; ++rest) pose.add(0.5);
+    records += mcap::message(2, 10, pose.bytes());
+  }
+  return decoded(mcap::file(records));
+}
+
+TEST(Mcap, AForceInAnotherFrameThanThePositionIsNoChannel) {
+  const auto contents = with_frames("base_link", {"tool0", "tool0"});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
+  EXPECT_EQ(find(*contents, "/pose.pose.position.x")->means, "hand_x");
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/ft' is not taken as force_x and force_y: it is in frame 'tool0', "
+                                                  "and the position of '/pose' in frame 'base_link'")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("Fx=/ft.wrench.force.x,Fy=/ft.wrench.force.y")));
+}
+
+TEST(Mcap, AForceInTheFrameOfThePositionIsAChannel) {
+  for (const std::string_view same : {"base_link", "/base_link", ""}) {
+    const auto contents = with_frames("base_link", {same, same});
+    ASSERT_TRUE(contents) << contents.error().line();
+    EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "force_x") << same;
+  }
+}
+
+TEST(Mcap, AForceThatChangesItsFrameIsNoChannel) {
+  const auto contents = with_frames("base_link", {"base_link", "tool0"});
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
+  EXPECT_THAT(contents->notes,
+              Contains(HasSubstr("its messages are in different frames: frames 'base_link', 'tool0'")));
+}
+
+TEST(Mcap, PublishersThatTakeTurnsAreNoChannels) {
+  const auto from = [](const std::vector<std::uint32_t>& publishers) {
+    std::string records = bag::connection(0, "/ft", "geometry_msgs/WrenchStamped", test::kWrench1) +
+                          bag::connection(1, "/ft", "geometry_msgs/WrenchStamped", test::kWrench1);
+    std::uint32_t time = 0;
+    for (const std::uint32_t publisher : publishers) {
+      time += 1000;
+      records += bag::message(publisher, 100, time, test::wrench(Message::ros1(), 100, time, publisher, 2).bytes());
+    }
+    return decoded(bag::file(records)).value();
+  };
+  const Contents turns = from({0, 1, 0, 1});
+  EXPECT_EQ(find(turns, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
+  EXPECT_THAT(turns.notes, Contains(HasSubstr("'/ft' is not taken as force_x and force_y: 2 publishers take turns")));
+  EXPECT_EQ(find(from({0, 0, 1, 1}), "/ft.wrench.force.x")->means, "force_x");  // one was started anew
 }
 
 TEST(Mcap, AnArrayWhoseLengthChangesIsLeftOutAndSaid) {

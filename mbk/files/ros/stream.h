@@ -29,6 +29,7 @@ struct NumberColumn {
   std::string path;   ///< "wrench.force.x", "position.elbow", "data[3]"
   int element = -1;   ///< which one of the array that it stands in; −1: in none
   std::string array;  ///< the path of that array
+  std::string joint;  ///< of a JointState that names its joints: whose number it is; "" where nothing says it
   bool kept = true;   ///< false: the array's length changed
   Column numbers;
 };
@@ -49,7 +50,8 @@ class MessageStream {
   std::vector<std::int64_t> log_times;  ///< [ns]
   std::vector<std::int64_t> stamps;     ///< [ns] of header.stamp, 0 where nobody set it; empty: messages have none
   std::set<std::string> frames;         ///< header.frame_id, at most kMostFrames
-  std::vector<std::string> joints;      ///< of a JointState
+  std::vector<std::string> joints;      ///< of a JointState, in the order of its first message
+  bool joints_repeat = false;           ///< a JointState names a joint twice; `joints` then is empty
   std::set<std::string> bulky;          ///< arrays that are too long to be kept
   std::set<std::string> changing;       ///< numbers and arrays that not every message has, or not as many of
   std::set<std::string> from_text;      ///< numbers that the messages write as text
@@ -60,6 +62,9 @@ class MessageStream {
 
  protected:
   MessageStream() = default;
+
+  /// Takes the names of the joints of the first message.
+  void set_joints(const std::vector<std::string>& names);
 };
 
 /// Messages as bytes behind each other, in ROS 1 or as CDR.
@@ -79,6 +84,10 @@ inline constexpr std::string_view kJointState = "sensor_msgs/JointState";
 [[nodiscard]] std::optional<Event> event_of(std::span<const std::byte> message);
 
 /// Messages that are JSON objects.
-[[nodiscard]] std::unique_ptr<MessageStream> stream_of_json();
+/// @param joint_states  they are JointStates, whose arrays go by the names of the joints, as in `stream_of_bytes`
+[[nodiscard]] std::unique_ptr<MessageStream> stream_of_json(bool joint_states);
+
+/// Whether the field of a JointState has one number for each joint.
+[[nodiscard]] bool is_joint_array(std::string_view field);
 
 }  // namespace mbk::recording

@@ -136,10 +136,6 @@ struct Node {
   bool aside = false;  ///< what it holds is no column: header.stamp, header.frame_id, an array that is not kept
 };
 
-bool is_joint_array(std::string_view path) {
-  return path == "position" || path == "velocity" || path == "effort";
-}
-
 class StreamOfBytes : public MessageStream {
  public:
   explicit StreamOfBytes(std::shared_ptr<const MessageDefinition> definition) : definition_(std::move(definition)) {
@@ -164,7 +160,7 @@ class StreamOfBytes : public MessageStream {
   bool order_joints(std::span<const std::byte> message) {
     auto names = joint_names(*definition_, message);
     if (!names) return false;
-    if (first_ && std::set(names->begin(), names->end()).size() == names->size()) joints = *names;
+    if (first_) set_joints(*names);
     if (joints.empty() || *names == order_of_) return true;
     order_.clear();
     for (const std::string& name : *names) {
@@ -182,7 +178,7 @@ class StreamOfBytes : public MessageStream {
       bulky.insert(array.empty() ? path : array);
       return -1;
     }
-    columns.push_back({printable(std::move(path)), element, printable(std::move(array)), true, {}});
+    columns.push_back({printable(std::move(path)), element, printable(std::move(array)), joint_, true, {}});
     return static_cast<int>(columns.size()) - 1;
   }
 
@@ -235,8 +231,10 @@ class StreamOfBytes : public MessageStream {
       const std::size_t at = joint ? order_[k] : k;
       std::string name;
       if (first_) name = joint ? fmt::format("{}.{}", path, joints[at]) : fmt::format("{}[{}]", path, k);
+      if (first_ && joint) joint_ = printable(joints[at]);
       take_one(node.children[at], field, name, static_cast<int>(at), path);
     }
+    joint_.clear();
   }
 
   void forget(Node& node) {
@@ -321,12 +319,23 @@ class StreamOfBytes : public MessageStream {
   bool first_ = true, by_joint_ = false;
   std::vector<std::string> order_of_;  ///< names of the joints, as the last message had them
   std::vector<std::size_t> order_;     ///< and which ones of `joints` they are
+  std::string joint_;                  ///< whose number is taken
   std::optional<std::int64_t> stamp_;
   std::size_t nodes_ = 0;
   Cursor* cursor_ = nullptr;
 };
 
 }  // namespace
+
+bool is_joint_array(std::string_view field) {
+  return field == "position" || field == "velocity" || field == "effort";
+}
+
+void MessageStream::set_joints(const std::vector<std::string>& names) {
+  if (std::ranges::all_of(names, &std::string::empty)) return;  // nobody named them
+  joints_repeat = std::set(names.begin(), names.end()).size() < names.size();
+  if (!joints_repeat) joints = names;
+}
 
 std::unique_ptr<MessageStream> stream_of_bytes(std::shared_ptr<const MessageDefinition> definition) {
   return std::make_unique<StreamOfBytes>(std::move(definition));

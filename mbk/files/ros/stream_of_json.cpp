@@ -38,13 +38,23 @@ bool begins_as_a_number(std::string_view text) {
 
 class StreamOfJson : public MessageStream {
  public:
+  explicit StreamOfJson(bool joint_states) : joint_states_(joint_states) {}
+
   bool add(std::span<const std::byte> message, std::int64_t log_time) override {
     if (message.size() > kLongestJson) return false;
     const auto* const begin = reinterpret_cast<const char*>(message.data());
     const Json object = Json::parse(begin, begin + message.size(), nullptr, false);
     if (!object.is_object()) return false;
     take_header(object);
-    for (const auto& [key, value] : object.items()) take(value, key, -1, "", 0);
+    take_names(object);
+    for (const auto& [key, value] : object.items()) {
+      if (joint_states_ && key == "name") continue;
+      if (!names_.empty() && is_joint_array(key) && value.is_array() && value.size() == names_.size()) {
+        take_joints(value, key);
+      } else {
+        take(value, key, -1, "", 0);
+      }
+    }
     log_times.push_back(log_time);
     for (NumberColumn& column : columns) {
       if (column.kept && column.numbers.size() < log_times.size()) leave_out(column);
@@ -53,6 +63,26 @@ class StreamOfJson : public MessageStream {
   }
 
  private:
+  /// The names of the joints of this message; none where it is no JointState, or its first message named none.
+  void take_names(const Json& object) {
+    names_.clear();
+    if (!joint_states_) return;
+    const auto names = object.find("name");
+    if (names == object.end() || !names->is_array()) return;
+    for (const Json& name : *names) names_.push_back(name.is_string() ? printable(name.get<std::string>()) : "");
+    if (log_times.empty()) set_joints(names_);
+    if (joints.empty()) names_.clear();
+  }
+
+  void take_joints(const Json& values, const std::string& array) {
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      joint_ = names_[k];
+      const auto at = std::ranges::find(joints, joint_) - joints.begin();
+      take(values[k], fmt::format("{}.{}", array, joint_), static_cast<int>(at), array, 1);
+    }
+    joint_.clear();
+  }
+
   void take_header(const Json& object) {
     stamps.push_back(0);
     const auto header = object.find("header");
@@ -151,7 +181,7 @@ class StreamOfJson : public MessageStream {
       return;
     }
     by_path_.emplace(path, columns.size());
-    columns.push_back({printable(path), element, printable(array), true, {}});
+    columns.push_back({printable(path), element, printable(array), joint_, true, {}});
     columns.back().numbers.add(number_of(value));
   }
 
@@ -163,12 +193,15 @@ class StreamOfJson : public MessageStream {
   }
 
   std::map<std::string, std::size_t> by_path_, lengths_;
+  bool joint_states_;
+  std::vector<std::string> names_;  ///< of the joints of this message
+  std::string joint_;               ///< whose number is taken
 };
 
 }  // namespace
 
-std::unique_ptr<MessageStream> stream_of_json() {
-  return std::make_unique<StreamOfJson>();
+std::unique_ptr<MessageStream> stream_of_json(bool joint_states) {
+  return std::make_unique<StreamOfJson>(joint_states);
 }
 
 }  // namespace mbk::recording

@@ -20,7 +20,6 @@ constexpr std::size_t kMostTopics = 4096, kMostArrays = 20000, kMostSets = 16, k
 constexpr std::int64_t kLatest = std::int64_t{1} << 62;
 constexpr std::int64_t kFirstDate = 631152000 * kSecond;  ///< 1990: clocks that count from elsewhere are before it
 constexpr std::int64_t kLongLag = 60 * kSecond;
-constexpr int kMostJoints = 8;
 
 std::string listed(std::vector<std::string> names) {
   const std::size_t more = names.size() > kMostListed ? names.size() - kMostListed : 0;
@@ -46,9 +45,10 @@ constexpr auto kVectors = std::to_array<VectorMeaning>({
 
 /// What all of these types call x is no channel by that name alone.
 bool is_of_ros(std::string_view type) {
-  constexpr auto kPackages = std::to_array<std::string_view>(
-      {"geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/", "tf2_msgs/", "tf/", "trajectory_msgs/",
-       "control_msgs/", "visualization_msgs/", "diagnostic_msgs/", "foxglove."});
+  constexpr auto kPackages =
+      std::to_array<std::string_view>({"geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/", "tf2_msgs/", "tf/",
+                                       "trajectory_msgs/", "control_msgs/", "visualization_msgs/", "diagnostic_msgs/",
+                                       "rosgraph_msgs/", "rcl_interfaces/", "dynamic_reconfigure/", "foxglove."});
   return std::ranges::any_of(kPackages, [&](std::string_view package) { return type.starts_with(package); });
 }
 
@@ -64,11 +64,16 @@ Meaning meaning_of(std::string_view type, const NumberColumn& column) {
     if (rest == ".x" || rest == ".y") return {fmt::format("{}_{}", vector.channel, rest[1]), std::string(vector.unit)};
     if (rest == ".z") return {"", std::string(vector.unit)};
   }
-  if (type == kJointState && column.element >= 0 && column.element < kMostJoints) {
+  if (type == kJointState && column.element >= 0) {
     if (column.array == "position") return {fmt::format("joint_{}", column.element + 1), ""};
     if (column.array == "effort") return {fmt::format("torque_{}", column.element + 1), ""};
   }
   return {};
+}
+
+/// Whether joints have names, but nothing says which one this number belongs to: there are more or fewer of them.
+bool is_nobodys(std::string_view type, const MessageStream& messages, const NumberColumn& column) {
+  return type == kJointState && !messages.joints.empty() && column.joint.empty();
 }
 
 /// [Hz], one over the median interval; 0 where there is none.
@@ -147,13 +152,24 @@ std::string date_of(std::int64_t nanoseconds) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:09}Z", fmt::gmtime(seconds), nanoseconds % kSecond);
 }
 
-std::string frames_of(const MessageStream& messages) {
-  std::vector<std::string> frames;
+/// The frames that the messages name. ROS 1 may write them with a slash.
+std::set<std::string> frames_of(const MessageStream& messages) {
+  std::set<std::string> frames;
   for (const std::string& frame : messages.frames) {
-    if (!frame.empty()) frames.push_back(fmt::format("'{}'", frame));
+    if (const std::string name = frame.substr(frame.starts_with('/') ? 1 : 0); !name.empty()) frames.insert(name);
   }
-  if (frames.empty()) return "whose frame the messages do not name";
-  return fmt::format("in its frame{} {}", frames.size() > 1 ? "s" : "", listed(std::move(frames)));
+  return frames;
+}
+
+std::string frames_text(const std::set<std::string>& frames) {
+  std::vector<std::string> names;
+  for (const std::string& frame : frames) names.push_back(fmt::format("'{}'", frame));
+  return (frames.size() > 1 ? "frames " : "frame ") + listed(std::move(names));
+}
+
+const VectorMeaning* vector_of(std::string_view type) {
+  const auto found = std::ranges::find(kVectors, plain_type(type), &VectorMeaning::type);
+  return found == kVectors.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -219,8 +235,9 @@ Topics::Stream* Topics::stream_of(Topic& topic, std::span<const std::byte> messa
   if (topic.streams.size() >= kMostSets) return nullptr;
   std::string name = topic.name;
   if (!topic.streams.empty()) name += fmt::format("/{}", topic.streams.size() + 1);
-  topic.streams.push_back(
-      {std::move(name), std::move(key), topic.definition ? stream_of_bytes(topic.definition) : stream_of_json()});
+  topic.streams.push_back({std::move(name), std::move(key),
+                           topic.definition ? stream_of_bytes(topic.definition)
+                                            : stream_of_json(plain_type(topic.description.type) == kJointState)});
   return &topic.streams.back();
 }
 
@@ -241,8 +258,13 @@ Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std:
     const auto time = static_cast<std::int64_t>(std::min<std::uint64_t>(log_time, kLatest));
     if (stream != nullptr && stream->messages->add(message, time)) {
       numbers += stream->messages->columns.size();
+      // A restarted node is a new publisher, but the old one does not come back.
+      stream->alternates |= !stream->channels.insert(channel).second && stream->channel != channel;
+      stream->channel = channel;
     } else {
-      topic.unread = fmt::format("message {} is not what the definition says", topic.count);
+      topic.unread = stream == nullptr && topic.streams.size() >= kMostSets
+                         ? fmt::format("its messages hold more than {} different sets of joints", kMostSets)
+                         : fmt::format("message {} is not what the definition says", topic.count);
       topic.streams.clear();
     }
   }
@@ -285,24 +307,49 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
   const MessageStream& messages = *stream.messages;
   const std::string type = plain_type(topic.description.type);
   const auto note = [&](std::string text) { contents.notes.push_back(printable(std::move(text))); };
-  for (const VectorMeaning& vector : kVectors) {
-    if (vector.type != type) continue;
-    note(fmt::format("{0}_x and {0}_y are {1}.x and .y of '{2}', {3}", vector.channel, vector.path, stream.name,
-                     frames_of(messages)));
-    if (vector.channel != "force") continue;
-    contents.notes.back() += printable(fmt::format(
-        ", with the sign that they have there; mbk means the force that the hand exerts on the robot, along the axes "
-        "of the robot's base: where the sensor says the opposite, turn it with --channels "
-        "Fx=-{0}.{1}.x,Fy=-{0}.{1}.y and name the other channels there too, as x=hand_x,y=hand_y",
-        stream.name, vector.path));
-  }
-  if (type == kJointState) {
+  const VectorMeaning* const vector = vector_of(type);
+  if (!stream.doubt.empty()) {
+    const std::string channels = vector != nullptr     ? fmt::format(" as {0}_x and {0}_y", vector->channel)
+                                 : type == kJointState ? " as joint_1 …, torque_1 …"
+                                                       : " as channels";
+    note(fmt::format("'{}' is not taken{}: {}", stream.name, channels, stream.doubt));
+  } else if (vector != nullptr) {
+    const std::set<std::string> frames = frames_of(messages);
+    note(fmt::format(
+        "{0}_x and {0}_y are {1}.x and .y of '{2}', {3}", vector->channel, vector->path, stream.name,
+        frames.empty() ? "whose frame the messages do not name" : fmt::format("in its {}", frames_text(frames))));
+    if (vector->channel == "force") {
+      contents.notes.back() += printable(fmt::format(
+          ", with the sign that they have there; mbk needs the force of the hand on the robot, in the frame of the "
+          "robot's base: where the sensor says the opposite, turn it with --channels Fx=-{0}.{1}.x,Fy=-{0}.{1}.y and "
+          "name the other channels there too, as x=hand_x,y=hand_y",
+          stream.name, vector->path));
+    }
+  } else if (type == kJointState && messages.joints.empty()) {
+    note(
+        fmt::format("joints and torques are position and effort of '{}' in their order: its messages do not name the "
+                    "joints",
+                    stream.name));
+  } else if (type == kJointState) {
     std::vector<std::string> names;
-    for (std::size_t k = 0; k < messages.joints.size() && k < kMostJoints; ++k) {
+    for (std::size_t k = 0; k < messages.joints.size(); ++k) {
       names.push_back(fmt::format("{} {}", k + 1, messages.joints[k]));
     }
-    note(fmt::format("joints and torques are position and effort of '{}', in the order of its first message: {}",
-                     stream.name, listed(std::move(names))));
+    note(
+        fmt::format("joints and torques are position and effort of '{}', in the order of its first message: {}; with a "
+                    "robot whose description names its joints they are matched by name",
+                    stream.name, listed(std::move(names))));
+  }
+  for (const auto& [array, channel] : {std::pair("position", "joint_1"), std::pair("effort", "torque_1")}) {
+    const auto is_uneven = [&](const NumberColumn& column) {
+      return column.array == array && is_nobodys(type, messages, column);
+    };
+    const char* const why = type != kJointState                 ? nullptr
+                            : messages.changing.contains(array) ? "its length changes from message to message"
+                            : std::ranges::any_of(messages.columns, is_uneven)
+                                ? "it has more or fewer numbers than there are names of joints"
+                                : nullptr;
+    if (why != nullptr) note(fmt::format("'{}.{}' is not taken as {} …: {}", stream.name, array, channel, why));
   }
   const auto list = [&](const std::set<std::string>& paths) {
     std::vector<std::string> names;
@@ -356,12 +403,49 @@ void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Co
     const bool by_name = !is_of_ros(type) && column.path.size() > 2 && !column.path.starts_with("time") &&
                          column.path.find_first_of(".[") == std::string::npos;
     if (own && is_of_ros(type) && meaning.channel.empty()) continue;  // it only fills the message
-    if (!meaning.channel.empty()) {
+    if (!meaning.channel.empty() && stream.doubt.empty() && !is_nobodys(type, messages, column)) {
       array.means = std::move(meaning.channel);
-    } else if (!by_name) {
+      if (!own) array.joint = column.joint;  // mbk's own messages count them
+    } else if (!by_name || !stream.doubt.empty()) {
       array.means = array.name;
     }
     contents.arrays.push_back(std::move(array));
+  }
+}
+
+/// Notes why the numbers of a stream cannot be taken as channels without being named.
+void Topics::doubt(const std::vector<std::pair<Topic*, Stream*>>& streams) {
+  const auto vector_in = [](const Topic& topic) { return vector_of(topic.description.type); };
+  const Stream* hand = nullptr;  // whose frame is named
+  std::set<std::string> of_hands;
+  for (const auto& [topic, stream] : streams) {
+    if (vector_in(*topic) == nullptr || vector_in(*topic)->channel != "hand") continue;
+    const std::set<std::string> frames = frames_of(*stream->messages);
+    if (!frames.empty()) hand = stream;
+    of_hands.insert(frames.begin(), frames.end());
+  }
+  for (const auto& [topic, stream] : streams) {
+    const MessageStream& messages = *stream->messages;
+    const VectorMeaning* const vector = vector_in(*topic);
+    const bool may_be_channels =
+        vector != nullptr || plain_type(topic->description.type) == kJointState || !is_of_ros(topic->description.type);
+    if (stream->alternates && may_be_channels) {
+      stream->doubt = fmt::format("{} publishers take turns in it", stream->channels.size());
+    } else if (messages.joints_repeat) {
+      stream->doubt = "its messages name a joint twice";
+    } else if (vector != nullptr) {
+      const std::set<std::string> frames = frames_of(messages);
+      if (frames.size() > 1) {
+        stream->doubt = fmt::format("its messages are in different frames: {}", frames_text(frames));
+      } else if (hand != nullptr && !frames.empty() && !of_hands.contains(*frames.begin())) {
+        const std::string source = fmt::format("{}.{}", stream->name, vector->path);
+        stream->doubt = fmt::format(
+            "it is in {}, and the position of '{}' in {}; turn it into that frame before it is recorded (tf2), or, "
+            "where the axes of both are parallel, name it, as in --channels x=hand_x,y=hand_y,{}x={}.x,{}y={}.y",
+            frames_text(frames), hand->name, frames_text(of_hands), vector->channel == "force" ? 'F' : 'a', source,
+            vector->channel == "force" ? 'F' : 'a', source);
+      }
+    }
   }
 }
 
@@ -403,6 +487,7 @@ Contents Topics::contents(std::string format, bool exact_times) {
     }
   }
 
+  if (!times) doubt(streams);
   std::vector<std::string> stamped, logged;
   for (const auto& [topic, stream] : streams) {
     const bool stamps = has_stamps(*stream->messages);

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -54,6 +55,10 @@ class Topics {
     std::string name;  ///< of its clock
     std::string key;   ///< the joints
     std::unique_ptr<MessageStream> messages;
+    std::set<std::uint32_t> channels = {};  ///< publishers, where the file tells them apart
+    std::uint32_t channel = 0;              ///< of the last message
+    bool alternates = false;                ///< publishers take turns
+    std::string doubt = {};                 ///< why its numbers are not taken as channels automatically; "": they are
   };
   /// One topic, or one of several types under its name.
   struct Topic {
@@ -68,6 +73,7 @@ class Topics {
   Result<void> count(std::size_t numbers);
   static void prepare(Topic& topic);
   static Stream* stream_of(Topic& topic, std::span<const std::byte> message);
+  static void doubt(const std::vector<std::pair<Topic*, Stream*>>& streams);
   static void take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Contents& contents);
   static void explain(const Topic& topic, const Stream& stream, Contents& contents);
   void note_topics(Contents& contents) const;
