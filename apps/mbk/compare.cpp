@@ -82,7 +82,7 @@ Result<Compared> from_recording(CompareArguments arguments, const std::filesyste
   auto options = measurement_options(arguments, arguments.analyse, with_report);
   if (!options) return tl::unexpected(options.error());
   options->passivity = with_report;
-  auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+  auto recordings = read_perturbations(reading_for(arguments.reading, *options), arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
   for (Recording& recording : *recordings) add_arm(arguments.analyse, recording);
   auto measured = measurement::measure(std::span(*recordings), *options);

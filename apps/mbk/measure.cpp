@@ -91,7 +91,7 @@ struct MeasuredTrials {
 
 /// One fit over all of them: what cannot be read is missing in it, so that there is none.
 Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
-  auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+  auto recordings = read_perturbations(reading_for(arguments.reading, options), arguments.sensor);
   if (!recordings) return tl::unexpected(recordings.error());
   for (Recording& recording : *recordings) add_arm(arguments.analyse, recording);
   auto pooled = measure_one(*recordings, options, arguments.draws());
@@ -106,7 +106,7 @@ Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, 
 
 /// One result for each: a recording that cannot be measured costs only itself.
 Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
-  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
+  const auto reader = RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor);
   if (!reader) return tl::unexpected(reader.error());
   MeasuredTrials found;
   found.several = reader->count() > 1;

@@ -90,4 +90,10 @@ Result<measurement::Options> measurement_options(const MeasureArguments& argumen
   return options;
 }
 
+ReadingArguments reading_for(ReadingArguments reading, const measurement::Options& options) {
+  const auto& robot = options.preprocess.robot;
+  if (robot) reading.joints = robot->mechanism->joint_names();
+  return reading;
+}
+
 }  // namespace mbk::app

@@ -33,4 +33,7 @@ void add_measure_options(Command command, MeasureArguments& arguments);
                                                                const AnalyseArguments& analyse = {},
                                                                bool draws_arm = false);
 
+/// How to read recordings of the robot that the options name.
+[[nodiscard]] ReadingArguments reading_for(ReadingArguments reading, const measurement::Options& options);
+
 }  // namespace mbk::app

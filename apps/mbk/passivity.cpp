@@ -73,14 +73,14 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   };
   PassivityAnswers answers;
   if (arguments.pool) {
-    const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
+    const auto recordings = read_perturbations(reading_for(arguments.reading, *options), arguments.sensor);
     if (!recordings) return tl::unexpected(recordings.error());
     auto pooled = answer(*recordings);
     if (!pooled) return tl::unexpected(pooled.error());
     answers.found.push_back(std::move(*pooled));
     return answers;
   }
-  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
+  const auto reader = RecordingReader::of(reading_for(arguments.reading, *options), arguments.sensor);
   if (!reader) return tl::unexpected(reader.error());
   const int count = reader->count();
   std::vector<Result<LimbAnswer>> each(static_cast<std::size_t>(count), bad_data("not measured"));

@@ -44,6 +44,7 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   options.clock = arguments.clock;
   options.arm = arguments.arm;
   options.requested = arguments.requested;
+  options.joints = arguments.joints;
   return options;
 }
 

@@ -25,6 +25,7 @@ struct ReadingArguments {
   bool parts = false;
   std::string channels, variable, clock, trial, arm;
   std::vector<std::string> requested;  ///< channels that are taken by name, beside those of the map; empty: all
+  std::vector<std::string> joints;     ///< of the robot; no option: commands that know a robot set it
   std::optional<double> rate_hz;
   int axes = 0;
   bool untimed = false;      ///< rows without a time are welcome

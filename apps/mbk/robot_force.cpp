@@ -1,6 +1,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/mbk/measure_options.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/output_options.h"
 #include "apps/mbk/preprocess_options.h"
@@ -48,7 +49,7 @@ int run(const RobotForceArguments& arguments) {
   p.force_source = arguments.source;
   if (arguments.acceleration == AccelerationSource::sensor) p.acceleration = AccelerationSource::sensor;
   if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
-  const auto recordings = read_recordings(arguments.reading);
+  const auto recordings = read_recordings(reading_for(arguments.reading, options));
   if (!recordings) return report_error(recordings.error());
   const auto made = measurement::compute_force(recordings->front(), options);
   if (!made) return report_error(made.error().in(arguments.reading.files.front().string()));

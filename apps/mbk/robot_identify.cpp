@@ -151,11 +151,12 @@ int run(const RobotIdentifyArguments& arguments) {
   options.fit.hac_lag_s = arguments.hac_lag_s;
   if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
 
-  const auto recordings = read_recordings(arguments.reading);
+  ReadingArguments reading = arguments.reading;
+  reading.joints = robot->model.mechanism->joint_names();
+  const auto recordings = read_recordings(reading);
   if (!recordings) return report_error(recordings.error());
-  ReadingArguments others = arguments.reading;
-  others.files = arguments.held_out;
-  const auto held_out = read_recordings(others);
+  reading.files = arguments.held_out;
+  const auto held_out = read_recordings(reading);
   if (!held_out) return report_error(held_out.error());
   auto found = measurement::identify_robot(*recordings, *held_out, robot->model, options);
   if (!found) return report_error(found.error());

@@ -63,7 +63,7 @@ class Adder {
   }
 
   Added add(store::IncomingFile& incoming, const KnownFacts& facts) {
-    ReadingArguments reading = measuring_->arguments.reading;
+    ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {incoming.path()};
     const auto reader = RecordingReader::of(reading, measuring_->arguments.sensor);
     if (!reader) return tl::unexpected(reader.error());
@@ -175,7 +175,7 @@ class Adder {
       return fail(ErrorKind::usage, "is a folder", "'mbk study import' takes all recordings of a BIDS data set",
                   motion.string());
     }
-    ReadingArguments reading = measuring_->arguments.reading;
+    ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {motion};
     const auto reader = RecordingReader::of(reading, measuring_->arguments.sensor);
     if (!reader) return tl::unexpected(reader.error());

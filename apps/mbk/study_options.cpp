@@ -252,7 +252,7 @@ Result<GivenOptions> default_options(const store::Store& study) {
 
 Result<Recording> read_stored(const Measuring& measuring, const std::filesystem::path& file, std::int64_t part,
                               Reading what) {
-  ReadingArguments reading = measuring.arguments.reading;
+  ReadingArguments reading = reading_for(measuring.arguments.reading, measuring.options);
   if (file.filename().string().ends_with(kCopyExtension)) {  // maps and rates were applied when it was made
     const ReadingArguments plain;
     reading.channels = plain.channels;

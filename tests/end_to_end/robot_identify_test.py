@@ -2,8 +2,10 @@
 """mbk robot identify: inertia, friction and delay of a robot from its motion, simulated and recorded by others."""
 
 import functools
+import math
 import pathlib
 
+import ros_file
 from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, data_folder, folder_of_logs, main, run
 
 ROBOTS = pathlib.Path(__file__).parents[2] / "examples/robots"
@@ -191,6 +193,117 @@ class Wrong(Case):
     def test_a_robot_of_other_joints_is_refused(self):
         self.refused(BAD_DATA, "robot", "identify", free_motion(), "--robot", ROBOTS / "emps.toml",
                      says=["'joint_1' is in rad", "needs m"])
+
+
+ARM = ('<robot name="arm"><link name="base"/>'
+       '<link name="upper"><inertial><origin xyz="0.15 0 0"/><mass value="2"/>'
+       '<inertia ixx="0.001" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+       '<link name="fore"><inertial><origin xyz="0.15 0 0"/><mass value="1.5"/>'
+       '<inertia ixx="0.001" iyy="0.015" izz="0.015" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+       '<joint name="shoulder_joint" type="continuous"><parent link="base"/><child link="upper"/>'
+       '<axis xyz="0 0 1"/></joint>'
+       '<joint name="elbow_joint" type="continuous"><parent link="upper"/><child link="fore"/>'
+       '<origin xyz="0.3 0 0"/><axis xyz="0 0 1"/></joint></robot>')
+MASS_X = 1.5 * 0.15  # of the forearm [kg·m]
+
+
+def arm_motion(k, rate=250.0):
+    """Angles and torques of that arm in a horizontal plane: {joint: (angle, torque)}."""
+    angle, speed, acceleration = [], [], []
+    for offset, parts in ((0.6, ((0.3, 0.5), (0.1, 1.3))), (1.2, ((0.25, 0.7), (0.1, 1.7)))):
+        phases = [(size, 2 * math.pi * hz, 2 * math.pi * hz * k / rate) for size, hz in parts]
+        angle.append(offset + sum(a * math.sin(p) for a, _, p in phases))
+        speed.append(sum(a * w * math.cos(p) for a, w, p in phases))
+        acceleration.append(sum(-a * w * w * math.sin(p) for a, w, p in phases))
+    lower = 0.015 + 1.5 * 0.15**2
+    coupling = 0.3 * MASS_X * math.cos(angle[1])
+    upper = 0.02 + 2 * 0.15**2 + 1.5 * 0.3**2 + lower + 2 * coupling
+    turning = 0.3 * MASS_X * math.sin(angle[1])
+    torque = (upper * acceleration[0] + (lower + coupling) * acceleration[1]
+              - turning * (2 * speed[0] * speed[1] + speed[1]**2),
+              (lower + coupling) * acceleration[0] + lower * acceleration[1] + turning * speed[0]**2)
+    return {"shoulder_joint": (angle[0], torque[0]), "elbow_joint": (angle[1], torque[1])}
+
+
+class JointNames(Case):
+    """Joint states of ROS come in the order of the alphabet, a chain from its base."""
+
+    def recording(self, order=lambda k: ("elbow_joint", "shoulder_joint"), samples=5000):
+        path = self.folder / "free.mcap"
+        file = ros_file.Mcap(path, {"/joint_states": "sensor_msgs/msg/JointState"})
+        for k in range(samples):
+            joints = {"finger": (0.04, 0.0), "wheel": (0.1 * k, 0.2), **arm_motion(k)}
+            nanoseconds = 1_700_000_000 * 10**9 + 4_000_000 * k
+            file.add("/joint_states", nanoseconds, ros_file.joint_state(nanoseconds, {n: joints[n] for n in order(k)}))
+        file.close()
+        return path
+
+    def robot(self, urdf=ARM):
+        self.file("arm.urdf", urdf)
+        return self.file("arm.toml", "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\ntip_link = 'fore'\n"
+                                     "tool_mm = [300, 0, 0]\n[drive]\nterms = []\n")
+
+    def assert_is_the_arm(self, *arguments):
+        found = self.mbk("robot", "identify", "--robot", self.robot(), "--json", *arguments).json
+        self.assertAlmostEqual(values(found)["fore.mass_x"], MASS_X, delta=0.002)
+
+    def test_joints_are_found_by_their_names(self):
+        orders = {"alphabet": lambda k: ("elbow_joint", "shoulder_joint"),
+                  "chain": lambda k: ("shoulder_joint", "elbow_joint"),
+                  "in turns": lambda k: ("shoulder_joint", "elbow_joint")[::1 if k % 3 else -1],
+                  "among others": lambda k: ("elbow_joint", "finger", "shoulder_joint", "wheel")}
+        for name, order in orders.items():
+            with self.subTest(name):
+                self.assert_is_the_arm(self.recording(order))
+
+    def test_names_go_into_other_files(self):
+        path = self.recording()
+        for end in ("h5", "csv", "mat", "mcap"):
+            with self.subTest(end):
+                self.mbk("convert", path, self.folder / f"out.{end}")
+                self.assert_is_the_arm(self.folder / f"out.{end}")
+
+    def test_nothing_pulls_at_the_hand_of_an_arm_that_moves_freely(self):
+        found = self.mbk("robot", "force", self.recording(), "--robot", self.robot(), "--json").json
+        self.assertLess(max(found["RMS"]), 0.1)
+
+    def test_other_names_are_an_error_with_both_lists(self):
+        robot = self.robot(ARM.replace("shoulder_joint", "shoulder_pan"))
+        for command in (("robot", "identify"), ("robot", "force"), ("measure", "--force-source", "virtual")):
+            self.refused(BAD_DATA, *command, self.recording(samples=500), "--robot", robot,
+                         says=("no joint shoulder_pan", "its joints are elbow_joint, shoulder_joint",
+                               "those of the robot shoulder_pan, elbow_joint", "--channels q1="))
+
+    def test_a_map_may_not_contradict_the_names(self):
+        path = self.recording(samples=500)
+        names = [f"/joint_states.{what}.{joint}" for what in ("position", "effort")
+                 for joint in ("elbow_joint", "shoulder_joint")]
+        swapped = "q1={0},q2={1},tau1={2},tau2={3}".format(*names)
+        self.refused(BAD_DATA, "robot", "identify", path, "--robot", self.robot(), "--channels", swapped,
+                     says=("belongs to 'elbow_joint', the 2nd joint of the robot", "q1=NAME"))
+
+    def test_a_map_says_which_joint_is_which_where_names_differ(self):
+        path = self.recording()
+        names = [f"/joint_states.{what}.{joint}" for what in ("position", "effort")
+                 for joint in ("shoulder_joint", "elbow_joint")]
+        robot = self.robot(ARM.replace("shoulder_joint", "pan").replace("elbow_joint", "lift"))
+        found = self.mbk("robot", "identify", "--robot", robot, "--json", path, "--channels",
+                         "q1={0},q2={1},tau1={2},tau2={3}".format(*names)).json
+        self.assertAlmostEqual(values(found)["fore.mass_x"], MASS_X, delta=0.002)
+
+    def test_a_robot_without_names_has_as_many_joints_as_the_recording(self):
+        path = self.recording(lambda k: ("elbow_joint", "finger", "shoulder_joint"), samples=500)
+        self.refused(BAD_DATA, "robot", "identify", path,
+                     says=("the joints 'elbow_joint', 'finger', 'shoulder_joint'", "--channels"))
+
+    def test_a_length_is_no_angle(self):
+        path = self.recording(samples=500)
+        names = [f"/joint_states.{what}.{joint}" for what in ("position", "effort")
+                 for joint in ("shoulder_joint", "elbow_joint")]
+        self.refused(BAD_DATA, "robot", "identify", path, "--robot", self.robot(), "--channels",
+                     "q1={0}:m,q2={1},tau1={2},tau2={3}".format(*names), says=("'joint_1' is in m", "needs rad"))
+        ran = self.mbk("info", self.recording(lambda k: ("finger",), samples=500))
+        self.assertNotIn("rad", ran.out)
 
 
 class Emps(Case):

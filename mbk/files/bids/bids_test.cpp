@@ -77,6 +77,18 @@ TEST(EncodeBids, GivesBackEveryBit) {
   EXPECT_EQ(back->metadata, (std::map<std::string, std::string>{{"condition", "relaxed"}, {"age", "89+"}}));
 }
 
+TEST(EncodeBids, KeepsTheNamesOfJoints) {
+  Recording one = recording();
+  for (Channel& channel : one.channels)
+    channel = {"joint_" + std::to_string(&channel - one.channels.data() + 1), "rad", "joint", channel.values};
+  one.channels[0].origin.joint = "elbow_joint";
+  auto texts = encoded(one);
+  const auto back = decode_bids({texts["motion.tsv"], texts["channels.tsv"], {texts["motion.json"]}, "", "", "1"});
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->arrays[1].joint, "elbow_joint");
+  EXPECT_EQ(back->arrays[2].joint, "");
+}
+
 TEST(EncodeBids, LeavesOutTheTimeThatARateSays) {
   Recording one = recording();
   one.time = Vector::LinSpaced(3, 0.0, 2.0) / 30.0;

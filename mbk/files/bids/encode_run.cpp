@@ -90,6 +90,7 @@ Description describe(const Channel& channel) {
   if (name.ends_with("_x") || name.ends_with("_y")) one.component = name.substr(name.size() - 1);
   if (is("hand_") || is("force_") || is("acceleration") || is("position") || is("reaction")) one.point = "hand";
   if (is("joint_") || is("torque_")) one.point = "joint_" + name.substr(name.find('_') + 1);
+  if (!channel.origin.joint.empty()) one.point = channel.origin.joint;
   const bool angle = channel.unit == "rad", length = channel.unit == "m";
   if (is("hand_")) one.type = "POS", one.description = "position of the hand";
   if (name == "position") {

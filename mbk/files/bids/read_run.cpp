@@ -182,6 +182,10 @@ class Run {
         array.means = "time";
         if (array.unit.empty()) array.unit = "s";
       }
+      const std::string_view point = channels_.cell(c, "tracked_point");
+      const bool of_joint = array.name.starts_with("joint_") || array.name.starts_with("torque_");
+      const std::string counted = "joint_" + array.name.substr(array.name.find('_') + 1);
+      if (of_joint && point != counted) array.joint = printable(std::string(point));
       if (channels_.cell(c, "status") == "bad") bad.push_back(array.name);
     }
     if (!bad.empty()) {

@@ -54,6 +54,10 @@ std::string unit_key(std::string_view channel) {
   return fmt::format("unit_{}", channel);
 }
 
+std::string joint_key(std::string_view channel) {
+  return fmt::format("joint_of_{}", channel);
+}
+
 bool is_matlab_name(std::string_view name) {
   const auto inner = [](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
   return !name.empty() && name.size() <= kLongestMatlabName && is_letter(name.front()) &&
@@ -74,12 +78,22 @@ void take_annotations(Contents& contents) {
   contents.texts.clear();
 }
 
-Result<std::map<std::string, std::string>> metadata_with_units(const Recording& recording) {
+std::map<std::string, std::string> metadata_with_joints(const Recording& recording) {
   std::map<std::string, std::string> metadata = recording.metadata;
+  for (const Channel& channel : recording.channels) {
+    if (!channel.origin.joint.empty()) metadata[joint_key(channel.name)] = channel.origin.joint;
+  }
+  return metadata;
+}
+
+Result<std::map<std::string, std::string>> metadata_with_units(const Recording& recording) {
+  std::map<std::string, std::string> metadata = metadata_with_joints(recording);
   for (const Channel& channel : recording.channels) {
     const auto kinds = kinds_called(channel.name);
     const auto kind = std::ranges::find(kinds, channel.name, &ChannelKind::name);
-    if (channel.unit.empty() || (kind != kinds.end() && (*kind)->default_unit() == channel.unit)) continue;
+    // The unit of a named joint does not go without saying.
+    const bool is_default = kind != kinds.end() && (*kind)->default_unit() == channel.unit;
+    if (channel.unit.empty() || (is_default && channel.origin.joint.empty())) continue;
     const auto [entry, added] = metadata.try_emplace(unit_key(channel.name), channel.unit);
     if (!added && entry->second != channel.unit) {
       return bad_data(fmt::format("metadata '{}' is '{}', the channel is in '{}'", entry->first,

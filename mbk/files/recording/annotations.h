@@ -11,11 +11,15 @@ namespace mbk::recording {
 
 // What is said about a recording, beside its channels, stands in a MAT file as two structures:
 //   metadata            one field of text for each key; `unit_<channel>` is the SI unit of a channel
-//                       that is not the one that its place in the file implies (reference_x in N)
+//                       that is not the one that its place in the file implies (reference_x in N),
+//                       `joint_of_<channel>` the name of the joint that a channel belongs to
 //   events              fields `time` [s] and `value`, N×1, and `name`, a cell array N×1 of texts
 
 /// "unit_reference_x"
 [[nodiscard]] std::string unit_key(std::string_view channel);
+
+/// "joint_of_torque_1"
+[[nodiscard]] std::string joint_key(std::string_view channel);
 
 /// Moves the texts `metadata.KEY` into `metadata`, and `events.time`, `.name`, `.value` into `events` where they are N
 /// numbers, N texts, N numbers; an `events` of another shape stays as it is. Every other text becomes a note, and so do
@@ -30,7 +34,10 @@ inline constexpr std::size_t kLongestMatlabName = 63;  ///< characters
 /// A letter, then letters, digits and _; kLongestMatlabName at most.
 [[nodiscard]] bool is_matlab_name(std::string_view name);
 
-/// The metadata of a recording, and the units of channels.
+/// The metadata of a recording, and the names of joints.
+[[nodiscard]] std::map<std::string, std::string> metadata_with_joints(const Recording& recording);
+
+/// The same, and the units of channels.
 /// @fails  data: a unit that another entry contradicts.
 [[nodiscard]] Result<std::map<std::string, std::string>> metadata_with_units(const Recording& recording);
 

@@ -18,6 +18,7 @@
 #include "mbk/files/recording/believable_time.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"
+#include "mbk/files/recording/joint_names.h"
 #include "mbk/files/recording/one_clock.h"
 #include "mbk/files/recording/own_samples.h"
 #include "mbk/files/recording/robot_logs.h"
@@ -58,6 +59,8 @@ struct Signal {
   double gain = 1.0;
   double offset = 0.0;     ///< in `unit`
   bool is_scaled = false;  ///< the map states a gain or offset, if only *1
+  bool mapped = false;     ///< by --channels
+  std::string joint = {};  ///< name of its joint in the file; "" where it says none
 
   [[nodiscard]] bool is_plain() const { return gain == 1.0 && offset == 0.0; }
 };
@@ -134,7 +137,9 @@ std::string inventory(const Contents& contents) {
   }
   if (!contents.table) {
     std::string text = names.empty() ? "it has no numeric variable" : "it has the variables " + quoted(names);
-    if (!contents.notes.empty()) text += "; " + contents.notes.front();
+    const auto why = std::ranges::find_if(
+        contents.notes, [](const std::string& note) { return note.find("is not taken") != note.npos; });
+    if (!contents.notes.empty()) text += "; " + (why == contents.notes.end() ? contents.notes.front() : *why);
     if (contents.notes.size() > 1) text += fmt::format(" (and {} more)", contents.notes.size() - 1);
     return text;
   }
@@ -196,6 +201,7 @@ class Assembler {
     }
     if (auto ok = choose_clock(); !ok) return tl::unexpected(ok.error());
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+    if (auto ok = name_joints(); !ok) return tl::unexpected(ok.error());
     follow_metadata();
     extract();
     if (clock_ != nullptr && recording_.time.size() == 0) {
@@ -224,6 +230,9 @@ class Assembler {
   // ---- which signals ----
 
   Result<void> recognise() {
+    auto matched = match_joints(contents_, options_.joints, options_.clock);
+    if (!matched) return tl::unexpected(matched.error());
+    if (!matched->empty()) recording_.notes.push_back(std::move(*matched));
     const auto logs = find_logs();
     if (!logs) return tl::unexpected(logs.error());
     if (*logs != nullptr) return take_logs(**logs);
@@ -469,7 +478,7 @@ class Assembler {
       const Line* const line = &found->line;
       Signal signal{kind,         *line,         nullptr,
                     entry.negate, entry.source,  (entry.negate ? "-" : "") + entry.source,
-                    found->gain,  found->offset, found->is_scaled};
+                    found->gain,  found->offset, found->is_scaled, true};
       states_time_ = states_time_ || (is_time(kind) && !entry.unit.empty());
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
@@ -866,6 +875,31 @@ class Assembler {
     return {};
   }
 
+  /// Takes the names of joints from the arrays of the file, or from its metadata.
+  Result<void> name_joints() {
+    std::vector<std::string> noted;
+    for (Signal& signal : signals_) {
+      if (!is_of_joint(*signal.kind)) continue;
+      const std::vector<const ChannelKind*> kinds = kinds_in_file(signal);
+      signal.joint = signal.line.array->joint;
+      if (signal.joint.empty() && !kinds.empty()) {
+        signal.joint = recording_.noted(joint_key(kinds.front()->name));
+        if (!signal.joint.empty()) noted.push_back(fmt::format("{} {}", signal.kind->name, signal.joint));
+      }
+      if (!signal.mapped && !signal.joint.empty()) continue;  // matched by name where the robot is known
+      const std::string& array = signal.line.array->name;
+      const std::string_view named = !signal.joint.empty() ? signal.joint : contents_.table ? array : leaf(array);
+      if (auto ok = check_joint(*signal.kind, options_.joints, named, signal.source); !ok) return ok;
+      const std::size_t k = joint_index(*signal.kind);
+      if (!signal.joint.empty() && k < options_.joints.size()) signal.joint = options_.joints[k];  // as the user says
+    }
+    for (const ChannelKind& kind : channel_kinds()) {
+      if (is_of_joint(kind)) recording_.metadata.erase(joint_key(kind.name));
+    }
+    if (!noted.empty()) recording_.notes.push_back(fmt::format("the file names the joints: {}", quoted(noted)));
+    return {};
+  }
+
   /// Units that the metadata say, where nothing nearer says another.
   void follow_metadata() {
     for (Signal& signal : signals_) {
@@ -913,8 +947,10 @@ class Assembler {
         recording_.time_origin = origin_of(signal);
         continue;
       }
+      // The description of the robot says whether a named joint turns or slides.
       const auto unit = signal.unit != nullptr          ? si_unit(signal.unit->dimension)
                         : signal.kind->measures.empty() ? std::string_view(signal.line.array->unit)
+                        : !signal.joint.empty()         ? std::string_view()
                                                         : signal.kind->default_unit();
       recording_.channels.push_back({std::string(signal.kind->name), std::string(unit), std::string(signal.kind->frame),
                                      std::move(channel), origin_of(signal)});
@@ -985,22 +1021,28 @@ class Assembler {
 
   static ChannelOrigin origin_of(const Signal& signal) {
     const std::string_view unit = signal.unit != nullptr ? signal.unit->name : std::string_view();
-    return {std::string(signal.kind->alias), signal.entry, std::string(unit), called_otherwise(signal)};
+    return {std::string(signal.kind->alias), signal.entry, std::string(unit), called_otherwise(signal), signal.joint};
+  }
+
+  /// What the file calls this line, by a name or by its row in a logs matrix; nothing where it is no channel.
+  static std::vector<const ChannelKind*> kinds_in_file(const Signal& signal) {
+    std::vector<const ChannelKind*> kinds;
+    if (!is_matrix(*signal.line.array)) {
+      const std::string& name = signal.line.array->name;
+      kinds = parse_column_name(name).kinds;
+      return kinds.empty() ? parse_column_name(leaf(name)).kinds : kinds;
+    }
+    if (!signal.line.row || signal.line.array->values.rows() != kLogsRows) return kinds;
+    for (const ChannelKind& kind : channel_kinds()) {
+      if (kind.logs_row == signal.line.index + 1) kinds.push_back(&kind);
+    }
+    return kinds;
   }
 
   /// The channel that the file calls this line, by a name or by its row in a logs matrix, where that measures another
   /// quantity than the channel which it is read as. A swap within a quantity, as Fx=force_y, is no contradiction.
   static std::string called_otherwise(const Signal& signal) {
-    std::vector<const ChannelKind*> kinds;
-    if (is_matrix(*signal.line.array)) {
-      if (signal.line.row && signal.line.array->values.rows() == kLogsRows) {
-        for (const ChannelKind& kind : channel_kinds()) {
-          if (kind.logs_row == signal.line.index + 1) kinds.push_back(&kind);
-        }
-      }
-    } else {
-      kinds = parse_column_name(leaf(signal.line.array->name)).kinds;
-    }
+    const std::vector<const ChannelKind*> kinds = kinds_in_file(signal);
     const std::string_view read_as = quantity_of(*signal.kind);
     const bool fits = read_as.empty() || std::ranges::any_of(kinds, [&](const ChannelKind* kind) {
                         const std::string_view called = quantity_of(*kind);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mbk/base/core/version.h"
+#include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/encode.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 Result<void> append_comments(std::string& text, const Recording& recording) {
   text = fmt::format("# {}, written by mbk {}\n", kLayout, version());
-  for (const auto& [key, value] : recording.metadata) {
+  for (const auto& [key, value] : metadata_with_joints(recording)) {
     if (key.empty() || key.find_first_of(" :\t") != key.npos) {
       return bad_data(fmt::format("metadata '{}' cannot be written as a comment", key),
                       "use a name without spaces and colons");

@@ -2,6 +2,7 @@
 
 #include "mbk/base/core/version.h"
 #include "mbk/files/hdf5/write_hdf5.h"
+#include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/encode.h"
 
 namespace mbk::recording {
@@ -37,7 +38,7 @@ hdf5::Group hdf5_events(const std::vector<Event>& events) {
 Result<std::string> encode_hdf5(const Recording& recording) {
   hdf5::Group root;
   root.attributes["software"] = hdf5::one_text(fmt::format("mbk {}", version()));
-  for (const auto& [key, value] : recording.metadata) {
+  for (const auto& [key, value] : metadata_with_joints(recording)) {
     if (key == "format") {
       return bad_data("metadata 'format' cannot be written: this attribute names the layout of the file",
                       "rename that entry");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/own_samples.h"
@@ -82,7 +83,7 @@ InMemory InMemory::of(Recording recording) {
   for (const Channel& channel : whole.channels) {
     made.signals_.push_back({channel.name, channel.unit, shared(channel.values), 0});
   }
-  made.metadata_ = whole.metadata;
+  made.metadata_ = metadata_with_joints(whole);
   made.events_ = whole.events;
   return made;
 }

@@ -64,6 +64,7 @@ Result<void> check_same_channels(const Recording& first, const Recording& part) 
     std::vector<std::string> names;
     for (const Channel& channel : recording.channels) {
       names.push_back(channel.unit.empty() ? channel.name : fmt::format("{} [{}]", channel.name, channel.unit));
+      if (!channel.origin.joint.empty()) names.back() += fmt::format(" of '{}'", channel.origin.joint);
     }
     std::ranges::sort(names);
     return fmt::format("{}", fmt::join(names, ", "));

@@ -32,7 +32,9 @@ struct ReadOptions {
   std::string clock;     ///< the stream or topic whose time stamps the recording has, where channels come from several;
                          ///< "": they must come from one
   std::string trial;     ///< which record of a file or folder that holds several (`list_trials`); "": its only one
-  std::string arm;       ///< "right" or "left": whose hand is the hand in a file of two arms; "": the only one
+  std::vector<std::string> joints;  ///< names of the robot's joints, in its order: a file that names joints gives these
+                                    ///< as joint_1, torque_1, …; empty: in the order of the file
+  std::string arm;  ///< "right" or "left": whose hand is the hand in a file of two arms; "": the only one
 };
 
 /// Opens a recording: any format of `file_formats()`, which the content decides, never the name of the file.

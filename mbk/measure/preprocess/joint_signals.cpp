@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/model/robot/dynamic_model.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -21,18 +22,91 @@ std::string there(const Recording& recording) {
   return names.empty() ? "there are no channels" : fmt::format("there are {}", fmt::join(names, ", "));
 }
 
-/// The channel of a joint, in the unit that the joint has.
-Result<const Channel*> require(const Recording& recording, const std::string& name, const char* unit) {
-  const Channel* channel = recording.find(name);
+std::string quoted(const std::vector<std::string>& names) {
+  return fmt::format("'{}'", fmt::join(names, "', '"));
+}
+
+/// The channels joint_k, torque_k or reference_joint_k of a robot's joints: by the names of the joints where both robot
+/// and recording have them, and else by number.
+class JointChannels {
+ public:
+  JointChannels(const Recording& recording, const robot::Mechanism& mechanism, std::string prefix)
+      : recording_(recording), robot_(mechanism.joint_names()), prefix_(std::move(prefix)) {
+    for (const Channel& channel : recording.channels) {
+      const bool counts = channel.name.starts_with(prefix_) && !channel.origin.joint.empty();
+      if (counts) named_.push_back(&channel);
+    }
+  }
+
+  [[nodiscard]] bool by_name() const { return !named_.empty() && !robot_.empty(); }
+
+  /// @fails  data: there is no joint of that name, or there are two; a robot without names has fewer joints than the
+  /// recording.
+  [[nodiscard]] Result<void> check(int joints) const {
+    std::vector<std::string> there;
+    for (const Channel* channel : named_) there.push_back(channel->origin.joint);
+    if (robot_.empty() && std::ssize(there) > joints) {
+      return bad_data(fmt::format("the recording has the joints {}, and the robot {} without names", quoted(there),
+                                  joints == 1 ? "one" : fmt::format("{}", joints)),
+                      fmt::format("say which are the robot's with --channels, as in q1=NAME,tau1=NAME"));
+    }
+    if (!by_name()) return {};
+    for (int k = 0; k < joints; ++k) {
+      const std::string& name = robot_[static_cast<std::size_t>(k)];
+      const auto count = std::ranges::count(there, name);
+      if (count == 1 || (count == 0 && unnamed(k) != nullptr && in_order(joints))) continue;
+      return bad_data(fmt::format("the recording has {} joint '{}'; its joints are {}, those of the robot {}",
+                                  count == 0 ? "no" : "more than one", name, quoted(there), quoted(robot_)),
+                      "correct the names in the description of the robot, or say which joint is which with --channels, "
+                      "as in q1=NAME,tau1=NAME");
+    }
+    return {};
+  }
+
+  /// The channel of a joint; nullptr where there is none.
+  [[nodiscard]] const Channel* of(int joint) const {
+    if (!by_name()) return recording_.find(numbered(joint));
+    const auto named = std::ranges::find(named_, robot_[static_cast<std::size_t>(joint)],
+                                         [](const Channel* channel) { return channel->origin.joint; });
+    return named == named_.end() ? unnamed(joint) : *named;
+  }
+
+  /// Whether every joint has the channel of its number.
+  [[nodiscard]] bool in_order(int joints) const {
+    for (int k = 0; k < joints; ++k) {
+      if (of(k) != nullptr && of(k)->name != numbered(k)) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::string numbered(int joint) const { return fmt::format("{}{}", prefix_, joint + 1); }
+
+ private:
+  /// That of its number, where it says no name.
+  [[nodiscard]] const Channel* unnamed(int joint) const {
+    const Channel* const channel = recording_.find(numbered(joint));
+    return channel != nullptr && channel->origin.joint.empty() ? channel : nullptr;
+  }
+
+  const Recording& recording_;
+  std::vector<std::string> robot_;
+  std::string prefix_;
+  std::vector<const Channel*> named_;
+};
+
+/// @param channel  nullptr: it is missing    @param unit  that the joint has
+Result<void> check_unit(const Recording& recording, const Channel* channel, const std::string& name, const char* unit) {
   if (channel == nullptr) {
-    return bad_data(fmt::format("channel '{}' is missing; {}", name, there(recording)),
+    return bad_data(fmt::format("channel '{}' is missing; {}{}", name, there(recording), why_missing(recording, name)),
                     fmt::format("name it with --channels, as in {}=6", name));
   }
   if (!channel->unit.empty() && channel->unit != unit) {
-    return bad_data(fmt::format("channel '{}' is in {}, but this joint needs {}", name, channel->unit, unit),
+    const std::string& joint = channel->origin.joint;
+    return bad_data(fmt::format("channel '{}' is in {}, but this joint{} needs {}", channel->name, channel->unit,
+                                joint.empty() ? "" : fmt::format(" ('{}')", joint), unit),
                     fmt::format("give the unit that the file holds in --channels, as in {}=6:{}", name, unit));
   }
-  return channel;
+  return {};
 }
 
 /// All of a kind side by side, or nothing where one is missing.
@@ -75,19 +149,39 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
   JointSignals signals;
   signals.position.resize(samples, n);
   signals.torque.resize(samples, n);
+  const JointChannels positions(recording, mechanism, "joint_"), torques(recording, mechanism, "torque_"),
+      references(recording, mechanism, "reference_joint_");
+  for (const JointChannels* channels : {&positions, &torques}) {
+    if (auto ok = channels->check(static_cast<int>(n)); !ok) return tl::unexpected(ok.error());
+  }
+  // Unnamed channels may be counted beside named ones only if the named ones are in the robot's order.
+  const auto count_alike = [&](const JointChannels& a, const JointChannels& b) {
+    return a.by_name() == b.by_name() || (a.in_order(static_cast<int>(n)) && b.in_order(static_cast<int>(n)));
+  };
+  if (!count_alike(positions, torques)) {
+    return bad_data(fmt::format("only the channels {}… say to which joints they belong, and their order is not that of "
+                                "the robot: {}",
+                                positions.by_name() ? "joint_1" : "torque_1", quoted(mechanism.joint_names())),
+                    "say which joint is which with --channels, as in q1=NAME,tau1=NAME");
+  }
   std::vector<std::string> joint_references;
   for (int joint = 0; joint < n; ++joint) {
     const bool slides = mechanism.slides(joint);
-    std::string name = fmt::format("joint_{}", joint + 1);
-    if (n == 1 && recording.find(name) == nullptr && recording.find("position") != nullptr) name = "position";
-    const auto position = require(recording, name, slides ? "m" : "rad");
-    if (!position) return tl::unexpected(position.error());
-    signals.position.col(joint) = (*position)->values;
-    const auto torque = require(recording, fmt::format("torque_{}", joint + 1), slides ? "N" : "N.m");
-    if (!torque) return tl::unexpected(torque.error());
-    signals.torque.col(joint) = (*torque)->values;
-    joint_references.push_back(fmt::format("reference_joint_{}", joint + 1));
+    const Channel* position = positions.of(joint);
+    if (n == 1 && position == nullptr) position = recording.find("position");
+    if (auto ok = check_unit(recording, position, positions.numbered(joint), slides ? "m" : "rad"); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    signals.position.col(joint) = position->values;
+    const Channel* const torque = torques.of(joint);
+    if (auto ok = check_unit(recording, torque, torques.numbered(joint), slides ? "N" : "N.m"); !ok) {
+      return tl::unexpected(ok.error());
+    }
+    signals.torque.col(joint) = torque->values;
+    const Channel* const reference = references.of(joint);
+    joint_references.push_back(reference != nullptr ? reference->name : "");
   }
+  if (!count_alike(positions, references)) joint_references.front().clear();
   const bool plane = axes == 2;
   signals.joint_reference = gather(recording, joint_references, mechanism.slides(0) ? "m" : "rad");
   const int kinds = plane ? 2 : 1;
@@ -112,13 +206,18 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
 Result<void> check_joint_signals(const JointSignals& signals, const robot::Mechanism& mechanism, const Clock& clock,
                                  const WindowPlan& plan) {
   const auto at = [&](Index sample) { return fmt::format("sample {} ({:.6f} s)", sample + 1, clock.seconds(sample)); };
+  const std::vector<std::string> names = mechanism.joint_names();
+  const auto named = [&](Index joint) {
+    return names.empty() ? std::string() : fmt::format(" ('{}')", names[static_cast<std::size_t>(joint)]);
+  };
   for (const Cut& cut : plan.cuts) {
     const Index length = cut.end - cut.begin;
     for (Index joint = 0; joint < signals.position.cols(); ++joint) {
       const auto bad = [&](const Matrix& columns, const char* name) -> Result<void> {
         const Index where = first_non_finite(columns.col(joint).segment(cut.begin, length));
         if (where < 0) return {};
-        return bad_data(fmt::format("channel '{}_{}' is not a number at {}", name, joint + 1, at(cut.begin + where)),
+        return bad_data(fmt::format("channel '{}_{}'{} is not a number at {}", name, joint + 1, named(joint),
+                                    at(cut.begin + where)),
                         "choose a window without it with --from and --to, or mend the recording");
       };
       if (auto ok = bad(signals.position, "joint"); !ok) return ok;
@@ -139,8 +238,9 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
   for (Index joint = 0; joint < signals.torque.cols(); ++joint) {
     const auto torque = signals.torque.col(joint);
     if (torque.minCoeff() == torque.maxCoeff() && torque[0] == 0.0) {
-      return bad_data(fmt::format("channel 'torque_{}' is zero throughout: the torque was not recorded", joint + 1),
-                      "name the column of the motor's torque with --channels");
+      return bad_data(
+          fmt::format("channel 'torque_{}'{} is zero throughout: the torque was not recorded", joint + 1, named(joint)),
+          "name the column of the motor's torque with --channels");
     }
   }
   return {};

@@ -12,7 +12,9 @@
 #include "mbk/measure/preprocess/resample.h"
 #include "mbk/measure/preprocess/test_recordings.h"
 #include "mbk/model/robot/planar_mechanism.h"
+#include "mbk/model/robot/serial_chain.h"
 #include "mbk/model/robot/single_joint.h"
+#include "mbk/model/robot/test_chains.h"
 #include "mbk/model/robot/test_models.h"
 
 namespace mbk::preprocess {
@@ -81,6 +83,80 @@ TEST(SelectJointSignals, OfOneJointMayBeCalledPosition) {
   EXPECT_EQ(signals->position.col(0), x);
   EXPECT_EQ(signals->torque.col(0), 2.0 * x);
   EXPECT_EQ(signals->joint_reference.size(), 0);
+}
+
+/// Two joints that turn, called joint_1 and joint_2.
+std::shared_ptr<const robot::SerialChain> chain(const char* joints = "RR") {
+  return robot::SerialChain::from_urdf(robot::RandomChain(joints, 5).urdf(), {}).value();
+}
+
+/// As `swing`, with names of joints in their order; "" for one that has none.
+Recording swing_of(const std::vector<std::string>& joints, const std::vector<std::string>& torques) {
+  Recording recording = swing();
+  for (std::size_t k = 0; k < 2; ++k) {
+    recording.channels[k].origin.joint = joints[k];
+    recording.channels[k + 2].origin.joint = torques[k];
+    if (!joints[k].empty()) recording.channels[k].unit = "";
+    if (!torques[k].empty()) recording.channels[k + 2].unit = "";
+  }
+  return recording;
+}
+
+TEST(SelectJointSignals, TakesJointsByName) {
+  const Recording recording = swing_of({"joint_2", "joint_1"}, {"joint_2", "joint_1"});
+  const auto signals = select_joint_signals(recording, *chain(), false);
+  ASSERT_TRUE(signals) << signals.error().line();
+  EXPECT_EQ(signals->position.col(0), recording.find("joint_2")->values);
+  EXPECT_EQ(signals->position.col(1), recording.find("joint_1")->values);
+  EXPECT_EQ(signals->torque.col(0), recording.find("torque_2")->values);
+}
+
+TEST(SelectJointSignals, RefusesNamesThatAreNotTheRobotsWithBothLists) {
+  expect_refused(select_joint_signals(swing_of({"elbow", "joint_1"}, {"elbow", "joint_1"}), *chain(), false),
+                 "no joint 'joint_2'; its joints are 'elbow', 'joint_1', those of the robot 'joint_1', 'joint_2'");
+  expect_refused(select_joint_signals(swing_of({"joint_1", "joint_1"}, {"", ""}), *chain(), false),
+                 "more than one joint 'joint_1'");
+}
+
+TEST(SelectJointSignals, TakesWhatHasNoNamesByNumber) {
+  const Recording recording = swing_of({"joint_1", "joint_2"}, {"", ""});
+  const auto signals = select_joint_signals(recording, *chain(), false);
+  ASSERT_TRUE(signals) << signals.error().line();
+  EXPECT_EQ(signals->torque.col(0), recording.find("torque_1")->values);
+  EXPECT_TRUE(select_joint_signals(swing_of({"", ""}, {"", ""}), *chain(), false));
+  EXPECT_TRUE(select_joint_signals(swing_of({"elbow", "shoulder"}, {"elbow", "shoulder"}), kPlanar, false));
+}
+
+TEST(SelectJointSignals, RefusesTorquesWithoutNamesBesideJointsInAnotherOrder) {
+  expect_refused(select_joint_signals(swing_of({"joint_2", "joint_1"}, {"", ""}), *chain(), false),
+                 "only the channels joint_1… say to which joints they belong");
+}
+
+TEST(SelectJointSignals, RefusesMoreNamedJointsThanARobotWithoutNamesHas) {
+  Recording recording = swing_of({"elbow", "shoulder"}, {"elbow", "shoulder"});
+  recording.channels.push_back({"joint_3", "", "joint", recording.channels[0].values});
+  recording.channels.back().origin.joint = "wrist";
+  expect_refused(select_joint_signals(recording, kPlanar, false),
+                 "the recording has the joints 'elbow', 'shoulder', 'wrist', and the robot 2 without names");
+}
+
+TEST(SelectJointSignals, LeavesOutReferencesThatCountOtherwise) {
+  Recording recording = swing_of({"joint_2", "joint_1"}, {"joint_2", "joint_1"});
+  for (const char* name : {"reference_joint_1", "reference_joint_2"}) {
+    recording.channels.push_back({name, "rad", "joint", recording.channels[0].values});
+  }
+  EXPECT_EQ(select_joint_signals(recording, *chain(), false)->joint_reference.size(), 0);
+  recording.channels[0].origin.joint = recording.channels[2].origin.joint = "joint_1";
+  recording.channels[1].origin.joint = recording.channels[3].origin.joint = "joint_2";
+  EXPECT_EQ(select_joint_signals(recording, *chain(), false)->joint_reference.cols(), 2);
+}
+
+TEST(SelectJointSignals, ANamedJointHasTheUnitThatTheRobotSays) {
+  Recording recording = swing_of({"joint_1", "joint_2"}, {"joint_1", "joint_2"});
+  EXPECT_TRUE(select_joint_signals(recording, *chain("PR"), false));
+  recording.channels[0].unit = "rad";
+  expect_refused(select_joint_signals(recording, *chain("PR"), false),
+                 "'joint_1' is in rad, but this joint ('joint_1') needs m");
 }
 
 /// Checked over all of it.

@@ -34,6 +34,14 @@ Result<void> check_choices(const Options& options) {
   return {};
 }
 
+std::string why_missing(const Recording& recording, std::string_view channel) {
+  for (const std::string& note : recording.notes) {
+    const std::size_t end = note.find(':');
+    if (note.find("not taken") < end && note.find(channel) < end) return "; " + note;
+  }
+  return "";
+}
+
 Result<void> check_length(Index samples, const Inspection& inspection) {
   if (samples < kFewestSamples) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -14,6 +16,11 @@ namespace mbk::preprocess {
 
 /// Settings that no filter can have are refused before anything is sized by them.
 [[nodiscard]] Result<void> check_choices(const Options& options);
+
+/// What the reader says of a channel that is not there, to be put behind a message: "; '/ft' is not taken as force_x:
+/// …".
+/// "" where it says nothing.
+[[nodiscard]] std::string why_missing(const Recording& recording, std::string_view channel);
 
 /// About three for each parameter of one axis.
 inline constexpr Index kFewestSamples = 20;

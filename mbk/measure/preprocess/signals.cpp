@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
@@ -20,7 +21,8 @@ Result<Columns> require(const Recording& recording, const QuantityChannels& quan
     if (first.empty()) first = name;
   }
   for (const Channel& channel : recording.channels) present += (present.empty() ? "" : ", ") + channel.name;
-  return bad_data(fmt::format("channel {} is missing (there are: {})", missing, present.empty() ? "none" : present),
+  return bad_data(fmt::format("channel {} is missing (there are: {}){}", missing, present.empty() ? "none" : present,
+                              why_missing(recording, first)),
                   fmt::format("say where it is: --channels {}=COLUMN", first));
 }
 

@@ -66,6 +66,8 @@ class Mechanism {
   [[nodiscard]] virtual int joints() const = 0;
   /// What the joint is called; "1", "2", … where nobody named it.
   [[nodiscard]] virtual std::string joint_name(int joint) const;
+  /// Names that a description gives all joints, in their order; none where it gives none.
+  [[nodiscard]] virtual std::vector<std::string> joint_names() const { return {}; }
   /// Where the joint by itself may stand; check_joints may know more.
   [[nodiscard]] virtual JointRange joint_range(int joint) const = 0;
   /// The joint's coordinate is a length.

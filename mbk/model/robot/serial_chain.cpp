@@ -101,6 +101,11 @@ int SerialChain::joints() const {
 std::string SerialChain::joint_name(int joint) const {
   return parts_->descriptions[static_cast<std::size_t>(joint)].name;
 }
+std::vector<std::string> SerialChain::joint_names() const {
+  std::vector<std::string> names;
+  for (const Joint& joint : parts_->descriptions) names.push_back(joint.name);
+  return names;
+}
 JointRange SerialChain::joint_range(int joint) const {
   return parts_->descriptions[static_cast<std::size_t>(joint)].range;
 }

@@ -60,6 +60,7 @@ class SerialChain : public Mechanism {
 
   [[nodiscard]] int joints() const override;
   [[nodiscard]] std::string joint_name(int joint) const override;
+  [[nodiscard]] std::vector<std::string> joint_names() const override;
   [[nodiscard]] JointRange joint_range(int joint) const override;
   [[nodiscard]] bool slides(int joint) const override;
   [[nodiscard]] int hand_axes() const override;

@@ -18,6 +18,8 @@ struct ChannelOrigin {
   std::string source;  ///< "10", "-10", "force_x*8.1"; "" where the channel was not read from a file
   std::string unit;    ///< in which the file was taken to be: "mm"; "" where nothing said it and SI was assumed
   std::string called;  ///< channel that the file itself calls this column, where that is another one: "reference_x"
+  std::string joint =
+      {};  ///< of a joint's channel: the name of the joint in the file, "elbow_joint"; "" where it says none
 };
 
 /// Why samples of a channel are no measurements of their own.
