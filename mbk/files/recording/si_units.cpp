@@ -54,6 +54,77 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"uV", voltage, 1, 1e6},
 });
 
+/// Names that are spelled out, for which case does not count, and other spellings; in small letters.
+constexpr auto kSpellings = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"sec", "s"},
+    {"second", "s"},
+    {"msec", "ms"},
+    {"millisec", "ms"},
+    {"millisecond", "ms"},
+    {"usec", "us"},
+    {"microsec", "us"},
+    {"microsecond", "us"},
+    {"nsec", "ns"},
+    {"nanosecond", "ns"},
+    {"minute", "min"},
+    {"hour", "h"},
+    {"meter", "m"},
+    {"metre", "m"},
+    {"centimeter", "cm"},
+    {"centimetre", "cm"},
+    {"millimeter", "mm"},
+    {"millimetre", "mm"},
+    {"micrometer", "um"},
+    {"micrometre", "um"},
+    {"micron", "um"},
+    {"inch", "in"},
+    {"inches", "in"},
+    {"rad", "rad"},
+    {"radian", "rad"},
+    {"milliradian", "mrad"},
+    {"deg", "deg"},
+    {"degree", "deg"},
+    {"newton", "N"},
+    {"kilonewton", "kN"},
+    {"millinewton", "mN"},
+    {"n-m", "N.m"},
+    {"newton meter", "N.m"},
+    {"newton-meter", "N.m"},
+    {"newtonmeter", "N.m"},
+    {"newton metre", "N.m"},
+    {"newton-metre", "N.m"},
+    {"n-mm", "N.mm"},
+    {"newton millimeter", "N.mm"},
+    {"newton-millimeter", "N.mm"},
+    {"newton millimetre", "N.mm"},
+    {"m/s^2^", "m/s2"},
+    {"m/s/s", "m/s2"},
+    {"m/s**2", "m/s2"},
+    {"m s-2", "m/s2"},
+    {"m s^-2", "m/s2"},
+    {"m s**-2", "m/s2"},
+    {"rad s-2", "rad/s2"},
+    {"n m", "N.m"},
+    {"volt", "V"},
+    {"millivolt", "mV"},
+    {"microvolt", "uV"},
+});
+
+/// The unit of a spelling; one that ends in s may be more than one of it.
+const Unit* spelled_out(std::string_view name) {
+  constexpr std::size_t kShortest = 3, kLongest = 24;
+  if (name.size() < kShortest || name.size() > kLongest) return nullptr;
+  std::string small(name);
+  std::ranges::transform(small, small.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  auto found = std::ranges::find(kSpellings, small, &std::pair<std::string_view, std::string_view>::first);
+  if (found == kSpellings.end() && small.back() == 's') {
+    small.pop_back();
+    found = std::ranges::find(kSpellings, small, &std::pair<std::string_view, std::string_view>::first);
+  }
+  return found == kSpellings.end() ? nullptr : &*std::ranges::find(kUnits, found->second, &Unit::name);
+}
+
 /// "us" of "µs", "N.m" of "N·m", "m/s2" of "m/s²": signs for which there are letters.
 std::string in_ascii(std::string_view name) {
   constexpr auto kSigns = std::to_array<std::pair<std::string_view, char>>(
@@ -67,62 +138,14 @@ std::string in_ascii(std::string_view name) {
   return plain;
 }
 
-using SpeltUnit = std::pair<std::string_view, std::string_view>;
-
-/// "ms" of "Milliseconds", "N.m" of "newton-meters", "m/s2" of "m s-2"; "" of what is no unit that is spelt out.
-std::string spelt_out(std::string_view name) {
-  constexpr auto kOtherSigns = std::to_array<SpeltUnit>({{"m s-2", "m/s2"},
-                                                         {"m s^-2", "m/s2"},
-                                                         {"m s**-2", "m/s2"},
-                                                         {"m/s**2", "m/s2"},
-                                                         {"m/s/s", "m/s2"},
-                                                         {"rad s-2", "rad/s2"},
-                                                         {"N m", "N.m"},
-                                                         {"N-m", "N.m"}});
-  constexpr auto kPrefixes =
-      std::to_array<SpeltUnit>({{"milli", "m"}, {"micro", "u"}, {"nano", "n"}, {"centi", "c"}, {"kilo", "k"}});
-  constexpr auto kWords = std::to_array<SpeltUnit>({{"second", "s"},
-                                                    {"sec", "s"},
-                                                    {"msec", "ms"},
-                                                    {"usec", "us"},
-                                                    {"nsec", "ns"},
-                                                    {"meter", "m"},
-                                                    {"metre", "m"},
-                                                    {"inch", "in"},
-                                                    {"inche", "in"},
-                                                    {"radian", "rad"},
-                                                    {"degree", "deg"},
-                                                    {"newton", "N"},
-                                                    {"newtonmeter", "N.m"},
-                                                    {"newtonmetre", "N.m"},
-                                                    {"newtonmillimeter", "N.mm"},
-                                                    {"volt", "V"}});
-  const auto other = std::ranges::find(kOtherSigns, name, &SpeltUnit::first);
-  if (other != kOtherSigns.end()) return std::string(other->second);
-  std::string letters;
-  for (const char c : name) {
-    if (c != ' ' && c != '-' && c != '*' && c != '.') letters += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
-  }
-  std::string_view word = letters;
-  const auto prefix =
-      std::ranges::find_if(kPrefixes, [&](const SpeltUnit& one) { return word.starts_with(one.first); });
-  if (prefix != kPrefixes.end()) word.remove_prefix(prefix->first.size());
-  const auto found = std::ranges::find_if(kWords, [&](const SpeltUnit& one) {
-    return word.starts_with(one.first) && (word.size() == one.first.size() || word.substr(one.first.size()) == "s");
-  });
-  if (found == kWords.end()) return "";
-  return std::string(prefix != kPrefixes.end() ? prefix->second : "") + std::string(found->second);
-}
-
 }  // namespace
 
 const Unit* find_unit(std::string_view name) {
   const auto unit = std::ranges::find(kUnits, name, &Unit::name);
   if (unit != kUnits.end()) return &*unit;
-  if (const std::string plain = in_ascii(name); plain != name) return find_unit(plain);
-  const std::string symbol = spelt_out(name);
-  const auto spelt = std::ranges::find(kUnits, symbol, &Unit::name);
-  return spelt == kUnits.end() ? nullptr : &*spelt;
+  if (const Unit* const spelled = spelled_out(name)) return spelled;
+  const std::string plain = in_ascii(name);
+  return plain == name ? nullptr : find_unit(plain);
 }
 
 std::string_view si_unit(Dimension dimension) {

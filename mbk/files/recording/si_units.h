@@ -20,8 +20,8 @@ struct Unit {
   [[nodiscard]] double to_si(double value) const { return value * multiply / divide; }
 };
 
-/// The unit of that name ("mm", "µs", "N.m", "N·m", "Nm", "m/s2", "m/s²", "m/s^2"), also spelt out ("milliseconds",
-/// "Newton", "degrees"), or nullptr. Case counts where it is not: mN is not MN.
+/// The unit of that name ("mm", "µs", "N.m", "N·m", "Nm", "m/s2", "m/s²", "m/s^2"), or nullptr. Case counts: mN is not
+/// MN. It does not count in names that are spelled out ("Millimeters", "sec", "degrees", "newtons").
 [[nodiscard]] const Unit* find_unit(std::string_view name);
 
 /// The SI unit of a dimension, as Channel::unit writes it.
