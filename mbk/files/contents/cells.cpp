@@ -87,6 +87,18 @@ std::optional<double> zone(std::string_view text) {
   return west ? -offset : offset;
 }
 
+/// "1.#QNAN", "-1.#IND00", "1.#INF": not a number and infinity as programs of Windows wrote them until 2015.
+std::optional<double> old_windows_number(std::string_view cell) {
+  const bool negative = take(cell, '-');
+  if (!take(cell, '1') || (!take(cell, '.') && !take(cell, ',')) || !take(cell, '#')) return std::nullopt;
+  cell = cell.substr(0, cell.find_last_not_of('0') + 1);  // a format may ask for more digits
+  for (const std::string_view none : {"QNAN", "SNAN", "IND"}) {
+    if (cell == none) return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (cell != "INF") return std::nullopt;
+  return negative ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 std::string_view without_quotes(std::string_view cell) {
@@ -104,7 +116,7 @@ std::optional<double> general_number(std::string_view cell) {
   }
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (end != cell.data() + cell.size()) return std::nullopt;
+  if (end != cell.data() + cell.size()) return old_windows_number(cell);
   if (error == std::errc()) return value;
   if (error != std::errc::result_out_of_range) return std::nullopt;
   value = std::strtod(std::string(cell).c_str(), nullptr);  // too small is 0 or subnormal; too large is not a number

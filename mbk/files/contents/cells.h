@@ -34,7 +34,8 @@ struct NumberAhead {
   return ahead.value;
 }
 
-/// Any number with a decimal point, in quotes or not; NaN where the cell is empty; nothing where it is not a number.
+/// Any number with a decimal point, in quotes or not; NaN where the cell is empty or says so ("nan", "-nan(ind)",
+/// "1.#QNAN"); nothing where it is not a number.
 [[nodiscard]] std::optional<double> general_number(std::string_view cell);
 
 /// The same, of a cell that is likely to be plain.

@@ -28,7 +28,7 @@ class TextLines {
     const std::size_t end = std::min(text_.find('\n', begin_), text_.size());
     TextLine line{++number_, text_.substr(begin_, end - begin_), end < text_.size()};
     begin_ = end + 1;
-    if (line.text.ends_with('\r')) line.text.remove_suffix(1);
+    while (line.text.ends_with('\r')) line.text.remove_suffix(1);  // twice where a text was copied as text again
     return line;
   }
   /// Behind lines of blanks.

@@ -93,6 +93,7 @@ class Table {
   Result<void> read(CsvText& text) {
     contents.format = "CSV";
     contents.table = true;
+    line_end_ = text.line_end();
     take_comments(text, contents);
     auto head = find_table(text);
     if (!head) return tl::unexpected(head.error());
@@ -226,8 +227,10 @@ class Table {
       keep(c, {at - ahead.length, ahead.length}, ahead.value);
       if (c + 1 < columns_ && *at++ != head_.separator) return nullptr;
     }
-    if (*at == '\r') ++at;
-    return at != end && *at == '\n' ? at + 1 : nullptr;
+    if (line_end_ == '\n') {
+      while (at != end && *at == '\r') ++at;
+    }
+    return at != end && *at == line_end_ ? at + 1 : nullptr;
   }
 
   /// The number of a cell in the row that is worked on.
@@ -453,7 +456,7 @@ class Table {
   /// a text that is not all there, as many as its first part lets one expect.
   void make_room(const CsvText& text) {
     const std::string_view there = text.so_far();
-    const auto ends = static_cast<std::size_t>(std::ranges::count(there, '\n'));
+    const auto ends = static_cast<std::size_t>(std::ranges::count(there, line_end_));
     const double parts = 1.02 * static_cast<double>(text.size()) / static_cast<double>(there.size());
     const auto expected = text.is_complete() ? ends : static_cast<std::size_t>(static_cast<double>(ends) * parts);
     contents.arrays.resize(columns_);
@@ -465,6 +468,7 @@ class Table {
   std::vector<CsvColumn> kinds_;
   std::vector<Odd> odd_;   ///< the line that is worked on, where it is not as most are
   bool trailing_ = false;  ///< every line ends with a separator
+  char line_end_ = '\n';
   bool decimal_commas_ = false, comma_is_sure_ = false;
   std::string comma_cell_;  ///< the first that has one
   TableColumns rows_;       ///< complete ones so far, and the one that is worked on

@@ -108,6 +108,27 @@ TEST(DecodeCsv, ReadsEmptyCellsAsNaN) {
   EXPECT_EQ(values(1, 1), 2);
 }
 
+TEST(DecodeCsv, ReadsNotANumberInEverySpelling) {
+  for (const char* cell :
+       {"-nan(ind)", "-nan", "1.#IND", "-1.#IND", "1.#QNAN", "1.#QNAN0", "-1.#IND00", "1.#SNAN", "NAN"}) {
+    EXPECT_TRUE(std::isnan(values_of(std::string("a,b\n1,") + cell + "\n2,3\n")(0, 1))) << cell;
+  }
+  EXPECT_EQ(values_of("a,b\n1,1.#INF\n2,-1.#INF00\n"), (Matrix(2, 2) << 1, HUGE_VAL, 2, -HUGE_VAL).finished());
+  for (const char* none : {"1.#", "1.#I", "2.#IND", "1.#INDX", "1.5#IND", "#IND"}) {
+    EXPECT_EQ(obstacle_of(std::string("a,b\n1,") + none + "\n2,3\n", 1).where, "line 2, column 2") << none;
+  }
+}
+
+TEST(DecodeCsv, ReadsLineEndsOfEveryKind) {
+  for (const std::string_view end : {"\n", "\r\n", "\r\r\n", "\r"}) {
+    std::string text = "t,x\n0,1.5\n0.25,-2\n";
+    for (auto at = text.find('\n'); at != text.npos; at = text.find('\n', at + end.size())) text.replace(at, 1, end);
+    EXPECT_EQ(values_of(text), kTwoByTwo) << end.size();
+    EXPECT_EQ(names_of(text), (std::vector<std::string>{"t", "x"}));
+    EXPECT_THAT(csv(text)->notes, testing::IsEmpty());
+  }
+}
+
 TEST(DecodeCsv, ReadsOneNumberPerLine) {
   EXPECT_EQ(values_of("1\n2\n3\n"), Vector::LinSpaced(3, 1, 3));
 }

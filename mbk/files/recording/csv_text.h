@@ -21,12 +21,15 @@ struct CsvLine {
 /// The text, all of it or as far as it was read.
 class CsvText {
  public:
-  explicit CsvText(std::string_view all) : so_far_(all), size_(all.size()) {}
-  explicit CsvText(FileInPassing& file) : file_(&file), so_far_(file.text()), size_(file.size()) {}
+  explicit CsvText(std::string_view all) : so_far_(all), size_(all.size()), line_end_(line_end_of(all)) {}
+  explicit CsvText(FileInPassing& file)
+      : file_(&file), so_far_(file.text()), size_(file.size()), line_end_(line_end_of(file.text())) {}
 
   [[nodiscard]] std::string_view so_far() const { return so_far_; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool is_complete() const { return so_far_.size() == size_; }
+  /// The last character of a line end: a line feed, or in a text without any a carriage return.
+  [[nodiscard]] char line_end() const { return line_end_; }
   /// Whether there is more than before.
   bool read_on() {
     if (is_complete() || !status_) return false;
@@ -40,9 +43,14 @@ class CsvText {
   [[nodiscard]] const Result<void>& status() const { return status_; }
 
  private:
+  static char line_end_of(std::string_view text) {
+    return text.find('\n') == text.npos && text.find('\r') != text.npos ? '\r' : '\n';
+  }
+
   FileInPassing* file_ = nullptr;
   std::string_view so_far_;
   std::size_t size_;
+  char line_end_;
   Result<void> status_;
 };
 
@@ -69,17 +77,17 @@ class CsvLines {
   }
 
   std::optional<CsvLine> next_of_all() {
-    std::size_t end = text_.so_far().find('\n', begin_);
+    std::size_t end = text_.so_far().find(text_.line_end(), begin_);
     for (std::size_t seen = text_.so_far().size(); end == std::string_view::npos && text_.read_on();
          seen = text_.so_far().size()) {
-      end = text_.so_far().find('\n', seen);
+      end = text_.so_far().find(text_.line_end(), seen);
     }
     const std::string_view text = text_.so_far();
     end = std::min(end, text.size());
     if (begin_ == text.size() || !text_.status()) return std::nullopt;
     CsvLine line{++number_, text.substr(begin_, end - begin_), end < text.size()};
     begin_ = std::min(end + 1, text.size());
-    if (line.text.ends_with('\r')) line.text.remove_suffix(1);
+    while (line.text.ends_with('\r')) line.text.remove_suffix(1);  // twice where a text was copied as text again
     return line;
   }
 

@@ -34,14 +34,6 @@ std::string line_place(std::size_t line) {
   return fmt::format("line {}", line);
 }
 
-/// A number, or NaN where it is missing.
-std::optional<double> number_or_missing(std::string_view cell) {
-  if (const auto value = cell_number(cell)) return value;
-  const std::string lower = in_lower_case(cell);
-  if (lower == "-nan" || lower.find("#qnan") != lower.npos || lower.find("#ind") != lower.npos) return kMissing;
-  return std::nullopt;
-}
-
 std::optional<double> positive_number(std::string_view text) {
   const auto value = general_number(text);
   return value && *value > 0.0 && *value < 1e300 ? value : std::nullopt;
@@ -54,7 +46,7 @@ class Rows {
 
   Result<void> add(const TextLine& line, const std::vector<std::string_view>& cells) {
     for (std::size_t c = 0; c < numbers_.size(); ++c) {
-      const auto value = c < cells.size() ? number_or_missing(cells[c]) : kMissing;
+      const auto value = c < cells.size() ? cell_number(cells[c]) : kMissing;
       if (!value) {
         return bad_data(fmt::format("'{}' is not a number", printable(std::string(cells[c].substr(0, 40)))),
                         "write it again with the program that made it",
