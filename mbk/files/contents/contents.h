@@ -54,8 +54,10 @@ struct Contents {
   std::string format;  ///< "CSV", "C3D", "MAT v7", "HDF5", "XDF", …
   bool table = false;  ///< CSV, C3D: the arrays are columns, and a number in the channel map counts them
   std::vector<Array> arrays;
-  std::string angle_unit = {};  ///< in which columns of angles are, where the file says it once for all: "deg"
-  std::vector<Clock> clocks;    ///< empty where one time, or one rate, is that of all arrays
+  std::vector<std::string> units = {};  ///< that the file says once for all: "deg" of angles, "mm" of lengths
+  double rate_hz = 0.0;                 ///< that it says once for all arrays; 0 where it does not
+  std::string rate_from = {};           ///< where it says so, for messages: "line 1, 'Fs,1000'"
+  std::vector<Clock> clocks;            ///< empty where one time, or one rate, is that of all arrays
   std::vector<Text> texts;
   std::map<std::string, std::string> metadata;  ///< what `take_annotations` found
   std::vector<Event> events;                    ///< the same

@@ -434,7 +434,7 @@ class Assembler {
 
   /// The unit that the file says beside the name of an array, or else the one that its name says.
   Result<const Unit*> unit_said(const ChannelKind& kind, const Array& array, const Unit* in_name) {
-    if (array.unit.empty()) return in_name != nullptr ? Result<const Unit*>(in_name) : unit_of_angle(kind, array);
+    if (array.unit.empty()) return in_name != nullptr ? Result<const Unit*>(in_name) : unit_for_all(kind, array);
     const Unit* const unit = find_unit(array.unit);
     if (kind.measures.empty() || (unit != nullptr && kind.accepts(*unit))) return unit;
     return bad_data(fmt::format("the file says that '{}' is in '{}', which channel {} cannot be in", array.name,
@@ -443,17 +443,23 @@ class Assembler {
                                 unit_names(kind.measures)));
   }
 
-  /// The unit of angles that the file says for all of its columns, where the channel is an angle.
-  Result<const Unit*> unit_of_angle(const ChannelKind& kind, const Array& array) {
-    const Unit* const unit = find_unit(contents_.angle_unit);
-    if (unit == nullptr || kind.measures.empty() || !kind.accepts(*unit)) return nullptr;
-    if (!kind.first_unless_said && kind.measures.size() > 1) {
-      return bad_data(
-          fmt::format("the file says that its angles are in {}, and not whether '{}' is one", unit->name, array.name),
-          fmt::format("say its unit, as in --channels {}={}:{}", kind.alias, array.name, unit->name));
+  /// The unit that the file says for all columns of what the channel measures.
+  Result<const Unit*> unit_for_all(const ChannelKind& kind, const Array& array) {
+    for (const std::string& name : contents_.units) {
+      const Unit* const unit = find_unit(name);
+      if (unit == nullptr || kind.measures.empty() || !kind.accepts(*unit)) continue;
+      if (kind.first_unless_said && unit->dimension != kind.measures.front()) continue;
+      const std::string_view quantity = dimension_name(unit->dimension);
+      if (!kind.first_unless_said && kind.measures.size() > 1) {
+        return bad_data(fmt::format("the file says that its {} are in {}, and not whether '{}' is one", quantity,
+                                    unit->name, array.name),
+                        fmt::format("say its unit, as in --channels {}={}:{}", kind.alias, array.name, unit->name));
+      }
+      recording_.notes.push_back(
+          fmt::format("{} is taken in {}, as the file says of its {}", kind.name, unit->name, quantity));
+      return unit;
     }
-    recording_.notes.push_back(fmt::format("{} is taken in {}, as the file says of its angles", kind.name, unit->name));
-    return unit;
+    return nullptr;
   }
 
   Result<void> follow_map() {
@@ -497,7 +503,7 @@ class Assembler {
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
       } else if (signal.is_plain()) {
-        const auto unit = unit_of_angle(*kind, *line->array);
+        const auto unit = unit_for_all(*kind, *line->array);
         if (!unit) return tl::unexpected(unit.error());
         signal.unit = *unit;
       }
@@ -1099,15 +1105,16 @@ class Assembler {
         "leave --rate out, or correct the unit of time (--channels time=…:ms)");
   }
 
-  /// [Hz] of the signals, which have one; 0 where the file says none.
+  /// [Hz] of the samples that were taken, as the file says it beside its time; 0 where it does not.
   [[nodiscard]] double said_rate() const {
     const auto said = std::ranges::find_if(signals_, [](const Signal& s) { return s.line.rate_hz() > 0.0; });
-    return said == signals_.end() ? 0.0 : said->line.rate_hz();
+    return said != signals_.end() ? said->line.rate_hz()
+                                  : contents_.rate_hz / static_cast<double>(signals_.front().line.step);
   }
 
-  /// A rate that the file says beside its time. Devices miss their rate by some per cent; a time in another unit, or of
-  /// another signal, differs by more.
-  [[nodiscard]] Result<void> check_said_rate() const {
+  /// A rate that the file says beside its time. Devices miss their rate by some per cent, so that the time goes before
+  /// it; a time in another unit, or of another signal, differs by more.
+  [[nodiscard]] Result<void> check_said_rate() {
     constexpr double kNominal = 0.1;
     const auto differs = [](double rate_hz, double said_hz) {
       return !(std::abs(rate_hz - said_hz) <= kNominal * said_hz);
@@ -1115,15 +1122,22 @@ class Assembler {
     const double said = said_rate();
     if (said == 0.0 || clock_ != nullptr || states_time_) return {};
     const Index last = recording_.time.size() - 1;
-    if (!differs(static_cast<double>(last) / (recording_.time[last] - recording_.time[0]), said)) return {};
+    const double mean = static_cast<double>(last) / (recording_.time[last] - recording_.time[0]);
+    if (same_rate(mean, said)) return {};
     const double own = inspect(recording_).rate_hz;
-    if (!differs(own, said)) return {};
+    if (!std::isfinite(own) || same_rate(own, said)) return {};
+    const std::string both =
+        fmt::format("the file says a rate of {:.6g} Hz{}, and its time '{}' runs at {:.6g} Hz", said,
+                    contents_.rate_from.empty() ? "" : fmt::format(" ({})", contents_.rate_from),
+                    recording_.time_origin.source, own);
+    if (!differs(mean, said) || !differs(own, said)) {
+      recording_.notes.push_back(both + ", which was taken");
+      return {};
+    }
     const double ratio = said / own;
     const std::string_view unit = !differs(ratio, 1e9) ? "ns" : !differs(ratio, 1e6) ? "us" : "ms";
-    return bad_data(
-        fmt::format("the file says a rate of {} Hz, and its time '{}' runs at {:.6g} Hz", said,
-                    recording_.time_origin.source, own),
-        fmt::format("say the unit of the time, as in --channels time={}:{}", recording_.time_origin.source, unit));
+    return bad_data(both, fmt::format("say the unit of the time, as in --channels time={}:{}, or correct the rate",
+                                      recording_.time_origin.source, unit));
   }
 
   Contents contents_;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/csv_text.h"
 #include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/preamble.h"
 #include "mbk/files/recording/table_columns.h"
 
 namespace mbk::recording {
@@ -98,6 +100,7 @@ class Table {
     auto head = find_table(text);
     if (!head) return tl::unexpected(head.error());
     head_ = std::move(*head);
+    take_preamble();
     CsvLines lines(text);
     std::optional<CsvLine> line = lines.next();
     if (head_.first_row == 0) return no_numbers(text, lines, line);
@@ -128,6 +131,17 @@ class Table {
   }
 
  private:
+  /// What the lines above the table say of all its columns.
+  void take_preamble() {
+    Preamble said = read_preamble(head_.above);
+    head_.above.clear();
+    contents.rate_hz = said.rate_hz.value_or(0.0);
+    contents.rate_from = std::move(said.rate_from);
+    for (const Unit* unit : said.units) contents.units.emplace_back(unit->name);
+    head_.notes.insert(head_.notes.end(), std::make_move_iterator(said.notes.begin()),
+                       std::make_move_iterator(said.notes.end()));
+  }
+
   /// Why this text is no table: its second line, or the only one, holds none.
   static Result<void> no_numbers(const CsvText& text, CsvLines& lines, std::optional<CsvLine> line) {
     const auto second = line ? lines.next() : std::nullopt;

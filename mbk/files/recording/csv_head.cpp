@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -10,6 +11,8 @@
 #include "mbk/files/contents/cells.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/csv_text.h"
+#include "mbk/files/recording/encode.h"
+#include "mbk/files/recording/preamble.h"
 
 namespace mbk::recording {
 namespace {
@@ -205,6 +208,7 @@ class HeadFinder {
       if (line->text.find_first_not_of(" \t") == line->text.npos) continue;
       if (is_comment(line->text)) {
         comment_ = *line;
+        if (comments_.size() < kMany) comments_.push_back(*line);
         continue;
       }
       lines_.push_back(*line);
@@ -232,21 +236,35 @@ class HeadFinder {
     while (last > 0 && !(lines[last - 1].numbers > 0 && reading_.is_row(lines[last - 1]))) --last;
     if (last == 0) return {};
     std::size_t first = last - 1;
-    while (first > 0 && reading_.is_row(lines[first - 1])) --first;
+    while (first > 0 && reading_.is_row(lines[first - 1]) && !states(lines[first - 1])) --first;
     std::size_t above = first;  // lines that stand above the table and its header
-    if (first > 0 && is_header(lines[first - 1], lines[first])) {
+    const bool stated = first > 0 && states(lines[first - 1]);
+    if (first > 0 && !stated && is_header(lines[first - 1], lines[first])) {
       above = take_header(first - 1);
     } else if (is_header_with_numbers(first, last)) {
       head_.names = texts_of(lines[first].line->text, reading_.separator);
       head_.header_line = lines[first].line->number;
       ++first;
-    } else if (first > 0 && lines[first - 1].cells.size() > 1 && reading_.separator != kBlanks) {
+    } else if (first > 0 && !stated && lines[first - 1].cells.size() > 1 && reading_.separator != kBlanks) {
       above = take_header(first - 1);  // which does not fit: that is said where the columns are counted
     } else {
       take_comment(first);
     }
     head_.first_row = lines[first].line->number;
     return check_above(above);
+  }
+
+  /// Whether a line says a rate or a unit, as "Fs,1000": it then is neither a row nor a header.
+  [[nodiscard]] static bool states(const Parted& line) { return line.texts > 0 && is_statement(*line.line); }
+
+  /// "Channels,5,Gain,2": words and numbers in turns.
+  [[nodiscard]] static bool is_pairs(const Parted& line) {
+    std::size_t last = line.cells.size();
+    while (last > 0 && line.cells[last - 1] == Cell::empty) --last;
+    for (std::size_t c = 0; c < last; ++c) {
+      if ((line.cells[c] == Cell::text) != (c % 2 == 0)) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] static bool is_header(const Parted& line, const Parted& row) {
@@ -318,13 +336,22 @@ class HeadFinder {
     std::size_t lines = 0;
     for (std::size_t k = 0; k < above; ++k) {
       const Parted& line = reading_.lines[k];
-      if (line.is_bare() || (line.numbers > 1 && line.cells.size() == reading_.width && reading_.width > 2)) {
+      if (line.is_bare() ||
+          (line.numbers > 1 && line.cells.size() == reading_.width && reading_.width > 2 && !is_pairs(line))) {
         return bad_data(
             fmt::format("numbers stand above the header in line {}, so that the file may hold several tables",
                         head_.header_line > 0 ? head_.header_line : head_.first_row),
             "write each table to a file of its own", fmt::format("line {}", line.line->number));
       }
       ++lines;
+      head_.above.push_back(*line.line);
+    }
+    if (!text_.so_far().starts_with(fmt::format("# {}", kLayout))) {  // our own writer's, which are read as such
+      const auto is_above = [&](const CsvLine& comment) {
+        return comment.number < head_.first_row && comment.number != head_.header_line;
+      };
+      std::ranges::copy_if(comments_, std::back_inserter(head_.above), is_above);
+      std::ranges::sort(head_.above, {}, &CsvLine::number);
     }
     if (lines > 0) {
       head_.notes.push_back(fmt::format("{} above the table {} not read",
@@ -366,6 +393,7 @@ class HeadFinder {
   std::vector<std::optional<CsvLine>>
       comments_above_;              ///< of each line, the last comment between it and the one before
   std::optional<CsvLine> comment_;  ///< since the last line
+  std::vector<CsvLine> comments_;   ///< the first of all
   char said_ = 0;                   ///< by "sep=;" in the first line
   bool all_ = false;                ///< these are all lines that there are
   Reading reading_;

@@ -135,6 +135,7 @@ struct CsvHead {
   std::vector<std::string> names;  ///< of the columns, as they stand; empty where there is no header
   std::size_t header_line = 0;     ///< its number
   std::vector<std::string> units;  ///< of the columns, where a line says them
+  std::vector<CsvLine> above;      ///< lines of text and comments above all of this
   std::vector<std::string> notes;
 };
 

@@ -148,6 +148,28 @@ const Unit* find_unit(std::string_view name) {
   return plain == name ? nullptr : find_unit(plain);
 }
 
+std::string_view dimension_name(Dimension dimension) {
+  switch (dimension) {
+    case time:
+      return "times";
+    case length:
+      return "lengths";
+    case angle:
+      return "angles";
+    case force:
+      return "forces";
+    case torque:
+      return "torques";
+    case acceleration:
+      return "accelerations";
+    case angular_acceleration:
+      return "angular accelerations";
+    case voltage:
+      return "voltages";
+  }
+  return "";
+}
+
 std::string_view si_unit(Dimension dimension) {
   return std::ranges::find(kUnits, dimension, &Unit::dimension)->name;
 }

@@ -24,6 +24,9 @@ struct Unit {
 /// MN. It does not count in names that are spelled out ("Millimeters", "sec", "degrees", "newtons").
 [[nodiscard]] const Unit* find_unit(std::string_view name);
 
+/// "lengths", "angles": what is measured in units of a dimension, for messages.
+[[nodiscard]] std::string_view dimension_name(Dimension dimension);
+
 /// The SI unit of a dimension, as Channel::unit writes it.
 [[nodiscard]] std::string_view si_unit(Dimension dimension);
 

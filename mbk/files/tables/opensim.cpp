@@ -144,7 +144,7 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
   compare_counts(said("nrows", "datarows"), rows.count(), "rows", contents);
   compare_counts(said("ncolumns", "datacolumns"), labels.size(), "columns", contents);
   if (const auto entry = header.find("indegrees"); entry != header.end() && entry->second == "yes") {
-    contents.angle_unit = "deg";
+    contents.units = {"deg"};
   }
   for (std::size_t c = 0; c < labels.size(); ++c) {
     Array& array = contents.arrays.emplace_back();

@@ -14,7 +14,7 @@ namespace mbk::recording {
 
 /// Reads such a table, with headers of today ("nRows=100") and old ones ("datarows 100"). Blank cells and NaN in any
 /// case are missing. Where the header says inDegrees=yes, columns that are angles are in degrees
-/// (Contents::angle_unit).
+/// (Contents::units).
 /// @fails  data: no labels, or no rows; a line with more or fewer numbers than there are labels; what is not a number.
 [[nodiscard]] Result<Contents> decode_opensim(std::span<const std::byte> file);
 

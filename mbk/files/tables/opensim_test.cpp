@@ -40,7 +40,7 @@ TEST(DecodeOpensim, ReadsTablesOfToday) {
   const auto contents = decode_opensim(std::as_bytes(std::span(kMotion)));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_THAT(names_of(*contents), ElementsAre("time", "q1", "F"));
-  EXPECT_EQ(contents->angle_unit, "deg");
+  EXPECT_THAT(contents->units, ElementsAre("deg"));
   EXPECT_EQ(contents->arrays[2].values, Vector::LinSpaced(3, 1, 3));
   EXPECT_EQ(contents->arrays[1].values(0, 0), 90);
   EXPECT_TRUE(std::isnan(contents->arrays[1].values(1, 0)) && std::isnan(contents->arrays[1].values(2, 0)));
@@ -53,7 +53,7 @@ TEST(DecodeOpensim, ReadsOldTables) {
   const auto contents = decode_opensim(std::as_bytes(std::span(old)));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_THAT(names_of(*contents), ElementsAre("time", "x"));
-  EXPECT_EQ(contents->angle_unit, "");
+  EXPECT_TRUE(contents->units.empty());
   EXPECT_TRUE(std::isnan(contents->arrays[1].values(1, 0)));
   EXPECT_THAT(contents->notes, Contains("the header says 9 rows, and there are 2: the file may have been cut off"));
 }
