@@ -414,13 +414,16 @@ class Assembler {
     return {};
   }
 
+  static bool same_numbers(const Array& a, const Array& b) {
+    const SharedMatrix &one = a.values, &other = b.values;
+    return a.clock == b.clock && a.rate_hz == b.rate_hz && one.size() == other.size() && one.size() > 0 &&
+           std::memcmp(one.data(), other.data(), static_cast<std::size_t>(one.size()) * sizeof(double)) == 0;
+  }
+
   /// A channel that a file has under two names, by a link or a copy, is taken once.
   void drop_second_names() {
     const auto same = [](const Signal& a, const Signal& b) {
-      const SharedMatrix &one = a.line.array->values, &other = b.line.array->values;
-      return a.kind == b.kind && a.unit == b.unit && a.line.array->clock == b.line.array->clock &&
-             a.line.rate_hz() == b.line.rate_hz() && one.size() == other.size() && one.size() > 0 &&
-             std::memcmp(one.data(), other.data(), static_cast<std::size_t>(one.size()) * sizeof(double)) == 0;
+      return a.kind == b.kind && a.unit == b.unit && same_numbers(*a.line.array, *b.line.array);
     };
     for (std::size_t i = 1; i < signals_.size(); ++i) {
       const auto first = std::find_if(signals_.begin(), signals_.begin() + static_cast<std::ptrdiff_t>(i),
@@ -578,6 +581,12 @@ class Assembler {
     if (called.empty() && last_part_called.size() == 1) called = std::move(last_part_called);
     if (called.empty()) return {};
     const Array& array = *called.front();
+    for (const Array* other : called) {
+      if (same_numbers(array, *other)) continue;
+      return bad_data(fmt::format("{} and {} both may be the time", place_of(array), place_of(*other)),
+                      fmt::format("say which in --channels, as in time={} or time={}", shortest_source(array),
+                                  shortest_source(*other)));
+    }
     const auto unit = unit_said(*time, array, parse_column_name(leaf(array.name)).unit);
     if (!unit) return tl::unexpected(unit.error());
     signals_.push_back({time, vector_of(array), *unit, false, array.name, array.name});
@@ -588,12 +597,51 @@ class Assembler {
   /// Whether the array's name is that of this one line.
   [[nodiscard]] bool is_named(const Line& line) const { return contents_.table || !is_matrix(*line.array); }
 
+  /// The number of an array as a column, from 1.
+  [[nodiscard]] Index column_of(const Array& array) const { return &array - contents_.arrays.data() + 1; }
+  /// How a map names an array of which there may be two with one name.
+  [[nodiscard]] std::string shortest_source(const Array& array) const {
+    return contents_.table ? std::to_string(column_of(array)) : array.name;
+  }
+  [[nodiscard]] std::string place_of(const Array& array) const {
+    const bool repeated = std::ranges::count(contents_.arrays, array.name, &Array::name) > 1;
+    return fmt::format("'{}'{}", array.name, repeated ? fmt::format(" (column {})", column_of(array)) : "");
+  }
+
+  /// A name that stands twice says nothing, unless both hold the same numbers.
+  [[nodiscard]] Result<void> refuse_repeated(const ChannelSource& entry) const {
+    std::vector<const Array*> called;
+    for (const Array& array : contents_.arrays) {
+      if (array.name == entry.source) called.push_back(&array);
+    }
+    const auto differs = [&](const Array* other) {
+      return other->obstacle.has_value() || !same_numbers(*called.front(), *other);
+    };
+    if (called.size() < 2 || std::ranges::none_of(called, differs)) return {};
+    std::vector<std::string> columns, others;
+    for (const Array* array : called) {
+      columns.push_back(std::to_string(column_of(*array)));
+      if (array != called.front()) others.push_back(fmt::format("{}={}", entry.channel, columns.back()));
+    }
+    std::vector<std::string> map;
+    for (const ChannelSource& one : options_.channels) {
+      const bool this_one = one.channel == entry.channel;
+      map.push_back(fmt::format("{}={}{}{}{}", one.channel, one.negate ? "-" : "",
+                                this_one ? columns.front() : one.source, one.unit.empty() ? "" : ":", one.unit));
+    }
+    return bad_data(
+        fmt::format("channel {}: the name '{}' stands {} times, in the columns {}", entry.channel, entry.source,
+                    called.size(), fmt::join(columns, ", ")),
+        fmt::format("say which by its number: --channels {} (or {})", fmt::join(map, ","), fmt::join(others, ", ")));
+  }
+
   /// @param asked  the whole of what the map says, for messages
   Result<Line> source(const ChannelSource& entry, const std::string& asked) {
     if (const auto at = entry.source.rfind('@'); at != entry.source.npos && find(contents_, entry.source) == nullptr) {
       return decimated(entry, at, asked);
     }
     if (const Array* array = find(contents_, entry.source)) {
+      if (auto ok = refuse_repeated(entry); !ok) return tl::unexpected(ok.error());
       if (array->obstacle) return tl::unexpected(array->obstacle->in(fmt::format("channel {}", entry.channel)));
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
@@ -769,8 +817,9 @@ class Assembler {
       const Signal& signal = signals_[i];
       for (std::size_t j = 0; j < i; ++j) {
         if (signals_[j].kind != signal.kind) continue;
-        return bad_data(fmt::format("'{}' and '{}' both are {}", signals_[j].source, signal.source, signal.kind->name),
-                        fmt::format("say which with --channels {}=NAME,…", signal.kind->name));
+        return bad_data(
+            fmt::format("{} and {} both are {}", place_of(signals_[j]), place_of(signal), signal.kind->name),
+            fmt::format("say which, as in --channels {}", map_of_signals()));
       }
       if (auto ok = check_rates(first, signal); !ok) return ok;
       if (clock_of(signal) == clock_of(first) && signal.line.size() != first.line.size()) {
@@ -793,6 +842,27 @@ class Assembler {
                                 "unit already",
                                 signal.kind->alias, signal.source),
                     fmt::format("channel {}", signal.kind->name));
+  }
+
+  [[nodiscard]] std::string place_of(const Signal& signal) const {
+    return is_named(signal.line) ? place_of(*signal.line.array) : fmt::format("'{}'", signal.source);
+  }
+
+  /// The signals as a map: "time=1,x=2,Fx=4 (or Fx=6)".
+  [[nodiscard]] std::string map_of_signals() const {
+    std::vector<std::string> map, others;
+    std::vector<const ChannelKind*> seen;
+    for (const Signal& signal : signals_) {
+      const std::string entry = contents_.table && signal.is_plain()
+                                    ? fmt::format("{}{}", signal.negate ? "-" : "", column_of(*signal.line.array))
+                                    : signal.entry;
+      const bool second = std::ranges::find(seen, signal.kind) != seen.end();
+      (second ? others : map)
+          .push_back(fmt::format("{}={}{}{}", signal.kind->alias, entry, signal.unit != nullptr ? ":" : "",
+                                 signal.unit != nullptr ? signal.unit->name : ""));
+      seen.push_back(signal.kind);
+    }
+    return fmt::format("{} (or {})", fmt::join(map, ","), fmt::join(others, ", "));
   }
 
   static Result<void> check_rates(const Signal& a, const Signal& b) {

@@ -325,6 +325,32 @@ TEST_F(Read, RefusesTwoColumnsForOneChannel) {
   EXPECT_THAT(bad("t,x,hand_x\n0,1,2\n").message, HasSubstr("'x' and 'hand_x' both are hand_x"));
 }
 
+TEST_F(Read, OffersTheNumbersOfARepeatedName) {
+  const std::string csv = "time_s,hand_x,hand_y,force_x,force_y,force_x\n0,1,2,3,4,5\n0.1,1,2,3,4,6\n";
+  const std::string sto =
+      "a\nendheader\ntime_s\thand_x\thand_y\tforce_x\tforce_y\tforce_x\n0\t1\t2\t3\t4\t5\n0.1\t1\t2\t3\t4\t6\n";
+  for (const std::string& text : {csv, sto}) {
+    EXPECT_THAT(bad(text).line(),
+                HasSubstr("'force_x' (column 4) and 'force_x' (column 6) both are force_x; say which, as in --channels "
+                          "t=1:s,x=2,y=3,Fx=4,Fy=5 (or Fx=6)"));
+    EXPECT_THAT(bad(text, with_channels("time=time_s,x=hand_x:mm,Fx=-force_x")).line(),
+                HasSubstr("channel force_x: the name 'force_x' stands 2 times, in the columns 4, 6; say which by its "
+                          "number: --channels time=time_s,x=hand_x:mm,force_x=-4 (or force_x=6)"));
+    EXPECT_THAT(bad(text, with_channels("Fx=force_x*2+1")).message, HasSubstr("stands 2 times"));
+    EXPECT_EQ(good(text, with_channels("x=2,Fx=6")).find("force_x")->values[1], 6);
+  }
+  const Recording same = good("t,x,F,F\n0,1,2,2\n0.1,2,3,3\n", with_channels("x=x,F=F"));
+  EXPECT_EQ(same.find("reaction")->values[1], 3);
+  EXPECT_THAT(bad("t,x,F,F\n0,1,2,2\n0.1,2,3,word\n", with_channels("x=x,F=F")).message, HasSubstr("stands 2 times"));
+}
+
+TEST_F(Read, OffersTheNumbersOfTwoTimes) {
+  EXPECT_THAT(bad("time,x,time,F\n0,1,0,2\n1,1,2,3\n", with_channels("x=x,F=F")).line(),
+              HasSubstr("'time' (column 1) and 'time' (column 3) both may be the time; say which in --channels, as in "
+                        "time=1 or time=3"));
+  EXPECT_EQ(good("time,x,time,F\n0,1,0,2\n1,1,1,3\n", with_channels("x=x,F=F")).time[1], 1.0);
+}
+
 TEST_F(Read, ListsTheColumnsWhereNothingIsRecognised) {
   EXPECT_THAT(bad("u,v\n0,1\n").line(),
               HasSubstr("no channel is recognised; it has 2 columns: u, v; say which is which, as in --channels"));
@@ -481,8 +507,7 @@ TEST_F(Read, DecidesByContentNotByName) {
 
 TEST_F(Read, RefusesWhatIsNotARecording) {
   EXPECT_THAT(bad("").message, HasSubstr("empty"));
-  EXPECT_THAT(bad(std::string("\x7f\x46LF\x02\x01\x01\0\0\0", 10)).line(),
-              HasSubstr("no known format"));
+  EXPECT_THAT(bad(std::string("\x7f\x46LF\x02\x01\x01\0\0\0", 10)).line(), HasSubstr("no known format"));
   EXPECT_THAT(bad("\x89HDF\r\n\x1a\n....").message, HasSubstr("HDF5"));
   EXPECT_THAT(bad(std::string("\x02\x50") + std::string(600, '\0')).message, HasSubstr("C3D"));
   EXPECT_THAT(bad(header5()).message, HasSubstr("no channel is recognised; it has no numeric variable"));
