@@ -505,6 +505,11 @@ class Assembler {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+      } else if (name.unit != nullptr && is_named(*line) && signal.is_plain() && ends_in_brackets(line->array->name)) {
+        return bad_data(fmt::format("'{}' says that it is in {}, which channel {} cannot be in", line->array->name,
+                                    name.unit->name, kind->name),
+                        fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", entry.channel,
+                                    entry.source, unit_names(kind->measures)));
       } else if (signal.is_plain()) {
         const auto unit = unit_for_all(*kind, *line->array);
         if (!unit) return tl::unexpected(unit.error());
@@ -515,6 +520,8 @@ class Assembler {
     }
     return find_time();
   }
+
+  static bool ends_in_brackets(std::string_view name) { return name.ends_with(']') || name.ends_with(')'); }
 
   /// Whether the file says a unit of the array that the channel can be in: a gain then keeps it, and else changes it.
   static bool in_unit_of(const ChannelKind& kind, const Array& array) {

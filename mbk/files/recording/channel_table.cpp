@@ -165,6 +165,15 @@ ColumnName parse_column_name(std::string_view name) {
     if (suffix != "in") column.unit = find_unit(suffix);  // "signal_in" is an input, not inches
     base = name.substr(0, underscore);
   }
+  for (auto at = name.find_first_of(" ,/"); column.unit == nullptr && at != name.npos;
+       at = name.find_first_of(" ,/", at + 1)) {
+    const std::string_view unit = trimmed(name.substr(at + 1));
+    base = trimmed(name.substr(0, at));
+    const bool said = name[at] != ' ' || base.ends_with(" in") || unit.size() > 1;  // "plate N" may be one of many
+    if (base.empty() || !said || unit == "in") continue;
+    column.unit = find_unit(unit);
+    if (base.ends_with(" in")) base = trimmed(base.substr(0, base.size() - 3));
+  }
   if (column.unit == nullptr) return column;
   column.kinds = kinds_called(base);
   std::erase_if(column.kinds, [&](const ChannelKind* kind) { return !kind->accepts(*column.unit); });

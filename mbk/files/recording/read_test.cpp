@@ -8,6 +8,7 @@
 
 #include "mbk/files/c3d/test_c3d.h"
 #include "mbk/files/contents/test_files.h"
+#include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"
 
 namespace mbk::recording {
@@ -349,6 +350,28 @@ TEST_F(Read, OffersTheNumbersOfTwoTimes) {
               HasSubstr("'time' (column 1) and 'time' (column 3) both may be the time; say which in --channels, as in "
                         "time=1 or time=3"));
   EXPECT_EQ(good("time,x,time,F\n0,1,0,2\n1,1,1,3\n", with_channels("x=x,F=F")).time[1], 1.0);
+}
+
+TEST_F(Read, TakesTheUnitOfANameHoweverItIsWritten) {
+  for (const char* name : {"hand_x [mm]", "hand_x (Millimeters)", "hand_x_mm", "hand_x mm", "hand_x in mm",
+                           "hand_x, mm", "hand_x/mm", "hand_x / mm"}) {
+    const std::string text = "t\t" + std::string(name) + "\tFx\n0\t153\t1\n1\t153\t1\n";
+    EXPECT_EQ(good(text).find("hand_x")->values[0], 0.153) << name;
+    EXPECT_EQ(good(text, with_channels("y=2")).find("hand_y")->values[0], 0.153) << name;
+  }
+  for (const char* name : {"hand m", "plate N", "Sensor in", "a b c", "sent in, hand"}) {
+    EXPECT_EQ(parse_column_name(name).unit, nullptr) << name;
+  }
+  EXPECT_EQ(parse_column_name("acc m/s2").unit->name, "m/s2");
+  EXPECT_EQ(parse_column_name("time in s").kinds.size(), 1U);
+}
+
+TEST_F(Read, RefusesAUnitInTheNameThatTheChannelCannotHave) {
+  const std::string text = "t,x,cell [V]\n0,1,2\n1,2,3\n";
+  EXPECT_THAT(bad(text, with_channels("x=x,F=3")).line(),
+              HasSubstr("'cell [V]' says that it is in V, which channel reaction cannot be in; say the unit with"));
+  EXPECT_EQ(good(text, with_channels("x=x,F=3*2:N")).find("reaction")->values[0], 4);
+  EXPECT_EQ(good(text, with_channels("x=x,F=3*2")).find("reaction")->values[0], 4);
 }
 
 TEST_F(Read, ListsTheColumnsWhereNothingIsRecognised) {
