@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -67,6 +68,26 @@ TEST(DecodeOpensim, RefusesWhatIsNoTable) {
   EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\tone\n"), HasSubstr("line 4, column 2: 'one'"));
 }
 
+TEST(DecodeOpensim, NamesColumnsOfVectors) {
+  const std::string text =
+      "DataRate=100\nDataType=Quaternion\nversion=3\nendheader\ntime\tpelvis_imu\tF\n0\t0.5,0.5,0.5,-0.5\t1\n0.01\t1,0,"
+      "0,0\t2\n";
+  const auto contents = decode_opensim(std::as_bytes(std::span(text)));
+  ASSERT_TRUE(contents) << contents.error().line();
+  ASSERT_TRUE(contents->arrays[1].obstacle);
+  EXPECT_EQ(contents->arrays[1].obstacle->line(),
+            "line 6, column 2: '0.5,0.5,0.5,-0.5' is a vector; write each of its numbers as a column of its own");
+  EXPECT_EQ(contents->arrays[2].values, Vector::LinSpaced(2, 1, 2));
+  EXPECT_THAT(contents->notes, Contains("columns that hold vectors were left aside: pelvis_imu"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\t0,5\n"), HasSubstr("'0,5' is not a number"));
+}
+
+TEST(DecodeOpensim, SaysWhereDegreesAreLeftOpen) {
+  const std::string text = "a\nendheader\ntime\tq1\n0\t90\n";
+  EXPECT_THAT(decode_opensim(std::as_bytes(std::span(text)))->notes,
+              ElementsAre("the header does not say inDegrees: angles are taken in rad unless --channels says deg"));
+}
+
 TEST(DecodeOpensim, LeavesAnIncompleteLastLineAside) {
   const std::string cut = "a\nendheader\ntime\tx\n0\t1\n0.1";
   const auto contents = decode_opensim(std::as_bytes(std::span(cut)));
@@ -93,11 +114,48 @@ TEST(DecodeTrc, RefusesWhatDoesNotFit) {
     std::string text = kMarkers;
     return text.replace(text.find(from), from.size(), to);
   };
-  EXPECT_THAT(error_of(decode_trc, with("\t2\tmm", "\t3\tmm")), HasSubstr("says 3 markers, and names 2"));
   EXPECT_THAT(error_of(decode_trc, with("Frame#", "Row")), HasSubstr("does not begin with Frame# and Time"));
   EXPECT_THAT(error_of(decode_trc, with("\t5\t6\n", "\t5\t6\t7\n")), HasSubstr("9 cells where"));
   EXPECT_THAT(error_of(decode_trc, with("1\t0\t1", "1\tx\t1")), HasSubstr("line 7, column 2: 'x'"));
+  EXPECT_THAT(error_of(decode_trc, with("X1\tY1", "Y1\tX1")),
+              HasSubstr("line 5: 'Y1' stands where the X axis of 'Hand'"));
+  EXPECT_THAT(error_of(decode_trc, with("\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n", "")), HasSubstr("no line of axes"));
   EXPECT_THAT(error_of(decode_trc, "PathFileType\t4\n"), HasSubstr("five lines of header"));
+}
+
+TEST(DecodeTrc, ReadsVariantsAsOpensimDoes) {
+  const auto with = [](std::string_view from, std::string_view to) {
+    std::string text = kMarkers;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  std::string commas = kMarkers, semicolons = kMarkers;
+  std::ranges::replace(commas, '\t', ',');
+  std::ranges::replace(semicolons, '\t', ';');
+  struct Variant {
+    std::string text, note;
+  };
+  for (const Variant& one :
+       {Variant{with("\t2\tmm", "\t3\tmm"), "the header says 3 markers, and names 2, which were read"},
+        {with("X2\tY2\tZ2", "X7\tY7\tZ7"), "the axes of 'Hand' are called X7, and its name was taken"},
+        {with("\tCameraRate", ""), ""},                          // a key fewer than values: those before it are right
+        {with("NumMarkers\tUnits", "NumMarkers\t\tUnits"), ""},  // a tab more
+        {with("mm\n", "mm\t\t\n"), ""},
+        {with("Hand\t\t\tHand\t\t\n", "Hand\tHand\n"), ""},
+        {with("Frame#\tTime\tHand\t\t\tHand\t\t\n", "Frame# Time  Hand   Hand\n"), ""},
+        {commas, ""},
+        {semicolons, ""}}) {
+    const auto contents = decode_trc(std::as_bytes(std::span(one.text)));
+    ASSERT_TRUE(contents) << contents.error().line() << one.text;
+    EXPECT_EQ(contents->arrays[2].values, Vector::Constant(3, 1)) << one.text;
+    EXPECT_EQ(contents->arrays[7].values(0, 0), 6) << one.text;
+    EXPECT_EQ(contents->arrays[2].rate_hz, 100.0) << one.text;
+    if (!one.note.empty()) {
+      EXPECT_THAT(contents->notes, ElementsAre(one.note));
+    }
+  }
+  const std::string without_unit = with("mm\n", "\n");
+  EXPECT_EQ(decode_trc(std::as_bytes(std::span(without_unit)))->notes.front(),
+            "the header does not say the unit of the markers");
 }
 
 }  // namespace opensim_test
