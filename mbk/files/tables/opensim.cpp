@@ -1,12 +1,9 @@
 #include "mbk/files/tables/opensim.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,131 +14,9 @@
 #include "mbk/base/core/trimmed.h"
 #include "mbk/files/contents/cells.h"
 #include "mbk/files/contents/text_lines.h"
+#include "mbk/files/tables/text_rows.h"
 
 namespace mbk::recording {
-namespace {
-
-constexpr std::size_t kMaxColumns = 10'000;
-constexpr std::string_view kWriteAgain = "write it again with the program that made it";
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-std::string in_lower_case(std::string_view text) {
-  std::string lower(mbk::trimmed(text, " \t"));
-  std::ranges::transform(lower, lower.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return lower;
-}
-
-std::string line_place(std::size_t line) {
-  return fmt::format("line {}", line);
-}
-
-std::optional<double> positive_number(std::string_view text) {
-  const auto value = general_number(text);
-  return value && *value > 0.0 && *value < 1e300 ? value : std::nullopt;
-}
-
-/// "0.52,0.43,0.1,0.7": what OpenSim writes of a rotation or a direction. Two numbers may be one with a decimal comma.
-bool is_vector(std::string_view cell) {
-  const auto parts = split(mbk::trimmed(cell, " \t~[]()"), ',');
-  return parts.size() > 2 && std::ranges::all_of(parts, [](std::string_view part) {
-           part = mbk::trimmed(part, " \t");
-           return !part.empty() && cell_number(part).has_value();
-         });
-}
-
-/// Rows of numbers, each as long as there are columns.
-class Rows {
- public:
-  explicit Rows(std::size_t columns) : numbers_(columns), obstacles_(columns) {}
-
-  Result<void> add(const TextLine& line, const std::vector<std::string_view>& cells) {
-    for (std::size_t c = 0; c < numbers_.size(); ++c) {
-      auto value = c < cells.size() ? cell_number(cells[c]) : kMissing;
-      if (!value) {
-        const std::string cell = printable(std::string(cells[c].substr(0, 40)));
-        const std::string where = fmt::format("line {}, column {}", line.number, c + 1);
-        if (!is_vector(cells[c])) {
-          return bad_data(fmt::format("'{}' is not a number", cell), std::string(kWriteAgain), where);
-        }
-        if (!obstacles_[c]) {
-          obstacles_[c] =
-              bad_data(fmt::format("'{}' is a vector", cell), "write each of its numbers as a column of its own", where)
-                  .value();
-        }
-        value = kMissing;
-      }
-      numbers_[c].push_back(*value);
-    }
-    return {};
-  }
-
-  [[nodiscard]] std::size_t count() const { return numbers_.front().size(); }
-  /// Values and obstacle of an array.
-  void give(std::size_t c, Array& array) {
-    array.obstacle = std::move(obstacles_[c]);
-    if (!array.obstacle) {
-      array.values = SharedMatrix::of_column(
-          Vector(Eigen::Map<const Vector>(numbers_[c].data(), static_cast<Index>(numbers_[c].size()))));
-    }
-    numbers_[c] = {};
-  }
-
- private:
-  std::vector<std::vector<double>> numbers_;
-  std::vector<std::optional<Error>> obstacles_;
-};
-
-/// "it says 100 rows and holds 98".
-void compare_counts(const std::optional<double>& said, std::size_t there, std::string_view what, Contents& contents) {
-  if (!said || *said == static_cast<double>(there)) return;
-  contents.notes.push_back(fmt::format("the header says {} {}, and there are {}{}", *said, what, there,
-                                       *said > static_cast<double>(there) ? ": the file may have been cut off" : ""));
-}
-
-/// What stands between the cells of a line: a tab; a semicolon or comma where a spreadsheet saved it; or blanks.
-char separator_of(std::string_view line) {
-  for (const char separator : {'\t', ';', ','}) {
-    if (line.find(separator) != line.npos) return separator;
-  }
-  return ' ';
-}
-
-std::vector<std::string_view> cells_of(std::string_view line, char separator) {
-  return separator != ' ' && line.find(separator) != line.npos ? split(line, separator) : words(line);
-}
-
-bool is_blank(std::string_view cell) {
-  return mbk::trimmed(cell, " \t").empty();
-}
-
-/// The same without empty ones at the end.
-std::vector<std::string_view> filled_cells_of(std::string_view line, char separator) {
-  auto cells = cells_of(line, separator);
-  while (!cells.empty() && is_blank(cells.back())) cells.pop_back();
-  return cells;
-}
-
-void note_vectors(Contents& contents) {
-  std::vector<std::string> names;
-  for (const Array& array : contents.arrays) {
-    if (array.obstacle) names.push_back(array.name);
-  }
-  if (names.empty()) return;
-  constexpr std::size_t kListed = 12;
-  const std::size_t more = names.size() > kListed ? names.size() - kListed : 0;
-  names.resize(names.size() - more);
-  contents.notes.push_back(fmt::format("columns that hold vectors were left aside: {}{}", fmt::join(names, ", "),
-                                       more > 0 ? fmt::format(" and {} more", more) : ""));
-}
-
-/// Whether the last line was not written completely.
-bool is_cut(const TextLine& line, std::size_t cells, std::size_t columns) {
-  return !line.terminated && cells < columns;
-}
-
-}  // namespace
-
 bool looks_like_opensim(std::string_view text) {
   constexpr std::size_t kLongestHeader = 1 << 16;
   if (text.substr(0, kLongestHeader).find('\0') != text.npos) return false;
@@ -172,17 +47,16 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
   for (const std::string_view cell : filled_cells_of(labels_line->text, separator)) {
     labels.push_back(printable(std::string(mbk::trimmed(cell, " \t"))));
   }
-  if (labels.empty() || labels.size() > kMaxColumns || general_number(labels.front())) {
+  if (labels.empty() || labels.size() > kMostTextColumns || general_number(labels.front())) {
     return bad_data("the line behind 'endheader' holds no labels", std::string(kWriteAgain),
                     line_place(labels_line->number));
   }
-  Rows rows(labels.size());
+  TextRows rows(labels.size(), file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
     auto cells = cells_of(line->text, separator);
     while (cells.size() > labels.size() && is_blank(cells.back())) cells.pop_back();
     if (is_cut(*line, cells.size(), labels.size())) {
-      contents.notes.push_back(
-          fmt::format("line {} is incomplete (the recording was cut off there) and was ignored", line->number));
+      contents.notes.push_back(note_of_cut(*line));
       break;
     }
     if (cells.size() != labels.size()) {
@@ -211,7 +85,7 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
     array.name = std::move(labels[c]);
     rows.give(c, array);
   }
-  note_vectors(contents);
+  note_obstacles("vectors", contents);
   return contents;
 }
 
@@ -276,7 +150,6 @@ Result<void> check_axes(const TextLine& line, char separator, const std::vector<
 }  // namespace
 
 Result<Contents> decode_trc(std::span<const std::byte> file) {
-  constexpr std::string_view kWriteAgain = "write it again with the program that made it";
   TextLines lines({reinterpret_cast<const char*>(file.data()), file.size()});
   Contents contents;
   contents.format = "TRC";
@@ -300,12 +173,12 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
                     line_place(names->number));
   }
   const std::size_t columns = 2 + 3 * markers.size();
-  if (markers.empty() || columns > kMaxColumns) {
+  if (markers.empty() || columns > kMostTextColumns) {
     return bad_data(fmt::format("it names {} markers", markers.size()), std::string(kWriteAgain),
                     line_place(names->number));
   }
   if (auto ok = check_axes(*axes, separator, markers, contents); !ok) return tl::unexpected(ok.error());
-  Rows rows(columns);
+  TextRows rows(columns, file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
     auto cells = cells_of(line->text, separator);
     while (cells.size() > columns && is_blank(cells.back())) cells.pop_back();
@@ -314,9 +187,8 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
           fmt::format("{} cells where frame, time and {} markers have {}", cells.size(), markers.size(), columns),
           std::string(kWriteAgain), line_place(line->number));
     }
-    if (!line->terminated && cells.size() < columns) {
-      contents.notes.push_back(
-          fmt::format("line {} is incomplete (the recording was cut off there) and was ignored", line->number));
+    if (is_cut(*line, cells.size(), columns)) {
+      contents.notes.push_back(note_of_cut(*line));
       break;
     }
     if (auto ok = rows.add(*line, cells); !ok) return tl::unexpected(ok.error());
@@ -340,15 +212,13 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
   add("Time", "s", 1);
   const std::string unit = printable(std::string(header["units"]));
   if (unit.empty()) contents.notes.emplace_back("the header does not say the unit of the markers");
-  std::map<std::string, int> copies;
+  number_repeated(markers);
   for (std::size_t m = 0; m < markers.size(); ++m) {
-    const int copy = ++copies[markers[m]];
-    if (copy > 1) markers[m] += fmt::format("#{}", copy);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       add(fmt::format("{}.{}", markers[m], std::array{'x', 'y', 'z'}[axis]), unit, 2 + 3 * m + axis);
     }
   }
-  note_vectors(contents);
+  note_obstacles("vectors", contents);
   return contents;
 }
 

@@ -1,5 +1,6 @@
 #include "mbk/files/tables/opensim.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,6 +122,17 @@ TEST(DecodeTrc, RefusesWhatDoesNotFit) {
               HasSubstr("line 5: 'Y1' stands where the X axis of 'Hand'"));
   EXPECT_THAT(error_of(decode_trc, with("\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n", "")), HasSubstr("no line of axes"));
   EXPECT_THAT(error_of(decode_trc, "PathFileType\t4\n"), HasSubstr("five lines of header"));
+}
+
+TEST(DecodeTrc, KeepsMemoryBelowWhatItsLinesCanHold) {
+  std::string text = "PathFileType\t4\nDataRate\tUnits\n100\tmm\nFrame#\tTime", axes = "\t\t", lines;
+  for (int m = 1; m <= 3000; ++m) {
+    text += fmt::format("\tM{}", m);
+    axes += fmt::format("X{0}\tY{0}\tZ{0}\t", m);
+  }
+  for (int row = 0; row < 100'000; ++row) lines += "1\n";
+  EXPECT_THAT(error_of(decode_trc, text + "\n" + axes + "\n" + lines),
+              HasSubstr("far fewer numbers than the 9002 columns"));
 }
 
 TEST(DecodeTrc, ReadsVariantsAsOpensimDoes) {

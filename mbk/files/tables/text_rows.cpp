@@ -1,0 +1,151 @@
+#include "mbk/files/tables/text_rows.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "mbk/base/core/printable.h"
+#include "mbk/base/core/trimmed.h"
+#include "mbk/files/contents/cells.h"
+#include "mbk/files/contents/file_bytes.h"
+
+namespace mbk::recording {
+namespace {
+
+/// "0.52,0.43,0.1,0.7": what OpenSim writes of a rotation or a direction. Two numbers may be one with a decimal comma.
+bool is_vector(std::string_view cell) {
+  const auto parts = split(mbk::trimmed(cell, " \t~[]()"), ',');
+  return parts.size() > 2 && std::ranges::all_of(parts, [](std::string_view part) {
+           return !is_blank(part) && cell_number(mbk::trimmed(part, " \t"));
+         });
+}
+
+std::optional<double> with_decimal_comma(std::string_view cell) {
+  const auto number = comma_number(cell);
+  return number ? std::optional(number->value) : std::nullopt;
+}
+
+}  // namespace
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(mbk::trimmed(text, " \t"));
+  std::ranges::transform(lower, lower.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return lower;
+}
+
+std::string line_place(std::size_t line) {
+  return fmt::format("line {}", line);
+}
+
+bool is_blank(std::string_view cell) {
+  return cell.find_first_not_of(" \t") == cell.npos;
+}
+
+std::string label_of(std::string_view cell) {
+  return printable(std::string(without_quotes(cell)));
+}
+
+char separator_of(std::string_view line) {
+  for (const char separator : {'\t', ';', ','}) {
+    if (line.find(separator) != line.npos) return separator;
+  }
+  return ' ';
+}
+
+std::vector<std::string_view> cells_of(std::string_view line, char separator) {
+  return separator != ' ' && line.find(separator) != line.npos ? split(line, separator) : words(line);
+}
+
+std::vector<std::string_view> filled_cells_of(std::string_view line, char separator) {
+  auto cells = cells_of(line, separator);
+  while (!cells.empty() && is_blank(cells.back())) cells.pop_back();
+  return cells;
+}
+
+std::optional<double> positive_number(std::string_view text) {
+  const auto value = general_number(text);
+  return value && *value > 0.0 && *value < 1e300 ? value : std::nullopt;
+}
+
+bool is_cut(const TextLine& line, std::size_t cells, std::size_t columns) {
+  return !line.terminated && cells < columns;
+}
+
+std::string note_of_cut(const TextLine& line) {
+  return fmt::format("line {} is incomplete (the recording was cut off there) and was ignored", line.number);
+}
+
+void compare_counts(const std::optional<double>& said, std::size_t there, std::string_view what, Contents& contents) {
+  if (!said || *said == static_cast<double>(there)) return;
+  contents.notes.push_back(fmt::format("the header says {} {}, and there are {}{}", *said, what, there,
+                                       *said > static_cast<double>(there) ? ": the file may have been cut off" : ""));
+}
+
+void number_repeated(std::vector<std::string>& names) {
+  std::map<std::string, int> copies;
+  for (std::string& name : names) {
+    if (const int copy = ++copies[name]; copy > 1) name += fmt::format("#{}", copy);
+  }
+}
+
+void note_obstacles(std::string_view what, Contents& contents) {
+  std::vector<std::string> names;
+  for (const Array& array : contents.arrays) {
+    if (array.obstacle) names.push_back(array.name);
+  }
+  if (names.empty()) return;
+  constexpr std::size_t kListed = 12;
+  const std::size_t more = names.size() > kListed ? names.size() - kListed : 0;
+  names.resize(names.size() - more);
+  contents.notes.push_back(fmt::format("columns that hold {} were left aside: {}{}", what, fmt::join(names, ", "),
+                                       more > 0 ? fmt::format(" and {} more", more) : ""));
+}
+
+TextRows::TextRows(std::size_t columns, std::size_t bytes)
+    : numbers_(columns),
+      obstacles_(columns),
+      most_(largest_claim(bytes) / (sizeof(double) * std::max<std::size_t>(columns, 1))) {}
+
+Result<void> TextRows::add(const TextLine& line, std::span<const std::string_view> cells, bool decimal_commas) {
+  if (count() >= most_) {
+    return bad_data(
+        fmt::format("most lines hold far fewer numbers than the {} columns that the header names", numbers_.size()),
+        std::string(kWriteAgain), line_place(line.number));
+  }
+  for (std::size_t c = 0; c < numbers_.size(); ++c) {
+    auto value = c >= cells.size() ? std::optional(std::numeric_limits<double>::quiet_NaN())
+                 : decimal_commas  ? with_decimal_comma(cells[c])
+                                   : cell_number(cells[c]);
+    if (!value) {
+      const std::string cell = printable(std::string(cells[c].substr(0, 40)));
+      const std::string where = fmt::format("line {}, column {}", line.number, c + 1);
+      if (decimal_commas || !is_vector(cells[c])) {
+        return bad_data(fmt::format("'{}' is not a number", cell), std::string(kWriteAgain), where);
+      }
+      if (!obstacles_[c]) {
+        obstacles_[c] =
+            bad_data(fmt::format("'{}' is a vector", cell), "write each of its numbers as a column of its own", where)
+                .value();
+      }
+      value = std::numeric_limits<double>::quiet_NaN();
+    }
+    numbers_[c].push_back(*value);
+  }
+  return {};
+}
+
+void TextRows::give(std::size_t c, Array& array) {
+  array.obstacle = std::move(obstacles_[c]);
+  if (!array.obstacle) {
+    array.values = SharedMatrix::of_column(
+        Vector(Eigen::Map<const Vector>(numbers_[c].data(), static_cast<Index>(numbers_[c].size()))));
+  }
+  numbers_[c] = {};
+}
+
+}  // namespace mbk::recording

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mbk/base/core/linear_algebra.h"
+#include "mbk/base/core/result.h"
+#include "mbk/files/contents/contents.h"
+#include "mbk/files/contents/text_lines.h"
+
+namespace mbk::recording {
+
+// What the readers of tables of text share that are not CSV.
+
+inline constexpr std::size_t kMostTextColumns = 10'000;
+inline constexpr std::string_view kWriteAgain = "write it again with the program that made it";
+
+/// Without blanks around it.
+[[nodiscard]] std::string in_lower_case(std::string_view text);
+[[nodiscard]] std::string line_place(std::size_t line);
+[[nodiscard]] bool is_blank(std::string_view cell);
+/// Without blanks and quotes around it, printable.
+[[nodiscard]] std::string label_of(std::string_view cell);
+
+/// What stands between the cells of a line: a tab; a semicolon or comma where a spreadsheet saved it; or blanks.
+[[nodiscard]] char separator_of(std::string_view line);
+[[nodiscard]] std::vector<std::string_view> cells_of(std::string_view line, char separator);
+/// The same without empty ones at the end.
+[[nodiscard]] std::vector<std::string_view> filled_cells_of(std::string_view line, char separator);
+
+[[nodiscard]] std::optional<double> positive_number(std::string_view text);
+
+/// Whether the last line was not written completely.
+[[nodiscard]] bool is_cut(const TextLine& line, std::size_t cells, std::size_t columns);
+[[nodiscard]] std::string note_of_cut(const TextLine& line);
+
+/// "the header says 100 rows, and there are 98", where that is so.
+void compare_counts(const std::optional<double>& said, std::size_t there, std::string_view what, Contents& contents);
+
+/// "RB#2" where a file has a second RB.
+void number_repeated(std::vector<std::string>& names);
+
+/// "columns that hold vectors were left aside: …", of those with an obstacle.
+void note_obstacles(std::string_view what, Contents& contents);
+
+/// Rows of numbers, each as long as there are columns.
+class TextRows {
+ public:
+  /// @param bytes  of the file, which bounds how many numbers there may be
+  TextRows(std::size_t columns, std::size_t bytes);
+
+  /// A row; cells that are missing at its end are NaN. With decimal commas numbers have no points.
+  /// @fails  data: a cell is neither a number nor a vector; the rows are so short that most of the table is empty.
+  Result<void> add(const TextLine& line, std::span<const std::string_view> cells, bool decimal_commas = false);
+
+  [[nodiscard]] std::size_t count() const { return numbers_.empty() ? 0 : numbers_.front().size(); }
+  [[nodiscard]] std::span<const double> column(std::size_t c) const { return numbers_[c]; }
+  /// Its numbers, or why there are none, as values or obstacle of an array. Nothing is left here.
+  void give(std::size_t c, Array& array);
+
+ private:
+  std::vector<std::vector<double>> numbers_;
+  std::vector<std::optional<Error>> obstacles_;  ///< of columns of vectors
+  std::size_t most_;                             ///< rows
+};
+
+}  // namespace mbk::recording
