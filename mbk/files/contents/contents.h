@@ -65,4 +65,10 @@ struct Contents {
   std::map<std::string, std::string> damaged;   ///< names of arrays that could not be read, and why, as a sentence
 };
 
+/// One of the records of a file, decoded.
+struct NamedContents {
+  TrialName name;
+  Contents contents;
+};
+
 }  // namespace mbk::recording

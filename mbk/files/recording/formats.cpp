@@ -140,6 +140,16 @@ Result<std::shared_ptr<const OpenTrials>> open_exam(OpenFile& file) {
   return exam_trials(*bytes, file.sha256());
 }
 
+/// Of a file that is decoded at once and may hold several records.
+template <Result<std::vector<NamedContents>> (*decode)(std::span<const std::byte>)>
+Result<std::shared_ptr<const OpenTrials>> all_records(OpenFile& file) {
+  const auto bytes = file.take();
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto records = decode((*bytes)->bytes());
+  if (!records) return tl::unexpected(records.error());
+  return decoded_trials(std::move(*records), file.sha256());
+}
+
 /// Text that is no table may be text of another kind, of which that is to be said rather than where it breaks off.
 Result<Contents> decode_table(OpenFile& file) {
   if (auto ok = check_memory(file.size()); !ok) return tl::unexpected(ok.error());  // what its numbers take at most

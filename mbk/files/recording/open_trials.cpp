@@ -38,6 +38,44 @@ class ExamTrials : public OpenTrials {
   std::string sha256_;  ///< of the file
 };
 
+class DecodedTrials : public OpenTrials {
+ public:
+  DecodedTrials(std::vector<NamedContents> records, std::string sha256)
+      : records_(std::move(records)), sha256_(std::move(sha256)) {
+    if (records_.size() < 2) return;
+    for (const NamedContents& record : records_) names_.push_back(record.name);
+  }
+
+  [[nodiscard]] const std::vector<TrialName>& trials() const override { return names_; }
+
+  [[nodiscard]] Result<Decoded> decode(const std::filesystem::path& file, const ReadOptions& options,
+                                       bool /*needs_arm*/) const override {
+    if (!options.arm.empty()) {
+      return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
+    }
+    const auto record = this->record(options.trial);
+    if (!record) return tl::unexpected(record.error());
+    SourceFile source{file.string(), (*record)->contents.format, sha256_};
+    if (records_.size() > 1) source.trial = options.trial;
+    return Decoded{(*record)->contents, std::move(source)};
+  }
+
+ private:
+  [[nodiscard]] Result<const NamedContents*> record(const std::string& trial) const {
+    if (records_.size() == 1 && trial.empty()) return &records_.front();
+    for (const NamedContents& one : records_) {
+      if (records_.size() > 1 && one.name.name == trial) return &one;
+    }
+    if (!trial.empty()) return bad_usage(fmt::format("there is no trial '{}'", trial), "'mbk info' lists them");
+    return bad_usage(fmt::format("the file holds {} recordings", records_.size()),
+                     fmt::format("say which, as in --trial {}", records_.front().name.name));
+  }
+
+  std::vector<NamedContents> records_;
+  std::string sha256_;  ///< of the file
+  std::vector<TrialName> names_;
+};
+
 class BidsTrials : public OpenTrials {
  public:
   explicit BidsTrials(std::vector<BidsRun> runs) : runs_(std::move(runs)) {
@@ -86,6 +124,10 @@ Result<std::shared_ptr<const OpenTrials>> exam_trials(std::shared_ptr<const Buff
   auto exam = KinarmExam::open(std::move(file));
   if (!exam) return tl::unexpected(exam.error());
   return std::make_shared<const ExamTrials>(std::move(*exam), std::move(sha256));
+}
+
+std::shared_ptr<const OpenTrials> decoded_trials(std::vector<NamedContents> records, std::string sha256) {
+  return std::make_shared<const DecodedTrials>(std::move(records), std::move(sha256));
 }
 
 Result<std::shared_ptr<const OpenTrials>> bids_trials(const std::filesystem::path& folder) {

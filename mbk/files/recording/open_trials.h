@@ -36,6 +36,10 @@ class OpenTrials {
 [[nodiscard]] Result<std::shared_ptr<const OpenTrials>> exam_trials(std::shared_ptr<const Buffer> file,
                                                                     std::string sha256);
 
+/// The records of a file that was decoded at once; it lists no trials where it holds one.
+/// @param records  at least one    @param sha256  of the file
+[[nodiscard]] std::shared_ptr<const OpenTrials> decoded_trials(std::vector<NamedContents> records, std::string sha256);
+
 /// The recordings of a BIDS data set.   @fails  data: the folder cannot be read.
 [[nodiscard]] Result<std::shared_ptr<const OpenTrials>> bids_trials(const std::filesystem::path& folder);
 
