@@ -1,4 +1,5 @@
 #include "fuzz/fuzz.h"
+#include "mbk/files/tables/lvm.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
 
@@ -10,6 +11,11 @@ std::vector<std::string> seeds() {
       "name old\ndatacolumns 2\ndatarows 1\nendheader\n\n  time   x \n 0.0  10.0\n 1 -nan\n",
       "PathFileType\t4\t(X/Y/Z)\ta.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t2\t1\tmm\nFrame#\tTime\tHand\t\t\n"
       "\t\tX1\tY1\tZ1\n\n1\t0\t1\t2\t3\n2\t0.01\t\t\n",
+      "LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tMulti\n***End_of_Header***\t\n\t\n"
+      "Channels\t2\nSamples\t2\t\t2\nDate\t2024/03/01\t\t2024/03/01\nTime\t10:15:30.5\t\t10:15:30.5\nX0\t0\t\t0\n"
+      "Delta_X\t0.1\t\t0.2\n***End_of_Header***\nX_Value\tx\tX_Value\tF\tComment\n0\t1\t0\t2\n0.1\t2\t0.2\t3\tgo\n",
+      "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\tNo\n***End_of_Header***\nSamples\t1\t1\n"
+      "Delta_X\t0,1\t0,1\n***End_of_Header***\nX_Value\tx\tF\tComment\n\t1,5\t2\n\t2\t3\n",
       "# Created by Octave 7\n# name: t\n# type: matrix\n# rows: 2\n# columns: 2\n 0 1\n 2 NA\n\n\n"
       "# name: r\n# type: range\n# base, limit, increment\n0 5 1\n\n# name: s\n# type: scalar struct\n# ndims: 2\n 1 "
       "1\n"
@@ -26,6 +32,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto text = mbk::fuzz::text_of(data, size);
   if (looks_like_octave_text(text)) mbk::fuzz::check_decoded(decode_octave_text(bytes), size);
   if (looks_like_opensim(text)) mbk::fuzz::check_decoded(decode_opensim(bytes), size);
+  if (looks_like_lvm(text)) {
+    auto records = decode_lvm(bytes);
+    if (!records) mbk::fuzz::require_error(records.error());
+    for (NamedContents& record : records ? *records : std::vector<NamedContents>()) {
+      mbk::fuzz::check_decoded(std::move(record.contents), size);
+    }
+  }
   if (looks_like_trc(text)) mbk::fuzz::check_decoded(decode_trc(bytes), size);
   return 0;
 }

@@ -40,8 +40,6 @@ class LikelyFormat(Case):
                 ("a.csv.xz", lzma.compress(b"time,x\n0,1\n"), "packed by xz"),
                 ("a.pickle", pickle.dumps([1.0, 2.0]), "a Python pickle"),
                 ("bag.db3", None, "an SQLite database"),
-                ("a.lvm", "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\n***End_of_Header***\t\n0\t1\n",
-                 "a LabVIEW measurement file"),
                 ("a.slk", "ID;PWXL;N;E\nP;PGeneral\nC;Y1;X1;K\"t\"\n", "a SYLK sheet (.slk)"),
                 ("a.tdms", b"TDSm\x0e\0\0\0" + bytes(40), "nptdms"),
                 ("a.pdf", b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n", "a PDF document"),

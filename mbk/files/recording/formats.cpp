@@ -22,6 +22,7 @@
 #include "mbk/files/recording/open_trials.h"
 #include "mbk/files/ros/bag.h"
 #include "mbk/files/ros/mcap.h"
+#include "mbk/files/tables/lvm.h"
 #include "mbk/files/tables/npy.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
@@ -171,6 +172,7 @@ constexpr auto kFormats = std::to_array<FileFormat>({
     {"TRC", ".trc", "marker paths of OpenSim", text_begins_as<looks_like_trc>, whole<decode_trc>},
     {"OpenSim", ".sto .mot", "OpenSim's storages and motions", text_begins_as<looks_like_opensim>,
      whole<decode_opensim>},
+    {"LVM", ".lvm", "LabVIEW measurement files", text_begins_as<looks_like_lvm>, nullptr, all_records<decode_lvm>},
     {"CSV", ".csv .tsv", "tables of numbers as text, also .txt, .dat: spreadsheets, Python, libfranka, dSPACE",
      begins_as_table, decode_table},
     {"KINARM exam", ".kinarm .zip", "Dexterit-E", zip_holds<KinarmExam::is_exam>, nullptr, open_exam},

@@ -59,6 +59,8 @@ class TextRows {
 
   [[nodiscard]] std::size_t count() const { return numbers_.empty() ? 0 : numbers_.front().size(); }
   [[nodiscard]] std::span<const double> column(std::size_t c) const { return numbers_[c]; }
+  /// Why a column has no numbers.
+  [[nodiscard]] const std::optional<Error>& obstacle(std::size_t c) const { return obstacles_[c]; }
   /// Its numbers, or why there are none, as values or obstacle of an array. Nothing is left here.
   void give(std::size_t c, Array& array);
 
