@@ -1,4 +1,6 @@
 #include "fuzz/fuzz.h"
+#include "mbk/files/tables/capture_tables.h"
+#include "mbk/files/tables/delsys.h"
 #include "mbk/files/tables/lvm.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
@@ -16,6 +18,13 @@ std::vector<std::string> seeds() {
       "Delta_X\t0.1\t\t0.2\n***End_of_Header***\nX_Value\tx\tX_Value\tF\tComment\n0\t1\t0\t2\n0.1\t2\t0.2\t3\tgo\n",
       "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\tNo\n***End_of_Header***\nSamples\t1\t1\n"
       "Delta_X\t0,1\t0,1\n***End_of_Header***\nX_Value\tx\tF\tComment\n\t1,5\t2\n\t2\t3\n",
+      "Devices\n200\n,,P - Force,\nFrame,Sub "
+      "Frame,Fx,Fy\n,,N,N\n1,0,1,2\n1,1,1,2\n2,0,1,2\n2,1,1,2\n\nTrajectories\n100\n"
+      ",,S:A,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n1,0,1,2,3\n2,0,1,,3\n",
+      "Format Version,1.23,Export Frame Rate,100,Length Units,Meters\n\n,Type,Marker,Marker,Marker\n,Name,M,M,M\n"
+      ",ID,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n0,0,1,2,3\n1,0.01,,,\n",
+      "NO_OF_FRAMES\t2\nFREQUENCY\t100\nMARKER_NAMES\thand\n1\t2\t3\n0\t0\t0\n",
+      "Label: E Sampling frequency: 10 Unit: V Domain: s\nX[s],E,X[s],F [N]\n0,1,0,2\n0.1,2,,\n",
       "# Created by Octave 7\n# name: t\n# type: matrix\n# rows: 2\n# columns: 2\n 0 1\n 2 NA\n\n\n"
       "# name: r\n# type: range\n# base, limit, increment\n0 5 1\n\n# name: s\n# type: scalar struct\n# ndims: 2\n 1 "
       "1\n"
@@ -39,6 +48,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       mbk::fuzz::check_decoded(std::move(record.contents), size);
     }
   }
+  if (looks_like_vicon(text)) mbk::fuzz::check_decoded(decode_vicon(bytes), size);
+  if (looks_like_motive(text)) mbk::fuzz::check_decoded(decode_motive(bytes), size);
+  if (looks_like_qualisys(text)) mbk::fuzz::check_decoded(decode_qualisys(bytes), size);
+  if (looks_like_delsys(text)) mbk::fuzz::check_decoded(decode_delsys(bytes), size);
   if (looks_like_trc(text)) mbk::fuzz::check_decoded(decode_trc(bytes), size);
   return 0;
 }

@@ -22,6 +22,8 @@
 #include "mbk/files/recording/open_trials.h"
 #include "mbk/files/ros/bag.h"
 #include "mbk/files/ros/mcap.h"
+#include "mbk/files/tables/capture_tables.h"
+#include "mbk/files/tables/delsys.h"
 #include "mbk/files/tables/lvm.h"
 #include "mbk/files/tables/npy.h"
 #include "mbk/files/tables/octave_text.h"
@@ -173,6 +175,12 @@ constexpr auto kFormats = std::to_array<FileFormat>({
     {"OpenSim", ".sto .mot", "OpenSim's storages and motions", text_begins_as<looks_like_opensim>,
      whole<decode_opensim>},
     {"LVM", ".lvm", "LabVIEW measurement files", text_begins_as<looks_like_lvm>, nullptr, all_records<decode_lvm>},
+    {"Vicon", ".csv", "Vicon Nexus: trajectories, devices, model outputs", text_begins_as<looks_like_vicon>,
+     whole<decode_vicon>},
+    {"Motive", ".csv", "OptiTrack Motive", text_begins_as<looks_like_motive>, whole<decode_motive>},
+    {"Qualisys", ".tsv", "Qualisys Track Manager: markers", text_begins_as<looks_like_qualisys>,
+     whole<decode_qualisys>},
+    {"Delsys", ".csv", "EMGworks, Trigno Discover", text_begins_as<looks_like_delsys>, whole<decode_delsys>},
     {"CSV", ".csv .tsv", "tables of numbers as text, also .txt, .dat: spreadsheets, Python, libfranka, dSPACE",
      begins_as_table, decode_table},
     {"KINARM exam", ".kinarm .zip", "Dexterit-E", zip_holds<KinarmExam::is_exam>, nullptr, open_exam},

@@ -97,8 +97,7 @@ struct Part {
 
 class Reader {
  public:
-  explicit Reader(std::span<const std::byte> file)
-      : lines_({reinterpret_cast<const char*>(file.data()), file.size()}), bytes_(file.size()) {}
+  explicit Reader(std::span<const std::byte> file) : lines_(text_of(file)), bytes_(file.size()) {}
 
   Result<void> read() {
     std::optional<TextLine> line = next_line();

@@ -28,7 +28,7 @@ bool looks_like_opensim(std::string_view text) {
 }
 
 Result<Contents> decode_opensim(std::span<const std::byte> file) {
-  TextLines lines({reinterpret_cast<const char*>(file.data()), file.size()});
+  TextLines lines(text_of(file));
   Contents contents;
   contents.format = "OpenSim";
   contents.table = true;
@@ -150,7 +150,7 @@ Result<void> check_axes(const TextLine& line, char separator, const std::vector<
 }  // namespace
 
 Result<Contents> decode_trc(std::span<const std::byte> file) {
-  TextLines lines({reinterpret_cast<const char*>(file.data()), file.size()});
+  TextLines lines(text_of(file));
   Contents contents;
   contents.format = "TRC";
   contents.table = true;

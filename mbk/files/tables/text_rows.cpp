@@ -106,6 +106,45 @@ void note_obstacles(std::string_view what, Contents& contents) {
                                        more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
+std::string_view text_of(std::span<const std::byte> file) {
+  return {reinterpret_cast<const char*>(file.data()), file.size()};
+}
+
+/// The cells of a line that says names, which may stand in quotes and hold separators there.
+std::vector<std::string> labels_of(std::string_view line, char separator) {
+  std::vector<std::string> labels;
+  for (;;) {
+    std::size_t end = line.find(separator);
+    if (const auto first = line.find_first_not_of(' '); first != line.npos && line[first] == '"') {
+      const auto close = line.find('"', first + 1);
+      end = close == line.npos ? line.npos : line.find(separator, close);
+    }
+    end = std::min(end, line.size());
+    labels.push_back(label_of(line.substr(0, end)));
+    if (end == line.size()) return labels;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// Adds a row, whatever stands for its decimal points.
+Result<void> add_row(TextRows& rows, const TextLine& line, char separator, std::size_t columns) {
+  auto cells = split(line.text, separator);
+  while (cells.size() > columns && is_blank(cells.back())) cells.pop_back();
+  if (cells.size() > columns) {
+    return bad_data(fmt::format("{} cells where the header names {} columns", cells.size(), columns),
+                    std::string(kWriteAgain), line_place(line.number));
+  }
+  return rows.add(line, cells, separator != ',' && line.text.find(',') != line.text.npos);
+}
+
+Array& add_array(Contents& contents, std::string name, std::string unit, double rate_hz) {
+  Array& array = contents.arrays.emplace_back();
+  array.name = std::move(name);
+  array.unit = std::move(unit);
+  array.rate_hz = rate_hz;
+  return array;
+}
+
 TextRows::TextRows(std::size_t columns, std::size_t bytes)
     : numbers_(columns),
       obstacles_(columns),

@@ -26,11 +26,16 @@ inline constexpr std::string_view kWriteAgain = "write it again with the program
 /// Without blanks and quotes around it, printable.
 [[nodiscard]] std::string label_of(std::string_view cell);
 
+[[nodiscard]] std::string_view text_of(std::span<const std::byte> file);
+
 /// What stands between the cells of a line: a tab; a semicolon or comma where a spreadsheet saved it; or blanks.
 [[nodiscard]] char separator_of(std::string_view line);
 [[nodiscard]] std::vector<std::string_view> cells_of(std::string_view line, char separator);
 /// The same without empty ones at the end.
 [[nodiscard]] std::vector<std::string_view> filled_cells_of(std::string_view line, char separator);
+
+/// The cells of a line that says names, which may stand in quotes and hold separators there.
+[[nodiscard]] std::vector<std::string> labels_of(std::string_view line, char separator);
 
 [[nodiscard]] std::optional<double> positive_number(std::string_view text);
 
@@ -69,5 +74,11 @@ class TextRows {
   std::vector<std::optional<Error>> obstacles_;  ///< of columns of vectors
   std::size_t most_;                             ///< rows
 };
+
+/// Adds a row, whatever stands for its decimal points.
+Result<void> add_row(TextRows& rows, const TextLine& line, char separator, std::size_t columns);
+
+/// An array without numbers yet.
+Array& add_array(Contents& contents, std::string name, std::string unit, double rate_hz);
 
 }  // namespace mbk::recording
