@@ -506,10 +506,9 @@ class Assembler {
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
       } else if (name.unit != nullptr && is_named(*line) && signal.is_plain() && ends_in_brackets(line->array->name)) {
-        return bad_data(fmt::format("'{}' says that it is in {}, which channel {} cannot be in", line->array->name,
-                                    name.unit->name, kind->name),
-                        fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", entry.channel,
-                                    entry.source, unit_names(kind->measures)));
+        recording_.notes.push_back(fmt::format("the name of '{}' says {}, which {} cannot be in: it was taken in {}",
+                                               line->array->name, name.unit->name, kind->name,
+                                               kind->default_unit().empty() ? "no unit" : kind->default_unit()));
       } else if (signal.is_plain()) {
         const auto unit = unit_for_all(*kind, *line->array);
         if (!unit) return tl::unexpected(unit.error());
