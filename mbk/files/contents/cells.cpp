@@ -34,17 +34,21 @@ bool take(std::string_view& text, char c) {
   return true;
 }
 
-/// "2024-03-01" from the front of the text, as a day since 1970-01-01.
+/// "2024-03-01", "2024/03/01" or "01.03.2024" from the front of the text, as a day since 1970-01-01. What 01/03/2024
+/// means depends on who wrote it.
 std::optional<std::int64_t> take_date(std::string_view& text) {
   using namespace std::chrono;  // NOLINT(google-build-using-namespace): its literals and calendar
   std::string_view rest = text;
-  const auto y = take_digits(rest, 4);
-  if (!y || !take(rest, '-')) return std::nullopt;
+  const bool year_first = rest.size() > 4 && (rest[4] == '-' || rest[4] == '/');
+  const char sign = year_first ? rest[4] : '.';
+  const auto first = take_digits(rest, year_first ? 4 : 2);
+  if (!first || !take(rest, sign)) return std::nullopt;
   const auto m = take_digits(rest, 2);
-  if (!m || !take(rest, '-')) return std::nullopt;
-  const auto d = take_digits(rest, 2);
-  if (!d) return std::nullopt;
-  const year_month_day date{year(*y), month(static_cast<unsigned>(*m)), day(static_cast<unsigned>(*d))};
+  if (!m || !take(rest, sign)) return std::nullopt;
+  const auto last = take_digits(rest, year_first ? 2 : 4);
+  if (!last) return std::nullopt;
+  const year_month_day date{year(year_first ? *first : *last), month(static_cast<unsigned>(*m)),
+                            day(static_cast<unsigned>(year_first ? *last : *first))};
   if (!date.ok()) return std::nullopt;
   text = rest;
   return sys_days(date).time_since_epoch().count();

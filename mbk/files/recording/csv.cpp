@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include "mbk/files/recording/csv_text.h"
 #include "mbk/files/recording/encode.h"
 #include "mbk/files/recording/preamble.h"
+#include "mbk/files/recording/si_units.h"
 #include "mbk/files/recording/table_columns.h"
 
 namespace mbk::recording {
@@ -35,10 +37,17 @@ Error not_a_number(std::size_t line, std::size_t column, std::string_view cell, 
   cell = without_quotes(cell);
   const auto count = [cell](char c) { return std::ranges::count(cell, c); };
   std::string remedy = "the table must hold numbers, separated by commas, semicolons, tabs or blanks";
-  if (cell == "NA" || cell == "N/A" || cell == "n/a" || cell == "-") {
+  constexpr auto kMissing = std::to_array<std::string_view>(
+      {"NA", "N/A", "n/a", "-", "null", "NULL", "None", "#N/A", "#DIV/0!", "#NUM!", "#VALUE!", "#REF!", "#NAME?"});
+  const std::size_t blank = cell.rfind(' ');
+  if (std::ranges::find(kMissing, cell) != kMissing.end()) {
     remedy = "leave the cell empty, or write nan, where a value is missing";
   } else if (count(':') == 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0)) {
     remedy = "write times as 10:15:30.123 or 2024-03-01T10:15:30.123, or as seconds";
+  } else if (blank != cell.npos && cell_number(cell.substr(0, blank)) && find_unit(cell.substr(blank + 1)) != nullptr) {
+    remedy = "write numbers alone, and their unit in the name of the column";
+  } else if (cell.starts_with('[') || cell.starts_with('(')) {
+    remedy = "where it holds several numbers, write each as a column of its own";
   } else if (decimal_commas && cell.find('.') != cell.npos) {
     remedy = "the file has decimal commas: export it with decimal points throughout";
   }
@@ -182,6 +191,7 @@ class Table {
     last_line_ = line.number;
     Row row = decimal_commas_ ? Row{0, true, false} : take_plain(line.text, end);
     if (row.odd || (row.count != columns_ && line.text.find('"') != line.text.npos)) row = part_odd(line.text);
+    if (row.odd || row.count != columns_) row = without_comment(line, end, row);
     const bool trailing = trailing_ && row.count == columns_ + 1 && row.last_is_empty;
     const bool complete = row.count == columns_ || trailing;
     const bool last_is_cut =
@@ -194,6 +204,7 @@ class Table {
     }
     if (!complete || (trailing_ && !trailing && !last)) return wrong_count(line, row.count);
     if (row.odd) {
+      if (auto ok = refuse_header(line); !ok) return ok;
       if (auto ok = take_odd(line); !ok) return ok;
     }
     if (!line.terminated && !trailing) {
@@ -204,7 +215,27 @@ class Table {
     return {};
   }
 
+  /// The names of the columns in the middle of the table: a logger was started again.
+  [[nodiscard]] Result<void> refuse_header(const CsvLine& line) const {
+    const auto same = [](const Odd& one, const std::string& name) { return without_quotes(one.cell) == name; };
+    if (head_.names.empty() || !std::ranges::equal(odd_, head_.names, same)) return {};
+    return bad_data(fmt::format("the names of line {} stand again: another recording begins there", head_.header_line),
+                    "write each recording to a file of its own", place(line.number));
+  }
+
   [[nodiscard]] Result<void> wrong_count(const CsvLine& line, std::size_t count) const {
+    bool numbers = false;
+    for_each_cell(line.text, head_.separator, [&](std::string_view cell) {
+      numbers = cell_number(cell) && !without_quotes(cell).empty();
+      return !numbers;
+    });
+    if (!numbers) {
+      return bad_data(
+          fmt::format("it holds words in {} cells, and the lines before {} cells with numbers: another table "
+                      "may begin there",
+                      count, columns_ + (trailing_ ? 1 : 0)),
+          "write each table to a file of its own", place(line.number));
+    }
     const bool commas = head_.separator == ',' && line.text.find('.') == line.text.npos;
     return bad_data(fmt::format("{} cells where the lines before have {}", count, columns_ + (trailing_ ? 1 : 0)),
                     commas ? "every line must have a cell for every column; where commas stand for decimal points too, "
@@ -317,6 +348,18 @@ class Table {
     return row;
   }
 
+  /// "0.5,1.5 # touched": a line whose numbers a comment follows. Any other as it is.
+  Row without_comment(const CsvLine& line, const char* end, Row row) {
+    const auto mark = line.text.find(" #");
+    if (mark == line.text.npos || decimal_commas_ || line.text.find('"') != line.text.npos) return row;
+    const Row bare = take_plain(line.text.substr(0, mark), end);
+    if (!bare.odd && bare.count == columns_) {
+      if (commented_++ == 0) first_commented_ = line.number;
+      return bare;
+    }
+    return row.odd ? part_odd(line.text) : take_plain(line.text, end);
+  }
+
   [[nodiscard]] Odd odd(std::string_view cell) const {
     if (!decimal_commas_) {
       if (const auto value = cell_number(cell)) return {cell, Odd::number, *value};
@@ -388,6 +431,10 @@ class Table {
                       "export it with decimal points, and nothing between thousands");
     }
     if (decimal_commas_) head_.notes.emplace_back("numbers have decimal commas");
+    if (commented_ > 0) {
+      head_.notes.push_back(fmt::format("comments behind the numbers of {} lines, from line {} on, were left out",
+                                        commented_, first_commented_));
+    }
     if (trailing_) head_.notes.emplace_back("every line ends with a separator, which was not taken as a column");
     contents.notes.insert(contents.notes.begin(), head_.notes.begin(), head_.notes.end());
     const Error* first = nullptr;
@@ -487,6 +534,7 @@ class Table {
   std::string comma_cell_;  ///< the first that has one
   TableColumns rows_;       ///< complete ones so far, and the one that is worked on
   std::size_t last_line_ = 0;
+  std::size_t commented_ = 0, first_commented_ = 0;  ///< lines with a comment behind their numbers
 };
 
 Result<Contents> decode_text(CsvText text) {

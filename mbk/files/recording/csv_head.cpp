@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -74,6 +75,7 @@ struct Reading {
   std::vector<Parted> lines;
   std::size_t width = 0;  ///< cells of a row
   double score = 0.0;     ///< share of the cells that are numbers in rows of this width
+  bool named = false;     ///< a line of words has as many cells as the rows
 
   [[nodiscard]] bool is_row(const Parted& line) const {
     return line.is_bare() || (line.cells.size() == width && !line.is_words());
@@ -101,6 +103,9 @@ Reading reading(const std::vector<CsvLine>& lines, char separator) {
       widths, {}, [](const auto& width) { return std::pair(width.second.lines, width.second.numbers); });
   found.width = most->first;
   found.score = static_cast<double>(most->second.numbers) / static_cast<double>(std::max<std::size_t>(cells, 1));
+  found.named = found.width > 1 && std::ranges::any_of(found.lines, [&](const Parted& line) {
+                  return line.is_words() && line.cells.size() == found.width;
+                });
   return found;
 }
 
@@ -116,6 +121,13 @@ Reading best_reading(const std::vector<CsvLine>& lines) {
     Reading other = reading(lines, separator);
     const bool earlier = separator != kBlanks;  // than the comma, where both will do
     const bool several = other.width > 1 && (earlier || best.width <= 1);
+    // In "2024-03-01 10:15:30,5" a blank may part two numbers and a comma too: the header decides.
+    constexpr double kAlike = 0.25;
+    if (other.named != best.named && other.score > 0.0 && best.score > 0.0 &&
+        std::abs(other.score - best.score) < kAlike) {
+      if (other.named) best = std::move(other);
+      continue;
+    }
     if (other.score > best.score || (other.score > 0.0 && other.score == best.score && several && best.width <= 1)) {
       best = std::move(other);
     }
@@ -291,7 +303,34 @@ class HeadFinder {
     }
     head_.names = std::move(cells);
     head_.header_line = reading_.lines[at].line->number;
-    return at;
+    return join_names(at);
+  }
+
+  /// Names in two lines, "hand,,force," above "x,y,x,y": where those of the lower line do not tell the columns apart.
+  /// @returns  lines above
+  std::size_t join_names(std::size_t at) {
+    const Parted& line = reading_.lines[at];
+    if (at == 0 || are_different(head_.names)) return at;
+    const Parted& above = reading_.lines[at - 1];
+    if (!above.is_words() || above.cells.size() != line.cells.size() || states(above)) return at;
+    std::vector<std::string> joined = texts_of(above.line->text, reading_.separator);
+    std::string group;
+    for (std::size_t c = 0; c < joined.size(); ++c) {
+      if (!joined[c].empty()) group = joined[c];
+      const std::string& name = head_.names[c];
+      joined[c] = name.empty() ? joined[c] : group.empty() ? name : group + "_" + name;
+    }
+    if (!are_different(joined)) return at;
+    head_.notes.push_back(
+        fmt::format("lines {} and {} together are the names of the columns", above.line->number, line.line->number));
+    head_.names = std::move(joined);
+    return at - 1;
+  }
+
+  static bool are_different(std::vector<std::string> names) {
+    while (!names.empty() && names.back().empty()) names.pop_back();  // behind a separator at the end
+    std::ranges::sort(names);
+    return std::ranges::adjacent_find(names) == names.end();
   }
 
   /// Whether the first row has texts where all others have numbers.

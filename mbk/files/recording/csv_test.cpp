@@ -293,6 +293,63 @@ TEST(DecodeCsv, RefusesNumbersAboveAHeader) {
   EXPECT_THAT(error_of("a,b,c\n1,2,go\n3,4,go\nc,d,e\n5,6,go\n7,8,go\n").message, HasSubstr("several tables"));
 }
 
+/// So many rows of cells that count up.
+std::string counting(int rows, int columns, char separator = ',') {
+  std::string text;
+  for (int k = 0; k < rows; ++k) {
+    for (int c = 0; c < columns; ++c) text += fmt::format("{}{}", k + c, c + 1 < columns ? separator : '\n');
+  }
+  return text;
+}
+
+TEST(DecodeCsv, RefusesAHeaderThatStandsAgain) {
+  EXPECT_EQ(
+      error_of("t,x\n" + counting(50, 2) + "t,x\n0,3\n").line(),
+      "line 52: the names of line 1 stand again: another recording begins there; write each recording to a file of "
+      "its own");
+  EXPECT_THAT(error_of("\"t\" x\n" + counting(50, 2, ' ') + "t x\n0 3\n").message, HasSubstr("stand again"));
+}
+
+TEST(DecodeCsv, SaysWhereAnotherTableMayBegin) {
+  EXPECT_THAT(
+      error_of("t,x,y\n" + counting(50, 3) + "frequency,gain\n1,2\n").line(),
+      HasSubstr("line 52: it holds words in 2 cells, and the lines before 3 cells with numbers: another table may"));
+}
+
+TEST(DecodeCsv, TakesTheSeparatorThatFitsTheHeader) {
+  const std::string text = "time,x\n2024-03-01 10:00:00,1\n2024-03-01 10:00:01,2\n2024-03-01 10:00:02,3\n";
+  EXPECT_EQ(names_of(text), (std::vector<std::string>{"time", "x"}));
+  EXPECT_EQ(values_of(text)(2, 1), 3);
+  EXPECT_EQ(values_of(text)(2, 0), 36002);
+}
+
+TEST(DecodeCsv, JoinsNamesInTwoLines) {
+  const auto rows = std::string("0,1,2,3,4\n1,2,3,4,5\n");
+  const std::vector<std::string> names = {"time", "hand_x", "hand_y", "force_x", "force_y"};
+  for (const char* head : {"time,hand,hand,force,force\n,x,y,x,y\n", "time,hand,,force,\n,x,y,x,y\n",
+                           ",hand,,force,\ntime,x,y,x,y\n", "Recorder 7\n,hand,,force,\ntime,x,y,x,y\ns,mm,mm,N,N\n"}) {
+    EXPECT_EQ(names_of(head + rows), names) << head;
+    EXPECT_THAT(csv(head + rows)->notes, Contains(HasSubstr("together are the names of the columns"))) << head;
+  }
+  EXPECT_EQ(csv("h,hand,,force,\ntime,x,y,x,y\ns,mm,mm,N,N\n" + rows)->arrays[1].unit, "mm");
+  EXPECT_EQ(names_of("a,b,c,d,e\ntime,p,q,r,s\n" + rows)[1], "p");  // the lower line tells them apart
+  EXPECT_EQ(names_of("a,b,b,d,d\ntime,p,p,r,s\n" + rows)[1], "p");  // and here both lines do not
+}
+
+TEST(DecodeCsv, LeavesCommentsBehindNumbersOut) {
+  const auto contents = csv("t,x\n0,1.5\n0.25,-2 # touched, twice\n");
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(values_of("t,x\n0,1.5\n0.25,-2 # touched, twice\n"), kTwoByTwo);
+  EXPECT_THAT(contents->notes, Contains("comments behind the numbers of 1 lines, from line 3 on, were left out"));
+  EXPECT_THAT(obstacle_of("t,x\n0,go #1\n1,go #2\n", 1).message, HasSubstr("'go #1'"));
+}
+
+TEST(DecodeCsv, SaysWhatToDoAboutACellThatIsNoNumber) {
+  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,#DIV/0!\n2,1\n", 1).remedy, HasSubstr("leave the cell empty"));
+  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,1.5 mm\n2,1\n", 1).remedy, HasSubstr("their unit in the name of the column"));
+  EXPECT_THAT(obstacle_of("t;x\n0;1\n1;[1, 2]\n2;1\n", 1).remedy, HasSubstr("each as a column of its own"));
+}
+
 TEST(DecodeCsv, ReadsQuotedNamesWithSeparators) {
   EXPECT_EQ(names_of("\"time, s\",\"say \"\"x\"\"\"\n0,1\n"), (std::vector<std::string>{"time, s", "say \"x\""}));
   EXPECT_EQ(obstacle_of("t,note,x\n0,\"a, b\",1\n1,\"c\",2\n", 1).message, "'a, b' is not a number");
@@ -313,6 +370,8 @@ TEST(DecodeCsv, ReadsDatesAsIso8601WritesThem) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays[0].values, Vector((Vector(2) << 82799.5, 86400).finished()));
   EXPECT_THAT(contents->notes, Contains(HasSubstr("seconds since 2024-02-29 00:00")));
+  EXPECT_EQ(values_of("time,x\n2024/02/29 10:00:00,1\n2024/03/01 10:00:00,2\n")(1, 0), 86400 + 36000);
+  EXPECT_EQ(values_of("time;x\n29.02.2024 10:00:00;1\n01.03.2024 10:00:00,5;2\n")(1, 0), 86400 + 36000.5);
   EXPECT_THAT(obstacle_of("time,x\n01/02/2024 10:15:30,1\n01/02/2024 10:15:31,2\n", 0).remedy,
               HasSubstr("2024-03-01T"));
   EXPECT_THAT(obstacle_of("time,x\n2024-02-30,1\n2024-02-31,2\n", 0).message, HasSubstr("is not a number"));
