@@ -10,6 +10,7 @@
 #include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/files/recording/read.h"
+#include "mbk/measure/analyse/plausible_scale.h"
 #include "mbk/present/report/text.h"
 #include "mbk/present/result/json.h"
 
@@ -57,6 +58,15 @@ Result<Recording> read_journal(const std::filesystem::path& file) {
   return recording;
 }
 
+/// A recording, and whether its numbers are those of a limb as a note.
+Inspection inspected(Recording& recording) {
+  Inspection inspection = recording::inspect(recording);
+  if (const auto size = analyse::check_size(recording, inspection)) {
+    recording.notes.push_back(fmt::format("{}; {}", size->message, size->remedy));
+  }
+  return inspection;
+}
+
 /// What a file of several trials holds: all of them by name, and one in full.
 int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
                 const std::vector<recording::TrialName>& trials) {
@@ -64,9 +74,10 @@ int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
   for (const recording::TrialName& trial : trials) names.emplace_back(trial.name, trial.description);
   const std::string list =
       report::trials_text(arguments.reading.files.front().string(), names) + "\nThe first of them:\n";
-  const auto first = reader.read(0);
+  auto first = reader.read(0);
   if (!first) return list_unrecognised(arguments, reader, first.error(), list);
-  const std::string text = list + report::info_text(*first, recording::inspect(*first));
+  const Inspection inspection = inspected(*first);
+  const std::string text = list + report::info_text(*first, inspection);
   if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -85,7 +96,7 @@ int run(const InfoArguments& arguments) {
   std::vector<Recording> recordings;  // of several, without their samples
   std::vector<Inspection> inspections;
   const auto add = [&](Recording recording) {
-    inspections.push_back(recording::inspect(recording));
+    inspections.push_back(inspected(recording));
     for (Channel& channel : recording.channels) channel.values.resize(0);
     recording.time.resize(0);
     recordings.push_back(std::move(recording));

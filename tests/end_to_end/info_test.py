@@ -36,6 +36,26 @@ class Info(Case):
         self.assertIn("no gap, no jitter to speak of, time runs on", text)
         self.assertIn("rows 4, 5, 8, 9, 16 and 17", " ".join(text.split()))
 
+    def test_numbers_that_are_too_large_for_a_limb(self):
+        time = [i / RATE for i in range(8000)]
+        x = [0.3 + 0.01 * math.sin(0.01 * i) for i in range(8000)]
+        force = [math.sin(0.011 * i) for i in range(8000)]
+        still = [0.0] * 8000
+        for columns, says in (
+                ((time, x, x, force, force), None),
+                ((time, still, still, still, still), None),
+                ((time, [1e3 * v for v in x], [1e3 * v for v in x], force, force),
+                 "if x and y are in mm: --channels time=time,x=x:mm,y=y:mm,Fx=Fx,Fy=Fy"),
+                ((time, x, x, [1e3 * v for v in force], force), "if Fx is in mN"),
+                (([400 * t for t in time], x, x, force, force), None),  # a slow log
+                (([1e3 * t + 0.5 for t in time], x, x, force, force), "if time is in ms: --channels time=time:ms")):
+            facts, text = self.info(columns)
+            notes = [note for note in facts["notes"] if "not the size of a hand's" in note]
+            self.assertEqual(bool(notes), says is not None, notes)
+            if says:
+                self.assertIn(says, notes[0])
+                self.assertIn("this is not the size of a hand's", text)
+
     def test_the_text_fits_a_terminal(self):
         log = copy(make_log().path, self.folder / "log.mat")
         self.assert_lines_fit(self.fine("info", log.name, folder=self.folder).out)

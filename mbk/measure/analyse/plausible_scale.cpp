@@ -387,10 +387,8 @@ std::string option_of(const Explanation& one, const Recording& recording, int ax
 
 constexpr const char* kCheck = "check the column, the unit and the gain of every channel with 'mbk info'";
 
-std::string remedy_of(std::span<const Explanation> likely, const Recording& recording, int axes) {
-  if (likely.empty()) {
-    return fmt::format("{}, and say them with --channels, as in x=2:mm; --ranges prints what is plausible", kCheck);
-  }
+/// "if x is in mm: --channels …; or, …"; "" where nothing is likely.
+std::string cures_of(std::span<const Explanation> likely, const Recording& recording, int axes) {
   std::string text;
   constexpr std::size_t kNamed = 2;
   for (const Explanation& one : likely.first(std::min(likely.size(), kNamed))) {
@@ -398,7 +396,14 @@ std::string remedy_of(std::span<const Explanation> likely, const Recording& reco
     text += fmt::format("{}if {}: {}", text.empty() ? "" : "; or, ", one.what,
                         option.empty() ? "say so with --channels, as in x=2:mm" : option);
   }
-  return fmt::format("{}; else {}; --ranges prints what is plausible", text, kCheck);
+  return text;
+}
+
+std::string remedy_of(std::span<const Explanation> likely, const Recording& recording, int axes) {
+  if (likely.empty()) {
+    return fmt::format("{}, and say them with --channels, as in x=2:mm; --ranges prints what is plausible", kCheck);
+  }
+  return fmt::format("{}; else {}; --ranges prints what is plausible", cures_of(likely, recording, axes), kCheck);
 }
 
 std::string message_of(const std::vector<Violation>& found, const Recording& recording, int axes, bool joint) {
@@ -414,6 +419,41 @@ std::string message_of(const std::vector<Violation>& found, const Recording& rec
                         one.value, one.range->unit, one.range->low, one.range->high);
   }
   return text;
+}
+
+using Families = std::vector<std::span<const PlausibleRange>>;
+
+/// Those that make all plausible, the likeliest first.
+template <class Plausible>
+std::vector<Explanation> likeliest(std::vector<Explanation> all, const Numbers& numbers, const Families& families,
+                                   const Plausible& plausible) {
+  std::vector<Explanation> likely;
+  for (Explanation& one : all) {
+    const Numbers then = explained(numbers, one);
+    if (!plausible(then)) continue;
+    one.distance = std::numeric_limits<double>::infinity();
+    for (const auto& ranges : families) one.distance = std::min(one.distance, distance(then, ranges));
+    one.distance += one.price;
+    likely.push_back(std::move(one));
+  }
+  std::ranges::stable_sort(likely, {}, &Explanation::distance);
+  std::erase_if(likely, [&](const Explanation& one) { return one.distance > likely.front().distance + kAlsoLikely; });
+  return likely;
+}
+
+/// Mean and standard deviation of the numbers of a channel; zeros where there is none.
+std::pair<double, double> mean_and_deviation(const Channel* channel) {
+  double sum = 0.0, squares = 0.0;
+  Index n = 0;
+  const auto each = [&](const auto& use) {
+    for (Index i = 0; channel != nullptr && i < channel->values.size(); ++i) {
+      if (std::isfinite(channel->values[i])) use(channel->values[i]);
+    }
+  };
+  each([&](double value) { sum += value, ++n; });
+  const double mean = n > 0 ? sum / static_cast<double>(n) : 0.0;
+  each([&](double value) { squares += (value - mean) * (value - mean); });
+  return {mean, n > 0 ? std::sqrt(squares / static_cast<double>(n)) : 0.0};
 }
 
 /// How to read a clock that runs at no plausible rate.
@@ -441,6 +481,57 @@ Error explain_clock(Error error, const Recording& recording, const Inspection& i
   return error;
 }
 
+std::optional<Warning> check_size(const Recording& recording, const Inspection& inspection) {
+  constexpr double kLong = 3600.0;  // [s] a low rate is that of a slow log, unless it lasts for hours
+  const bool one_axis =
+      recording.find(kPositionChannels.one_axis) != nullptr || recording.find(kForceChannels.one_axis) != nullptr;
+  const int axes = one_axis ? 1 : 2;
+  const PlausibleRange& rates = *std::ranges::find(kHandRanges, PlausibleQuantity::rate, &PlausibleRange::quantity);
+  Numbers numbers{Vector::Zero(axes),
+                  Vector::Zero(axes),
+                  Vector::Zero(axes),
+                  Vector::Zero(axes),
+                  rates.typical,
+                  false,
+                  0.0,
+                  {},
+                  {},
+                  {}};
+  for (Index axis = 0; axis < axes; ++axis) {
+    const auto [place, motion] = mean_and_deviation(recording.find(kPositionChannels.name(axes, axis)));
+    numbers.position[axis] = std::abs(place);
+    numbers.motion[axis] = motion;
+    numbers.force[axis] = mean_and_deviation(recording.find(kForceChannels.name(axes, axis))).second;
+  }
+  if (inspection.rate_hz < rates.low && inspection.duration > kLong) numbers.rate = inspection.rate_hz;
+
+  const Channel* const position = recording.find(kPositionChannels.one_axis);
+  const std::string_view unit = position == nullptr ? std::string_view("m") : std::string_view(position->unit);
+  Families families;
+  if (unit != "rad") families.emplace_back(kHandRanges);
+  if (unit != "m") families.emplace_back(kJointRanges);
+  // Nothing need move or be pushed, so that only what is too large counts.
+  const auto too_large = [](const Numbers& n, std::span<const PlausibleRange> ranges) {
+    auto found = violations(n, ranges, {PlausibleQuantity::speed});
+    std::erase_if(found, [](const Violation& one) {
+      return one.value < one.range->low && one.range->quantity != PlausibleQuantity::rate;
+    });
+    return found;
+  };
+  const auto plausible = [&](const Numbers& n) {
+    return std::ranges::any_of(families, [&](const auto& ranges) { return too_large(n, ranges).empty(); });
+  };
+  if (plausible(numbers)) return std::nullopt;
+  PreparedTrial trial;
+  trial.axes = axes;
+  trial.recording_rate = inspection.rate_hz;
+  const auto likely = likeliest(Explanations(recording, {trial}, axes).take(), numbers, families, plausible);
+  const auto found = too_large(numbers, families.front());
+  return Warning{
+      WarningCode::implausible_scale, message_of(found, recording, axes, unit == "rad"),
+      likely.empty() ? "check the column, the unit and the gain of every channel" : cures_of(likely, recording, axes)};
+}
+
 std::optional<Warning> check_scale(const std::vector<const Recording*>& recordings,
                                    const std::vector<PreparedTrial>& trials, const Measurement& measured,
                                    const std::set<PlausibleQuantity>& ignored) {
@@ -453,7 +544,7 @@ std::optional<Warning> check_scale(const std::vector<const Recording*>& recordin
       imbalance(numbers) == 0.0 || (measured.alternative && imbalance(measure(trials, *measured.alternative)) == 0.0);
   const std::span<const PlausibleRange> hand = kHandRanges, joint = kJointRanges;
   // Where the file does not say what moves, either may be meant.
-  std::vector<std::span<const PlausibleRange>> families;
+  Families families;
   if (identification.motion != Motion::rotation) families.push_back(hand);
   if (identification.motion != Motion::translation) families.push_back(joint);
   const auto plausible = [&](const Numbers& n) {
@@ -462,17 +553,7 @@ std::optional<Warning> check_scale(const std::vector<const Recording*>& recordin
   };
   if (plausible(numbers)) return std::nullopt;
 
-  std::vector<Explanation> likely;
-  for (Explanation& one : Explanations(recording, trials, axes).take()) {
-    const Numbers then = explained(numbers, one);
-    if (!plausible(then)) continue;
-    one.distance = std::numeric_limits<double>::infinity();
-    for (const auto& ranges : families) one.distance = std::min(one.distance, distance(then, ranges));
-    one.distance += one.price;
-    likely.push_back(std::move(one));
-  }
-  std::ranges::stable_sort(likely, {}, &Explanation::distance);
-  std::erase_if(likely, [&](const Explanation& one) { return one.distance > likely.front().distance + kAlsoLikely; });
+  const auto likely = likeliest(Explanations(recording, trials, axes).take(), numbers, families, plausible);
 
   const auto& ranges = families.front();
   const auto found = violations(numbers, ranges, ignored);

@@ -22,6 +22,10 @@ namespace mbk::analyse {
                                                  const std::vector<PreparedTrial>& trials, const Measurement& measured,
                                                  const std::set<PlausibleQuantity>& ignored);
 
+/// What `check_scale` says of a recording alone, before anything is measured: places, motions and forces that are too
+/// large for a limb, and a clock so slow that it lasts for hours. Who stands still or pushes nothing is not accused.
+[[nodiscard]] std::optional<Warning> check_size(const Recording& recording, const Inspection& inspection);
+
 /// An error of a recording whose clock runs at no plausible rate, with that said first: time that is read in the wrong
 /// unit leaves nothing to measure. Any other error as it is.   @param axes 1, 2, or 0 = by the channels that are there
 [[nodiscard]] Error explain_clock(Error error, const Recording& recording, const Inspection& inspection, int axes);
