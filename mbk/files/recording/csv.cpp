@@ -42,7 +42,8 @@ Error not_a_number(std::size_t line, std::size_t column, std::string_view cell, 
   const std::size_t blank = cell.rfind(' ');
   if (std::ranges::find(kMissing, cell) != kMissing.end()) {
     remedy = "leave the cell empty, or write nan, where a value is missing";
-  } else if (count(':') == 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0)) {
+  } else if (!cell.empty() && cell.front() >= '0' && cell.front() <= '9' &&
+             (count(':') == 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0))) {
     remedy = "write times as 10:15:30.123 or 2024-03-01T10:15:30.123, or as seconds";
   } else if (blank != cell.npos && cell_number(cell.substr(0, blank)) && find_unit(cell.substr(blank + 1)) != nullptr) {
     remedy = "write numbers alone, and their unit in the name of the column";
@@ -156,7 +157,10 @@ class Table {
     const auto second = line ? lines.next() : std::nullopt;
     if (!text.status()) return text.status();
     if (!second) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
-    return tl::unexpected(not_a_number(second->number, 1, second->text, false));
+    constexpr std::size_t kShown = 40;
+    return bad_data(fmt::format("{} ({}: '{}' is not a number)", kNoTable, place(second->number),
+                                printable(std::string(second->text.substr(0, kShown)))),
+                    "a table has a line for each sample, and numbers between commas, semicolons, tabs or blanks");
   }
 
   Result<void> find_columns(const CsvLine& first) {

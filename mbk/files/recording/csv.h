@@ -2,12 +2,16 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 
 #include "mbk/base/core/result.h"
 #include "mbk/files/contents/contents.h"
 #include "mbk/files/contents/file_bytes.h"
 
 namespace mbk::recording {
+
+/// How the error of a text begins in which no line holds numbers.
+inline constexpr std::string_view kNoTable = "it is text without a table of numbers";
 
 /// UTF-16 with a byte order mark, as spreadsheets write it.
 [[nodiscard]] bool looks_like_utf16(std::span<const std::byte> file);

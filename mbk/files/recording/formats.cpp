@@ -89,6 +89,11 @@ bool begins_as_c3d(OpenFile& file) {
   return looks_like_c3d(file.begin_bytes()) && !likely_format(file.begin_bytes());
 }
 
+constexpr std::string_view kExports =
+    "export it from the program that recorded it: Dexterit-E as .kinarm or .zip, Vicon Nexus as C3D or CSV, Qualisys "
+    "QTM "
+    "as C3D or TSV, LabVIEW as .lvm, Simulink and dSPACE as .mat, Delsys as CSV";
+
 // ---- how it is read ----
 
 template <Result<Contents> (*decode)(std::span<const std::byte>)>
@@ -158,8 +163,9 @@ Result<Contents> decode_table(OpenFile& file) {
   if (auto ok = check_memory(file.size()); !ok) return tl::unexpected(ok.error());  // what its numbers take at most
   auto table = looks_like_utf16(file.begin_bytes()) ? whole<decode_csv>(file) : in_passing<decode_csv>(file);
   if (table) return table;
-  const auto likely = likely_format(file.begin_bytes());
-  return likely ? not_read(*likely) : std::move(table);
+  if (const auto likely = likely_format(file.begin_bytes())) return not_read(*likely);
+  if (table.error().message.starts_with(kNoTable)) return bad_data(table.error().message, std::string(kExports));
+  return table;
 }
 
 constexpr auto kFormats = std::to_array<FileFormat>({
@@ -191,17 +197,10 @@ constexpr auto kFormats = std::to_array<FileFormat>({
 
 std::string names_of_formats() {
   std::vector<std::string_view> names;
-  for (const FileFormat& format : kFormats) names.push_back(format.name);
+  for (const FileFormat& format : kFormats) {
+    if (format.looks_like != nullptr) names.push_back(format.name);
+  }
   return fmt::format("{}", fmt::join(names, ", "));
-}
-
-/// What the first bytes of a file that nothing reads look like.
-std::string looks(std::string_view begin) {
-  if (is_text(begin)) return "text";
-  constexpr std::size_t kShown = 8;
-  std::string hexadecimal;
-  for (const char c : begin.substr(0, kShown)) hexadecimal += fmt::format(" {:02x}", static_cast<unsigned char>(c));
-  return "binary data that begin with the bytes" + hexadecimal;
 }
 
 }  // namespace
@@ -221,11 +220,15 @@ Result<const FileFormat*> format_of(OpenFile& file) {
     if (auto archive = ZipArchive::open((*bytes)->bytes()); !archive) return tl::unexpected(archive.error());
     return bad_data("the zip archive holds no recording", "unpack it, and name the files in it");
   }
+  constexpr std::size_t kShown = 8;
+  std::string bytes;
+  bool zeros = true;
+  for (const char c : file.begin()) zeros = zeros && c == '\0';
+  for (const char c : file.begin().substr(0, kShown)) bytes += fmt::format("{:02x} ", static_cast<unsigned char>(c));
+  if (zeros) return bad_data("it begins with zeros alone", "copy it again from where it was recorded");
   return bad_data(
-      fmt::format("it is of no known format: it holds {}, and none of {} fits", looks(file.begin()),
-                  names_of_formats()),
-      "export it from the program that recorded it: Vicon Nexus and Qualisys QTM as C3D, Dexterit-E as .kinarm or C3D, "
-      "LabVIEW as .lvm or text, Simulink and dSPACE as .mat, Delsys EMGworks as CSV");
+      fmt::format("it is of no known format: it is binary data ({}…), and not {}", bytes, names_of_formats()),
+      std::string(kExports));
 }
 
 std::vector<std::string_view> format_extensions() {
