@@ -1210,10 +1210,13 @@ class Assembler {
       recording_.notes.push_back(both + ", which was taken");
       return {};
     }
-    const double ratio = said / own;
-    const std::string_view unit = !differs(ratio, 1e9) ? "ns" : !differs(ratio, 1e6) ? "us" : "ms";
-    return bad_data(both, fmt::format("say the unit of the time, as in --channels time={}:{}, or correct the rate",
-                                      recording_.time_origin.source, unit));
+    for (const auto& [times, unit] : {std::pair{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}}) {
+      if (differs(said / own, times)) continue;
+      return bad_data(both, fmt::format("say the unit of the time, as in --channels time={}:{}",
+                                        recording_.time_origin.source, unit));
+    }
+    return bad_data(both, fmt::format("correct the one that is wrong; --channels time={}:s takes the time as it is",
+                                      recording_.time_origin.source));
   }
 
   Contents contents_;

@@ -433,7 +433,7 @@ TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {
   EXPECT_EQ(time_of(timed), 0.001);
   timed.datasets["fs"] = Dataset{one(1.0), {}};
   timed.attributes.clear();
-  EXPECT_THAT(error_of(timed), HasSubstr("a rate of 1 Hz, and its time 'time' runs at 1000 Hz; say the unit"));
+  EXPECT_THAT(error_of(timed), HasSubstr("a rate of 1 Hz, and its time 'time' runs at 1000 Hz; correct the one"));
   EXPECT_EQ(recorded(timed, "x=hand_x,time=time:s")->time[1], 0.001);
 }
 

@@ -140,13 +140,13 @@ TEST(PreambleOfATable, RefusesARateThatItsTimeContradicts) {
   const auto recording = read_table("SampleRate=500\ntime,hand_x,hand_y,force_x\n" + kRows);
   ASSERT_FALSE(recording);
   EXPECT_THAT(recording.error().line(),
-              HasSubstr("the file says a rate of 500 Hz (line 1, 'SampleRate=500'), and its time runs at 1000 Hz"));
-  EXPECT_THAT(recording.error().remedy, HasSubstr("--channels time=NAME:ms"));
+              HasSubstr("the file says a rate of 500 Hz (line 1, 'SampleRate=500'), and its time 'time' runs at 1000 Hz"));
+  EXPECT_THAT(recording.error().remedy, HasSubstr("correct the one that is wrong"));
   // A rate may be a nominal one.
   const auto nominal = read_table("SampleRate=1050\ntime,hand_x,hand_y,force_x\n" + kRows);
   ASSERT_TRUE(nominal) << nominal.error().line();
   EXPECT_THAT(nominal->notes,
-              Contains(HasSubstr("says a rate of 1050 Hz (line 1, 'SampleRate=1050'), and its time runs "
+              Contains(HasSubstr("says a rate of 1050 Hz (line 1, 'SampleRate=1050'), and its time 'time' runs "
                                  "at 1000 Hz, which was taken")));
   EXPECT_TRUE(read_table("SampleRate=1000\ntime,hand_x,hand_y,force_x\n" + kRows));
 }
