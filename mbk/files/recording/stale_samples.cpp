@@ -40,6 +40,7 @@ struct Runs {
   std::vector<Index> changes;  ///< samples whose value is not that of the sample before
   std::vector<double> jumps;   ///< by how much
   double step = 0.0;           ///< size of a small change: the 5 % quantile
+  double usual = 0.0;          ///< the lower quartile
   double varied = 0.0;         ///< share of the changes that are at least twice as large
   double low = 0.0, high = 0.0;
 };
@@ -56,6 +57,7 @@ Runs runs_of(const Eigen::Ref<const Vector>& values) {
   }
   if (std::ssize(all.changes) < kMinChanges) return all;
   all.step = quantile(sizes, 0.05);
+  all.usual = quantile(sizes, 0.25);
   const auto large = std::ranges::count_if(sizes, [&](double size) { return size >= 2.0 * all.step; });
   all.varied = static_cast<double>(large) / static_cast<double>(sizes.size());
   all.low = values.minCoeff();
@@ -131,12 +133,12 @@ double share_of(const std::vector<bool>& samples) {
 
 std::optional<Stale> find_placeholder(const Eigen::Ref<const Vector>& values, const Runs& all) {
   constexpr Index kFewest = 5, kLongestRun = 10;
-  constexpr double kFar = 20.0, kShare = 0.002, kRank = 0.15;
+  constexpr double kFar = 20.0, kFarFromUsual = 10.0, kShare = 0.002, kRank = 0.15;
   const auto is_odd = [&](std::size_t k) {
     const Run& run = all.runs[k];
     const double nearest = std::min(std::abs(run.before), std::abs(run.after));
     return run.length <= kLongestRun && (run.before < 0.0) != (run.after < 0.0) &&
-           std::abs(run.before + run.after) < 0.5 * nearest && nearest > kFar * all.step &&
+           std::abs(run.before + run.after) < 0.5 * nearest && nearest > kFarFromUsual * all.usual &&
            nearest > kFar * around(all, k).small;
   };
   const auto [value, count, odd] = most_common(all, is_odd);
@@ -239,7 +241,10 @@ std::optional<Stale> find_held(const Runs& all, Index samples) {
 class Repeats {
  public:
   Repeats(const Runs& all, Index samples) : all_(all), samples_(samples) {
-    for (std::size_t k = 0; k < all.runs.size(); ++k) around_.push_back(around(all, k));
+    around_.resize(all.runs.size());
+    for (std::size_t k = 0; k < all.runs.size(); ++k) {
+      if (all.runs[k].length >= 2 || k % kSampled == 0) around_[k] = around(all, k);
+    }
     rest_ = most_common(all, [&](std::size_t k) { return moves(k) && all.runs[k].length >= 2; });
   }
 
@@ -250,6 +255,7 @@ class Repeats {
 
  private:
   static constexpr Index kShortRun = 10;
+  static constexpr std::size_t kSampled = 16;  ///< of runs of one sample, every so many is looked at
 
   [[nodiscard]] double share(Index count) const { return static_cast<double>(count) / static_cast<double>(samples_); }
   [[nodiscard]] bool at_extreme(const Run& run) const { return run.value == all_.low || run.value == all_.high; }
@@ -272,12 +278,13 @@ class Repeats {
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
       if (!moves(k) || rests(run)) continue;
-      ++moving;
+      const Index count = run.length >= 2 ? 1 : Index{kSampled};  // single samples stand for their neighbours
+      moving += count;
       longer += run.length >= 2 ? 1 : 0;
       stale_all += run.length - 1;
       if (run.length > kShortRun) continue;
-      ++short_runs;
-      in_short += run.length;
+      short_runs += count;
+      in_short += count * run.length;
       stale_short += run.length - 1;
     }
     const bool in_passing = short_runs >= kMinChanges && share(stale_short) >= kMinShare &&
@@ -353,12 +360,20 @@ bool repeats_enough(const Runs& all, Index samples) {
 bool is_plain(const Eigen::Ref<const Vector>& values) {
   constexpr Index kLooked = 1024, kSpikes = 10;
   constexpr double kFar = 20.0;
-  const Index n = values.size() - 1;
-  const auto changes = (values.tail(n) - values.head(n)).array().abs();
-  if (100 * (changes == 0.0).count() > n) return false;
+  const Index n = values.size();
+  const double* const x = values.data();
+  Index repeats = 0;
+  for (Index i = 1; i < n; ++i) repeats += x[i] == x[i - 1] ? 1 : 0;
+  if (100 * repeats > n) return false;
   std::vector<double> some;
-  for (Index k = 0; k < kLooked; ++k) some.push_back(changes[k * (n - 1) / (kLooked - 1)]);
-  return (changes > kFar * quantile(std::move(some), 0.25)).count() < kSpikes;
+  for (Index k = 0; k < kLooked; ++k) {
+    const Index i = 1 + k * (n - 2) / (kLooked - 1);
+    some.push_back(std::abs(x[i] - x[i - 1]));
+  }
+  const double far = kFar * quantile(std::move(some), 0.25);
+  Index spikes = 0;
+  for (Index i = 1; i < n; ++i) spikes += std::abs(x[i] - x[i - 1]) > far ? 1 : 0;
+  return spikes < kSpikes;
 }
 
 Stale find_in_finite(const Eigen::Ref<const Vector>& values) {
