@@ -52,8 +52,8 @@ inline constexpr int kMaxJoints = 8;
 /// The one of `kinds` that belongs to so many axes, or nullptr.
 [[nodiscard]] const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes);
 
-/// A column name taken apart: "hand_x_mm", "hand_x [mm]", "hand_x (mm)", "hand_x in mm", "hand_x mm" and "hand_x/mm" are
-/// hand_x in mm.
+/// A column name taken apart: "hand_x_mm", "hand_x [mm]", "hand_x (mm)", "hand_x in mm", "hand_x mm" and "hand_x/mm"
+/// are hand_x in mm.
 struct ColumnName {
   std::vector<const ChannelKind*> kinds;  ///< empty: not a name that mbk knows
   const Unit* unit = nullptr;             ///< nullptr: the name says none

@@ -186,10 +186,13 @@ class DelsysDecoder {
 }  // namespace delsys
 
 bool looks_like_delsys(std::string_view text) {
+  const auto holds = [](std::string_view where) {
+    return where.find("[s]") != where.npos || where.find("(s)") != where.npos;
+  };
+  if (!holds(text)) return false;
   TextLines lines(text);
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
-    if (line->text.find("[s]") == line->text.npos && line->text.find("(s)") == line->text.npos) continue;
-    if (delsys::is_delsys_header(labels_of(line->text, separator_of(line->text)))) return true;
+    if (holds(line->text) && delsys::is_delsys_header(labels_of(line->text, separator_of(line->text)))) return true;
   }
   return false;
 }
