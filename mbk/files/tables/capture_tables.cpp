@@ -63,7 +63,7 @@ class ViconDecoder {
       }
       auto next = section(*line);
       if (!next) return tl::unexpected(next.error());
-      line = std::move(*next);
+      line = *next;
     }
     leave_out(above_.size());
     if (!left_out_.empty()) {
@@ -102,7 +102,7 @@ class ViconDecoder {
         line = lines_.next();
       }
     }
-    return rows(std::move(section), separator, std::move(line));
+    return rows(std::move(section), separator, line);
   }
 
   static bool is_row(const TextLine& line, char separator) {

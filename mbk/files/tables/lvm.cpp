@@ -118,7 +118,7 @@ class Reader {
         if (auto ok = segment_header(*line); !ok) return ok;
         line = next_line();
       }
-      auto next = rows(std::move(line));
+      auto next = rows(line);
       if (!next) return tl::unexpected(next.error());
       line = *next;
     }
