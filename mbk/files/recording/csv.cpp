@@ -119,15 +119,20 @@ class Table {
     if (auto ok = find_columns(*line); !ok) return ok;
     make_room(text);
 
+    const auto among_rows = [this](const CsvLine& comment) {
+      constexpr std::size_t kMost = 12;
+      if (unread_.size() >= kMost) return;
+      if (auto note = unread_statement(comment)) unread_.push_back(std::move(*note));
+    };
     while (line) {
       text.forget(static_cast<std::size_t>(line->text.data() - text.so_far().data()));
       const char* const end = text.so_far().data() + text.so_far().size();
       if (const Rows plain = take_plain_rows(line->text.data(), end); plain.count > 0) {
         lines.go_on_at(line->number + plain.count, plain.end);
-        line = lines.next();
+        line = lines.next(among_rows);
         continue;
       }
-      const auto next = lines.next();
+      const auto next = lines.next(among_rows);
       if (!text.status()) return text.status();
       if (auto ok = add(*line, !next, text.so_far().data() + text.so_far().size()); !ok) return ok;
       line = next;
@@ -435,6 +440,7 @@ class Table {
                       "export it with decimal points, and nothing between thousands");
     }
     if (decimal_commas_) head_.notes.emplace_back("numbers have decimal commas");
+    head_.notes.insert(head_.notes.end(), unread_.begin(), unread_.end());
     if (commented_ > 0) {
       head_.notes.push_back(fmt::format("comments behind the numbers of {} lines, from line {} on, were left out",
                                         commented_, first_commented_));
@@ -538,6 +544,7 @@ class Table {
   std::string comma_cell_;  ///< the first that has one
   TableColumns rows_;       ///< complete ones so far, and the one that is worked on
   std::size_t last_line_ = 0;
+  std::vector<std::string> unread_;                  ///< notes of comments among the rows
   std::size_t commented_ = 0, first_commented_ = 0;  ///< lines with a comment behind their numbers
 };
 

@@ -68,10 +68,17 @@ class CsvLines {
 
   /// The next that is neither empty nor a comment.
   std::optional<CsvLine> next() {
+    return next([](const CsvLine&) {});
+  }
+  /// @param passed_over  is called for each comment before it
+  template <class Use>
+  std::optional<CsvLine> next(Use passed_over) {
     while (auto line = next_of_all()) {
       if (!line->text.empty() && line->text.front() > '%') return line;  // as digits and signs are
       const auto first = line->text.find_first_not_of(" \t");
-      if (first != line->text.npos && line->text[first] != '#' && line->text[first] != '%') return line;
+      if (first == line->text.npos) continue;
+      if (line->text[first] != '#' && line->text[first] != '%') return line;
+      passed_over(*line);
     }
     return std::nullopt;
   }

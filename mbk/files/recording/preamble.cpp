@@ -83,6 +83,9 @@ constexpr auto kIntervalKeys = std::to_array<std::string_view>(
      "samplingperiod", "timestep", "timeinterval", "interval", "abtastzeit", "tastzeit"});
 constexpr auto kRateUnits = std::to_array<std::pair<std::string_view, double>>({{"hz", 1.0},
                                                                                 {"khz", 1e3},
+                                                                                {"mhz", 1e6},
+                                                                                {"sps", 1.0},
+                                                                                {"ksps", 1e3},
                                                                                 {"1/s", 1.0},
                                                                                 {"s/s", 1.0},
                                                                                 {"sa/s", 1.0},
@@ -161,6 +164,11 @@ std::optional<Quantity> quantity(std::string_view text) {
   const auto value = general_number(text.substr(0, length));
   if (length == 0 || !value || !(*value > 0.0) || !std::isfinite(*value)) return std::nullopt;
   return Quantity{*value, mbk::trimmed(text.substr(length), " \t()[]\"'")};
+}
+
+bool is_rate_unit(std::string_view unit) {
+  return std::ranges::find(kRateUnits, small_letters(mbk::trimmed(unit, "()[]")),
+                           &std::pair<std::string_view, double>::first) != kRateUnits.end();
 }
 
 std::optional<double> rate_of(std::string_view key, std::string_view value) {
@@ -257,7 +265,8 @@ std::optional<Statement> unsigned_statement(std::string_view text) {
 
 /// All that a line says.
 struct Said {
-  Statement all;
+  std::vector<double> rates_hz;
+  std::vector<const Unit*> units;
   bool any = false;   ///< something was understood
   bool sure = false;  ///< no header says this
 };
@@ -266,8 +275,8 @@ Said said_in(std::string_view line) {
   Said said;
   const auto take = [&](const std::optional<Statement>& one) {
     if (!one) return false;
-    if (one->rate_hz) said.all.rate_hz = one->rate_hz;
-    said.all.units.insert(said.all.units.end(), one->units.begin(), one->units.end());
+    if (one->rate_hz) said.rates_hz.push_back(*one->rate_hz);
+    said.units.insert(said.units.end(), one->units.begin(), one->units.end());
     said.any = true;
     said.sure = said.sure || one->sure;
     return true;
@@ -295,6 +304,22 @@ Said said_in(std::string_view line) {
       while (last + 1 < cells.size() && value.empty()) value = cells[++last];
     }
     if (goes_on_with_digits(last)) continue;
+    std::string with_unit;
+    if (const auto number = quantity(value); number && number->unit.empty() && last + 1 < cells.size()) {
+      const std::string_view next = cells[last + 1];
+      if (!next.empty() && is_digit(next.front())) continue;  // of several, which?
+      if (is_rate_unit(next) || find_unit(mbk::trimmed(next, "()[]")) != nullptr) {
+        with_unit = fmt::format("{} {}", value, next);
+        if (take(statement_of(key, with_unit))) {
+          k = last + 1;
+          continue;
+        }
+      }
+      const auto behind = std::find_if(cells.begin() + static_cast<std::ptrdiff_t>(last) + 2, cells.end(),
+                                       [](std::string_view other) { return !other.empty(); });
+      if (!next.empty() && next.find_first_of("=:") == next.npos && behind == cells.end())
+        continue;  // a unit that is not known, as no key is alone
+    }
     // Units of several columns stand one behind the other.
     std::size_t end = last + 1;
     while (end < cells.size() && !cells[end].empty() && find_unit(mbk::trimmed(cells[end], "()[]")) != nullptr) ++end;
@@ -402,8 +427,8 @@ class Reader {
   void take(const CsvLine& line) {
     const std::string_view text = bare(line.text);
     const Said said = said_in(text);
-    if (said.all.rate_hz) rates_.push_back({*said.all.rate_hz, nullptr, quoted(line)});
-    for (const Unit* unit : said.all.units) units_.push_back({1.0, unit, quoted(line)});
+    for (const double rate : said.rates_hz) rates_.push_back({rate, nullptr, quoted(line)});
+    for (const Unit* unit : said.units) units_.push_back({1.0, unit, quoted(line)});
     if (!said.any && is_suspicious(text)) leave(quoted(line));
   }
 
@@ -447,6 +472,12 @@ class Reader {
 
 Preamble read_preamble(std::span<const CsvLine> lines) {
   return preamble::Reader().read(lines);
+}
+
+std::optional<std::string> unread_statement(const CsvLine& line) {
+  const std::string_view text = preamble::bare(line.text);
+  if (!preamble::said_in(text).any && !preamble::is_suspicious(text)) return std::nullopt;
+  return preamble::quoted(line) + ", was not used";
 }
 
 bool is_statement(const CsvLine& line) {

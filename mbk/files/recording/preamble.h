@@ -23,6 +23,9 @@ struct Preamble {
 /// date is named in a note: so is a rate or a unit that two lines say differently.
 [[nodiscard]] Preamble read_preamble(std::span<const CsvLine> lines);
 
+/// The note of a comment among the rows that speaks of such: it may hold for some of them only.
+[[nodiscard]] std::optional<std::string> unread_statement(const CsvLine& line);
+
 /// Whether a line says one of these in a way in which no header does.
 [[nodiscard]] bool is_statement(const CsvLine& line);
 

@@ -32,11 +32,28 @@ std::vector<std::string> units_of(std::string_view line) {
 }
 
 TEST(Preamble, TakesARateHoweverItIsWritten) {
-  for (const char* line :
-       {"SampleRate=500", "Sampling frequency: 500 Hz", "Fs,500", "Fs,500,,,,", "# fs = 500", "% Sample Rate (Hz): 500",
-        "// Update Rate: 500.0Hz", "sampling_rate\t0.5 kHz", "Sampling Rate [kHz];0.5", "rate: 500 Hz", "Rate:,500 Hz",
-        "sampled at 500 Hz", "fs 500", "\"SampleRate\",\"500\"", "Take,3,Export Frame Rate,500.000,Units,none",
-        "dt = 0.002", "dt = 2 ms", "Sample interval (ms): 2", "Sampling time,0.002 s"}) {
+  for (const char* line : {"SampleRate=500",
+                           "Sampling frequency: 500 Hz",
+                           "Fs,500",
+                           "Fs,500,,,,",
+                           "# fs = 500",
+                           "% Sample Rate (Hz): 500",
+                           "// Update Rate: 500.0Hz",
+                           "sampling_rate\t0.5 kHz",
+                           "Sampling Rate [kHz];0.5",
+                           "rate: 500 Hz",
+                           "Rate:,500 Hz",
+                           "sampled at 500 Hz",
+                           "fs 500",
+                           "Sample Rate,0.5,kHz",
+                           "Sample Interval,2.0E-03,s",
+                           "Sampling rate;500;Hz;;",
+                           "\"SampleRate\",\"500\"",
+                           "Take,3,Export Frame Rate,500.000,Units,none",
+                           "dt = 0.002",
+                           "dt = 2 ms",
+                           "Sample interval (ms): 2",
+                           "Sampling time,0.002 s"}) {
     const Preamble found = of({"title", line});
     ASSERT_TRUE(found.rate_hz) << line;
     EXPECT_DOUBLE_EQ(*found.rate_hz, 500.0) << line;
@@ -48,7 +65,8 @@ TEST(Preamble, TakesARateHoweverItIsWritten) {
 TEST(Preamble, NamesARateThatMayBeSomethingElse) {
   for (const char* line :
        {"Cutoff frequency: 50 Hz", "Frequency,2", "Sampling rate: 1,000 Hz", "Sample interval: 10", "rate: 10 mm",
-        "Capture Frame Rate,120", "rate: fast", "SampleRate=-5", "SampleRate=1e400", "rate: 5 (nominal)"}) {
+        "Capture Frame Rate,120", "rate: fast", "SampleRate=-5", "Sampling rates: 100, 200", "Fs,1000,500",
+        "Fs: 100, 200", "Fs=1000; rate=50", "Sample Rate,1,rpm", "SampleRate=1e400", "rate: 5 (nominal)"}) {
     const Preamble found = of({line});
     EXPECT_FALSE(found.rate_hz) << line;
     EXPECT_THAT(found.notes, ElementsAre("line 1, '" + std::string(line) + "', was not used"));
@@ -183,6 +201,14 @@ TEST(PreambleOfATable, AsksWhetherTheOneAxisIsMeant) {
   ASSERT_FALSE(recording);
   EXPECT_THAT(recording.error().line(), HasSubstr("its angles are in deg, and not whether 'position' is one"));
   EXPECT_TRUE(read_table("Angles in degrees\ntime,position,reaction,n\n" + kRows, "x=position:deg,F=reaction", 1));
+}
+
+TEST(PreambleOfATable, NamesWhatStandsAmongItsRows) {
+  const auto recording =
+      read_table("time,hand_x,hand_y,force_x\n" + kRows + "# units: mm\n# touched\n0.004,20,1,1\n# Fs=500\n");
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->find("hand_x")->values[0], 20);
+  EXPECT_THAT(recording->notes, ElementsAre("line 6, '# units: mm', was not used", "line 9, '# Fs=500', was not used"));
 }
 
 TEST(PreambleOfATable, LeavesTheCommentsOfOurOwnFilesAlone) {
