@@ -19,10 +19,6 @@
 namespace mbk::recording {
 namespace capture {
 
-bool is_empty(std::string_view line) {
-  return line.find_first_not_of(" \t,;\"") == line.npos;
-}
-
 /// Whether it is one word or name, and nothing behind it.
 bool is_one_cell(const std::vector<std::string>& labels) {
   return !labels.front().empty() &&
@@ -57,7 +53,7 @@ class ViconDecoder {
     for (auto line = lines_.next(); line;) {
       const auto labels = labels_of(line->text, separator_of(line->text));
       if (!begins_frames(labels)) {
-        if (!is_empty(line->text)) above_.push_back(labels);
+        if (!is_empty_row(line->text)) above_.push_back(labels);
         line = lines_.next();
         continue;
       }
@@ -134,7 +130,7 @@ class ViconDecoder {
       if (auto ok = add_row(rows, *line, separator, section.names.size()); !ok) return tl::unexpected(ok.error());
       if (auto ok = steps.add(rows, *line); !ok) return tl::unexpected(ok.error());
     }
-    if (line && !is_empty(line->text) && !begins_frames(labels_of(line->text, separator)) && rows.count() == 0) {
+    if (line && !is_empty_row(line->text) && !begins_frames(labels_of(line->text, separator)) && rows.count() == 0) {
       return bad_data("no row of numbers stands below its units", std::string(kWriteAgain), line_place(line->number));
     }
     if (rows.count() == 0) {
@@ -234,7 +230,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
 
   std::vector<std::vector<std::string>> header;
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
-    if (capture::is_empty(line->text)) continue;
+    if (is_empty_row(line->text)) continue;
     header.push_back(labels_of(line->text, separator));
     if (in_lower_case(header.back().front()) == "frame" || header.size() > 16) break;
   }
@@ -288,7 +284,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
 
   TextRows rows(columns, file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
-    if (capture::is_empty(line->text)) continue;
+    if (is_empty_row(line->text)) continue;
     if (is_cut(*line, split(line->text, separator).size(), columns)) {
       contents.notes.push_back(note_of_cut(*line));
       break;

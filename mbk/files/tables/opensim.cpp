@@ -53,6 +53,7 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
   }
   TextRows rows(labels.size(), file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
+    if (is_empty_row(line->text)) continue;
     auto cells = cells_of(line->text, separator);
     while (cells.size() > labels.size() && is_blank(cells.back())) cells.pop_back();
     if (is_cut(*line, cells.size(), labels.size())) {
@@ -74,11 +75,11 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
   };
   compare_counts(said("nrows", "datarows"), rows.count(), "rows", contents);
   compare_counts(said("ncolumns", "datacolumns"), labels.size(), "columns", contents);
-  if (const auto entry = header.find("indegrees"); entry == header.end()) {
+  if (const auto entry = header.find("indegrees"); entry != header.end()) {
+    if (entry->second == "yes") contents.units = {"deg"};
+  } else if (!header.contains("datatype")) {  // of orientations, which are vectors
     contents.notes.emplace_back(
         "the header does not say inDegrees: angles are taken in rad unless --channels says deg");
-  } else if (entry->second == "yes") {
-    contents.units = {"deg"};
   }
   for (std::size_t c = 0; c < labels.size(); ++c) {
     Array& array = contents.arrays.emplace_back();
@@ -180,6 +181,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
   if (auto ok = check_axes(*axes, separator, markers, contents); !ok) return tl::unexpected(ok.error());
   TextRows rows(columns, file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
+    if (is_empty_row(line->text)) continue;
     auto cells = cells_of(line->text, separator);
     while (cells.size() > columns && is_blank(cells.back())) cells.pop_back();
     if (cells.size() > columns) {

@@ -135,6 +135,12 @@ TEST(DecodeTrc, KeepsMemoryBelowWhatItsLinesCanHold) {
               HasSubstr("far fewer numbers than the 9002 columns"));
 }
 
+std::string replaced_all(std::string text, std::string_view from, std::string_view to) {
+  for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
 TEST(DecodeTrc, ReadsVariantsAsOpensimDoes) {
   const auto with = [](std::string_view from, std::string_view to) {
     std::string text = kMarkers;
@@ -155,7 +161,8 @@ TEST(DecodeTrc, ReadsVariantsAsOpensimDoes) {
         {with("Hand\t\t\tHand\t\t\n", "Hand\tHand\n"), ""},
         {with("Frame#\tTime\tHand\t\t\tHand\t\t\n", "Frame# Time  Hand   Hand\n"), ""},
         {commas, ""},
-        {semicolons, ""}}) {
+        {semicolons, ""},
+        {replaced_all(commas, "\n\n", "\n,,,,,,,\n"), ""}}) {
     const auto contents = decode_trc(std::as_bytes(std::span(one.text)));
     ASSERT_TRUE(contents) << contents.error().line() << one.text;
     EXPECT_EQ(contents->arrays[2].values, Vector::Constant(3, 1)) << one.text;

@@ -46,6 +46,10 @@ bool is_blank(std::string_view cell) {
   return cell.find_first_not_of(" \t") == cell.npos;
 }
 
+bool is_empty_row(std::string_view line) {
+  return line.find_first_not_of(" \t,;\"") == line.npos;
+}
+
 std::string label_of(std::string_view cell) {
   return printable(std::string(without_quotes(cell)));
 }

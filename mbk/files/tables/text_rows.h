@@ -23,6 +23,8 @@ inline constexpr std::string_view kWriteAgain = "write it again with the program
 [[nodiscard]] std::string in_lower_case(std::string_view text);
 [[nodiscard]] std::string line_place(std::size_t line);
 [[nodiscard]] bool is_blank(std::string_view cell);
+/// Whether a line holds separators and quotes alone, as a blank line that a spreadsheet saved.
+[[nodiscard]] bool is_empty_row(std::string_view line);
 /// Without blanks and quotes around it, printable.
 [[nodiscard]] std::string label_of(std::string_view cell);
 

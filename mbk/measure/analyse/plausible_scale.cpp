@@ -525,7 +525,11 @@ std::optional<Warning> check_size(const Recording& recording, const Inspection& 
   PreparedTrial trial;
   trial.axes = axes;
   trial.recording_rate = inspection.rate_hz;
-  const auto likely = likeliest(Explanations(recording, {trial}, axes).take(), numbers, families, plausible);
+  // Of half a plane no --channels can be written.
+  const bool whole = channels_of(recording, kPositionChannels, axes).cols() > 0 &&
+                     channels_of(recording, kForceChannels, axes).cols() > 0;
+  const auto likely = whole ? likeliest(Explanations(recording, {trial}, axes).take(), numbers, families, plausible)
+                            : std::vector<Explanation>();
   const auto found = too_large(numbers, families.front());
   return Warning{
       WarningCode::implausible_scale, message_of(found, recording, axes, unit == "rad"),
