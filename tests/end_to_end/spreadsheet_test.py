@@ -57,6 +57,22 @@ class Dress(Case):
                 self.assert_relative(model[name], plain[name], 1e-4)  # the last digits of its seconds are others
             self.assertIn("'time' holds times of day, which were taken as seconds since midnight", notes)
 
+    def test_segments_of_labview(self):
+        def segment(start, rows):
+            return (f"Channels\t6\nSamples\t{len(rows)}\nDate\t2024/03/01\nTime\t10:{start}:00,5\n"
+                    "Y_Unit_Label" + "\tm\tm\tN\tN\tN\tN\nX_Dimension" + 6 * "\tTime" + "\nX0" + 6 * "\t0,0E+0" +
+                    "\nDelta_X" + 6 * "\t0,001" + "\n***End_of_Header***\n" +
+                    "\t".join(["X_Value", *NAMES[1:], "Comment"]) + "\n" +
+                    "".join("\t".join(row).replace(".", ",") + "\n" for row in rows))
+
+        path = self.file("trial.lvm", "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t,\n"
+                         "X_Columns\tOne\n***End_of_Header***\n\n" + segment(15, self.rows[:1000]) + "\n" +
+                         segment(20, self.rows))
+        self.assertIn("2 trials", self.fine("info", path).out)
+        self.assertEqual(self.fine("measure", "--json", "--trial", "2", path).json["model"], self.plain())
+        self.mbk("convert", path, self.folder / "part_{trial}.h5")
+        self.assertEqual(self.fine("info", "--json", self.folder / "part_1.h5").json["samples"], 1000)
+
     def test_units_below_the_names_and_in_them(self):
         plain = self.plain()
         rows = [[repr(1e6 * float(row[0])), repr(1e3 * float(row[1])), *row[2:]] for row in self.rows]
