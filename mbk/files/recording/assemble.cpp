@@ -916,7 +916,7 @@ class Assembler {
                std::ranges::all_of(used, [&](const Clock* clock) { return same_stamps(*clock, *used.front()); })) {
       clock_ = used.front();
     } else if (!used.empty()) {
-      return bad_data(fmt::format("the channels come from streams with clocks of their own: {}", clock_list(used)),
+      return bad_data(fmt::format("{}: {}", kSeveralClocks, clock_list(used)),
                       fmt::format("say whose time stamps the recording has, as in --clock '{}'; the others are "
                                   "interpolated",
                                   fastest(used).name));

@@ -208,4 +208,8 @@ bool nothing_is_recognised(const Error& error) {
          (error.message.starts_with(kNothingRecognised) || error.message.starts_with(kOnlyTimeRecognised));
 }
 
+bool asks_for_choice(const Error& error) {
+  return nothing_is_recognised(error) || (error.kind == ErrorKind::data && error.message.starts_with(kSeveralClocks));
+}
+
 }  // namespace mbk::recording

@@ -81,6 +81,8 @@ void rest(const RecordingFile& file);
 
 /// Whether `read` refused a sound file for this alone, that no channel of it is recognised.
 [[nodiscard]] bool nothing_is_recognised(const Error& error);
+/// Whether `read` refused a sound file because its user has to choose: a channel map or a clock.
+[[nodiscard]] bool asks_for_choice(const Error& error);
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.

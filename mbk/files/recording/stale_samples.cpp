@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -39,11 +40,33 @@ struct Runs {
   std::vector<Run> runs;       ///< run k lies between changes k and k + 1
   std::vector<Index> changes;  ///< samples whose value is not that of the sample before
   std::vector<double> jumps;   ///< by how much
-  double step = 0.0;           ///< size of a small change: the 5 % quantile
+  double step = 0.0;           ///< size of a small change: the 5 % quantile, or the common one where it is larger
   double usual = 0.0;          ///< the lower quartile
   double varied = 0.0;         ///< share of the changes that are at least twice as large
   double low = 0.0, high = 0.0;
 };
+
+/// The size that many of some changes have to within 2 %: the step of an encoder or converter, also where its numbers
+/// were computed further and differ in their last digits; 0 where no size is common.
+double common_size(const std::vector<double>& sizes) {
+  constexpr std::size_t kLooked = 4096;
+  constexpr double kBin = 0.02, kCommon = 0.15;
+  std::map<long, std::vector<double>> bins;
+  const std::size_t every = sizes.size() / kLooked + 1;
+  std::size_t looked = 0;
+  for (std::size_t k = 0; k < sizes.size(); k += every, ++looked)
+    bins[std::lround(std::log(sizes[k]) / kBin)].push_back(sizes[k]);
+  std::size_t most = 0;
+  double size = 0.0;
+  for (const auto& [bin, here] : bins) {
+    const auto next = bins.find(bin + 1);  // a size may lie on the edge of two
+    const std::size_t count = here.size() + (next == bins.end() ? 0 : next->second.size());
+    if (count <= most) continue;
+    most = count;
+    size = here.front();
+  }
+  return static_cast<double>(most) > kCommon * static_cast<double>(looked) ? size : 0.0;
+}
 
 /// @param values  finite
 Runs runs_of(const Eigen::Ref<const Vector>& values) {
@@ -56,7 +79,7 @@ Runs runs_of(const Eigen::Ref<const Vector>& values) {
     sizes.push_back(std::abs(all.jumps.back()));
   }
   if (std::ssize(all.changes) < kMinChanges) return all;
-  all.step = quantile(sizes, 0.05);
+  all.step = std::max(quantile(sizes, 0.05), common_size(sizes));
   all.usual = quantile(sizes, 0.25);
   const auto large = std::ranges::count_if(sizes, [&](double size) { return size >= 2.0 * all.step; });
   all.varied = static_cast<double>(large) / static_cast<double>(sizes.size());

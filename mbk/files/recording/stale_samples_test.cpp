@@ -34,6 +34,11 @@ std::vector<NamedSignal> honest(double rate) {
     return 0.1 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
   });
   const Vector rest = Vector::Constant(n, 0.3);
+  // Differences of an encoder's position over a clock that jitters: one step, a bit more or less.
+  const Vector steps = in_steps(multisine(n, rate, 0.4), 4e-4 * 500.0 / rate);
+  const Vector velocity = sampled(n, [&](Index i) {
+    return i == 0 ? 0.0 : (steps[i] - steps[i - 1]) * rate * (1.0 + (random.uniform() < 0.1 ? 1e-4 : 0.0));
+  });
   return {
       {"exact", p},
       {"fine encoder", in_steps(p, 1e-6)},
@@ -51,6 +56,7 @@ std::vector<NamedSignal> honest(double rate) {
       {"at rest, noise of a fifth of a step", in_steps(with_noise(rest, 2e-5, random), 1e-4)},
       {"at rest, noise of half a step", in_steps(with_noise(rest, 5e-5, random), 1e-4)},
       {"constant", rest},
+      {"velocity from an encoder", velocity},
       {"pulses", pulses(n, rate, 1.0)},
       {"pulses of an encoder", in_steps(pulses(n, rate, 0.01), 1e-5)},
       {"pulses of a coarse encoder", in_steps(pulses(n, rate, 0.01), 1e-4)},
