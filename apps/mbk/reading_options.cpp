@@ -70,7 +70,8 @@ void add_reading_options(Command command, ReadingArguments& arguments) {
       .add_option("--channels", arguments.channels,
                   "where the channels stand, where the file does not say it itself: x=2,y=3,Fx=10,Fy=11 names columns "
                   "(or rows of a wide matrix, or names in the file); x=pos[1],Fx=force[1] takes them from several "
-                  "matrices; x=Arm.angle is a channel of a stream; x=2:mm converts, Fx=-10 flips. Channels: time, x, "
+                  "matrices, x=data[trial,:,1] a slice of an array of trials; x=Arm.angle is a channel of a stream; "
+                  "x=2:mm converts, Fx=-10 flips. Channels: time, x, "
                   "y, Fx, Fy, xr, yr, q1 to q8, tau1 to "
                   "tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, a; for mbk tf: input, output")
       .type_name("MAP")
@@ -124,7 +125,8 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
       return fail(ErrorKind::usage, "--parts joins files, and this is in memory", "join the arrays instead",
                   file.string());
     }
-    auto records = arguments.parts ? Result<std::vector<Record>>({{file, ""}}) : records_of(file, arguments.trial);
+    auto records =
+        arguments.parts ? Result<std::vector<Record>>({{file, ""}}) : records_of(file, arguments.trial, *options);
     if (!records) return tl::unexpected(records.error());
     if (many && !arguments.parts) {
       for (const Record& one : *records) {
@@ -140,7 +142,8 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
 }
 
 Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
-                                                                         const std::string& trial) {
+                                                                         const std::string& trial,
+                                                                         const recording::ReadOptions& options) {
   if (auto given = recording_in_memory(file)) return std::vector<Record>{{file, trial, {}, std::move(given)}};
   auto open = recording::open(file);
   if (!open) {  // reported by whoever reads it
@@ -151,9 +154,12 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const s
     }
     return std::vector<Record>{std::move(record)};
   }
-  const std::vector<recording::TrialName>& trials = recording::trials_of(**open);
+  const std::vector<recording::TrialName> trials = recording::trials_of(**open, options);
   const auto in_file = [&](tl::unexpected<Error> error) { return tl::unexpected(error.value().in(file.string())); };
   if (trials.empty() && !trial.empty()) {
+    // A slice that is wrong is why there are no trials.
+    const auto read = options.channels.empty() ? Result<Recording>(Recording{}) : recording::read(**open, options);
+    if (!read) return tl::unexpected(read.error());
     return in_file(bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out"));
   }
   std::vector<Record> records;
@@ -171,7 +177,7 @@ std::vector<recording::TrialName> RecordingReader::trials() const {
   if (parts_ || records_.size() < 2 || records_.front().file != records_.back().file || !records_.front().open) {
     return {};
   }
-  const std::vector<recording::TrialName>& trials = recording::trials_of(*records_.front().open);
+  const std::vector<recording::TrialName> trials = recording::trials_of(*records_.front().open, options_);
   return trials.size() == records_.size() ? trials : std::vector<recording::TrialName>();
 }
 

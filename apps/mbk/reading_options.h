@@ -79,7 +79,8 @@ class RecordingReader {
   };
   /// FILE as the records that it holds.
   [[nodiscard]] static Result<std::vector<Record>> records_of(const std::filesystem::path& file,
-                                                              const std::string& trial);
+                                                              const std::string& trial,
+                                                              const recording::ReadOptions& options);
   [[nodiscard]] const Record& record(int k) const { return records_[static_cast<std::size_t>(k)]; }
 
   [[nodiscard]] std::vector<std::filesystem::path> files() const;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -31,9 +33,17 @@ struct Array {
   std::string joint = {};  ///< name of the joint that it belongs to: "elbow_joint"; "" where the file names none
   std::optional<Error> obstacle = {};  ///< why its numbers cannot be used, for whoever asks for it: a column of words;
                                        ///< `values` then are empty
-  Rests rests = {};                    ///< what `values` leave of whole numbers above 2^53, in their order
+  std::vector<std::uint64_t> shape = {};  ///< of an array of more than two dimensions; empty of any other. Where more
+                                          ///< than two of them are longer than 1, `values` are one column
+  bool row_major = false;                 ///< of such a column: the last dimension runs fastest, not the first
+  Rests rests = {};                       ///< what `values` leave of whole numbers above 2^53, in their order
   std::string unapplied = {};  ///< what the file says that may scale its numbers, and not how: "gain = 4.448"; they are
                                ///< taken only with a gain that the map states
+
+  /// Whether it has more than two dimensions that are longer than 1: of such, only slices are signals.
+  [[nodiscard]] bool is_block() const {
+    return std::ranges::count_if(shape, [](std::uint64_t side) { return side != 1; }) > 2;
+  }
 };
 
 /// Text of a file, in UTF-8 without control characters: the rows of a char array, or the entries of a cell array of

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
 
 namespace mbk::recording {
 namespace {
@@ -28,12 +31,6 @@ std::string letters_of(std::string_view name) {
 std::string_view scope_of(std::string_view name) {
   const auto end = name.find_last_of("./");
   return end == name.npos ? std::string_view() : name.substr(0, end);
-}
-
-bool holds_for(std::string_view scope, std::string_view name) {
-  if (scope.empty()) return true;
-  return name.starts_with(scope) && name.size() > scope.size() &&
-         (name[scope.size()] == '.' || name[scope.size()] == '/');
 }
 
 }  // namespace
@@ -74,34 +71,34 @@ void give_rates(Contents& contents, std::vector<SaidRate> said) {
                                   array.values(0, 0), array.unit);
     if (rate) said.push_back({std::string(scope), fmt::format("'{}'", array.name), *rate});
   }
-  std::ranges::stable_sort(said, {}, [](const SaidRate& one) { return one.scope.size(); });
-  std::vector<bool> taken(said.size());
+  struct OfScope {
+    SaidRate rate;
+    std::optional<SaidRate> other;  ///< that differs
+    bool noted = false;
+  };
+  std::map<std::string, OfScope, std::less<>> scopes;
+  for (SaidRate& one : said) {
+    const auto [place, is_new] = scopes.try_emplace(one.scope, OfScope{one, {}});
+    OfScope& known = place->second;
+    if (!is_new && std::abs(one.hz - known.rate.hz) > kSame * known.rate.hz) known.other = std::move(one);
+  }
   for (Array& array : contents.arrays) {
-    if (array.rate_hz > 0.0 || array.values.size() < 2 || array.clock >= 0) continue;
-    // Those of the innermost place stand last.
-    const auto nearest =
-        std::find_if(said.rbegin(), said.rend(), [&](const SaidRate& one) { return holds_for(one.scope, array.name); });
-    if (nearest == said.rend()) continue;
-    const auto differs = [&](const SaidRate& one) {
-      return one.scope == nearest->scope && std::abs(one.hz - nearest->hz) > kSame * nearest->hz;
-    };
-    if (const auto other = std::ranges::find_if(said, differs); other != said.end()) {
-      const auto index = static_cast<std::size_t>(other - said.begin());
-      if (!taken[index]) {
-        contents.notes.push_back(fmt::format("{} says a rate of {} Hz and {} one of {} Hz; neither was taken",
-                                             other->source, other->hz, nearest->source, nearest->hz));
-      }
-      taken[index] = true;
-      continue;
+    if (scopes.empty() || array.rate_hz > 0.0 || array.values.size() < 2 || array.clock >= 0) continue;
+    std::string_view scope = array.name;
+    auto nearest = scopes.end();
+    while (nearest == scopes.end() && !scope.empty()) {
+      scope = scope_of(scope);
+      nearest = scopes.find(scope);
     }
-    array.rate_hz = nearest->hz;
-    const auto index = static_cast<std::size_t>(said.rend() - nearest) - 1;
-    if (!taken[index]) {
-      contents.notes.push_back(fmt::format("the sample rate{} is {} Hz, as {} says",
-                                           nearest->scope.empty() ? "" : fmt::format(" of '{}'", nearest->scope),
-                                           nearest->hz, nearest->source));
-    }
-    taken[index] = true;
+    if (nearest == scopes.end()) continue;
+    auto& [rate, other, noted] = nearest->second;
+    if (!other) array.rate_hz = rate.hz;
+    if (std::exchange(noted, true)) continue;
+    contents.notes.push_back(other ? fmt::format("{} says a rate of {} Hz and {} one of {} Hz; neither was taken",
+                                                 rate.source, rate.hz, other->source, other->hz)
+                                   : fmt::format("the sample rate{} is {} Hz, as {} says",
+                                                 rate.scope.empty() ? "" : fmt::format(" of '{}'", rate.scope), rate.hz,
+                                                 rate.source));
   }
 }
 

@@ -22,6 +22,7 @@
 #include "mbk/files/recording/one_clock.h"
 #include "mbk/files/recording/own_samples.h"
 #include "mbk/files/recording/robot_logs.h"
+#include "mbk/files/recording/slices.h"
 
 namespace mbk::recording {
 namespace {
@@ -34,15 +35,20 @@ struct Line {
   const Array* array = nullptr;
   Index index = 0;
   bool row = false;
-  Index step = 1;  ///< every step-th sample, from the first on
+  Index step = 1;                   ///< every step-th sample, from the first on
+  std::optional<Slice> slice = {};  ///< in place of row and index
 
-  [[nodiscard]] Index size() const { return ((row ? array->values.cols() : array->values.rows()) + step - 1) / step; }
+  [[nodiscard]] Slice whole() const {
+    if (slice) return *slice;
+    const Index rows = array->values.rows(), columns = array->values.cols();
+    return row ? Slice{index, rows, columns} : Slice{index * rows, 1, rows};
+  }
+  [[nodiscard]] Index size() const { return (whole().length + step - 1) / step; }
+  /// Where a sample stands in the array.
+  [[nodiscard]] Index at(Index sample) const { return whole().begin + sample * step * whole().stride; }
   [[nodiscard]] auto samples(Index begin, Index count) const {
-    const Index rows = array->values.rows();
-    const Index stride = (row ? rows : 1) * step;
-    const double* const first = array->values.data() + (row ? index : index * rows);
-    return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(first + begin * stride, count,
-                                                             Eigen::InnerStride<>(stride));
+    return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(array->values.data() + at(begin), count,
+                                                             Eigen::InnerStride<>(whole().stride * step));
   }
   /// [Hz]; 0 where the file does not say it
   [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
@@ -91,7 +97,8 @@ Index whole_ratio(double fast_hz, double slow_hz) {
 }
 
 bool is_vector(const Array& array) {
-  return std::min(array.values.rows(), array.values.cols()) == 1 && (array.values.size() > 1 || array.signal);
+  return !array.is_block() && std::min(array.values.rows(), array.values.cols()) == 1 &&
+         (array.values.size() > 1 || array.signal);
 }
 
 /// The signals run along the longer side: whether they are the rows.
@@ -100,7 +107,7 @@ bool is_wide(const Array& array) {
 }
 
 bool is_matrix(const Array& array) {
-  return std::min(array.values.rows(), array.values.cols()) > 1;
+  return !array.is_block() && std::min(array.values.rows(), array.values.cols()) > 1;
 }
 
 /// Those of some rows that are NaN throughout: column by column, as they stand in memory.
@@ -116,7 +123,7 @@ Line vector_of(const Array& array) {
 }
 
 std::string shape(const Array& array) {
-  return fmt::format("{}×{}", array.values.rows(), array.values.cols());
+  return array.is_block() ? shape_text(array) : fmt::format("{}×{}", array.values.rows(), array.values.cols());
 }
 
 std::string quoted(std::vector<std::string> names) {
@@ -260,7 +267,11 @@ class Assembler {
       if (is_matrix(array)) matrices.push_back(array.name);
       if (is_vector(array)) vectors.push_back(array.name);
     }
-    if (matrices.empty()) return "time=NAME,x=NAME,Fx=NAME";
+    const auto block = std::ranges::find_if(contents_.arrays, &Array::is_block);
+    if (matrices.empty() && block == contents_.arrays.end()) return "time=NAME,x=NAME,Fx=NAME";
+    if (matrices.empty()) {
+      return fmt::format("\"x={},Fx={}\" (one slice of each)", example_slice(*block, 1), example_slice(*block, 2));
+    }
     const bool two = matrices.size() > 1;
     return fmt::format("\"time={},x={}[{}],Fx={}[{}]\" (row or column of a matrix)",
                        vectors.empty() ? matrices.front() + "[1]" : "NAME", matrices.front(), vectors.empty() ? 2 : 1,
@@ -287,6 +298,12 @@ class Assembler {
     const Array* named = find(contents_, wanted);
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+    }
+    if (named != nullptr && named->is_block()) {  // one such matrix for each trial, of which slices are signals
+      if (options_.variable.empty()) return nullptr;
+      return bad_data(fmt::format("--variable {} is {}", wanted, shape(*named)),
+                      fmt::format("name slices, as in --channels \"x={},Fx={}\"", example_slice(*named, 2),
+                                  example_slice(*named, 10)));
     }
     if (named != nullptr) {
       if (named->values.size() == 0) {
@@ -650,15 +667,24 @@ class Assembler {
       if (auto ok = refuse_repeated(entry); !ok) return tl::unexpected(ok.error());
       if (array->obstacle) return tl::unexpected(array->obstacle->in(fmt::format("channel {}", entry.channel)));
       if (contents_.table || is_vector(*array)) return vector_of(*array);
-      return bad_data(fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel,
-                                  entry.source, shape(*array)),
-                      is_matrix(*array) ? fmt::format("say which of its {}, as in --channels \"{}={}[1]\"",
-                                                      is_wide(*array) ? "rows" : "columns", entry.channel, array->name)
-                                        : "name a signal");
+      return bad_data(
+          fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel, entry.source,
+                      shape(*array)),
+          array->is_block()
+              ? fmt::format("say which slice, as in --channels \"{}={}\"", entry.channel, example_slice(*array, 1))
+          : is_matrix(*array) ? fmt::format("say which of its {}, as in --channels \"{}={}[1]\"",
+                                            is_wide(*array) ? "rows" : "columns", entry.channel, array->name)
+                              : "name a signal");
     }
+    if (const auto line = sliced_line(entry)) return *line;
     if (const auto line = counted_line(entry)) return *line;
     if (auto ok = refuse_damaged_source("channel " + entry.channel, entry.source); !ok)
       return tl::unexpected(ok.error());
+    for (const Array& array : contents_.arrays) {  // "tt.force" of an object tt
+      if (array.obstacle && !array.name.empty() && with_dots(entry.source).starts_with(with_dots(array.name) + ".")) {
+        return tl::unexpected(array.obstacle->in(fmt::format("channel {}", entry.channel)));
+      }
+    }
     Index number = 0;
     const char* const end = entry.source.data() + entry.source.size();
     if (const auto [stop, error] = std::from_chars(entry.source.data(), end, number);
@@ -702,8 +728,48 @@ class Assembler {
     return found;
   }
 
+  /// NAME[trial,:,K], a slice of the variable NAME; nothing where the source is written otherwise.
+  std::optional<Result<Line>> sliced_line(const ChannelSource& entry) {
+    const std::optional<SlicedSource> sliced = sliced_source(entry.source);
+    const Array* const array = sliced && !contents_.table ? find(contents_, sliced->name) : nullptr;
+    if (array == nullptr) return std::nullopt;
+    const std::string channel = fmt::format("channel {}", entry.channel);
+    if (array->obstacle) return tl::unexpected(array->obstacle->in(channel));
+    const auto plan = plan_of(*array, *sliced);
+    if (!plan) return tl::unexpected(plan.error().in(channel));
+    const auto trial = trial_of(*array, *plan);
+    if (!trial) return tl::unexpected(trial.error().in(channel));
+    return Line{array, 0, false, 1, slice_of(*array, *plan, *trial)};
+  }
+
+  /// The trial that is asked for, from 1.
+  Result<Index> trial_of(const Array& array, const SlicePlan& plan) {
+    if (!plan.trial) return Index{1};
+    const auto count = static_cast<Index>(dimensions_of(array)[*plan.trial]);
+    const std::string what = fmt::format("'{}' ({}) holds {} trial{} along its dimension {}", array.name,
+                                         shape_text(array), count, count == 1 ? "" : "s", *plan.trial + 1);
+    if (trials_ != 0 && trials_ != count) {
+      return bad_data(fmt::format("{}, and another array {}", what, trials_), "take arrays of the same trials");
+    }
+    trials_ = count;
+    const std::string note = fmt::format("{}; time runs along its dimension {}", what, plan.along + 1);
+    if (std::ranges::find(recording_.notes, note) == recording_.notes.end()) recording_.notes.push_back(note);
+    if (options_.trial.empty() && count == 1) return Index{1};
+    if (options_.trial.empty()) return bad_usage(what, "say which, as in --trial 1");
+    Index number = 0;
+    const char* const end = options_.trial.data() + options_.trial.size();
+    const auto [stop, error] = std::from_chars(options_.trial.data(), end, number);
+    if (error == std::errc() && stop == end && number >= 1 && number <= count) return number;
+    return bad_usage(fmt::format("there is no trial '{}': {}", options_.trial, what), "they are counted from 1");
+  }
+
   /// Row or column `number` of a matrix, counted from 1 across its longer side.
   static Result<Line> line_of(const ChannelSource& entry, const Array& array, Index number) {
+    if (array.is_block()) {
+      return bad_data(
+          fmt::format("channel {}: '{}' is {}", entry.channel, array.name, shape(array)),
+          fmt::format("say which slice, as in --channels \"{}={}\"", entry.channel, example_slice(array, 1)));
+    }
     const bool wide = is_wide(array);
     const Index lines = wide ? array.values.rows() : array.values.cols();
     if (number < 1 || number > lines) {
@@ -1045,10 +1111,8 @@ class Assembler {
     for (const Signal& signal : signals_) {
       const Line& line = signal.line;
       if (!is_time(signal.kind) || line.array->rests.empty()) continue;
-      const Index rows = line.array->values.rows();
       for (Index k = 0; k < line.size(); ++k) {
-        const Index at = line.row ? line.index + k * line.step * rows : line.index * rows + k * line.step;
-        rests.put(static_cast<std::size_t>(k), line.array->rests[static_cast<std::size_t>(at)]);
+        rests.put(static_cast<std::size_t>(k), line.array->rests[static_cast<std::size_t>(line.at(k))]);
       }
     }
     return rests;
@@ -1224,10 +1288,28 @@ class Assembler {
   std::vector<Signal> signals_;
   const Clock* clock_ = nullptr;  ///< of the recording, where the file has clocks
   bool states_time_ = false;      ///< the map states the unit of time
+  Index trials_ = 0;              ///< that the slices of the map leave over; 0: none
   Recording recording_;
 };
 
 }  // namespace
+
+std::vector<TrialName> trials_of_map(const Contents& contents, const std::vector<ChannelSource>& map) {
+  Index count = 0;
+  for (const ChannelSource& entry : map) {
+    for (const SourceReading& way : readings(entry.source)) {
+      const auto sliced = sliced_source(way.name.substr(0, way.name.rfind('@')));
+      const Array* const array = sliced && !contents.table ? find(contents, sliced->name) : nullptr;
+      if (array == nullptr) continue;
+      const auto plan = plan_of(*array, *sliced);
+      if (!plan || !plan->trial) continue;
+      count = std::max(count, static_cast<Index>(dimensions_of(*array)[*plan->trial]));
+    }
+  }
+  std::vector<TrialName> trials;
+  for (Index k = 1; count > 1 && k <= count; ++k) trials.push_back({std::to_string(k), ""});
+  return trials;
+}
 
 Result<Recording> assemble(Contents contents, const ReadOptions& options) {
   return Assembler(std::move(contents), options).run();

@@ -14,4 +14,7 @@ inline constexpr std::string_view kSeveralClocks = "the channels come from strea
 /// Gives the arrays of a file their meaning: which is which channel, in SI. See `read` for the rules and failures.
 [[nodiscard]] Result<Recording> assemble(Contents contents, const ReadOptions& options);
 
+/// The trials that a channel map leaves to be chosen (slices.h): "1", "2", …; none where every slice names its own.
+[[nodiscard]] std::vector<TrialName> trials_of_map(const Contents& contents, const std::vector<ChannelSource>& map);
+
 }  // namespace mbk::recording

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mbk/files/recording/channel_table.h"
+#include "mbk/files/recording/slices.h"
 
 namespace mbk::recording {
 namespace {
@@ -117,7 +118,8 @@ std::optional<CountedSource> counted_source(std::string_view source) {
 Result<std::vector<ChannelSource>> parse_channel_map(std::string_view text) {
   std::vector<ChannelSource> map;
   for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::size_t end = begin;  // commas of slices part no entries
+    while (end < text.size() && text[end] != ',') end += std::max<std::size_t>(slice_ahead(text.substr(end)), 1);
     auto entry = parse_entry(trimmed(text.substr(begin, end - begin)));
     if (!entry) return tl::unexpected(entry.error());
     if (std::ranges::find(map, entry->channel, &ChannelSource::channel) != map.end()) {

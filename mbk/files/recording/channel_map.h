@@ -14,8 +14,8 @@ namespace mbk::recording {
 struct ChannelSource {
   std::string channel;  ///< full name; "x" and "xr" stay as they are until the number of axes is known
   std::string source;   ///< 1-based column (or row of a wide matrix), or a name in the file; `NAME[K]` is column (or
-                        ///< row) K of the matrix NAME; `NAME@HZ` is decimated; may end in *GAIN, +OFFSET and -OFFSET:
-                        ///< see `readings`
+                       ///< row) K of the matrix NAME, `NAME[trial,:,K]` a slice (slices.h); `NAME@HZ` is decimated; may
+                       ///< end in *GAIN, +OFFSET and -OFFSET: see `readings`
   std::string unit;     ///< unit in the file, "" where not said: then SI, or what the column's own name says
   bool negate = false;  ///< the sign of the source is flipped, before an offset is added
 };

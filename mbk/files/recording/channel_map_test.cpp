@@ -101,6 +101,17 @@ TEST(ParseChannelMap, LeavesArithmeticWithTheSource) {
   EXPECT_TRUE(map[1].negate);
 }
 
+TEST(ParseChannelMap, KeepsTheCommasOfSlices) {
+  const auto map = parse_channel_map("x=data[trial,:,2]:mm, Fx=-data(:, 3)*2,y=pos[2,:]").value();
+  ASSERT_EQ(map.size(), 3U);
+  EXPECT_EQ(map[0].source, "data[trial,:,2]");
+  EXPECT_EQ(map[0].unit, "mm");
+  EXPECT_EQ(map[1].source, "data(:, 3)*2");
+  EXPECT_TRUE(map[1].negate);
+  EXPECT_EQ(map[2].source, "pos[2,:]");
+  EXPECT_EQ(parse_channel_map("x=a[1,y=b(2]").value().size(), 2U);  // no slices
+}
+
 TEST(ParseChannelMap, DoesNotTakeAVelocityForAVoltage) {
   EXPECT_EQ(error_of("vx=2").line(), "unknown channel 'vx'; did you mean 'Vx'?");
 }

@@ -433,9 +433,9 @@ class Applier {
 }  // namespace
 
 void SharedNotes::add(std::string sentence, std::string name) {
-  const auto found = std::ranges::find(all_, sentence, [](const auto& one) { return one.first; });
-  auto& entry = found == all_.end() ? all_.emplace_back(std::move(sentence), std::vector<std::string>()) : *found;
-  entry.second.push_back(std::move(name));
+  const auto [place, is_new] = places_.try_emplace(sentence, all_.size());
+  if (is_new) all_.emplace_back(std::move(sentence), std::vector<std::string>());
+  all_[place->second].second.push_back(std::move(name));
 }
 
 std::vector<std::string> SharedNotes::lines() const {

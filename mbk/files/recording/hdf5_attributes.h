@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@ class SharedNotes {
 
  private:
   std::vector<std::pair<std::string, std::vector<std::string>>> all_;
+  std::map<std::string, std::size_t> places_;  ///< of the sentences in `all_`
 };
 
 /// The attribute that keeps Array::unapplied in a file that mbk writes.

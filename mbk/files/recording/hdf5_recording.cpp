@@ -27,6 +27,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kLongestNumbers = 64;  ///< of an attribute that becomes metadata
+constexpr std::size_t kMaxDimensions = 8;    ///< of an array that is read
 
 /// What a value says, in one line; nothing where it is neither text nor a few numbers.
 /// @param count  lines that it has in the file
@@ -110,15 +111,19 @@ class Decoder {
             .starts_with("This is a netCDF dimension but not a netCDF variable")) {
       return;  // which has no numbers
     }
+    const std::vector<std::uint64_t> sides = value.shape;
+    const bool block = sides.size() > 2 && !without_ones(sides);
     if (const auto squeezed = without_ones(value.shape)) {
       contents.notes.push_back(
           fmt::format("'{}' ({}) was read as {}", path, fmt::join(value.shape, "×"), fmt::join(*squeezed, "×")));
       value.shape = *squeezed;
     }
     const std::size_t rank = value.shape.size();
-    if (rank > 2) return aside(path, fmt::format("an array of {} dimensions", rank));
     auto& numbers = std::get<hdf5::Numbers>(value.data);
-    const std::uint64_t columns = rank == 2 ? value.shape[1] : 1;
+    if (block && (is_byte(numbers.stored) || rank > kMaxDimensions)) {  // images
+      return aside(path, fmt::format("an array of {} dimensions", rank));
+    }
+    const std::uint64_t columns = rank >= 2 ? value.shape.back() : 1;
     Array& array = contents.arrays.emplace_back();
     array.name = name_of(path);
     array.signal = own_layout_ && (path == "time" || path.starts_with("channels/"));
@@ -129,9 +134,14 @@ class Decoder {
       array.clock = series->second.clock;
       array.means = series->second.channel;
     }
-    array.rests = take_rests(numbers, value.shape[0], columns);
-    array.values = take_rows(numbers, value.shape[0], columns);
+    if (sides.size() > 2) array.shape = sides;
+    array.row_major = block;
+    const std::uint64_t rows = block ? static_cast<std::uint64_t>(numbers.values.size()) : value.shape[0];
+    array.rests = take_rests(numbers, rows, block ? 1 : columns);
+    array.values = take_rows(numbers, rows, block ? 1 : columns);
   }
+
+  static bool is_byte(hdf5::Stored stored) { return stored == hdf5::Stored::int8 || stored == hdf5::Stored::uint8; }
 
   /// A scale of a dimension that counts time, by the attributes that CF has for that.
   static bool is_time_scale(const hdf5::Attributes& attributes) {

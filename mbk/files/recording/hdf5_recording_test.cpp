@@ -116,7 +116,8 @@ Group other() {
   trial.datasets["pos"].attributes["units"] = {{}, Texts{"mm"}};
   trial.datasets["force"] = numbers(Vector::LinSpaced(4, 0, 9));
   root.datasets["size"] = Dataset{{{}, Numbers{Vector::Constant(1, 7.0)}}, {}};
-  root.datasets["cube"] = numbers(Vector::Zero(8), {2, 2, 2});
+  root.datasets["images"] = numbers(Vector::Zero(8), {2, 2, 2});
+  std::get<Numbers>(root.datasets["images"].value.data).stored = hdf5::Stored::uint8;
   root.datasets["label"] = Dataset{{{1}, Texts{"x"}}, {}};
   root.datasets["table"].value.data = hdf5::Unread{"of a compound type"};
   return root;
@@ -130,7 +131,7 @@ TEST(ContentsOfHdf5, ListsOtherFilesByTheirPaths) {
   EXPECT_EQ(contents.arrays[2].name, "trial/pos");
   EXPECT_EQ(contents.arrays[2].values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());  // as h5py shows it
   EXPECT_THAT(contents.notes,
-              ElementsAre("'cube' is an array of 3 dimensions; ignored", "'size' is a single number (7); ignored",
+              ElementsAre("'images' is an array of 3 dimensions; ignored", "'size' is a single number (7); ignored",
                           "'table' is of a compound type; ignored", "variable 'label' is text; ignored"));
 }
 
@@ -405,6 +406,24 @@ TEST(ContentsOfHdf5, TakesDifferencesOfTimesBeforeTheyAreRounded) {
     EXPECT_NEAR(recording->time_zero, 1709288130.0, 1e-6);
   }
   EXPECT_THAT(recorded(root)->notes, Contains("'hand_x' holds whole numbers above 2^53, which were rounded"));
+}
+
+TEST(ContentsOfHdf5, TakesSlicesOfArraysOfMoreDimensions) {
+  Group root;
+  root.datasets["data"] = numbers(Vector::LinSpaced(2 * 9 * 3, 0, 53), {2, 9, 3});  // trials, samples, channels
+  root.datasets["data"].attributes["scale_factor"] = {{3}, Numbers{(Vector(3) << 1, 1, 10).finished()}};
+  root.attributes["fs"] = one(1000.0);
+  ReadOptions options;
+  options.channels = parse_channel_map("x=data[trial,:,1],Fx=data[:,:,3]").value();
+  Contents contents = contents_of_hdf5(root);
+  EXPECT_EQ(trials_of_map(contents, options.channels).size(), 2U);
+  options.trial = "2";
+  const auto recording = assemble(std::move(contents), options);
+  ASSERT_TRUE(recording) << recording.error().line();
+  EXPECT_EQ(recording->find("hand_x")->values, Vector::LinSpaced(9, 27, 51));
+  EXPECT_EQ(recording->find("force_x")->values, 10 * Vector::LinSpaced(9, 29, 53));
+  EXPECT_THAT(recording->notes, Contains("'data' (2×9×3) holds 2 trials along its dimension 1; time runs along its "
+                                         "dimension 2"));
 }
 
 TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {

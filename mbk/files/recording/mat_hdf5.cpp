@@ -14,12 +14,14 @@
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/hdf5_attributes.h"
 #include "mbk/files/recording/hdf5_tree.h"
+#include "mbk/files/recording/mat_object.h"
 #include "mbk/files/recording/without_ones.h"
 
 namespace mbk::recording {
 namespace {
 
 constexpr std::string_view kHeader = "MATLAB 7.3";
+constexpr std::size_t kDimensions = 8;                   ///< of an array that is read, at most
 constexpr std::size_t kMaxText = std::size_t{64} << 20;  ///< [bytes] of all cell arrays of a file
 constexpr int kDeepest = 16;                             ///< references within references
 constexpr std::size_t kMaxElements = 1024;               ///< of a structure or cell array that is still read
@@ -67,9 +69,8 @@ class MatDecoder {
   void variable(Member& member, const std::string& name, int depth) {
     const std::string type = text_attribute(member.attributes, kClass);
     if (member.attributes.contains("MATLAB_object_decode")) {
-      return aside(name, type == "function_handle"
-                             ? "a function handle"
-                             : fmt::format("an object of MATLAB class '{}', which only MATLAB can read", type));
+      if (type == "function_handle") return aside(name, "a function handle");
+      return list_object(contents, name, type);
     }
     if (member.attributes.contains("MATLAB_sparse")) return aside(name, "a sparse matrix");
     if constexpr (std::same_as<Member, hdf5::Group>) {
@@ -96,18 +97,25 @@ class MatDecoder {
     if (references_of(value) != nullptr) return aside(name, "of references");
     auto* const numbers = std::get_if<hdf5::Numbers>(&value.data);
     if (numbers == nullptr) return aside(name, "not numeric");
+    const std::vector<std::uint64_t> sides = value.shape;
     if (const auto squeezed = without_ones(value.shape)) {
       contents.notes.push_back(fmt::format("variable '{}' ({}) was read as {}×{}", name,
                                            fmt::join(value.shape.rbegin(), value.shape.rend(), "×"), (*squeezed)[1],
                                            (*squeezed)[0]));
       value.shape = *squeezed;
     }
-    if (value.shape.size() != 2) return aside(name, fmt::format("an array of {} dimensions", value.shape.size()));
+    const bool block = value.shape.size() > 2;
+    const bool bytes = numbers->stored == hdf5::Stored::int8 || numbers->stored == hdf5::Stored::uint8;  // images
+    if (value.shape.size() < 2 || (block && (bytes || value.shape.size() > kDimensions))) {
+      return aside(name, fmt::format("an array of {} dimensions", value.shape.size()));
+    }
     Array& array = contents.arrays.emplace_back();
     array.name = name;
     apply_attributes(dataset.attributes, *numbers, 1, false, array, notes);
     array.rests = std::move(numbers->rests);
-    array.values = take_columns(*numbers, value.shape[1], value.shape[0]);
+    if (sides.size() > 2) array.shape = {sides.rbegin(), sides.rend()};
+    const auto count = static_cast<std::uint64_t>(numbers->values.size());
+    array.values = block ? take_columns(*numbers, count, 1) : take_columns(*numbers, value.shape[1], value.shape[0]);
     value.data = hdf5::Unread{fmt::format("the same as '{}'", name)};  // for a second reference to it
   }
 

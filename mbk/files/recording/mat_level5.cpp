@@ -14,15 +14,18 @@
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/byte_view.h"
 #include "mbk/files/contents/lines.h"
+#include "mbk/files/contents/memory.h"
 #include "mbk/files/contents/said_rates.h"
 #include "mbk/files/contents/utf16.h"
 #include "mbk/files/recording/inflate.h"
+#include "mbk/files/recording/mat_object.h"
 #include "mbk/files/recording/without_ones.h"
 
 namespace mbk::recording {
 namespace {
 
 constexpr std::size_t kHeaderSize = 128;
+constexpr std::size_t kMaxDimensions = 8;   ///< of an array that is read
 constexpr int kDeepest = 16;                ///< structures within structures
 constexpr std::size_t kMaxElements = 1024;  ///< of a structure or cell array that is still read
 constexpr std::size_t kMaxLines = 100'000;  ///< of text in one variable
@@ -32,7 +35,8 @@ constexpr std::uint32_t kInt8 = 1, kUint8 = 2, kInt16 = 3, kUint16 = 4, kInt32 =
                         kDouble = 9, kInt64 = 12, kUint64 = 13, kMatrix = 14, kCompressed = 15, kUtf8 = 16, kUtf16 = 17;
 // Classes of arrays.
 constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kObjectClass = 3, kCharClass = 4, kSparseClass = 5,
-                        kDoubleClass = 6, kUint64Class = 15, kFunctionClass = 16, kOpaqueClass = 17;
+                        kDoubleClass = 6, kInt8Class = 8, kUint8Class = 9, kUint64Class = 15, kFunctionClass = 16,
+                        kOpaqueClass = 17;
 
 tl::unexpected<Error> damaged(std::string what) {
   return bad_data(std::move(what), "the file is damaged or cut short: copy it again from where it was recorded");
@@ -230,12 +234,17 @@ class Decoder {
         const auto system = elements.next("its type system");
         const auto type = system ? elements.next("its class name") : system;
         if (!type) return tl::unexpected(type.error());
-        return object(header, printable(type->data.padded_text()));
+        const std::string name = printable(type->data.padded_text());
+        if (name == "function_handle") return aside(header, "a function handle");
+        list_object(contents, header.name, name);
+        return {};
       }
-      case kObjectClass: {
+      case kObjectClass: {  // of a class of before 2008: a structure with a name
         const auto type = elements.next("its class name");
         if (!type) return tl::unexpected(type.error());
-        return object(header, printable(type->data.padded_text()));
+        contents.notes.push_back(fmt::format("variable '{}' is an object of class '{}' and was read as a structure",
+                                             header.name, printable(type->data.padded_text())));
+        return structure(header, elements, depth);
       }
       case kCellClass:
         return cells(header, elements, depth);
@@ -259,10 +268,6 @@ class Decoder {
   Result<void> aside(const Header& header, std::string_view what) {
     contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", header.name, what));
     return {};
-  }
-
-  Result<void> object(const Header& header, std::string_view type) {
-    return aside(header, fmt::format("an object of MATLAB class '{}', which only MATLAB can read", type));
   }
 
   Result<void> text(const Header& header, std::optional<std::vector<std::string>> lines, std::string_view otherwise) {
@@ -374,14 +379,20 @@ class Decoder {
     }
     if (header.complex) return aside(header, "complex");
     const auto squeezed = without_ones(header.dimensions);
-    if (header.dimensions.size() != 2 && !squeezed) return aside(header, "an array of more than two dimensions");
-    const std::vector<std::uint64_t>& size = squeezed ? *squeezed : header.dimensions;
+    const bool block = header.dimensions.size() != 2 && !squeezed;
+    const bool bytes = header.array_class == kInt8Class || header.array_class == kUint8Class;  // images
+    if (block && (bytes || header.dimensions.size() > kMaxDimensions || !check_memory(8 * *count))) {
+      return aside(header, fmt::format("an array of {} dimensions", header.dimensions.size()));
+    }
+    const std::vector<std::uint64_t> column = {*count, 1};
+    const std::vector<std::uint64_t>& size = block ? column : squeezed ? *squeezed : header.dimensions;
     if (squeezed) {
       contents.notes.push_back(fmt::format("variable '{}' ({}) was read as {}×{}", header.name,
                                            fmt::join(header.dimensions, "×"), size[0], size[1]));
     }
     Array& array = contents.arrays.emplace_back();
     array.name = header.name;
+    if (header.dimensions.size() > 2) array.shape = header.dimensions;
     const auto rows = static_cast<Index>(size[0]), columns = static_cast<Index>(size[1]);
     if (double* const at = where_they_stand(*real); at != nullptr) {
       array.values = SharedMatrix(at, rows, columns, bytes_);

@@ -158,14 +158,41 @@ TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
   const auto contents = decode(header5() + opaque + matrix5("text", {1, 1}, element5(18, raw(U'a')), 4) +
                                matrix5("sparse", {9, 9}, "", 5) +
                                matrix5("z", {1, 1}, element5(9, raw(1.0)) + element5(9, raw(1.0)), 0x0806) +
-                               matrix5("cube", {2, 1, 2, 2}, element5(9, std::string(64, '\0'))));
+                               matrix5("images", {2, 1, 2, 2}, element5(2, std::string(8, '\0')), 9));
   ASSERT_TRUE(contents) << contents.error().line();
-  EXPECT_TRUE(contents->arrays.empty());
+  ASSERT_EQ(contents->arrays.size(), 1u);
+  EXPECT_TRUE(contents->arrays[0].obstacle);
   EXPECT_THAT(contents->notes,
-              ElementsAre("variable 'nlid' is an object of MATLAB class 'nldat', which only MATLAB can read; ignored",
+              ElementsAre(HasSubstr("variable 'nlid' is an object of MATLAB class 'nldat', which"),
                           "variable 'text' is text in a way that is not read; ignored",
                           "variable 'sparse' is a sparse matrix; ignored", "variable 'z' is complex; ignored",
-                          "variable 'cube' is an array of more than two dimensions; ignored"));
+                          "variable 'images' is an array of 4 dimensions; ignored"));
+}
+
+TEST(DecodeMatLevel5, ReadsObjectsOfTheOldKindAsStructures) {
+  std::string object = struct5("old", {{"force", double5("", kValues)}});
+  const std::string tag = raw(std::uint32_t{2}) + raw(std::uint32_t{0});  // class of a structure, without flags
+  object.replace(object.find(tag), 4, raw(std::uint32_t{3}));
+  const std::string width = element5(5, raw(std::int32_t{16}));
+  object.insert(object.find(width), element5(1, "sensor"));
+  std::string size = raw(static_cast<std::uint32_t>(object.size() - 8));
+  object.replace(4, 4, size);
+  const auto contents = decode(header5() + object);
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays.at(0).name, "old.force");
+  EXPECT_EQ(contents->arrays.at(0).values, kValues);
+  EXPECT_THAT(contents->notes,
+              ElementsAre("variable 'old' is an object of class 'sensor' and was read as a structure"));
+}
+
+TEST(DecodeMatLevel5, KeepsArraysOfMoreDimensionsAsTheyStand) {
+  const auto contents =
+      decode(header5() + matrix5("cube", {2, 1, 3, 2}, element5(9, test::doubles(Vector::LinSpaced(12, 0, 11)))) +
+             matrix5("flat", {2, 1, 3}, element5(9, test::doubles(Vector::LinSpaced(6, 0, 5)))));
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays.at(0).shape, (std::vector<std::uint64_t>{2, 1, 3, 2}));
+  EXPECT_EQ(contents->arrays.at(0).values, Vector::LinSpaced(12, 0, 11));
+  EXPECT_EQ(contents->arrays.at(1).values, (Matrix(2, 3) << 0, 2, 4, 1, 3, 5).finished());
 }
 
 TEST(DecodeMatLevel5, ReadsCellsThatHoldNumbersAndStructures) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,7 @@
 #include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/one_clock.h"
 #include "mbk/files/recording/open_trials.h"
+#include "mbk/files/recording/slices.h"
 
 namespace mbk::recording {
 
@@ -91,7 +93,7 @@ class RecordingFile {
     auto contents = format_->decode(*file_);
     if (!contents) return tl::unexpected(contents.error());
     take_annotations(*contents);
-    SourceFile source{path_.string(), contents->format, file_->sha256()};
+    SourceFile source{path_.string(), contents->format, file_->sha256(), options.trial};
     return Decoded{std::move(*contents), std::move(source)};
   }
 
@@ -135,7 +137,12 @@ FileContents listed(Decoded decoded) {
                        std::nan(""),
                        std::nan(""),
                        array.unit,
-                       rate_of_array(decoded.contents, array)};
+                       rate_of_array(decoded.contents, array),
+                       array.shape};
+    if (array.is_block()) {
+      stored.rows = static_cast<Index>(array.shape.front());
+      stored.columns = stored.rows > 0 ? array.values.size() / stored.rows : 0;
+    }
     for (const double value : array.values.reshaped()) {
       if (!std::isfinite(value)) continue;
       stored.minimum = std::fmin(stored.minimum, value);
@@ -159,6 +166,17 @@ Result<std::shared_ptr<const RecordingFile>> open(const std::filesystem::path& f
 
 const std::vector<TrialName>& trials_of(const RecordingFile& file) {
   return file.trials();
+}
+
+std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& options) {
+  const bool slices = std::ranges::any_of(options.channels, [](const ChannelSource& one) {
+    return std::ranges::any_of(readings(one.source), [](const SourceReading& way) {
+      return sliced_source(way.name.substr(0, way.name.rfind('@'))).has_value();
+    });
+  });
+  if (!file.trials().empty() || !slices) return file.trials();
+  const auto decoded = file.decode(options, false);  // what is wrong is for whoever reads it
+  return decoded ? trials_of_map(decoded->contents, options.channels) : std::vector<TrialName>();
 }
 
 std::string_view begin_of(const RecordingFile& file) {
@@ -198,8 +216,15 @@ Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& opt
   return with_file(file.path(), [&]() -> Result<Contents> {
     auto decoded = file.decode(options, false);
     if (!decoded) return tl::unexpected(decoded.error());
-    note_rounded(decoded->contents);
-    return std::move(decoded->contents);
+    Contents& contents = decoded->contents;
+    note_rounded(contents);
+    for (const Array& array : contents.arrays) {
+      if (!array.is_block()) continue;
+      contents.notes.push_back(fmt::format("'{}' is {} and was left out, as arrays of more than two dimensions are",
+                                           array.name, shape_text(array)));
+    }
+    std::erase_if(contents.arrays, [](const Array& array) { return array.is_block(); });
+    return std::move(contents);
   });
 }
 

@@ -45,6 +45,9 @@ struct ReadOptions {
 /// that holds one.
 [[nodiscard]] const std::vector<TrialName>& trials_of(const RecordingFile& file);
 
+/// The same for a channel map, which may leave a dimension of an array over (slices.h): each of its indices is a trial.
+[[nodiscard]] std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& options);
+
 /// The first bytes; none of a folder.
 [[nodiscard]] std::string_view begin_of(const RecordingFile& file);
 

@@ -581,8 +581,7 @@ TEST(ReadRealFiles, AnkleBothAsTableAndAsMatrixBesideObjects) {
   options.rate = Hertz(1000);
   const auto matrix = read(data / "ankle/z.mat", options);
   ASSERT_TRUE(matrix) << matrix.error().line();
-  EXPECT_THAT(matrix->notes,
-              Contains("variable 'z_df' is an object of MATLAB class 'nldat', which only MATLAB can read; ignored"));
+  EXPECT_THAT(matrix->notes, Contains(HasSubstr("variable 'z_df' is an object of MATLAB class 'nldat'")));
   // The table was written with seven significant digits of the torque, eight decimals of the angle.
   EXPECT_LT((matrix->find("position")->values - table->find("position")->values).cwiseAbs().maxCoeff(), 0.6e-8);
   EXPECT_LT((matrix->find("reaction")->values - table->find("reaction")->values).cwiseAbs().maxCoeff(), 0.6e-5);

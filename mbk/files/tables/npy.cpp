@@ -27,6 +27,7 @@ namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::string_view kEnd = ".npy";
+constexpr std::size_t kMaxDimensions = 8;  ///< of an array that is read
 constexpr std::string_view kAgain = "save it again with numpy.save";
 
 /// The parts of a file: what its header says, and its numbers.
@@ -166,6 +167,8 @@ class NpyDecoder {
     const TimeUnit unit = time ? time_unit(field.type) : TimeUnit{};
     const Read read = time && unit.each_second > 0.0 && field.size == 8 ? read_as<std::int64_t> : reader_of(field);
     const std::size_t dimensions = sizes.size() + (field.count > 1 ? 1 : 0);
+    const bool block = dimensions > 2 && !header.structured && !time && field.size > 1 && dimensions <= kMaxDimensions;
+    if (read != nullptr && block) return take_block(field, header, elements, data, read, std::move(name));
     if (read == nullptr || dimensions > 2) {
       Array& array = contents_.arrays.emplace_back();
       array.name = name;
@@ -198,8 +201,28 @@ class NpyDecoder {
     if (field.kind == 'i' && field.size == 8) put_rests<std::int64_t>(field, header, view, values, array.rests);
     if (field.kind == 'u' && field.size == 8) put_rests<std::uint64_t>(field, header, view, values, array.rests);
     array.unit = field.kind == 'M' ? "s" : unit.name;
+    if (header.shape.size() > 2) array.shape = header.shape;
     array.values =
         values.cols() == 1 ? SharedMatrix::of_column(Vector(values.reshaped())) : SharedMatrix(std::move(values));
+    return {};
+  }
+
+  /// An array of more than two dimensions, in the order of the file.
+  Result<void> take_block(const NpyField& field, const NpyHeader& header, std::uint64_t elements,
+                          std::span<const std::byte> data, Read read, std::string name) {
+    if (auto ok = check_memory(8 * elements); !ok) return ok;
+    const ByteView view{data, field.big_endian != (std::endian::native == std::endian::big)};
+    Matrix values(static_cast<Index>(elements), 1);
+    for (Index k = 0; k < values.rows(); ++k) {
+      values(k, 0) = read(view, static_cast<std::size_t>(k) * header.element + field.offset);
+    }
+    Array& array = contents_.arrays.emplace_back();
+    array.name = std::move(name);
+    array.shape = header.shape;
+    array.row_major = !header.fortran_order;
+    if (field.kind == 'i' && field.size == 8) put_rests<std::int64_t>(field, header, view, values, array.rests);
+    if (field.kind == 'u' && field.size == 8) put_rests<std::uint64_t>(field, header, view, values, array.rests);
+    array.values = SharedMatrix(std::move(values));
     return {};
   }
 

@@ -235,11 +235,18 @@ class OctaveDecoder {
       lengths.push_back(*length);
     }
     if (lengths.size() != *dimensions || lengths.size() < 2) return cut(name);
-    if (lengths.size() > 2) {
-      contents_.notes.push_back(fmt::format("variable '{}' has {} dimensions; ignored", name, lengths.size()));
-      return skip();
+    const std::vector<std::uint64_t> sides = lengths;
+    std::uint64_t others = 1;
+    for (std::size_t d = 1; d < sides.size(); ++d) {
+      if (sides[d] != 0 && others > lines_.left() / sides[d]) return cut(name);
+      others *= sides[d];
     }
-    if (auto ok = check_size(name, lengths[0], lengths[1]); !ok) return ok;
+    if (auto ok = check_size(name, sides[0], others); !ok) return ok;
+    if (sides.size() > 2) {  // those of 1 count for nothing; of more than two others only slices are signals
+      std::erase(lengths, std::uint64_t{1});
+      if (lengths.size() > 2) lengths = {sides[0] * others};
+      lengths.resize(2, 1);
+    }
     Matrix values(static_cast<Index>(lengths[0]), static_cast<Index>(lengths[1]));
     Rests rests;
     std::size_t at = 0;
@@ -256,6 +263,7 @@ class OctaveDecoder {
     Array& added = contents_.arrays.emplace_back();
     added.name = name;
     added.rests = std::move(rests);
+    if (sides.size() > 2) added.shape = sides;
     added.values = SharedMatrix(std::move(values));
     line_ = lines_.next();
     return {};

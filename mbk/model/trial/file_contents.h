@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,10 @@ namespace mbk {
 struct StoredArray {
   std::string name;  ///< "" for a column without a heading
   Index rows = 0, columns = 0;
-  double minimum = 0, maximum = 0;  ///< of the finite values; NaN where there is none
-  std::string unit;                 ///< as the file says it; "" where it does not
-  double rate_hz = 0;               ///< as the file says it; 0 where it does not
+  double minimum = 0, maximum = 0;        ///< of the finite values; NaN where there is none
+  std::string unit;                       ///< as the file says it; "" where it does not
+  double rate_hz = 0;                     ///< as the file says it; 0 where it does not
+  std::vector<std::uint64_t> shape = {};  ///< of more than two dimensions; empty of any other
 };
 
 /// What a file holds, before anything is said about channels.

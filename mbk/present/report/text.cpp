@@ -487,8 +487,9 @@ std::string contents_text(const FileContents& contents, const Error& unrecognise
     const StoredArray& array = contents.arrays[k];
     const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "none"; };
     rows.push_back({contents.table ? std::to_string(k + 1) : "", array.name,
-                    fmt::format("{}×{}", array.rows, array.columns), number(array.minimum), number(array.maximum),
-                    array.unit});
+                    array.shape.empty() ? fmt::format("{}×{}", array.rows, array.columns)
+                                        : fmt::format("{}", fmt::join(array.shape, "×")),
+                    number(array.minimum), number(array.maximum), array.unit});
   }
   text += table(rows) + "\n" + paragraph("  ! ", unrecognised.message.substr(0, unrecognised.message.find(';')));
   if (!unrecognised.remedy.empty()) text += paragraph("    try: ", unrecognised.remedy);

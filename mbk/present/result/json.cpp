@@ -477,6 +477,7 @@ std::string to_json(const FileContents& contents, const Error& unrecognised) {
                 {"maximum", number(array.maximum)}};
     if (!array.unit.empty()) one["unit"] = array.unit;
     if (array.rate_hz > 0) one["rate_hz"] = array.rate_hz;
+    if (!array.shape.empty()) one["shape"] = array.shape;
     json["arrays"].push_back(std::move(one));
   }
   json["notes"] = contents.notes;
