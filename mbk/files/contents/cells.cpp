@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "mbk/base/core/rests.h"
 #include "mbk/base/core/trimmed.h"
-#include "mbk/base/core/whole_numbers.h"
 
 namespace mbk::recording {
 namespace {

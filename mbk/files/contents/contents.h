@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/rests.h"
 #include "mbk/base/core/result.h"
-#include "mbk/base/core/whole_numbers.h"
 #include "mbk/files/contents/shared_matrix.h"
 #include "mbk/model/trial/recording.h"
 

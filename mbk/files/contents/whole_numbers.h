@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "mbk/base/core/whole_numbers.h"
+#include "mbk/base/core/rests.h"
 
 namespace mbk::recording {
 

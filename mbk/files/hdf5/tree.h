@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
-#include "mbk/base/core/whole_numbers.h"
+#include "mbk/base/core/rests.h"
 
 namespace mbk::hdf5 {
 
