@@ -19,6 +19,8 @@ std::vector<recording::Contents> files() {
   table.arrays.push_back({"Force X", Matrix(Vector::Ones(12)), "N", true, 200.0});
   table.arrays.push_back({"S:H.x", Matrix(Vector::Ones(6)), "furlong", true, 100.0});
   variables.arrays.push_back({"logs", Matrix(Matrix::Ones(19, 6))});
+  variables.arrays.push_back({"data", Matrix(Matrix::Ones(2 * 6 * 3, 1))});
+  variables.arrays.back().shape = {2, 6, 3};
   return {table, variables};
 }
 
@@ -30,6 +32,7 @@ std::vector<std::string> seeds() {
           "hand_x=HAND.x,force_x=Force X@100",
           "q1=1:deg,q2=2,tau1=3:N.m",
           "x=S:H.x,xr=5:rad",
+          "x=data[trial,:,2]:mm,Fx=-data(2,:,3)*2,y=data[:,1],t=logs[1,:]",
           "t=1,x=-logs:mm,ax=7:g",
           "x=logs[2]*2:mm,Fx=-logs[10],y=y[1],t=clock[1]:ms",
           "Fx=-Fx*-8.56+0.54:N,Vx=3:mV,q3=2*2:mm,tau8=y-1e-3:N"};
@@ -48,6 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& file : kFiles) {
     mbk::recording::ReadOptions options;
     options.channels = *map;
+    options.trial = mbk::recording::trials_of_map(file, *map).empty() ? "" : "2";
     const auto recording = mbk::recording::assemble(file, options);
     if (!recording) {
       mbk::fuzz::require_error(recording.error());

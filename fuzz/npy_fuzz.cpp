@@ -15,6 +15,8 @@ std::vector<std::string> seeds() {
       npy("'<f2'", "(2, 1, 1)", std::string("\0\x3c\0\x40", 4), false, 3),
       npy("[('time', '<f8'), ('x', '>f4', (2,)), ('who', '<U2')]", "(1,)", reals.substr(0, 24)),
       npy("'<M8[ns]'", "(2,)", raw(std::int64_t{1709337599500000000}) + raw(std::int64_t{1709337600500000000})),
+      npy("'<i8'", "(3, 1, 2)", reals),
+      npy("'<f4'", "(3, 2, 2)", reals, true),
       npy("'|O'", "(2,)", "\x80\x03]q"),
   };
   files.push_back(recording::test::npz({{"time.npy", files[2]}, {"x.npy", files[2]}, {"read.me", "text"}}));

@@ -12,7 +12,8 @@
 namespace mbk::recording {
 namespace {
 
-constexpr double kSame = 1e-6;  ///< relative: rates that are said twice
+constexpr double kLowest = 1e-9, kHighest = 1e9;  ///< of a rate or a period
+constexpr double kSame = 1e-6;                    ///< relative: rates that are said twice
 
 /// The small letters and digits of a name: "samplingrate" of "Sampling_Rate".
 std::string letters_of(std::string_view name) {
@@ -48,7 +49,7 @@ std::optional<double> rate_called(std::string_view name, double number, std::str
     letters.resize(letters.size() - ending.size());
     break;
   }
-  if (!(number > 0.0) || !std::isfinite(number)) return std::nullopt;
+  if (!(number > kLowest) || !(number < kHighest)) return std::nullopt;
   if (std::ranges::find(kRates, letters) != kRates.end()) {
     if (in.empty() || in == "hz" || in == "hertz" || in == "1s" || in == "s1" || in == "samplespersecond") {
       return number;

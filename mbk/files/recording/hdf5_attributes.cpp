@@ -83,8 +83,8 @@ Says meaning_of(std::string_view name) {
       {kUnapplied, factor},
   });
   constexpr auto kWords = std::to_array<std::string_view>(
-      {"scale", "scaling", "gain", "factor", "conver", "calib", "coef", "slope", "sensitiv", "multipl", "offset",
-       "bias", "tare", "intercept", "polarity", "invert", "lsb", "delay", "latency"});
+      {"scale",  "scaling", "gain", "factor",    "conver",   "calib",  "coef", "slope",      "sensitiv", "multipl",
+       "offset", "bias",    "tare", "intercept", "polarity", "invert", "lsb",  "resolution", "delay",    "latency"});
   const std::string letters = letters_of(name);
   const auto found = std::ranges::find(kNames, letters, [](const auto& one) { return one.first; });
   if (found != kNames.end()) return found->second;
@@ -249,7 +249,10 @@ class Applier {
     }
     const auto stated = numbers_of(value);
     if (says == Says::maybe) {
-      if (stated && !leaves_as_it_is(stated, 0.0) && !leaves_as_it_is(stated, 1.0)) maybe_.push_back(said(name, value));
+      const bool nwb_default = letters_of(name) == "resolution" && leaves_as_it_is(stated, -1.0);
+      if (stated && !nwb_default && !leaves_as_it_is(stated, 0.0) && !leaves_as_it_is(stated, 1.0)) {
+        maybe_.push_back(said(name, value));
+      }
       return;
     }
     if (says == Says::factor) {
