@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <map>
@@ -18,6 +19,7 @@
 
 #include "apps/mbk/call.h"
 #include "mbk/base/core/requester.h"
+#include "mbk/base/core/rests.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/in_memory.h"
 
@@ -109,20 +111,20 @@ py::array real_array(const std::string& name, const py::object& given) {
 
 /// What doubles leave of integers of 64 bits.
 template <class Number>
-Rests rests_of(const py::array& array, const py::array& doubles) {
+mbk::Rests rests_of(const py::array& array, const py::array& doubles) {
   const auto numbers = py::array_t<Number, py::array::f_style>::ensure(array);
   if (!numbers) throw py::error_already_set();
   const auto count = static_cast<std::size_t>(numbers.size());
   const Number* const at = numbers.data();
   const auto* const rounded = static_cast<const double*>(doubles.data());
-  Rests rests;
+  mbk::Rests rests;
   for (std::size_t k = 0; k < count; ++k) {
-    if (std::abs(rounded[k]) >= kExactWhole) rests.put(k, rest_of(at[k]), count);
+    if (std::abs(rounded[k]) >= mbk::kExactWhole) rests.put(k, mbk::rest_of(at[k]), count);
   }
   return rests;
 }
 
-Rests rests_of(const py::array& array, const py::array& doubles) {
+mbk::Rests rests_of(const py::array& array, const py::array& doubles) {
   if (array.dtype().itemsize() < 8) return {};
   if (array.dtype().kind() == 'i') return rests_of<std::int64_t>(array, doubles);
   if (array.dtype().kind() == 'u') return rests_of<std::uint64_t>(array, doubles);
