@@ -180,6 +180,16 @@ class Doubtful(Case):
         self.assertNotIn("held-signal", codes)
         self.assertNotIn("missing-samples", codes)
 
+    def test_simulated_robots_that_rest_stick_and_flicker_are_not_accused(self):
+        for scenario, trial in (("relaxed_ramp_and_hold", ()), ("one_axis_random_binary", ("--trial", "1")),
+                                ("rig_table_3_1", ("--trial", "6")), ("rig_springs_table_3_1", ("--trial", "6")),
+                                ("relaxed_underdamped", ())):
+            with self.subTest(scenario):
+                self.mbk("simulate", scenario, *trial, "--quiet", "--out", self.folder / f"{scenario}.h5")
+                for file in self.folder.glob(f"{scenario}*.h5"):
+                    for channel in self.mbk("info", "--json", file).json["channels"]:
+                        self.assertNotIn("stale", channel)
+
 
 if __name__ == "__main__":
     main()

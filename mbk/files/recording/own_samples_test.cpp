@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mbk/files/recording/test_signals.h"
+#include "mbk/files/recording/test_stale_signals.h"
 
 namespace mbk::recording {
 namespace own_samples_test {

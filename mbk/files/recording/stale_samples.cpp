@@ -40,32 +40,52 @@ struct Runs {
   std::vector<Run> runs;       ///< run k lies between changes k and k + 1
   std::vector<Index> changes;  ///< samples whose value is not that of the sample before
   std::vector<double> jumps;   ///< by how much
-  double step = 0.0;           ///< size of a small change: the 5 % quantile, or the common one where it is larger
+  double least = 0.0;          ///< the 5 % quantile of their sizes
+  double step = 0.0;           ///< the same, or what `common_size` finds
   double usual = 0.0;          ///< the lower quartile
   double varied = 0.0;         ///< share of the changes that are at least twice as large
   double low = 0.0, high = 0.0;
 };
 
-/// The size that many of some changes have to within 2 %: the step of an encoder or converter, also where its numbers
-/// were computed further and differ in their last digits; 0 where no size is common.
+/// The size that most of some changes have to within 2 %, where that is more than 15 % of them: the step of an encoder
+/// or a converter, also where its numbers were computed further and differ in their last digits; 0: there is none.
 double common_size(const std::vector<double>& sizes) {
   constexpr std::size_t kLooked = 4096;
   constexpr double kBin = 0.02, kCommon = 0.15;
-  std::map<long, std::vector<double>> bins;
-  const std::size_t every = sizes.size() / kLooked + 1;
-  std::size_t looked = 0;
-  for (std::size_t k = 0; k < sizes.size(); k += every, ++looked)
-    bins[std::lround(std::log(sizes[k]) / kBin)].push_back(sizes[k]);
-  std::size_t most = 0;
-  double size = 0.0;
-  for (const auto& [bin, here] : bins) {
-    const auto next = bins.find(bin + 1);  // a size may lie on the edge of two
-    const std::size_t count = here.size() + (next == bins.end() ? 0 : next->second.size());
-    if (count <= most) continue;
-    most = count;
-    size = here.front();
+  std::map<long, double> bins;  // shares, by the logarithm of the size
+  const std::size_t every = sizes.size() / kLooked + 1, looked = (sizes.size() + every - 1) / every;
+  for (std::size_t k = 0; k < sizes.size(); k += every) {
+    bins[std::lround(std::log(sizes[k]) / kBin)] += 1.0 / static_cast<double>(looked);
   }
-  return static_cast<double>(most) > kCommon * static_cast<double>(looked) ? size : 0.0;
+  double most = kCommon, size = 0.0;
+  for (const auto& [bin, share] : bins) {
+    const auto next = bins.find(bin + 1);  // a size may lie on the edge of two bins
+    const double both = share + (next == bins.end() ? 0.0 : next->second);
+    if (both <= most) continue;
+    most = both;
+    size = std::exp(kBin * static_cast<double>(bin));
+  }
+  return size;
+}
+
+/// Changes that follow each other, whose sizes are compared.
+constexpr std::size_t kBlock = 64;
+
+/// Block by block, whether the changes have so many sizes that they are no few steps of one or two encoders.
+std::vector<bool> blocks_of_many_sizes(const std::vector<double>& sizes) {
+  constexpr double kSame = 0.02;  // relative
+  std::vector<bool> many;
+  std::vector<double> sorted;
+  for (std::size_t begin = 0; begin < sizes.size(); begin += kBlock) {
+    const std::size_t from = std::min(begin, sizes.size() - std::min(kBlock, sizes.size()));
+    sorted.assign(sizes.begin() + static_cast<std::ptrdiff_t>(from),
+                  sizes.begin() + static_cast<std::ptrdiff_t>(std::min(from + kBlock, sizes.size())));
+    std::ranges::sort(sorted);
+    std::size_t different = 1;
+    for (std::size_t k = 1; k < sorted.size(); ++k) different += sorted[k] > (1.0 + kSame) * sorted[k - 1] ? 1 : 0;
+    many.push_back(8 * different >= 3 * sorted.size());
+  }
+  return many;
 }
 
 /// @param values  finite
@@ -79,7 +99,8 @@ Runs runs_of(const Eigen::Ref<const Vector>& values) {
     sizes.push_back(std::abs(all.jumps.back()));
   }
   if (std::ssize(all.changes) < kMinChanges) return all;
-  all.step = std::max(quantile(sizes, 0.05), common_size(sizes));
+  all.least = quantile(sizes, 0.05);
+  all.step = std::max(all.least, common_size(sizes));
   all.usual = quantile(sizes, 0.25);
   const auto large = std::ranges::count_if(sizes, [&](double size) { return size >= 2.0 * all.step; });
   all.varied = static_cast<double>(large) / static_cast<double>(sizes.size());
@@ -95,10 +116,9 @@ Runs runs_of(const Eigen::Ref<const Vector>& values) {
 
 /// The four changes before a run and the four after it.
 struct Around {
-  double scale = 0.0;    ///< median of their sizes
-  double small = 0.0;    ///< lower quartile
-  int turns = 0;         ///< how many have another sign than the one before, on the same side
-  double spacing = 0.0;  ///< [samples] between them, without this run
+  double scale = 0.0;  ///< median of their sizes
+  double small = 0.0;  ///< lower quartile
+  int turns = 0;       ///< how many have another sign than the one before, on the same side
 };
 
 Around around(const Runs& all, std::size_t run) {
@@ -119,9 +139,6 @@ Around around(const Runs& all, std::size_t run) {
   }
   result.scale = found % 2 == 1 ? sizes[found / 2] : 0.5 * (sizes[found / 2 - 1] + sizes[found / 2]);
   result.small = sizes[found / 4];
-  const Index reach = all.changes[static_cast<std::size_t>(last)] - all.changes[static_cast<std::size_t>(first)];
-  result.spacing =
-      static_cast<double>(reach - all.runs[run].length) / static_cast<double>(std::max<Index>(1, last - first - 1));
   return result;
 }
 
@@ -260,6 +277,12 @@ std::optional<Stale> find_held(const Runs& all, Index samples) {
 
 // ---- repeats and freezes ----
 
+std::vector<double> sizes_of(const Runs& all) {
+  std::vector<double> sizes;
+  for (const double jump : all.jumps) sizes.push_back(std::abs(jump));
+  return sizes;
+}
+
 /// Finds repeats and freezes among samples that move.
 class Repeats {
  public:
@@ -268,6 +291,7 @@ class Repeats {
     for (std::size_t k = 0; k < all.runs.size(); ++k) {
       if (all.runs[k].length >= 2 || k % kSampled == 0) around_[k] = around(all, k);
     }
+    many_sizes_ = blocks_of_many_sizes(sizes_of(all));
     rest_ = most_common(all, [&](std::size_t k) { return moves(k) && all.runs[k].length >= 2; });
   }
 
@@ -285,7 +309,7 @@ class Repeats {
   /// A signal in steps moves by many of them in each sample.
   [[nodiscard]] bool moves(std::size_t k) const {
     constexpr double kSteps = 4.0;
-    return around_[k].scale >= kSteps * all_.step && !at_extreme(all_.runs[k]);
+    return many_sizes_[k / kBlock] && around_[k].scale >= kSteps * all_.least && !at_extreme(all_.runs[k]);
   }
   /// At the value to which the channel returns again and again.
   [[nodiscard]] bool rests(const Run& run) const {
@@ -325,17 +349,29 @@ class Repeats {
     return stale;
   }
 
+  /// The change behind a run makes up for what it missed: neither those before nor those behind are as large.
+  [[nodiscard]] bool catches_up(std::size_t k) const {
+    constexpr Index kShortest = 10;
+    constexpr std::size_t kBeside = 3;
+    const Index length = all_.runs[k].length;
+    if (length < kShortest) return false;
+    const double times = 0.3 * static_cast<double>(length);
+    const double jump = std::abs(all_.jumps[k + 1]);
+    if (k < kBeside || k + 1 + kBeside >= all_.jumps.size() || jump < times * all_.least) return false;
+    for (std::size_t i = 1; i <= kBeside; ++i) {
+      if (jump < times * std::abs(all_.jumps[k + 1 + i]) || jump < times * std::abs(all_.jumps[k + 1 - i]))
+        return false;
+    }
+    return true;
+  }
+
   [[nodiscard]] bool freezes(std::size_t k) const {
-    constexpr Index kFreeze = 5, kQuietFreeze = 10;
+    constexpr Index kFreeze = 5;
     constexpr int kNoisy = 3;
     const Run& run = all_.runs[k];
     const Around& here = around_[k];
     if (at_extreme(run) || rests(run)) return false;
-    const bool noisy = here.turns >= kNoisy, catches_up = std::abs(run.after) >= 3.0 * here.scale;
-    if (moves(k) && run.length >= kFreeze && (noisy || catches_up)) return true;
-    // Noise of a step or two: a freeze is many times longer than the usual repeats.
-    return here.scale >= 1.5 * all_.step && noisy && run.length >= kQuietFreeze &&
-           static_cast<double>(run.length) >= 20.0 * here.spacing;
+    return (moves(k) && run.length >= kFreeze && here.turns >= kNoisy) || catches_up(k);
   }
 
   [[nodiscard]] std::optional<Stale> frozen() const {
@@ -366,6 +402,7 @@ class Repeats {
   const Runs& all_;
   Index samples_;
   std::vector<Around> around_;
+  std::vector<bool> many_sizes_;
   Common rest_;
 };
 

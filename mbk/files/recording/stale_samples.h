@@ -17,8 +17,8 @@ struct Stale {
 ///
 /// A signal in steps (an encoder, a converter) repeats its value honestly: it rests, or moves by less than a step in a
 /// sample, and then it changes by one step. So a repeat counts only where the changes around it are large against the
-/// small changes of the channel (their 5 % quantile, or a size that 15 % of them share), where an honest signal repeats
-/// in 7 % of its samples at most.
+/// small changes of the channel (their 5 % quantile) and take so many sizes that they are no steps of an encoder or
+/// two, where an honest signal repeats in 7 % of its samples at most.
 ///   held         the changes fall on every Nth sample (95 % of them), or N samples apart to within a sample or 15 %,
 ///                and differ in size: a ramp in equal steps changes regularly, too, but always by one step
 ///   repeated     more than 12 % of the samples among moving ones repeat
