@@ -1,11 +1,17 @@
 #!/usr/bin/env python3
 """mbk measure on recordings whose truth is known: the JSON contract, the intervals, several files, repeatability."""
 
+import ctypes
 import itertools
 import math
+import os
 import statistics
+import struct
+import zipfile
 
-from command import NOT_USABLE, WRONG_USAGE, Case, copy, flat, main, make_log, run
+from numpy_opensim_test import npy
+
+from command import NOT_USABLE, WRONG_USAGE, Case, copy, flat, main, make_log, run, table_of
 
 NORMAL95 = 1.96
 SLACK = 1.8  # a dozen intervals of 95 % at once hold the truth all together only when each is this much wider
@@ -14,6 +20,22 @@ PROTOCOLS = ("sinusoidal", "underdamped")
 
 def results_of(*arguments):
     return run("measure", "--json", *arguments).json
+
+
+class Opens:
+    """Counts how often a file is opened, by inotify."""
+
+    def __init__(self, path):
+        self.libc = ctypes.CDLL(None, use_errno=True)
+        self.fd = self.libc.inotify_init1(os.O_NONBLOCK)
+        self.libc.inotify_add_watch(self.fd, os.fsencode(path), 0x20)  # IN_OPEN
+
+    def count(self):
+        """Since the last call."""
+        try:
+            return len(os.read(self.fd, 1 << 16)) // 16
+        except BlockingIOError:
+            return 0
 
 
 class Json(Case):
@@ -234,6 +256,36 @@ class JitteringClock(Case):
                     self.assertEqual(len(messages), 1 if said else 0, "stamps as planned show nothing")
                     if said:
                         self.assertIn(said, messages[0])
+
+
+class OpenedOnce(Case):
+    def test_a_recording_is_opened_once(self):
+        log = make_log().path
+        for suffix in (".mat", ".h5", ".csv", ".npz"):
+            file = self.folder / f"log{suffix}"
+            if suffix == ".mat":
+                copy(log, file)
+            elif suffix == ".npz":
+                with zipfile.ZipFile(file, "w") as archive:
+                    for name, column in zip(("time", "x", "y", "Fx", "Fy"), table_of(make_log())):
+                        data = struct.pack(f"<{len(column)}d", *column)
+                        archive.writestr(f"{name}.npy", npy("'<f8'", f"({len(column)},)", data))
+            else:
+                self.mbk("convert", log, file)
+            opens = Opens(file)
+            for command in (("measure", file), ("info", file), ("explore", file),
+                            ("convert", file, self.folder / f"copy_of_{suffix[1:]}.h5")):
+                with self.subTest(f"{command[0]} {suffix}"):
+                    self.mbk(*command)
+                    self.assertEqual(opens.count(), 1)
+
+    def test_a_study_opens_what_it_copies_once(self):
+        log = self.folder / "log.mat"
+        copy(make_log().path, log)
+        self.mbk("study", "init", self.folder / "study", "--title", "opens")
+        opens = Opens(log)
+        self.mbk("study", "add", log, "--participant", "1", "--study", self.folder / "study", "--quiet")
+        self.assertEqual(opens.count(), 1)
 
 
 if __name__ == "__main__":
