@@ -40,6 +40,7 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   options.axes = arguments.axes;
   options.untimed = arguments.untimed;
   options.own_samples = !arguments.as_recorded;
+  options.commands = arguments.commands;
   options.variable = arguments.variable;
   options.clock = arguments.clock;
   options.arm = arguments.arm;

@@ -26,6 +26,7 @@ struct ReadingArguments {
   std::string channels, variable, clock, trial, arm;
   std::vector<std::string> requested;  ///< channels that are taken by name, beside those of the map; empty: all
   std::vector<std::string> joints;     ///< of the robot; no option: commands that know a robot set it
+  std::vector<std::string> commands;   ///< channels that may be commands, which are rightly held
   std::optional<double> rate_hz;
   int axes = 0;
   bool untimed = false;      ///< rows without a time are welcome

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "mbk/files/recording/channel_map.h"
@@ -30,6 +31,7 @@ Result<void> place_signals(ReadingArguments& reading, std::span<const SignalName
       signal.to = name;
       if (flipped) *signal.sign = -1.0;
       if (by_name) reading.requested.push_back(name);
+      if (std::string_view(signal.channel) != "output") reading.commands.push_back(name);
       continue;
     }
     reading.channels += fmt::format("{}{}={}", reading.channels.empty() ? "" : ",", signal.channel, signal.given);

@@ -609,6 +609,41 @@ def explored(*files):
     return run("explore", "--json", *files)
 
 
+def rows_of_a_spring(test, name, force=lambda i, value: value):
+    """60 s of one axis at 1 kHz, and a file of it: a force as it was measured, or as `force` makes it."""
+    chance, rows = random.Random(4), []
+    for i in range(60_000):
+        t, x, v, a = i / 1000, 0.0, 0.0, 0.0
+        for line in (0.7, 1.3, 2.1, 2.9):
+            w = 2 * math.pi * line
+            x += 0.003 * math.sin(w * t + line)
+            v += 0.003 * w * math.cos(w * t + line)
+            a -= 0.003 * w * w * math.sin(w * t + line)
+        rows.append((t, x, -(1.5 * a + 8 * v + 200 * x) + chance.gauss(0, 0.02)))
+    held = [row[2] for row in rows]
+    rows = [(t, x, force(i, held)) for i, (t, x, _) in enumerate(rows)]
+    return write_csv(test.folder / name, zip(*rows), ["time", "position_m", "reaction_N"])
+
+
+@advice_of("held-signal")
+def _(test):  # record at the rate of the recording
+    held = rows_of_a_spring(test, "held.csv", lambda i, f: f[i // 20 * 20])
+    whole = rows_of_a_spring(test, "whole.csv", lambda i, f: f[i])
+    raised = run("measure", "--json", held)
+    test.assertIn("rate of the recording", hint_of(raised, "held-signal"))
+    test.goes("held-signal", raised, run("measure", "--json", whole))
+
+
+@advice_of("missing-samples")
+def _(test):  # record a sample only when it was measured
+    lost = random.Random(5)
+    zeros = rows_of_a_spring(test, "zeros.csv", lambda i, f: 0.0 if lost.random() < 0.1 else f[i])
+    whole = rows_of_a_spring(test, "whole.csv", lambda i, f: f[i])
+    raised = run("measure", "--json", zeros)
+    test.assertIn("only when it was measured", hint_of(raised, "missing-samples"))
+    test.goes("missing-samples", raised, run("measure", "--json", whole))
+
+
 @advice_of("low-coherence")
 def _(test):  # perturb more strongly
     weak = trial(test, "weak", 1, 1, peak="peak_mm = 0.05", sensor=5)

@@ -14,7 +14,7 @@ from command import BAD_DATA, Case, Ran, main, program
 
 ROWS = 19
 MIB = 1 << 20
-LARGEST = 24e6  # [bytes]
+LARGEST = 64e6  # [bytes]
 
 
 def element(kind, data):
@@ -104,7 +104,7 @@ class Memory(Case):
         # Results stay until the last file is measured, some 0.2 MB each.
         self.assertLessEqual(much - little, 2 * len(data), "36 files more take less than two of them")
 
-    def test_of_a_minute_it_is_24_MB(self):
+    def test_of_a_minute_it_is_64_MB_at_most(self):
         """62 s of nineteen rows at 1 kHz, packed into 4 MB. Beside the file and what it is unpacked to, 13.4 MB, there
         are the libraries and the functions that run (tools/function-order)."""
         log = self.folder / "log.mat"

@@ -129,8 +129,6 @@ MISTAKES = (
     Mistake("position and force exchanged", "implausible-scale",
             read_from(x="force_x", y="force_y", Fx="hand_x", Fy="hand_y"), says=("mbk info",), cured=False,
             unnamed=True),
-    # clock
-    Mistake("time in ms", "implausible-scale", read_from(time="time*1000"), says=("time is in ms", ":ms")),
     # handle
     Mistake("5 kg of handle too many", "handle-mass-too-large", options=("--handle-mass", "5.194"),
             says=("--handle-mass",), cured=False),
@@ -139,7 +137,6 @@ MISTAKES = (
     Mistake("N·mm as N·m", "implausible-scale", scaled("F", by=1e3), says=("F is in", "mm"), axes=1),
     Mistake("torque flipped", "force-sign-reversed", flipped("F"), says=("sign of F",), axes=1),
     Mistake("angle as torque", "same-column", read_from(F="position"), says=("F",), axes=1, cured=False, unnamed=True),
-    Mistake("time of a joint in ms", "implausible-scale", read_from(time="time*1000"), says=("time is in ms",), axes=1),
 )
 
 

@@ -223,7 +223,7 @@ class Assembler {
       if (auto ok = check_unit_of_time(recording_, said); !ok) return tl::unexpected(ok.error());
     }
     find_updates(recording_);
-    return options_.own_samples ? at_own_samples(std::move(recording_)) : std::move(recording_);
+    return options_.own_samples ? at_own_samples(std::move(recording_), options_.commands) : std::move(recording_);
   }
 
  private:
@@ -504,7 +504,8 @@ class Assembler {
       const Line* const line = &found->line;
       Signal signal{kind,         *line,         nullptr,
                     entry.negate, entry.source,  (entry.negate ? "-" : "") + entry.source,
-                    found->gain,  found->offset, found->is_scaled, true};
+                    found->gain,  found->offset, found->is_scaled,
+                    true};
       states_time_ = states_time_ || (is_time(kind) && !entry.unit.empty());
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
@@ -982,7 +983,7 @@ class Assembler {
                std::ranges::all_of(used, [&](const Clock* clock) { return same_stamps(*clock, *used.front()); })) {
       clock_ = used.front();
     } else if (!used.empty()) {
-      return bad_data(fmt::format("{}: {}", kSeveralClocks, clock_list(used)),
+      return bad_data(fmt::format("the channels come from streams with clocks of their own: {}", clock_list(used)),
                       fmt::format("say whose time stamps the recording has, as in --clock '{}'; the others are "
                                   "interpolated",
                                   fastest(used).name));

@@ -123,17 +123,19 @@ Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
   for (const Meaning& meaning : kMeanings) {
     const double hz = 1.0 / (in_unit * meaning.seconds);
     if (hz < kUsualSlowest || hz > kUsualFastest) continue;
-    readings.push_back(fmt::format("in {} {} at {:.4g} Hz", meaning.name, lasting(intervals / hz), hz));
+    readings.push_back(fmt::format("in {} it lasts {} at {:.4g} Hz", meaning.name, lasting(intervals / hz), hz));
     maps.push_back(fmt::format("--channels time={}:{}", source, meaning.unit));
   }
   const std::string_view said = unit != nullptr ? unit->name : std::string_view("s");
   std::string remedy = maps.empty() ? std::string() : fmt::format("pass {}", fmt::join(maps, " or "));
   remedy +=
       fmt::format("{}time={}:{} if it is right as it is", remedy.empty() ? "pass --channels " : ", or ", source, said);
-  return bad_data(fmt::format("time ('{}') advances by {:.6g} a sample: in {} the recording lasts {} at {:.4g} Hz{}{}",
-                              source, in_unit, unit == nullptr || said == "s" ? "seconds" : std::string(said),
-                              lasting(duration), rate, readings.empty() ? "" : ", ", fmt::join(readings, ", ")),
-                  std::move(remedy));
+  const std::string in = unit == nullptr || said == "s" ? "seconds" : std::string(said);
+  return bad_data(
+      fmt::format("{}{}: '{}' advances by {:.6g} a sample, so that the recording would last {} at {:.4g} Hz{}{}",
+                  kUnbelievableTime, in, source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ",
+                  fmt::join(readings, "; ")),
+      std::move(remedy));
 }
 
 }  // namespace mbk::recording

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/recording.h"
 
@@ -9,6 +11,9 @@ namespace mbk::recording {
 /// of time (signed ones, too), midnight, and an hour set back. Each is a note. Only where the step across it is then
 /// one that the clock makes elsewhere; a time that begins again at its first value is another trial, and stays.
 void unwrap_time(Recording& recording);
+
+/// How the message of `check_unit_of_time` begins.
+inline constexpr std::string_view kUnbelievableTime = "time cannot be in ";
 
 /// A time whose unit nobody said, or whose file says seconds, must run as time in seconds can: at more than 3 Hz and at
 /// most 50 kHz, for less than 12 hours.

@@ -107,7 +107,7 @@ Contents InMemory::contents() const {
 
 Result<Recording> InMemory::read(const ReadOptions& options) const {
   if (recording_ && without_options(options)) {
-    return options.own_samples ? at_own_samples(*recording_) : *recording_;
+    return options.own_samples ? at_own_samples(*recording_, options.commands) : *recording_;
   }
   if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
   auto recording = assemble(contents(), options);

@@ -11,6 +11,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/stale_samples.h"
 
 namespace mbk::recording {
@@ -21,9 +22,12 @@ bool begins_with_any(std::string_view name, std::span<const std::string_view> be
 }
 
 /// A channel that a controller may have set.
-bool may_be_command(std::string_view name) {
+bool may_be_command(std::string_view name, std::span<const std::string> commands) {
   constexpr auto kCommands = std::to_array<std::string_view>({"torque_", "input", "drive"});
-  return begins_with_any(name, kCommands);
+  const auto is_called = [&](const std::string& command) {
+    return std::ranges::any_of(kinds_called(command), [&](const ChannelKind* kind) { return kind->name == name; });
+  };
+  return begins_with_any(name, kCommands) || std::ranges::any_of(commands, is_called);
 }
 
 /// Second derivatives of the natural cubic spline through (x, y): a tridiagonal system, solved by elimination.
@@ -147,14 +151,14 @@ void find_updates(Recording& recording) {
   }
 }
 
-Recording at_own_samples(Recording recording) {
+Recording at_own_samples(Recording recording, std::span<const std::string> commands) {
   const auto is_stale = [](const Channel& channel) { return channel.updates.staleness != Staleness::none; };
   if (std::ranges::none_of(recording.channels, is_stale) || !rises(recording.time)) return recording;
   const Index n = recording.samples();
   const double rate_hz = static_cast<double>(n - 1) / (recording.time[n - 1] - recording.time[0]);
   for (Channel& channel : recording.channels) {
     if (!is_stale(channel)) continue;
-    if (channel.updates.staleness == Staleness::held && may_be_command(channel.name)) {
+    if (channel.updates.staleness == Staleness::held && may_be_command(channel.name, commands)) {
       recording.warnings.push_back(warning_of_command(channel, rate_hz));
       continue;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "mbk/model/trial/recording.h"
@@ -18,6 +19,7 @@ void find_updates(Recording& recording);
 /// own intervals. Each channel that was changed gets a warning (held_signal, missing_samples). A held torque or input
 /// may be a command that acted as it is recorded: it stays, and gets a warning.
 /// @param recording  with Channel::updates; time rises, else nothing is changed
-[[nodiscard]] Recording at_own_samples(Recording recording);
+/// @param commands  names of channels that are treated so, too
+[[nodiscard]] Recording at_own_samples(Recording recording, std::span<const std::string> commands = {});
 
 }  // namespace mbk::recording

@@ -17,6 +17,7 @@
 #include "mbk/files/contents/whole_numbers.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
+#include "mbk/files/recording/believable_time.h"
 #include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/one_clock.h"
 #include "mbk/files/recording/open_trials.h"
@@ -233,8 +234,8 @@ bool nothing_is_recognised(const Error& error) {
          (error.message.starts_with(kNothingRecognised) || error.message.starts_with(kOnlyTimeRecognised));
 }
 
-bool asks_for_choice(const Error& error) {
-  return nothing_is_recognised(error) || (error.kind == ErrorKind::data && error.message.starts_with(kSeveralClocks));
+bool time_is_unbelievable(const Error& error) {
+  return error.kind == ErrorKind::data && error.message.starts_with(kUnbelievableTime);
 }
 
 }  // namespace mbk::recording

@@ -24,9 +24,10 @@ struct ReadOptions {
   std::vector<std::string> requested;   ///< channels that are taken by name, beside those of the map; empty: without a
                                         ///< map all, and with one none
   std::optional<Hertz> rate;            ///< needed where the file holds no time; must agree with the time where it does
-  int axes = 0;          ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
+  int axes = 0;  ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
   bool own_samples = false;  ///< measured channels that are held or lack samples are taken at their own samples
                              ///< (`at_own_samples`): for whoever computes something of them
+  std::vector<std::string> commands;  ///< channels that may be commands, beside torques and `input`: they stay as held
   bool untimed = false;  ///< rows without a time and a rate are taken as they are; otherwise that is an error
   std::string variable;  ///< the MAT variable that is meant, where several could be
   std::string clock;     ///< the stream or topic whose time stamps the recording has, where channels come from several;
@@ -84,8 +85,8 @@ void rest(const RecordingFile& file);
 
 /// Whether `read` refused a sound file for this alone, that no channel of it is recognised.
 [[nodiscard]] bool nothing_is_recognised(const Error& error);
-/// Whether `read` refused a sound file because its user has to choose: a channel map or a clock.
-[[nodiscard]] bool asks_for_choice(const Error& error);
+/// Whether `read` refused a file because its time cannot be in seconds.
+[[nodiscard]] bool time_is_unbelievable(const Error& error);
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.

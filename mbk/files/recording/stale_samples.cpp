@@ -262,7 +262,20 @@ Stale held(double period, const Runs& all, Index samples) {
   return stale;
 }
 
+/// Whether all runs have one of a few values, as those of a sequence of steps that a controller made.
+bool has_few_values(const Runs& all) {
+  constexpr std::size_t kFew = 16;
+  std::vector<double> values;
+  for (const Run& run : all.runs) {
+    if (std::ranges::find(values, run.value) != values.end()) continue;
+    values.push_back(run.value);
+    if (values.size() > kFew) return false;
+  }
+  return true;
+}
+
 std::optional<Stale> find_held(const Runs& all, Index samples) {
+  if (has_few_values(all)) return std::nullopt;
   const auto count = static_cast<double>(all.runs.size());
   const auto part = [&](auto is) { return static_cast<double>(std::ranges::count_if(all.runs, is)) / count; };
   if (part([](const Run& run) { return run.length >= 2; }) <= 0.5) return std::nullopt;
@@ -349,20 +362,21 @@ class Repeats {
     return stale;
   }
 
-  /// The change behind a run makes up for what it missed: neither those before nor those behind are as large.
+  /// The change behind a run makes up for what it missed: it is far larger than those before and behind, and as large
+  /// as motion like theirs is in that time, and the channel does not rest there anyway.
   [[nodiscard]] bool catches_up(std::size_t k) const {
-    constexpr Index kShortest = 10;
+    constexpr Index kShortest = 10, kRest = 5;
+    constexpr double kFar = 0.3, kFastest = 5.0;  // of the length of the run
     constexpr std::size_t kBeside = 3;
     const Index length = all_.runs[k].length;
-    if (length < kShortest) return false;
-    const double times = 0.3 * static_cast<double>(length);
-    const double jump = std::abs(all_.jumps[k + 1]);
-    if (k < kBeside || k + 1 + kBeside >= all_.jumps.size() || jump < times * all_.least) return false;
+    if (length < kShortest || k < kBeside || k + kBeside >= all_.runs.size()) return false;
+    double beside = 0.0;
     for (std::size_t i = 1; i <= kBeside; ++i) {
-      if (jump < times * std::abs(all_.jumps[k + 1 + i]) || jump < times * std::abs(all_.jumps[k + 1 - i]))
-        return false;
+      if (kRest * std::max(all_.runs[k + i].length, all_.runs[k - i].length) > length) return false;
+      beside = std::max({beside, std::abs(all_.jumps[k + 1 + i]), std::abs(all_.jumps[k + 1 - i])});
     }
-    return true;
+    const double times = std::abs(all_.jumps[k + 1]) / (static_cast<double>(length) * beside);
+    return times >= kFar && times <= kFastest;
   }
 
   [[nodiscard]] bool freezes(std::size_t k) const {
@@ -375,7 +389,7 @@ class Repeats {
   }
 
   [[nodiscard]] std::optional<Stale> frozen() const {
-    constexpr Index kFewest = 3;
+    constexpr Index kFewest = 3, kAlike = 3;
     constexpr double kMinShare = 0.01, kOften = 0.3;
     const Common common = most_common(all_, [&](std::size_t k) { return freezes(k); });
     const bool one_value =
@@ -386,14 +400,19 @@ class Repeats {
       if (freezes(k) && !(one_value && run.value == common.value)) lengths.push_back(static_cast<double>(run.length));
     }
     if (std::ssize(lengths) < kFewest) return std::nullopt;
-    // A channel that freezes does so in other runs of that length, too.
+    // A channel that freezes does so in other runs of that length, too; one that rests mostly does not freeze.
+    const auto found = std::ssize(lengths);
     const double as_long = 0.5 * numeric::median(std::move(lengths));
     Stale stale{{Staleness::frozen}, std::vector<bool>(static_cast<std::size_t>(samples_))};
+    Index marked = 0;
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
       if ((one_value && run.value == common.value) || at_extreme(run) || rests(run)) continue;
-      if (freezes(k) || static_cast<double>(run.length) >= as_long) mark(run, 1, stale.samples);
+      if (!freezes(k) && static_cast<double>(run.length) < as_long) continue;
+      ++marked;
+      mark(run, 1, stale.samples);
     }
+    if (marked > kAlike * found) return std::nullopt;
     stale.updates.share = share_of(stale.samples);
     if (stale.updates.share < kMinShare) return std::nullopt;
     return stale;

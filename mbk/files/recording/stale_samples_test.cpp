@@ -74,6 +74,14 @@ std::vector<NamedSignal> honest(double rate) {
       {"ramp and hold of an encoder with noise", in_steps(with_noise(ramps, 1e-5, random), 1e-5)},
       {"reaches", reach},
       {"reaches of an encoder", in_steps(reach, 1e-5)},
+      {"binary sequence",
+       sampled(n, [&](Index i) { return std::sin(1.0 + std::floor(i / 12.0) * 2.3) > 0.0 ? 1.0 : -1.0; })},
+      {"reaches, one trial behind the other", sampled(n,
+                                                      [&](Index i) {
+                                                        const double u =
+                                                            std::clamp(std::fmod(seconds(i), 2.0) - 0.5, 0.0, 1.0);
+                                                        return 0.25 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+                                                      })},
       {"steps", sampled(n, [&](Index i) { return std::fmod(seconds(i), 2.0) < 1.0 ? 0.01 : -0.01; })},
       {"contact now and then", sampled(n, [&](Index i) { return 500.0 * p[i] > 0.0 ? f[i] : 0.0; })},
       {"dead band", sampled(n, [&](Index i) { return std::abs(f[i]) < 1.0 ? 0.0 : f[i]; })},
