@@ -8,13 +8,14 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
+#include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::recording {
@@ -169,82 +170,136 @@ double share_of(const std::vector<bool>& samples) {
   return static_cast<double>(std::ranges::count(samples, true)) / static_cast<double>(samples.size());
 }
 
+/// Whether all runs have one of a few values, as those of a sequence of steps that a controller made.
+bool has_few_values(const Runs& all) {
+  constexpr std::size_t kFew = 16;
+  std::vector<double> values;
+  for (const Run& run : all.runs) {
+    if (std::ranges::find(values, run.value) != values.end()) continue;
+    values.push_back(run.value);
+    if (values.size() > kFew) return false;
+  }
+  return true;
+}
+
 // ---- a value that stands where nothing was measured ----
 
+/// A value that is returned to again and again, and left again.
+struct Return {
+  double before = 0.0, after = 0.0;  ///< what was measured last before it and first after it
+};
+
+/// The returns to the value that has most of them.
+std::pair<double, std::vector<Return>> most_common_return(const Eigen::Ref<const Vector>& values, const Runs& all) {
+  const auto every = [](std::size_t) { return true; };
+  const Common common = most_common(all, every);
+  std::vector<Return> returns;
+  for (const Run& run : all.runs) {
+    if (run.value == common.value) returns.push_back({values[run.begin - 1], values[run.begin + run.length]});
+  }
+  return {common.value, std::move(returns)};
+}
+
+/// How often the value comes that comes most often but for one.
+Index second_most(const Runs& all, double but) {
+  return most_common(all, [&](std::size_t k) { return all.runs[k].value != but; }).runs;
+}
+
+/// What is lost is lost wherever the signal is, and the signal goes on behind it where it was before. A channel that
+/// rests at a value (no contact, a dead band, the start of each reach) comes to it and leaves it in small steps.
 std::optional<Stale> find_placeholder(const Eigen::Ref<const Vector>& values, const Runs& all) {
-  constexpr Index kFewest = 5, kLongestRun = 10;
-  constexpr double kFar = 20.0, kFarFromUsual = 10.0, kShare = 0.002, kRank = 0.15;
-  const auto is_odd = [&](std::size_t k) {
-    const Run& run = all.runs[k];
-    const double nearest = std::min(std::abs(run.before), std::abs(run.after));
-    return run.length <= kLongestRun && (run.before < 0.0) != (run.after < 0.0) &&
-           std::abs(run.before + run.after) < 0.5 * nearest && nearest > kFarFromUsual * all.usual &&
-           nearest > kFar * around(all, k).small;
-  };
-  const auto [value, count, odd] = most_common(all, is_odd);
-  if (count < kFewest || 2 * count < odd) return std::nullopt;
-  // What is lost is lost wherever the signal is; a converter with a dead band returns to 0 from its edge alone.
-  std::vector<double> away, lost;
+  constexpr std::size_t kFewest = 5;
+  constexpr Index kAtom = 20;
+  constexpr double kShare = 0.002, kRank = 0.15, kMost = 0.6, kStepsApart = 2.5, kApart = 0.02;
+  const auto [value, returns] = most_common_return(values, all);
+  if (returns.size() < kFewest || has_few_values(all)) return std::nullopt;
+  Index goes_on = 0;
+  std::vector<double> lost, away;
+  double low = std::numeric_limits<double>::infinity(), high = -low;  // without the value
+  for (const Return& one : returns) {
+    const double nearest = std::min(std::abs(one.before - value), std::abs(one.after - value));
+    lost.push_back(nearest);
+    goes_on += std::abs(one.after - one.before) < 0.5 * nearest ? 1 : 0;
+  }
+  const bool continues = static_cast<double>(goes_on) >= kMost * static_cast<double>(returns.size());
+  const auto count = static_cast<Index>(returns.size());
+  if (!continues && (count < kAtom || count < kAtom * second_most(all, value))) return std::nullopt;
   for (const double one : values) {
-    if (one != value) away.push_back(std::abs(one - value));
+    if (one == value) continue;
+    away.push_back(std::abs(one - value));
+    low = std::min(low, one);
+    high = std::max(high, one);
   }
-  for (std::size_t k = 0; k < all.runs.size(); ++k) {
-    if (all.runs[k].value == value && is_odd(k)) lost.push_back(std::abs(all.runs[k].before));
-  }
-  const double edge = quantile(away, kRank);
-  if (!(numeric::median(lost) > edge)) return std::nullopt;
+  if (away.empty() || !(numeric::median(std::move(lost)) > quantile(away, kRank))) return std::nullopt;
+  // The end of a range stands for nothing only where it lies apart from what is measured.
+  const double gap = std::max(low - value, value - high);
+  if (gap > 0.0 && gap < std::max(kStepsApart * all.least, kApart * (high - low))) return std::nullopt;
   Stale stale{{Staleness::placeholder, 1.0, 0.0, value}, std::vector<bool>(static_cast<std::size_t>(values.size()))};
   for (Index i = 0; i < values.size(); ++i) stale.samples[static_cast<std::size_t>(i)] = values[i] == value;
   stale.updates.share = share_of(stale.samples);
+  stale.updates.interval = 1.0 / (1.0 - stale.updates.share);
   if (stale.updates.share < kShare) return std::nullopt;
   return stale;
 }
 
 // ---- updates at a lower rate than the recording's ----
 
-/// The largest number of samples of which nearly all changes are a whole multiple apart; 0: there is none.
-Index period_of(const Runs& all) {
-  constexpr double kNearlyAll = 0.95;
-  constexpr std::size_t kLongest = 4000, kCommon = 3;
-  std::vector<Index> counts(kLongest + 1);
-  for (const Run& run : all.runs) ++counts[std::min<std::size_t>(kLongest, static_cast<std::size_t>(run.length))];
-  std::vector<Index> common(kLongest);
-  std::iota(common.begin(), common.end(), Index{1});
-  std::ranges::partial_sort(common, common.begin() + kCommon, std::greater(),
-                            [&](Index length) { return counts[static_cast<std::size_t>(length)]; });
-  Index best = 0;
-  for (std::size_t a = 0; a < kCommon; ++a) {
-    for (std::size_t b = a; b < kCommon; ++b) {
-      const Index period = std::gcd(common[a], common[b]);
-      if (period < 2 || counts[static_cast<std::size_t>(common[b])] == 0 || period <= best) continue;
-      std::vector<Index> phases(static_cast<std::size_t>(period));
-      for (const Index change : all.changes) ++phases[static_cast<std::size_t>(change % period)];
-      const auto most = static_cast<double>(std::ranges::max(phases));
-      if (most >= kNearlyAll * static_cast<double>(all.changes.size())) best = period;
-    }
+/// How far changes at these samples keep to a comb of that many per sample: |Σ exp(2πi f n)| over their number, 1 where
+/// all do.
+double concentration(const std::vector<Index>& changes, double frequency) {
+  double cosines = 0.0, sines = 0.0;
+  for (const Index change : changes) {
+    const double turns = frequency * static_cast<double>(change);
+    const double angle = 2.0 * std::numbers::pi * (turns - std::floor(turns));
+    cosines += std::cos(angle);
+    sines += std::sin(angle);
   }
-  return best;
+  return std::hypot(cosines, sines) / static_cast<double>(changes.size());
 }
 
-/// The mean interval where nearly all are whole multiples of one, to within a sample or 15 %; 0: they are not.
-double mean_period(const Runs& all) {
-  constexpr double kShortest = 4.0, kNearlyAll = 0.95, kLoose = 0.15;
-  std::vector<double> lengths;
-  for (const Run& run : all.runs) lengths.push_back(static_cast<double>(run.length));
-  const double median = numeric::median(lengths);
-  double sum = 0.0, count = 0.0;
-  for (const double length : lengths) {
-    if (length < 0.5 * median || length > 1.5 * median) continue;
-    sum += length;
-    count += 1.0;
+/// The period of updates [samples] that the changes at the end of repeated values keep to; 0: there is none. A channel
+/// that moves by single steps must keep to a whole number exactly: slow motion in steps nearly does so, too.
+double period_of(const Runs& all, Index samples, bool of_steps) {
+  constexpr double kKept = 0.7, kKeptInSteps = 0.97;
+  constexpr Index kLongest = 1 << 17;
+  constexpr double kSlowest = 1.0 / 500.0, kFundamental = 0.7;
+  std::vector<Index> changes;
+  for (const Run& run : all.runs) {
+    const Index end = run.begin + run.length;
+    if (run.length >= 2 && end < kLongest) changes.push_back(end);
   }
-  const double period = sum / count;
-  if (!(period >= kShortest)) return 0.0;
-  const auto near = std::ranges::count_if(lengths, [&](double length) {
-    const double multiple = std::max(1.0, std::round(length / period));
-    return std::abs(length - multiple * period) <= std::max(1.0, kLoose * period);
-  });
-  return static_cast<double>(near) >= kNearlyAll * static_cast<double>(lengths.size()) ? period : 0.0;
+  if (std::ssize(changes) < kMinChanges) return 0.0;
+  Index length = 1;
+  while (length < std::min(samples, kLongest)) length *= 2;
+  Vector indicator = Vector::Zero(length);
+  for (const Index change : changes) indicator[change] = 1.0;
+  const Eigen::ArrayXd line =
+      dsp::fourier_transform(indicator).head(length / 2 + 1).array().abs() / static_cast<double>(changes.size());
+  const auto first = static_cast<Index>(std::ceil(kSlowest * static_cast<double>(length)));
+  const Index beyond = line.size() - first;
+  if (beyond < 2) return 0.0;
+  const double highest = line.tail(beyond).maxCoeff();
+  Index at = first;
+  while (line[at] < kFundamental * highest) ++at;
+  while (at + 1 < line.size() && line[at + 1] > line[at]) ++at;
+  double frequency = 0.0, kept = 0.0;
+  for (int k = -8; k <= 8; ++k) {
+    const double tried = (static_cast<double>(at) + k / 8.0) / static_cast<double>(length);
+    const double here = concentration(changes, tried);
+    if (here > kept) {
+      kept = here;
+      frequency = tried;
+    }
+  }
+  // The same line stands for one update in 1/(1 − f) samples, where there are more changes than one in 1/f.
+  const auto count = static_cast<double>(all.changes.size());
+  double period = 1.0 / frequency;
+  if (count > 1.05 * static_cast<double>(samples) / period) period = 1.0 / (1.0 - frequency);
+  const double whole = std::round(period), width = std::abs(period - whole) < 1e-3 * period ? 0.0 : 1.0 / period;
+  const double expected = width == 0.0 ? 1.0 : std::sin(std::numbers::pi * width) / (std::numbers::pi * width);
+  if (of_steps && (width > 0.0 || kept < kKeptInSteps)) return 0.0;
+  if (!(period > 1.2) || kept < kKept * expected) return 0.0;
+  return width == 0.0 ? whole : period;
 }
 
 /// Of runs that are longer than a period, a measurement follows every period: it had the same value.
@@ -262,29 +317,16 @@ Stale held(double period, const Runs& all, Index samples) {
   return stale;
 }
 
-/// Whether all runs have one of a few values, as those of a sequence of steps that a controller made.
-bool has_few_values(const Runs& all) {
-  constexpr std::size_t kFew = 16;
-  std::vector<double> values;
-  for (const Run& run : all.runs) {
-    if (std::ranges::find(values, run.value) != values.end()) continue;
-    values.push_back(run.value);
-    if (values.size() > kFew) return false;
-  }
-  return true;
-}
-
 std::optional<Stale> find_held(const Runs& all, Index samples) {
-  if (has_few_values(all)) return std::nullopt;
+  constexpr double kRepeats = 0.1, kVaried = 0.1, kMultiples = 0.05;
   const auto count = static_cast<double>(all.runs.size());
   const auto part = [&](auto is) { return static_cast<double>(std::ranges::count_if(all.runs, is)) / count; };
-  if (part([](const Run& run) { return run.length >= 2; }) <= 0.5) return std::nullopt;
-  if (const Index period = period_of(all); period > 0) {
-    const double multiples = part([&](const Run& run) { return 10 * run.length >= 17 * period; });
-    if (all.varied > 0.1 || multiples > 0.05) return held(static_cast<double>(period), all, samples);
-  }
-  const double period = all.varied > 0.3 ? mean_period(all) : 0.0;
+  if (part([](const Run& run) { return run.length >= 2; }) < kRepeats || has_few_values(all)) return std::nullopt;
+  const double period = period_of(all, samples, all.varied <= kVaried);
   if (period == 0.0) return std::nullopt;
+  // A ramp in equal steps changes regularly, too, but by one step, and never skips one.
+  const double multiples = part([&](const Run& run) { return static_cast<double>(run.length) >= 1.7 * period; });
+  if (all.varied <= kVaried && multiples <= kMultiples) return std::nullopt;
   return held(period, all, samples);
 }
 
@@ -332,6 +374,57 @@ class Repeats {
            run.value == rest_.value;
   }
 
+  /// White noise turns in two changes of three, motion hardly ever.
+  [[nodiscard]] double turns() const {
+    Index turns = 0;
+    for (std::size_t j = 1; j < all_.jumps.size(); ++j) {
+      turns += (all_.jumps[j] < 0.0) != (all_.jumps[j - 1] < 0.0) ? 1 : 0;
+    }
+    return static_cast<double>(turns) / static_cast<double>(all_.jumps.size());
+  }
+
+  /// In motion, the change behind a repeated value makes up for it; in noise it turns as often as any other. The values
+  /// of a median filter, or of a robot that sticks and starts slowly, do neither.
+  [[nodiscard]] bool misses_samples() const {
+    constexpr double kOfNoise = 0.62, kOfMotion = 0.4;
+    std::vector<double> larger;
+    for (std::size_t k = 0; k < all_.runs.size(); ++k) {
+      const Run& run = all_.runs[k];
+      if (run.length < 2 || run.length > kShortRun || !moves(k)) continue;
+      larger.push_back(std::abs(run.after) / around_[k].scale);
+    }
+    if (larger.empty()) return false;
+    return turns() / kOfNoise + std::max(0.0, numeric::median(std::move(larger)) - 1.0) / kOfMotion > 1.0;
+  }
+
+  [[nodiscard]] bool is_in_steps() const {
+    constexpr double kNear = 0.05, kNearlyAll = 0.95;
+    const auto whole = std::ranges::count_if(all_.jumps, [&](double jump) {
+      const double steps = std::abs(jump) / all_.step;
+      return steps > 0.5 && std::abs(steps - std::round(steps)) < kNear;
+    });
+    return static_cast<double>(whole) > kNearlyAll * static_cast<double>(all_.jumps.size());
+  }
+
+  /// A channel in steps that moves by two of them and more in one sample passes none at rest.
+  [[nodiscard]] bool rests_in_motion() const {
+    constexpr double kSteps = 1.9, kOne = 1.1;
+    Index at_rest = 0, by_one = 0;
+    if (!is_in_steps()) return false;
+    for (std::size_t k = 1; k < all_.runs.size(); ++k) {
+      if (rests(all_.runs[k])) continue;
+      const double before = all_.jumps[k] / all_.step, after = all_.jumps[k + 1] / all_.step;
+      const bool straight = (before < 0.0) == (after < 0.0) && std::abs(before) > kSteps && std::abs(after) > kSteps;
+      at_rest += straight && all_.runs[k].length == 2 ? 1 : 0;
+      const double last = all_.jumps[k - 1] / all_.step;
+      by_one += (last < 0.0) == (after < 0.0) && std::abs(last) > kSteps && std::abs(after) > kSteps &&
+                        std::abs(before) < kOne && all_.runs[k].length == 1
+                    ? 1
+                    : 0;
+    }
+    return at_rest >= kMinChanges && at_rest > 2 * by_one;
+  }
+
   [[nodiscard]] std::optional<Stale> repeated() const {
     constexpr double kRepeats = 0.12, kMinShare = 0.03;
     Index moving = 0, longer = 0, short_runs = 0, in_short = 0, stale_short = 0, stale_all = 0;
@@ -348,73 +441,88 @@ class Repeats {
       stale_short += run.length - 1;
     }
     const bool in_passing = short_runs >= kMinChanges && share(stale_short) >= kMinShare &&
-                            static_cast<double>(stale_short) > kRepeats * static_cast<double>(in_short);
+                            static_cast<double>(stale_short) > kRepeats * static_cast<double>(in_short) &&
+                            misses_samples();
     const bool mostly = moving >= kMinChanges && share(stale_all) >= kMinShare && all_.varied > 0.3 &&
                         static_cast<double>(longer) > 0.6 * static_cast<double>(moving);
-    if (!in_passing && !mostly) return std::nullopt;
+    const bool in_steps = !in_passing && !mostly && rests_in_motion();
+    if (!in_passing && !mostly && !in_steps) return std::nullopt;
     Stale stale{{Staleness::repeated}, std::vector<bool>(static_cast<std::size_t>(samples_))};
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
-      if (moves(k) && !rests(run) && (mostly || run.length <= kShortRun)) mark(run, 1, stale.samples);
+      const bool straight = std::min(std::abs(run.before), std::abs(run.after)) > all_.step;
+      if (in_steps ? straight && run.length <= kShortRun
+                   : moves(k) && !rests(run) && (mostly || run.length <= kShortRun)) {
+        mark(run, 1, stale.samples);
+      }
     }
     stale.updates.share = share_of(stale.samples);
     stale.updates.interval = 1.0 / (1.0 - stale.updates.share);
     return stale;
   }
 
-  /// The change behind a run makes up for what it missed: it is far larger than those before and behind, and as large
-  /// as motion like theirs is in that time, and the channel does not rest there anyway.
-  [[nodiscard]] bool catches_up(std::size_t k) const {
-    constexpr Index kShortest = 10, kRest = 5;
-    constexpr double kFar = 0.3, kFastest = 5.0;  // of the length of the run
-    constexpr std::size_t kBeside = 3;
-    const Index length = all_.runs[k].length;
-    if (length < kShortest || k < kBeside || k + kBeside >= all_.runs.size()) return false;
-    double beside = 0.0;
-    for (std::size_t i = 1; i <= kBeside; ++i) {
-      if (kRest * std::max(all_.runs[k + i].length, all_.runs[k - i].length) > length) return false;
-      beside = std::max({beside, std::abs(all_.jumps[k + 1 + i]), std::abs(all_.jumps[k + 1 - i])});
+  /// The channel moves up to the run and behind it, sample by sample, and stops and starts at once.
+  struct Stop {
+    bool abrupt = false;
+    bool catches_up = false;  ///< the change behind it is far larger than those that follow
+    bool fine = false;        ///< in changes of many sizes
+  };
+  [[nodiscard]] Stop stop_at(std::size_t k) const {
+    constexpr std::size_t kBeside = 8;
+    constexpr double kAbrupt = 0.3, kFar = 3.0;
+    if (k < kBeside || k + kBeside >= all_.runs.size()) return {};
+    std::array<double, kBeside> before{}, after{};
+    Index samples_before = 0, samples_after = 0;
+    for (std::size_t i = 0; i < kBeside; ++i) {
+      before[i] = std::abs(all_.jumps[k - 1 - i]);
+      after[i] = std::abs(all_.jumps[k + 2 + i < all_.jumps.size() ? k + 2 + i : k + 1]);
+      samples_before += all_.runs[k - 1 - i].length;
+      samples_after += all_.runs[k + 1 + i].length;
     }
-    const double times = std::abs(all_.jumps[k + 1]) / (static_cast<double>(length) * beside);
-    return times >= kFar && times <= kFastest;
-  }
-
-  [[nodiscard]] bool freezes(std::size_t k) const {
-    constexpr Index kFreeze = 5;
-    constexpr int kNoisy = 3;
+    if (std::max(samples_before, samples_after) > static_cast<Index>(2 * kBeside)) return {};
+    const auto median = [](std::array<double, kBeside>& sizes) {
+      std::ranges::nth_element(sizes, sizes.begin() + kBeside / 2);
+      return sizes[kBeside / 2];
+    };
+    const double usual_before = median(before), usual_after = median(after);
     const Run& run = all_.runs[k];
-    const Around& here = around_[k];
-    if (at_extreme(run) || rests(run)) return false;
-    return (moves(k) && run.length >= kFreeze && here.turns >= kNoisy) || catches_up(k);
+    return {std::abs(run.before) >= kAbrupt * usual_before && std::abs(run.after) >= kAbrupt * usual_after,
+            std::abs(run.after) >= kFar * usual_after, many_sizes_[k / kBlock]};
   }
 
   [[nodiscard]] std::optional<Stale> frozen() const {
-    constexpr Index kFewest = 3, kAlike = 3;
-    constexpr double kMinShare = 0.01, kOften = 0.3;
-    const Common common = most_common(all_, [&](std::size_t k) { return freezes(k); });
-    const bool one_value =
-        common.runs > 1 && static_cast<double>(common.runs) > kOften * static_cast<double>(common.of);
-    std::vector<double> lengths;
+    constexpr Index kShortest = 8, kShortestInNoise = 16, kFewest = 2, kAlike = 3;
+    constexpr double kMinShare = 0.005, kOften = 0.3, kNoise = 0.58;
+    std::vector<std::size_t> stops;
+    Index catching_up = 0;
+    const bool noisy = turns() > kNoise;
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
-      if (freezes(k) && !(one_value && run.value == common.value)) lengths.push_back(static_cast<double>(run.length));
+      if (run.length < kShortest || at_extreme(run) || rests(run)) continue;
+      const Stop stop = stop_at(k);
+      if (!stop.abrupt || (!stop.catches_up && (!stop.fine || run.length < kShortestInNoise))) continue;
+      stops.push_back(k);
+      catching_up += stop.catches_up ? 1 : 0;
     }
-    if (std::ssize(lengths) < kFewest) return std::nullopt;
+    const auto found = std::ssize(stops);
+    if (found < kFewest || (!noisy && 2 * catching_up < found)) return std::nullopt;
+    const auto is_stop = [&](std::size_t k) { return std::ranges::binary_search(stops, k); };
+    const Common common = most_common(all_, is_stop);
+    if (common.runs > 1 && static_cast<double>(common.runs) > kOften * static_cast<double>(found)) return std::nullopt;
+    std::vector<double> lengths;
+    for (const std::size_t k : stops) lengths.push_back(static_cast<double>(all_.runs[k].length));
     // A channel that freezes does so in other runs of that length, too; one that rests mostly does not freeze.
-    const auto found = std::ssize(lengths);
     const double as_long = 0.5 * numeric::median(std::move(lengths));
     Stale stale{{Staleness::frozen}, std::vector<bool>(static_cast<std::size_t>(samples_))};
     Index marked = 0;
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
-      if ((one_value && run.value == common.value) || at_extreme(run) || rests(run)) continue;
-      if (!freezes(k) && static_cast<double>(run.length) < as_long) continue;
+      if (at_extreme(run) || rests(run) || (!is_stop(k) && static_cast<double>(run.length) < as_long)) continue;
       ++marked;
       mark(run, 1, stale.samples);
     }
-    if (marked > kAlike * found) return std::nullopt;
     stale.updates.share = share_of(stale.samples);
-    if (stale.updates.share < kMinShare) return std::nullopt;
+    if (marked > kAlike * found || stale.updates.share < kMinShare) return std::nullopt;
     return stale;
   }
 
