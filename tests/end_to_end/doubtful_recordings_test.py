@@ -101,6 +101,15 @@ class Doubtful(Case):
                 self.assertAlmostEqual(result["model"]["B"][0][0], B, delta=0.02 * B)
                 self.assertIn("counter", " ".join(result["notes"]))
 
+    def test_a_rate_that_is_said_turns_a_count_of_samples_into_time(self):
+        counted = self.table(time=range(len(self.time)))
+        self.assertIn("--rate", self.mbk("measure", counted, code=BAD_DATA).err)
+        coarse = self.table(time=[round(t, 2) for t in self.time], name="coarse.csv")
+        self.assertIn("--rate", self.mbk("measure", coarse, code=BAD_DATA).err)
+        for file in (counted, coarse):
+            result = self.mbk("measure", "--json", "--rate", RATE, file).json
+            self.assertAlmostEqual(result["model"]["B"][0][0], B, delta=0.02 * B)
+
     def test_the_log_of_libfranka_is_known_by_its_header(self):
         joints = range(7)
         names = ["time", "success_rate", *(f"state.q[{k}]" for k in joints), *(f"state.tau_J[{k}]" for k in joints),
@@ -153,6 +162,13 @@ class Doubtful(Case):
                 self.assertAlmostEqual(found, B, delta=max(0.02 * B, 3 * error))
                 self.assertIn("missing-samples", [warning["code"] for warning in result["warnings"]])
 
+    def test_a_slow_channel_that_is_filled_with_zeros_is_taken_at_its_own_samples(self):
+        for every in (2, 5):
+            torque = [f if i % every == 0 else 0.0 for i, f in enumerate(self.torque)]
+            found, error, result = self.damping(self.table(torque=torque, names="time,position_rad,reaction_Nm"))
+            self.assertAlmostEqual(found, B, delta=max(0.02 * B, 3 * error))
+            self.assertIn("missing-samples", [warning["code"] for warning in result["warnings"]])
+
     def test_long_freezes_are_refused_with_their_place(self):
         frozen = list(self.torque)
         for begin in range(500, len(frozen) - 200, 1000):
@@ -160,6 +176,7 @@ class Doubtful(Case):
         file = self.table(torque=frozen, names="time,position_rad,reaction_Nm")
         ran = self.mbk("measure", file, code=BAD_DATA)
         self.assertIn("--from", ran.err)
+        self.assertIn("freezes", ran.err)
         self.assertIn("freezes", self.mbk("info", file).out)
 
     def test_convert_copies_a_held_signal_as_it_is(self):

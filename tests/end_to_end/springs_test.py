@@ -202,7 +202,7 @@ class Calibrate(Case):
         self.assertAlmostEqual(found["constants"][0]["straight"]["stiffness"], 150, delta=0.5)
 
     def test_what_is_no_stretch_is_refused(self):
-        still = "time,position_mm,reaction\n" + "".join(f"{i},100,{-i}\n" for i in range(50))
+        still = "time,position_mm,reaction\n" + "".join(f"{0.01 * i:.2f},100,{-i}\n" for i in range(50))
         for name, content, says in (("still", still, "does not change"), ("short", stretch(150)[:400], "fewer than 20"),
                                     ("words", "nothing here\n", "")):
             with self.subTest(name):

@@ -217,9 +217,9 @@ class Assembler {
     if (clock_ == nullptr) unwrap_time(recording_);
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
     if (clock_ == nullptr) {
-      const bool said = std::ranges::any_of(options_.channels, [](const ChannelSource& entry) {
-        return !entry.unit.empty() && is_time(kinds_called(entry.channel).front());
-      });
+      const bool said = options_.rate || std::ranges::any_of(options_.channels, [](const ChannelSource& entry) {
+                          return !entry.unit.empty() && is_time(kinds_called(entry.channel).front());
+                        });
       if (auto ok = check_unit_of_time(recording_, said); !ok) return tl::unexpected(ok.error());
     }
     find_updates(recording_);
@@ -1226,19 +1226,28 @@ class Assembler {
         return bad_data("the file holds no time that is recognised",
                         "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
       }
-      if (own > 0.0 && options_.rate && !same_rate(own, options_.rate->value)) {
+      const Index samples = recording_.channels.front().values.size();
+      const double duration = own > 0.0 ? static_cast<double>(samples) / own : 0.0;
+      const bool believable = own == 0.0 || is_believable(own, samples);
+      if (!believable && !options_.rate) {
+        return bad_data(
+            fmt::format("the file says a rate of {:.6g} Hz{}, at which the recording would last {:.4g} s", own,
+                        contents_.rate_from.empty() ? "" : fmt::format(" ({})", contents_.rate_from), duration),
+            fmt::format("pass --rate HZ, or --rate {:.6g} if it is right as it is", own));
+      }
+      if (believable && own > 0.0 && options_.rate && !same_rate(own, options_.rate->value)) {
         return bad_usage(fmt::format("rate {} Hz contradicts the file, which says {} Hz", options_.rate->value, own),
                          "leave --rate out");
       }
       recording_.time_from_rate = true;
-      const Index samples = recording_.channels.front().values.size();
-      recording_.time =
-          Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / (own > 0.0 ? own : options_.rate->value);
+      const double rate = own > 0.0 && believable ? own : options_.rate->value;
+      recording_.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / rate;
       return {};
     }
     if (recording_.time.size() < 2) return {};
     if (auto ok = check_said_rate(); !ok) return ok;
-    if (!options_.rate) return {};
+    if (!options_.rate || (clock_ == nullptr && !states_time_ && take_rate(recording_, options_.rate->value)))
+      return {};
     const double own = inspect(recording_).rate_hz;
     if (same_rate(own, options_.rate->value)) return {};
     return bad_usage(

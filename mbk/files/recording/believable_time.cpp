@@ -35,7 +35,9 @@ struct Period {
 std::vector<Period> periods(const std::string& unit) {
   std::vector<std::pair<std::string_view, double>> ticks = {
       {"second", 1.0}, {"millisecond", 1e-3}, {"microsecond", 1e-6}, {"nanosecond", 1e-9}};
-  std::vector<Period> all = {{3600.0, "a clock that is set back an hour"}, {86400.0, "a clock that passes midnight"}};
+  std::vector<Period> all = {{60.0, "a clock that shows the second of a minute"},
+                             {3600.0, "a clock that is set back an hour"},
+                             {86400.0, "a clock that passes midnight"}};
   for (const int bits : {16, 24, 31, 32}) {
     for (const auto& [name, seconds] : ticks) {
       all.push_back({std::ldexp(seconds, bits), fmt::format("a {}-bit counter of {}s", bits, name)});
@@ -67,7 +69,69 @@ std::string lasting(double seconds) {
                                  : fmt::format("{:.3g} days", seconds / 86400.0);
 }
 
+/// [s] from sample to sample. Stamps that are coarser than the samples repeat: then the mean says more.
+double step_of(const Vector& time) {
+  constexpr double kRepeats = 0.1;
+  const auto intervals = static_cast<double>(time.size() - 1);
+  Index repeats = 0;
+  for (Index i = 1; i < time.size(); ++i) repeats += time[i] == time[i - 1] ? 1 : 0;
+  if (static_cast<double>(repeats) <= kRepeats * intervals) return median_interval(time);
+  return std::abs(time[time.size() - 1] - time[0]) / intervals;
+}
+
+bool counts_samples(const Recording& recording) {
+  const Unit* const unit = find_unit(recording.time_origin.unit);
+  const double one = unit != nullptr ? unit->to_si(1.0) : 1.0;
+  const auto whole = [&](double seconds) { return std::abs(seconds / one - std::round(seconds / one)) < 1e-6; };
+  return std::abs(median_interval(recording.time) - one) < 1e-6 * one &&
+         std::ranges::all_of(recording.time, [&](double time) { return whole(time - recording.time[0]); });
+}
+
+/// Whether stamps that repeat are those of even samples at that rate, told coarsely.
+bool are_coarse_stamps(const Vector& time, double rate_hz) {
+  constexpr double kStepsOff = 2.0;
+  const double resolution = median_interval(time);
+  if (resolution * rate_hz < 1.5) return false;
+  for (Index i = 0; i < time.size(); ++i) {
+    if (!(std::abs(time[i] - time[0] - static_cast<double>(i) / rate_hz) <= kStepsOff * resolution)) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+bool is_believable(double rate_hz, Index samples) {
+  constexpr Index kFewest = 20;
+  if (samples < kFewest) return true;
+  const double duration_s = static_cast<double>(samples - 1) / rate_hz;
+  constexpr double kSlowest = 3.0, kFastest = 2.05e4, kLongest = 12.0 * 3600.0;  // [Hz, Hz, s]
+  if (rate_hz <= kSlowest || rate_hz > kFastest || duration_s >= kLongest) return false;
+  constexpr double kSlow = 20.0, kHour = 3600.0;
+  if (rate_hz <= kSlow && duration_s > kHour) return false;
+  // 50 Hz and its multiples for minutes, told in minutes.
+  constexpr double kOfMinutes = 3000.0, kShort = 10.0, kNear = 1e-4;
+  const double times = rate_hz / kOfMinutes;
+  return !(duration_s < kShort && times > 0.5 && std::abs(times - std::round(times)) < kNear * times);
+}
+
+bool take_rate(Recording& recording, double rate_hz) {
+  Vector& time = recording.time;
+  const std::string& source = recording.time_origin.source;
+  if (time.size() < 2 || source.empty()) return false;
+  if (counts_samples(recording)) {
+    const Unit* const unit = find_unit(recording.time_origin.unit);
+    const double per_second = rate_hz * (unit != nullptr ? unit->to_si(1.0) : 1.0);
+    time = (time.array() - time[0]) / per_second;
+    recording.notes.push_back(fmt::format("time '{}' counts samples: it was divided by {:g} Hz", source, rate_hz));
+    return true;
+  }
+  if (!are_coarse_stamps(time, rate_hz)) return false;
+  recording.notes.push_back(
+      fmt::format("time '{}' is told in steps of {:g} s: the samples were put {:g} s apart instead, as --rate says",
+                  source, median_interval(time), 1.0 / rate_hz));
+  time = Vector::LinSpaced(time.size(), 0.0, static_cast<double>(time.size() - 1) / rate_hz);
+  return true;
+}
 
 void unwrap_time(Recording& recording) {
   Vector& time = recording.time;
@@ -103,18 +167,12 @@ void unwrap_time(Recording& recording) {
 }
 
 Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
-  constexpr Index kFewest = 20;  // of which something can be computed
-  if (said_by_user || recording.samples() < kFewest || recording.untimed || recording.time_from_rate ||
-      recording.time_origin.source.empty())
-    return {};
-  constexpr double kSlowest = 3.0, kFastest = 5e4, kLongest = 12.0 * 3600.0;  // [Hz, Hz, s]
+  if (said_by_user || recording.untimed || recording.time_from_rate || recording.time_origin.source.empty()) return {};
   const auto intervals = static_cast<double>(recording.samples() - 1);
-  // Stamps that are coarser than the samples repeat: then the mean says more.
-  const double step = std::min(median_interval(recording.time),
-                               std::abs(recording.time[recording.samples() - 1] - recording.time[0]) / intervals);
+  const double step = step_of(recording.time);
   if (!(step > 0.0)) return {};
   const double rate = 1.0 / step, duration = step * intervals;
-  if (rate > kSlowest && rate <= kFastest && duration < kLongest) return {};
+  if (is_believable(rate, recording.samples())) return {};
   constexpr double kUsualSlowest = 10.0, kUsualFastest = 2e4;  // [Hz]
   std::vector<std::string> readings, maps;
   const std::string& source = recording.time_origin.source;
@@ -127,7 +185,12 @@ Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
     maps.push_back(fmt::format("--channels time={}:{}", source, meaning.unit));
   }
   const std::string_view said = unit != nullptr ? unit->name : std::string_view("s");
+  constexpr double kTicks = 10.0;
+  if (unit == nullptr && in_unit >= kTicks) {
+    maps.push_back(fmt::format("--channels \"time={}*1e-7\" (a tick of 1e-7 s)", source));
+  }
   std::string remedy = maps.empty() ? std::string() : fmt::format("pass {}", fmt::join(maps, " or "));
+  if (counts_samples(recording)) remedy += ", or --rate HZ if it counts samples";
   remedy +=
       fmt::format("{}time={}:{} if it is right as it is", remedy.empty() ? "pass --channels " : ", or ", source, said);
   const std::string in = unit == nullptr || said == "s" ? "seconds" : std::string(said);

@@ -15,8 +15,17 @@ void unwrap_time(Recording& recording);
 /// How the message of `check_unit_of_time` begins.
 inline constexpr std::string_view kUnbelievableTime = "time cannot be in ";
 
-/// A time whose unit nobody said, or whose file says seconds, must run as time in seconds can: at more than 3 Hz and at
-/// most 50 kHz, for less than 12 hours.
+/// Gives time the rate that the user said, where it leaves that open: it counts samples (lost ones remain lost), or its
+/// stamps are coarser than the samples and keep to that rate. A note says so.
+/// @return whether it did
+[[nodiscard]] bool take_rate(Recording& recording, double rate_hz);
+
+/// Whether so many samples of a limb may have been recorded at that rate: above 3 Hz and at most 20 kHz, for less
+/// than 12 hours, for less than one hour below 20 Hz, and not as if minutes had been told in minutes. Fewer than 20
+/// samples, of which nothing can be computed, are left alone.
+[[nodiscard]] bool is_believable(double rate_hz, Index samples);
+
+/// A time whose unit nobody said, or whose file says seconds, must run as time in seconds can (`is_believable`).
 /// @param said_by_user  the unit was given with --channels: then whatever it is is believed
 /// @fails  data: it does not; the message says what the time would be in milliseconds, microseconds, …, and how to say
 /// so.

@@ -50,8 +50,8 @@ TEST(UnwrapTime, JoinsASignedCounter) {
   EXPECT_LT((recording.time - ticks / 1e6).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(UnwrapTime, JoinsAnHourThatIsSetBackAndMidnight) {
-  for (const double back : {3600.0, 86400.0}) {
+TEST(UnwrapTime, JoinsAMinuteAnHourThatIsSetBackAndMidnight) {
+  for (const double back : {60.0, 3600.0, 86400.0}) {
     const Vector time = even(20000, 86390.0, 1e-3);
     Vector recorded = time;
     recorded.tail(10000).array() -= back;
@@ -86,7 +86,8 @@ TEST(CheckUnitOfTime, RefusesWhatCannotBeSecondsAndNamesWhatItCanBe) {
   for (const Case& one :
        {Case{1.0, "time=clock:ms"}, Case{2.0, "time=clock:ms"}, Case{5.0, "time=clock:ms"}, Case{10.0, "time=clock:ms"},
         Case{1000.0, "time=clock:us"}, Case{500.0, "time=clock:us"}, Case{1e6, "time=clock:ns"},
-        Case{1.0 / 60e3, "time=clock:min"}, Case{1.0 / 86400e3, "time=clock:day"}}) {
+        Case{1.0 / 60e3, "time=clock:min"}, Case{1.0 / 6e3, "time=clock:min"}, Case{1e4, "time=clock*1e-7"},
+        Case{1.0 / 86400e3, "time=clock:day"}}) {
     const auto checked = check_unit_of_time(with_time(even(40000, 123456.0, one.step)), false);
     ASSERT_FALSE(checked) << one.step;
     EXPECT_EQ(checked.error().kind, ErrorKind::data);
@@ -97,6 +98,37 @@ TEST(CheckUnitOfTime, RefusesWhatCannotBeSecondsAndNamesWhatItCanBe) {
   EXPECT_FALSE(check_unit_of_time(with_time(even(300000, 0.0, 0.2)), false));
 }
 
+TEST(CheckUnitOfTime, OffersTheRateWhereSamplesAreCounted) {
+  EXPECT_THAT(check_unit_of_time(with_time(even(40000, 7.0, 1.0)), false).error().remedy, HasSubstr("--rate"));
+  EXPECT_THAT(check_unit_of_time(with_time(even(40000, 7.0, 2.0)), false).error().remedy, Not(HasSubstr("--rate")));
+}
+
+TEST(TakeRate, DividesACountOfSamplesAndKeepsTheLostOnes) {
+  Vector count = even(2000, 500.0, 1.0);
+  count.tail(1000).array() += 50.0;
+  Recording recording = with_time(count);
+  ASSERT_TRUE(take_rate(recording, 500.0));
+  EXPECT_LT((recording.time - (count.array() - 500.0).matrix() / 500.0).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_THAT(recording.notes, SizeIs(1));
+}
+
+TEST(TakeRate, SpreadsStampsThatAreToldCoarsely) {
+  const Vector time = even(20000, 3.0, 1e-3);
+  for (const double step : {0.01, 0.1}) {
+    Recording recording = with_time(time.unaryExpr([&](double t) { return step * std::round(t / step); }));
+    ASSERT_TRUE(take_rate(recording, 1000.0)) << step;
+    EXPECT_LT((recording.time - (time.array() - 3.0).matrix()).cwiseAbs().maxCoeff(), 1e-9);
+    Recording other = with_time(time.unaryExpr([&](double t) { return step * std::round(t / step); }));
+    EXPECT_FALSE(take_rate(other, 900.0));
+  }
+}
+
+TEST(TakeRate, LeavesATimeThatIsOne) {
+  Recording recording = with_time(even(2000, 0.0, 1e-3));
+  EXPECT_FALSE(take_rate(recording, 1000.0));
+  EXPECT_FALSE(take_rate(recording, 500.0));
+}
+
 TEST(CheckUnitOfTime, BelievesWhoSaysIt) {
   EXPECT_TRUE(check_unit_of_time(with_time(even(60, 0.0, 1.0), "s"), true));
 }
@@ -104,7 +136,7 @@ TEST(CheckUnitOfTime, BelievesWhoSaysIt) {
 TEST(CheckUnitOfTime, BelievesTrueClocks) {
   for (const double rate : {4.0, 5.0, 45.0, 60.0, 100.0, 128.0, 1000.0, 5000.0, 20000.0}) {
     for (const double from : {0.0, 1.7e9}) {
-      const Vector time = even(20000, from, 1.0 / rate);
+      const Vector time = even(10000, from, 1.0 / rate);
       EXPECT_TRUE(check_unit_of_time(with_time(time), false)) << rate;
       Recording same = with_time(time);
       unwrap_time(same);

@@ -157,8 +157,9 @@ TEST(PreambleOfATable, IsNoHeaderWhereThereIsNone) {
 TEST(PreambleOfATable, RefusesARateThatItsTimeContradicts) {
   const auto recording = read_table("SampleRate=500\ntime,hand_x,hand_y,force_x\n" + kRows);
   ASSERT_FALSE(recording);
-  EXPECT_THAT(recording.error().line(),
-              HasSubstr("the file says a rate of 500 Hz (line 1, 'SampleRate=500'), and its time 'time' runs at 1000 Hz"));
+  EXPECT_THAT(
+      recording.error().line(),
+      HasSubstr("the file says a rate of 500 Hz (line 1, 'SampleRate=500'), and its time 'time' runs at 1000 Hz"));
   EXPECT_THAT(recording.error().remedy, HasSubstr("correct the one that is wrong"));
   // A rate may be a nominal one.
   const auto nominal = read_table("SampleRate=1050\ntime,hand_x,hand_y,force_x\n" + kRows);

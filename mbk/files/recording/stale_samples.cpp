@@ -115,6 +115,12 @@ Runs runs_of(const Eigen::Ref<const Vector>& values) {
   return all;
 }
 
+std::vector<double> sizes_of(const Runs& all) {
+  std::vector<double> sizes;
+  for (const double jump : all.jumps) sizes.push_back(std::abs(jump));
+  return sizes;
+}
+
 /// The four changes before a run and the four after it.
 struct Around {
   double scale = 0.0;  ///< median of their sizes
@@ -184,53 +190,63 @@ bool has_few_values(const Runs& all) {
 
 // ---- a value that stands where nothing was measured ----
 
-/// A value that is returned to again and again, and left again.
-struct Return {
-  double before = 0.0, after = 0.0;  ///< what was measured last before it and first after it
+/// What was lost while a channel stood at a value: how far the measurements beside it lie from it.
+struct Lost {
+  double value = 0.0;
+  std::vector<double> away;
 };
 
-/// The returns to the value that has most of them.
-std::pair<double, std::vector<Return>> most_common_return(const Eigen::Ref<const Vector>& values, const Runs& all) {
+double nearest_beside(const Run& run) {
+  return std::min(std::abs(run.before), std::abs(run.after));
+}
+
+/// The value to which the channel leaps from far, to go on behind it where it was before; or that comes many times as
+/// often as any other.
+std::optional<Lost> lost_at_one_value(const Runs& all) {
+  constexpr Index kFewest = 5, kTimes = 20;
+  constexpr double kMost = 0.6, kFar = 6.0;
+  const double usual = numeric::median(sizes_of(all));
+  const auto leaps = [&](std::size_t k) {
+    const Run& run = all.runs[k];
+    const double nearest = nearest_beside(run);
+    return nearest > kFar * usual && std::abs(run.before + run.after) < 0.5 * nearest;
+  };
+  Lost lost;
+  const auto take = [&](double value, const auto& chosen) {
+    lost.value = value;
+    for (std::size_t k = 0; k < all.runs.size(); ++k) {
+      if (all.runs[k].value == value && chosen(k)) lost.away.push_back(nearest_beside(all.runs[k]));
+    }
+    return lost;
+  };
+  const Common leapt = most_common(all, leaps);
+  if (leapt.runs >= kFewest && static_cast<double>(leapt.runs) >= kMost * static_cast<double>(leapt.of)) {
+    return take(leapt.value, leaps);
+  }
   const auto every = [](std::size_t) { return true; };
-  const Common common = most_common(all, every);
-  std::vector<Return> returns;
-  for (const Run& run : all.runs) {
-    if (run.value == common.value) returns.push_back({values[run.begin - 1], values[run.begin + run.length]});
-  }
-  return {common.value, std::move(returns)};
+  const Common first = most_common(all, every);
+  const Common second = most_common(all, [&](std::size_t k) { return all.runs[k].value != first.value; });
+  if (first.runs < kTimes || first.runs < kTimes * second.runs) return std::nullopt;
+  return take(first.value, every);
 }
 
-/// How often the value comes that comes most often but for one.
-Index second_most(const Runs& all, double but) {
-  return most_common(all, [&](std::size_t k) { return all.runs[k].value != but; }).runs;
-}
-
-/// What is lost is lost wherever the signal is, and the signal goes on behind it where it was before. A channel that
-/// rests at a value (no contact, a dead band, the start of each reach) comes to it and leaves it in small steps.
+/// What is lost is lost wherever the signal is. A channel that rests at a value (no contact, a dead band, the start of
+/// each reach) comes to it and leaves it from nearby.
 std::optional<Stale> find_placeholder(const Eigen::Ref<const Vector>& values, const Runs& all) {
-  constexpr std::size_t kFewest = 5;
-  constexpr Index kAtom = 20;
-  constexpr double kShare = 0.002, kRank = 0.15, kMost = 0.6, kStepsApart = 2.5, kApart = 0.02;
-  const auto [value, returns] = most_common_return(values, all);
-  if (returns.size() < kFewest || has_few_values(all)) return std::nullopt;
-  Index goes_on = 0;
-  std::vector<double> lost, away;
+  constexpr double kShare = 0.002, kRank = 0.15, kStepsApart = 2.5, kApart = 0.02;
+  if (has_few_values(all)) return std::nullopt;
+  auto lost = lost_at_one_value(all);
+  if (!lost) return std::nullopt;
+  const double value = lost->value;
+  std::vector<double> away;
   double low = std::numeric_limits<double>::infinity(), high = -low;  // without the value
-  for (const Return& one : returns) {
-    const double nearest = std::min(std::abs(one.before - value), std::abs(one.after - value));
-    lost.push_back(nearest);
-    goes_on += std::abs(one.after - one.before) < 0.5 * nearest ? 1 : 0;
-  }
-  const bool continues = static_cast<double>(goes_on) >= kMost * static_cast<double>(returns.size());
-  const auto count = static_cast<Index>(returns.size());
-  if (!continues && (count < kAtom || count < kAtom * second_most(all, value))) return std::nullopt;
   for (const double one : values) {
     if (one == value) continue;
     away.push_back(std::abs(one - value));
     low = std::min(low, one);
     high = std::max(high, one);
   }
-  if (away.empty() || !(numeric::median(std::move(lost)) > quantile(away, kRank))) return std::nullopt;
+  if (away.empty() || !(numeric::median(std::move(lost->away)) > quantile(away, kRank))) return std::nullopt;
   // The end of a range stands for nothing only where it lies apart from what is measured.
   const double gap = std::max(low - value, value - high);
   if (gap > 0.0 && gap < std::max(kStepsApart * all.least, kApart * (high - low))) return std::nullopt;
@@ -331,12 +347,6 @@ std::optional<Stale> find_held(const Runs& all, Index samples) {
 }
 
 // ---- repeats and freezes ----
-
-std::vector<double> sizes_of(const Runs& all) {
-  std::vector<double> sizes;
-  for (const double jump : all.jumps) sizes.push_back(std::abs(jump));
-  return sizes;
-}
 
 /// Finds repeats and freezes among samples that move.
 class Repeats {
@@ -561,7 +571,7 @@ bool is_plain(const Eigen::Ref<const Vector>& values) {
     const Index end = std::min(n, begin + kPart);
     for (Index i = begin; i < end; ++i) {
       const double change = std::abs(x[i] - x[i - 1]);
-      repeats += change == 0.0 ? 1 : 0;
+      repeats += change == 0.0 || (i >= 2 && x[i] == x[i - 2]) ? 1 : 0;
       spikes += change > far ? 1 : 0;
     }
     looked += end - begin;

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/test_stale_signals.h"
 
 namespace mbk::recording {
@@ -19,6 +23,49 @@ using test::sampled;
 using test::with_noise;
 
 constexpr Index kSamples = 30000;
+
+Vector median_of(const Vector& values, Index width) {
+  const Index half = width / 2, last = values.size() - 1;
+  return sampled(values.size(), [&](Index i) {
+    const Index from = std::max<Index>(0, i - half), to = std::min(last, i + half);
+    return numeric::median(std::vector<double>(values.data() + from, values.data() + to + 1));
+  });
+}
+
+/// A gear that follows only when the play is taken up.
+Vector with_backlash(const Vector& values, double play) {
+  double at = values[0];
+  return values.unaryExpr([&](double v) {
+    at = std::clamp(at, v - play, v + play);
+    return at;
+  });
+}
+
+/// A mass with Coulomb friction, pushed by a spring and a sine.
+Vector stick_slip(Index n, double rate) {
+  double x = 0.0, v = 0.0;
+  return sampled(n, [&](Index i) {
+    const double dt = 1.0 / (16.0 * rate);
+    for (int k = 0; k < 16; ++k) {
+      const double push = 5.0 * std::sin(3.0 * (static_cast<double>(i) / rate + k * dt)) - 60.0 * x - 4.0 * v;
+      if (v == 0.0 && std::abs(push) < 2.6) continue;
+      const double next = v + dt * (push - std::copysign(2.0, v != 0.0 ? v : push));
+      v = next * v < 0.0 ? 0.0 : next;
+      x += dt * v;
+    }
+    return x;
+  });
+}
+
+/// Contacts of 30 ms, nothing between them.
+Vector taps(Index n, double rate) {
+  return sampled(n, [&](Index i) {
+    const double u = std::fmod(static_cast<double>(i) / rate, 0.7) / 0.03;
+    return u < 1.0 ? (8.0 + std::sin(static_cast<double>(i / static_cast<Index>(0.7 * rate)))) *
+                         std::sin(std::numbers::pi * u)
+                   : 0.0;
+  });
+}
 
 /// What a sound sensor may record at a rate.
 std::vector<NamedSignal> honest(double rate) {
@@ -85,6 +132,13 @@ std::vector<NamedSignal> honest(double rate) {
       {"steps", sampled(n, [&](Index i) { return std::fmod(seconds(i), 2.0) < 1.0 ? 0.01 : -0.01; })},
       {"contact now and then", sampled(n, [&](Index i) { return 500.0 * p[i] > 0.0 ? f[i] : 0.0; })},
       {"dead band", sampled(n, [&](Index i) { return std::abs(f[i]) < 1.0 ? 0.0 : f[i]; })},
+      {"median filter of 3", median_of(f, 3)},
+      {"median filter of 9", median_of(with_noise(f, 0.2, random), 9)},
+      {"backlash", with_backlash(p, 0.002)},
+      {"backlash of an encoder", in_steps(with_backlash(p, 0.002), 1e-5)},
+      {"stick and slip", stick_slip(n, rate)},
+      {"stick and slip of an encoder", in_steps(stick_slip(n, rate), 1e-5)},
+      {"taps", taps(n, rate)},
       {"clipped", f.cwiseMin(5.0).cwiseMax(-5.0)},
       {"fast sine of an encoder",
        in_steps(sampled(n, [&](Index i) { return 0.01 * std::sin(50.0 * seconds(i)); }), 1e-4)},
@@ -176,6 +230,27 @@ TEST(FindStale, FindsAValueThatStandsForNothing) {
         EXPECT_EQ(stale.updates.placeholder, value);
         EXPECT_NEAR(stale.updates.share, share, 0.01);
       }
+    }
+  }
+}
+
+TEST(FindStale, FindsASlowChannelFilledWithZeros) {
+  for (const NamedSignal& signal : moving(1000.0)) {
+    for (const Index every : {2, 3, 8, 20}) {
+      const Vector values = sampled(kSamples, [&](Index i) { return i % every == 0 ? signal.values[i] : 0.0; });
+      const Stale stale = find_stale(values);
+      EXPECT_EQ(stale.updates.staleness, Staleness::placeholder) << signal.name << " every " << every;
+      EXPECT_NEAR(stale.updates.interval, static_cast<double>(every), 0.05 * static_cast<double>(every));
+    }
+  }
+}
+
+TEST(FindStale, FindsBurstsOfAPlaceholder) {
+  for (const NamedSignal& signal : moving(200.0)) {
+    for (const Index length : {2, 4, 8}) {
+      Vector values = signal.values;
+      for (Index i = 700; i + length < kSamples; i += 550) values.segment(i, length).setZero();
+      EXPECT_EQ(find_stale(values).updates.staleness, Staleness::placeholder) << signal.name << " of " << length;
     }
   }
 }

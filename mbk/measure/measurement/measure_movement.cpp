@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mbk/files/recording/inspect.h"
+#include "mbk/measure/analyse/plausible_scale.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
 #include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/measure/preprocess/trial_clock.h"
@@ -64,7 +65,8 @@ Result<MovementQuality> movement_quality(const Recording& recording, const Movem
   const auto plan = preprocess::default_windows(Protocol::free, {}, clock, options.window);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = preprocess::check_clock(clock, inspection, *plan, warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = preprocess::check_finite(clock, signals, *plan); !ok) return tl::unexpected(ok.error());
+  if (auto ok = preprocess::check_finite(clock, signals, *plan, recording.warnings); !ok)
+    return tl::unexpected(ok.error());
   const preprocess::Cut& cut = plan->cuts.front();
   const Index rows = cut.end - cut.begin;
   const Matrix target =
@@ -82,6 +84,7 @@ Result<MovementQuality> movement_quality(const Recording& recording, const Movem
   }
   if (!recording.sources.empty()) found->source = recording.sources.front();
   found->notes = recording.notes;
+  if (auto size = analyse::check_size(*source, inspection)) warnings.push_back(std::move(*size));
   found->warnings = std::move(warnings);
   found->warnings.insert(found->warnings.end(), recording.warnings.begin(), recording.warnings.end());
   return found;

@@ -62,7 +62,7 @@ Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const 
   const auto plan = default_windows(windows, signals->reference, clock, options.window);
   if (!plan) return tl::unexpected(plan.error());
   if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_finite(clock, *signals, *plan); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_finite(clock, *signals, *plan, recording.warnings); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
   warn_of_small_motion(*signals, *plan, trial.warnings);
 

@@ -165,7 +165,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     return tl::unexpected(ok.error());
   }
   recording::let_go(recording.time);
-  if (auto ok = check_finite(clock, *signals, *plan); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_finite(clock, *signals, *plan, recording.warnings); !ok) return tl::unexpected(ok.error());
   if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
   warn_of_small_motion(*signals, *plan, trial.warnings);
 

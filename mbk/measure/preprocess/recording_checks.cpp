@@ -52,6 +52,11 @@ Result<void> check_length(Index samples, const Inspection& inspection) {
   if (!(inspection.rate_hz > 0.0)) {
     return bad_data("time never rises", "check which channel is the time, and whether it is turned around");
   }
+  if (inspection.duration <= 0.0 && inspection.backward_times > 0) {
+    return bad_data(fmt::format("time ends before it begins: it runs backwards{} at sample {}",
+                                inspection.backward_times == 1 ? "" : ", first", inspection.first_backward + 1),
+                    "cut the recording there, or name another time with --channels");
+  }
   return {};
 }
 
@@ -62,12 +67,15 @@ Result<void> check_step(const Clock& clock, const Inspection& inspection, Index 
   const double interval = clock.seconds(i) - clock.seconds(i - 1);
   const auto at = [&] { return fmt::format("at sample {} ({:.6f} s)", i + 1, clock.seconds(i)); };
   if (!(interval > 0.0)) {
+    constexpr Index kOften = 10;
     const auto fault = [&] {
       if (std::isnan(clock.seconds(i - 1))) return fmt::format("time is not a number at sample {}", i);
       if (std::isnan(interval)) return fmt::format("time is not a number at sample {}", i + 1);
       return fmt::format("time {} {}", interval == 0.0 ? "repeats" : "runs backwards", at());
     };
-    return bad_data(fault(), "choose a window without it with --from and --to");
+    const bool coarse = interval == 0.0 && kOften * inspection.duplicated_times > clock.samples();
+    return bad_data(fault(), coarse ? "time is told too coarsely: pass the sample rate, as in --rate 1000"
+                                    : "choose a window without it with --from and --to");
   }
   if (std::ranges::binary_search(inspection.gaps, i - 1, {}, &Gap::sample)) {
     return bad_data(fmt::format("a gap of {:.4g} s in time {}, where samples are {:.4g} s apart", interval, at(),
@@ -151,7 +159,21 @@ Result<void> check_reference(const Clock& clock, const Signals& signals, const W
   return {};
 }
 
-Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan) {
+namespace {
+
+/// "; force freezes again and again, …" where the recording was found to lack samples of that channel.
+std::string why_lost(const std::vector<Warning>& warnings, const std::string& channel) {
+  for (const Warning& warning : warnings) {
+    const bool lost = warning.code == WarningCode::missing_samples || warning.code == WarningCode::held_signal;
+    if (lost && warning.message.starts_with(channel + ' ')) return "; " + warning.message;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan,
+                          const std::vector<Warning>& warnings) {
   const std::array<std::pair<QuantityChannels, const Columns*>, 3> quantities = {
       {{kPositionChannels, &signals.position},
        {kForceChannels, &signals.force_hand_on_robot},
@@ -163,8 +185,9 @@ Result<void> check_finite(const Clock& clock, const Signals& signals, const Wind
         recording::let_go(columns->col(axis));
         if (bad < 0) continue;
         const Index sample = cut.begin + bad;
-        return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s)",
-                                    quantity.name(signals.axes, axis), sample + 1, clock.seconds(sample)),
+        const std::string name(quantity.name(signals.axes, axis));
+        return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s){}", name, sample + 1,
+                                    clock.seconds(sample), why_lost(warnings, name)),
                         "choose a window without it with --from and --to, or mend the recording");
       }
     }

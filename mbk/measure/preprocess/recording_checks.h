@@ -40,8 +40,10 @@ inline constexpr Index kFewestSamples = 20;
 /// The windows are read off the reference, so that it must be finite throughout the limits.
 [[nodiscard]] Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits);
 
-/// Position, force and acceleration must be finite inside the cuts; the first channel and sample that is not is named.
-[[nodiscard]] Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan);
+/// Position, force and acceleration must be finite inside the cuts; the first channel and sample that is not is named,
+/// with what the recording's warnings say of it.
+[[nodiscard]] Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan,
+                                        const std::vector<Warning>& warnings);
 
 /// A force that never changes is a sensor that did not measure; a position that never changes shows no motion.
 [[nodiscard]] Result<void> check_alive(const Signals& signals, const WindowPlan& plan);
