@@ -200,10 +200,31 @@ double nearest_beside(const Run& run) {
   return std::min(std::abs(run.before), std::abs(run.after));
 }
 
-/// The value to which the channel leaps from far, to go on behind it where it was before; or that comes many times as
-/// often as any other.
+/// The value of at least a tenth of the runs that comes 20 times as often as any other, told from up to 511 of them.
+std::optional<double> most_frequent(const Runs& all) {
+  constexpr std::size_t kLooked = 511;
+  constexpr Index kFewest = 20, kTimes = 20, kPart = 10;
+  const std::size_t every = (all.runs.size() / kLooked) | 1U;  // odd: values may alternate
+  std::vector<double> some;
+  for (std::size_t k = 0; k < all.runs.size() && some.size() < kLooked; k += every) some.push_back(all.runs[k].value);
+  std::ranges::sort(some);
+  Index most = 0, second = 0;
+  double value = 0.0;
+  for (auto from = some.begin(); from != some.end();) {
+    const auto to = std::upper_bound(from, some.end(), *from);
+    const Index count = to - from;
+    second = std::max(second, std::min(count, most));
+    if (count > most) value = *from;
+    most = std::max(most, count);
+    from = to;
+  }
+  const bool found = most >= kFewest && kPart * most >= std::ssize(some) && most >= kTimes * second;
+  return found ? std::optional(value) : std::nullopt;
+}
+
+/// The value to which the channel leaps from far, to go on behind it where it was before, or that is most frequent.
 std::optional<Lost> lost_at_one_value(const Runs& all) {
-  constexpr Index kFewest = 5, kTimes = 20;
+  constexpr Index kFewest = 5;
   constexpr double kMost = 0.6, kFar = 6.0;
   const double usual = numeric::median(sizes_of(all));
   const auto leaps = [&](std::size_t k) {
@@ -223,11 +244,9 @@ std::optional<Lost> lost_at_one_value(const Runs& all) {
   if (leapt.runs >= kFewest && static_cast<double>(leapt.runs) >= kMost * static_cast<double>(leapt.of)) {
     return take(leapt.value, leaps);
   }
-  const auto every = [](std::size_t) { return true; };
-  const Common first = most_common(all, every);
-  const Common second = most_common(all, [&](std::size_t k) { return all.runs[k].value != first.value; });
-  if (first.runs < kTimes || first.runs < kTimes * second.runs) return std::nullopt;
-  return take(first.value, every);
+  const auto frequent = most_frequent(all);
+  if (!frequent) return std::nullopt;
+  return take(*frequent, [](std::size_t) { return true; });
 }
 
 /// What is lost is lost wherever the signal is. A channel that rests at a value (no contact, a dead band, the start of
