@@ -4,6 +4,7 @@
 #include "mbk/files/tables/lvm.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
+#include "mbk/files/tables/physiology_tables.h"
 
 namespace mbk::fuzz {
 
@@ -25,6 +26,10 @@ std::vector<std::string> seeds() {
       ",ID,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n0,0,1,2,3\n1,0.01,,,\n",
       "NO_OF_FRAMES\t2\nFREQUENCY\t100\nMARKER_NAMES\thand\n1\t2\t3\n0\t0\t0\n",
       "Label: E Sampling frequency: 10 Unit: V Domain: s\nX[s],E,X[s],F [N]\n0,1,0,2\n0.1,2,,\n",
+      "arm.acq\n2 msec/sample\n2 channels\nx\nmm\nF\nN\nmin\tCH1\tCH2\t\n\t2\t2\t\n0\t1\t2\t\n0.1\t3\t4\t\n",
+      "Interval=\t0.002 s\nChannelTitle=\tx\tF\nRange=\t10 mm\t5 V\nUnitName=\t*\tN\n0\t1\t2\t#* go\n0.002\t3\t4\n",
+      "\"INFORMATION\"\n\"CHANNEL\"\t\"1\"\n\"Waveform\"\n\"\"\n\"F\"\n\"N\"\n\"START\"\t0\t0.1\n1\n\"START\"\t9\t0."
+      "1\n2\n",
       "# Created by Octave 7\n# name: t\n# type: matrix\n# rows: 2\n# columns: 2\n 0 1\n 2 NA\n\n\n"
       "# name: r\n# type: range\n# base, limit, increment\n0 5 1\n\n# name: s\n# type: scalar struct\n# ndims: 2\n 1 "
       "1\n"
@@ -48,6 +53,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       mbk::fuzz::check_decoded(std::move(record.contents), size);
     }
   }
+  if (looks_like_labchart(text)) {
+    auto records = decode_labchart(bytes);
+    if (!records) mbk::fuzz::require_error(records.error());
+    for (NamedContents& record : records ? *records : std::vector<NamedContents>()) {
+      mbk::fuzz::check_decoded(std::move(record.contents), size);
+    }
+  }
+  if (looks_like_acqknowledge(text)) mbk::fuzz::check_decoded(decode_acqknowledge(bytes), size);
+  if (looks_like_spike2(text)) mbk::fuzz::check_decoded(decode_spike2(bytes), size);
   if (looks_like_vicon(text)) mbk::fuzz::check_decoded(decode_vicon(bytes), size);
   if (looks_like_motive(text)) mbk::fuzz::check_decoded(decode_motive(bytes), size);
   if (looks_like_qualisys(text)) mbk::fuzz::check_decoded(decode_qualisys(bytes), size);

@@ -28,6 +28,7 @@
 #include "mbk/files/tables/npy.h"
 #include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
+#include "mbk/files/tables/physiology_tables.h"
 #include "mbk/files/xdf/xdf.h"
 
 namespace mbk::recording {
@@ -187,6 +188,11 @@ constexpr auto kFormats = std::to_array<FileFormat>({
     {"Qualisys", ".tsv", "Qualisys Track Manager: markers", text_begins_as<looks_like_qualisys>,
      whole<decode_qualisys>},
     {"Delsys", ".csv", "EMGworks, Trigno Discover", text_begins_as<looks_like_delsys>, whole<decode_delsys>},
+    {"AcqKnowledge", "", "BIOPAC AcqKnowledge, as text", text_begins_as<looks_like_acqknowledge>,
+     whole<decode_acqknowledge>},
+    {"LabChart", "", "ADInstruments LabChart, as text", text_begins_as<looks_like_labchart>, nullptr,
+     all_records<decode_labchart>},
+    {"Spike2", "", "CED Spike2, as text", text_begins_as<looks_like_spike2>, whole<decode_spike2>},
     {"CSV", ".csv .tsv", "tables of numbers as text, also .txt, .dat: spreadsheets, Python, libfranka, dSPACE",
      begins_as_table, decode_table},
     {"KINARM exam", ".kinarm .zip", "Dexterit-E", zip_holds<KinarmExam::is_exam>, nullptr, open_exam},

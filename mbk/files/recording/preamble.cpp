@@ -255,8 +255,19 @@ std::optional<Statement> statement_of(std::string_view key, std::string_view val
   return statement;
 }
 
+/// [Hz] of "2 msec/sample", "500 samples/s".
+std::optional<double> rate_per_sample(std::string_view text) {
+  constexpr std::string_view kPerSample = "/sample", kSamplesPer = "sample";
+  const auto said = quantity(text);
+  if (!said) return std::nullopt;
+  const std::string unit = small_letters(said->unit);
+  if (unit.ends_with(kPerSample)) return rate_of("dt", text.substr(0, text.rfind('/')));
+  return unit.starts_with(kSamplesPer) && is_rate_unit(unit) ? rate_of("rate", text) : std::nullopt;
+}
+
 /// "Fs 1000", "sampled at 500 Hz": a key and a value without a sign between them.
 std::optional<Statement> unsigned_statement(std::string_view text) {
+  if (const auto rate = rate_per_sample(text)) return Statement{rate};
   const std::size_t number = text.find_first_of("0123456789");
   if (number == text.npos || text.find_first_of("=:-+") < number) return std::nullopt;
   const auto rate = rate_of(text.substr(0, number), text.substr(number));

@@ -53,6 +53,8 @@ TEST(Preamble, TakesARateHoweverItIsWritten) {
                            "dt = 0.002",
                            "dt = 2 ms",
                            "Sample interval (ms): 2",
+                           "2 msec/sample",
+                           "# 500 samples/second",
                            "Sampling time,0.002 s"}) {
     const Preamble found = of({"title", line});
     ASSERT_TRUE(found.rate_hz) << line;
