@@ -244,12 +244,16 @@ std::optional<Statement> statement_of(std::string_view key, std::string_view val
   if (const auto rate = rate_of(key, value)) return Statement{rate};
   if (name == "indegrees") return says_yes(value) ? Statement{{}, {find_unit("deg")}} : Statement{};
   const bool of_units = name.ends_with("unit") || name.ends_with("units") || name.starts_with("einheit");
-  const auto quantity = quantity_called(name);
+  auto quantity = quantity_called(name);
   if (!of_units && !quantity) return std::nullopt;
   Statement statement{{}, all_units(value), of_units};
+  if (const auto end = name.rfind("unit"); of_units && end != name.npos) {
+    quantity = quantity_called(std::string_view(name).substr(0, end));  // "force" of "force units"
+    if (quantity == Dimension::force && mbk::trimmed(value, kBlank) == "g") statement.units = {find_unit("gf")};
+  }
   if (statement.units.empty()) return std::nullopt;
   if (quantity && (statement.units.size() > 1 || statement.units.front()->dimension != *quantity ||
-                   statement.units.front()->name == "in")) {
+                   (!of_units && statement.units.front()->name == "in"))) {
     return std::nullopt;  // "Position: in" may be a door's
   }
   return statement;

@@ -25,6 +25,8 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"mm", length, 1, 1e3},
     {"um", length, 1, 1e6},
     {"in", length, 0.0254, 1},
+    {"ft", length, 0.3048, 1},
+    {"mil", length, 0.0254, 1e3},
     {"rad", angle, 1, 1},
     {"mrad", angle, 1, 1e3},
     {"deg", angle, kPi, 180},
@@ -34,12 +36,17 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"mN", force, 1, 1e3},
     {"lbf", force, 4.4482216152605, 1},
     {"kgf", force, 9.80665, 1},
+    {"gf", force, 9.80665, 1e3},
+    {"ozf", force, 0.27801385095378125, 1},
     {"N.m", torque, 1, 1},
     {"Nm", torque, 1, 1},
     {"N*m", torque, 1, 1},
     {"N.mm", torque, 1, 1e3},
     {"Nmm", torque, 1, 1e3},
     {"mNm", torque, 1, 1e3},
+    {"N.cm", torque, 1, 1e2},
+    {"lbf.in", torque, 0.1129848290276167, 1},
+    {"lbf.ft", torque, 1.3558179483314004, 1},
     {"m/s2", acceleration, 1, 1},
     {"m/s^2", acceleration, 1, 1},
     {"mm/s2", acceleration, 1, 1e3},
@@ -54,7 +61,8 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"uV", voltage, 1, 1e6},
 });
 
-/// Names that are spelled out, for which case does not count, and other spellings; in small letters.
+/// Names that are spelled out, for which case does not count, and other spellings; in small letters. Units of mass
+/// stand for the weight: no channel is a mass.
 constexpr auto kSpellings = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"sec", "s"},
     {"second", "s"},
@@ -79,6 +87,11 @@ constexpr auto kSpellings = std::to_array<std::pair<std::string_view, std::strin
     {"micron", "um"},
     {"inch", "in"},
     {"inches", "in"},
+    {"foot", "ft"},
+    {"feet", "ft"},
+    {"ft", "ft"},
+    {"mil", "mil"},
+    {"thou", "mil"},
     {"rad", "rad"},
     {"radian", "rad"},
     {"milliradian", "mrad"},
@@ -87,6 +100,33 @@ constexpr auto kSpellings = std::to_array<std::pair<std::string_view, std::strin
     {"newton", "N"},
     {"kilonewton", "kN"},
     {"millinewton", "mN"},
+    {"lb", "lbf"},
+    {"lbf", "lbf"},
+    {"pound", "lbf"},
+    {"pound-force", "lbf"},
+    {"kg", "kgf"},
+    {"kgf", "kgf"},
+    {"kp", "kgf"},
+    {"kilogram", "kgf"},
+    {"kilogram-force", "kgf"},
+    {"gf", "gf"},
+    {"gram", "gf"},
+    {"gram-force", "gf"},
+    {"oz", "ozf"},
+    {"ozf", "ozf"},
+    {"ounce", "ozf"},
+    {"ncm", "N.cm"},
+    {"n-cm", "N.cm"},
+    {"lb-in", "lbf.in"},
+    {"lb.in", "lbf.in"},
+    {"lbf-in", "lbf.in"},
+    {"in-lb", "lbf.in"},
+    {"in-lbf", "lbf.in"},
+    {"lb-ft", "lbf.ft"},
+    {"lb.ft", "lbf.ft"},
+    {"lbf-ft", "lbf.ft"},
+    {"ft-lb", "lbf.ft"},
+    {"ft-lbf", "lbf.ft"},
     {"n-m", "N.m"},
     {"newton meter", "N.m"},
     {"newton-meter", "N.m"},
@@ -112,7 +152,7 @@ constexpr auto kSpellings = std::to_array<std::pair<std::string_view, std::strin
 
 /// The unit of a spelling; one that ends in s may be more than one of it.
 const Unit* spelled_out(std::string_view name) {
-  constexpr std::size_t kShortest = 3, kLongest = 24;
+  constexpr std::size_t kShortest = 2, kLongest = 24;
   if (name.size() < kShortest || name.size() > kLongest) return nullptr;
   std::string small(name);
   std::ranges::transform(small, small.begin(),

@@ -69,5 +69,33 @@ TEST(Units, CaseCounts) {
   EXPECT_EQ(find_unit("counts"), nullptr);
 }
 
+TEST(Units, KnowWeightsAndInchesHoweverTheyAreWritten) {
+  const auto in_si = [](std::string_view name, Dimension dimension) {
+    const Unit* const unit = find_unit(name);
+    EXPECT_NE(unit, nullptr) << name;
+    if (unit == nullptr) return 0.0;
+    EXPECT_EQ(unit->dimension, dimension) << name;
+    return unit->to_si(1.0);
+  };
+  for (const char* name : {"lb", "lbs", "LBS", "lbf", "Lbf", "pounds", "Pound"}) {
+    EXPECT_EQ(in_si(name, Dimension::force), 4.4482216152605) << name;
+  }
+  for (const char* name : {"kg", "Kg", "kgf", "kp", "kilograms"})
+    EXPECT_EQ(in_si(name, Dimension::force), 9.80665) << name;
+  for (const char* name : {"gf", "gram", "Grams"}) EXPECT_DOUBLE_EQ(in_si(name, Dimension::force), 9.80665e-3) << name;
+  for (const char* name : {"oz", "ozf", "ounces"}) {
+    EXPECT_DOUBLE_EQ(in_si(name, Dimension::force), 4.4482216152605 / 16) << name;
+  }
+  EXPECT_EQ(in_si("mN", Dimension::force), 1e-3);
+  EXPECT_EQ(in_si("kN", Dimension::force), 1e3);
+  for (const char* name : {"in", "inch", "Inches"}) EXPECT_EQ(in_si(name, Dimension::length), 0.0254) << name;
+  for (const char* name : {"ft", "Feet", "foot"}) EXPECT_EQ(in_si(name, Dimension::length), 0.3048) << name;
+  for (const char* name : {"mil", "mils", "thou"}) EXPECT_DOUBLE_EQ(in_si(name, Dimension::length), 2.54e-5) << name;
+  EXPECT_DOUBLE_EQ(in_si("ft-lb", Dimension::torque), 12 * in_si("in-lbs", Dimension::torque));
+  EXPECT_DOUBLE_EQ(in_si("lbf.in", Dimension::torque), 4.4482216152605 * 0.0254);
+  EXPECT_EQ(in_si("g", Dimension::acceleration), 9.80665);
+  EXPECT_EQ(find_unit("MN"), nullptr);
+}
+
 }  // namespace
 }  // namespace mbk::recording
