@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "mbk/files/recording/channel_table.h"
-#include "mbk/files/recording/slices.h"
 
 namespace mbk::recording {
 namespace {
@@ -81,6 +80,13 @@ Result<ChannelSource> parse_entry(std::string_view entry) {
   return result;
 }
 
+/// The length of the brackets that begin a text, in which commas part no entries; 0 where none do.
+std::size_t brackets_ahead(std::string_view text) {
+  if (text.front() != '[' && text.front() != '(') return 0;
+  const auto end = text.find(text.front() == '[' ? ']' : ')');
+  return end == text.npos || text.substr(0, end).find('=') != text.npos ? 0 : end + 1;
+}
+
 }  // namespace
 
 std::vector<SourceReading> readings(std::string_view source) {
@@ -118,8 +124,8 @@ std::optional<CountedSource> counted_source(std::string_view source) {
 Result<std::vector<ChannelSource>> parse_channel_map(std::string_view text) {
   std::vector<ChannelSource> map;
   for (std::size_t begin = 0; begin <= text.size();) {
-    std::size_t end = begin;  // commas of slices part no entries
-    while (end < text.size() && text[end] != ',') end += std::max<std::size_t>(slice_ahead(text.substr(end)), 1);
+    std::size_t end = begin;
+    while (end < text.size() && text[end] != ',') end += std::max<std::size_t>(brackets_ahead(text.substr(end)), 1);
     auto entry = parse_entry(trimmed(text.substr(begin, end - begin)));
     if (!entry) return tl::unexpected(entry.error());
     if (std::ranges::find(map, entry->channel, &ChannelSource::channel) != map.end()) {

@@ -1,5 +1,6 @@
 #include "mbk/files/recording/channel_map.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace mbk::recording {
@@ -76,11 +77,23 @@ TEST(ParseChannelMap, RefusesAChannelTwice) {
 TEST(ParseChannelMap, RefusesUnitsOfTheWrongDimension) {
   const Error error = error_of("y=2:N");
   EXPECT_EQ(error.kind, ErrorKind::data);
-  EXPECT_EQ(error.line(), "channel y cannot be in N; possible are m, cm, mm, um, in");
+  EXPECT_EQ(error.line(), "channel y cannot be in N; possible are m, cm, mm, um, in, ft, mil");
 }
 
 TEST(ParseChannelMap, RefusesAVoltageInNewtons) {
   EXPECT_EQ(error_of("Vx=2:N").line(), "channel Vx cannot be in N; possible are V, mV, uV");
+}
+
+TEST(ParseChannelMap, LeavesCommasInBracketsToTheName) {
+  for (const char* source : {"data[1,:,2]", "data[trial, :, 2]", "data(:, 2)", "Force (N, left)", "a[b, c](1,2)"}) {
+    const auto map = parse_channel_map(fmt::format("x={},Fx=-{},y=3", source, source));
+    ASSERT_TRUE(map) << map.error().line();
+    ASSERT_EQ(map->size(), 3U) << source;
+    EXPECT_EQ((*map)[0].source, source);
+    EXPECT_EQ((*map)[1].source, source);
+  }
+  EXPECT_EQ(parse_channel_map("x=a(1,Fx=b(2)").value().size(), 2U);
+  EXPECT_EQ(parse_channel_map("x=a),Fx=[b").value().size(), 2U);
 }
 
 TEST(ParseChannelMap, LeavesAColonWithTheNameWhereNoUnitFollows) {
