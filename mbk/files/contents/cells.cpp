@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "mbk/base/core/rests.h"
 #include "mbk/base/core/trimmed.h"
@@ -34,19 +35,28 @@ bool take(std::string_view& text, char c) {
   return true;
 }
 
+/// One or two digits from the front of the text.
+std::optional<int> take_day_digits(std::string_view& text) {
+  const auto two = take_digits(text, 2);
+  return two ? two : take_digits(text, 1);
+}
+
 /// "2024-03-01", "2024/03/01" or "01.03.2024" from the front of the text, as a day since 1970-01-01. What 01/03/2024
-/// means depends on who wrote it.
-std::optional<std::int64_t> take_date(std::string_view& text) {
+/// means depends on who wrote it; with AM or PM the month goes first.
+std::optional<std::int64_t> take_date(std::string_view& text, bool twelve_hours) {
   using namespace std::chrono;  // NOLINT(google-build-using-namespace): its literals and calendar
   std::string_view rest = text;
-  const bool year_first = rest.size() > 4 && (rest[4] == '-' || rest[4] == '/');
-  const char sign = year_first ? rest[4] : '.';
-  const auto first = take_digits(rest, year_first ? 4 : 2);
+  const std::size_t digits = rest.find_first_not_of("0123456789");
+  const bool year_first = digits == 4 && (rest[4] == '-' || rest[4] == '/');
+  const bool month_first = !year_first && twelve_hours && digits < 3 && rest[digits] == '/';
+  const char sign = year_first ? rest[4] : month_first ? '/' : '.';
+  auto first = year_first ? take_digits(rest, 4) : take_day_digits(rest);
   if (!first || !take(rest, sign)) return std::nullopt;
-  const auto m = take_digits(rest, 2);
+  auto m = take_day_digits(rest);
   if (!m || !take(rest, sign)) return std::nullopt;
-  const auto last = take_digits(rest, year_first ? 2 : 4);
+  const auto last = year_first ? take_day_digits(rest) : take_digits(rest, 4);
   if (!last) return std::nullopt;
+  if (month_first) std::swap(first, m);
   const year_month_day date{year(year_first ? *first : *last), month(static_cast<unsigned>(*m)),
                             day(static_cast<unsigned>(year_first ? *last : *first))};
   if (!date.ok()) return std::nullopt;
@@ -89,6 +99,17 @@ std::optional<double> zone(std::string_view text) {
     offset += kMinute * *minutes;
   }
   return west ? -offset : offset;
+}
+
+/// Whether the text ends in "PM" or in "AM", which are taken from it; nothing where it ends in neither.
+std::optional<bool> take_half_of_day(std::string_view& text) {
+  const std::size_t end = text.size();
+  if (end < 3 || (text[end - 1] != 'M' && text[end - 1] != 'm')) return std::nullopt;
+  const char half = text[end - 2];
+  const bool before = half == 'A' || half == 'a', after = half == 'P' || half == 'p';
+  if (!before && !after) return std::nullopt;
+  text = mbk::trimmed(text.substr(0, end - 2));
+  return after;
 }
 
 /// "1.#QNAN", "-1.#IND00", "1.#INF": not a number and infinity as programs of Windows wrote them until 2015.
@@ -170,13 +191,19 @@ std::optional<Instant> instant(std::string_view cell) {
   constexpr std::size_t kShortest = 7;  // 9:05:07
   cell = without_quotes(cell);
   if (cell.size() < kShortest || !is_digit(cell.front())) return std::nullopt;
-  Instant found{take_date(cell), 0.0};
+  const std::optional<bool> afternoon = take_half_of_day(cell);
+  Instant found{take_date(cell, afternoon.has_value()), 0.0};
   if (found.day) {
-    if (cell.empty()) return found;
+    if (cell.empty()) return afternoon ? std::nullopt : std::optional(found);
     if (!take(cell, 'T') && !take(cell, 't') && !take(cell, ' ')) return std::nullopt;
   }
-  const auto clock = take_clock(cell);
+  auto clock = take_clock(cell);
   if (!clock) return std::nullopt;
+  if (afternoon) {
+    constexpr double kNoon = 12.0 * kHour;
+    if (*clock < kHour || *clock >= kNoon + kHour) return std::nullopt;
+    *clock += (*clock >= kNoon ? -kNoon : 0.0) + (*afternoon ? kNoon : 0.0);
+  }
   const auto offset = zone(mbk::trimmed(cell));
   if (!offset || (!found.day && !cell.empty())) return std::nullopt;
   found.seconds = *clock - *offset;

@@ -57,7 +57,8 @@ struct CommaNumber {
 [[nodiscard]] std::optional<CommaNumber> comma_number(std::string_view cell);
 
 /// A time of day, "10:15:30.123", or a date with one, "2024-03-01T10:15:30.123+01:00" (ISO 8601; a blank in place of
-/// T; 2024/03/01 and 01.03.2024 are dates too).
+/// T; 2024/03/01 and 01.03.2024 are dates too); "3:15:30 PM", and then "3/1/2024 3:15:30 PM", in which the month goes
+/// first.
 struct Instant {
   std::optional<std::int64_t> day;  ///< since 1970-01-01; nothing where the cell holds no date
   double seconds;                   ///< since midnight, of universal time where the cell says a time zone

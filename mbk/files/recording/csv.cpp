@@ -43,7 +43,7 @@ Error not_a_number(std::size_t line, std::size_t column, std::string_view cell, 
   if (std::ranges::find(kMissing, cell) != kMissing.end()) {
     remedy = "leave the cell empty, or write nan, where a value is missing";
   } else if (!cell.empty() && cell.front() >= '0' && cell.front() <= '9' &&
-             (count(':') == 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0))) {
+             (count(':') >= 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0))) {
     remedy = "write times as 10:15:30.123 or 2024-03-01T10:15:30.123, or as seconds";
   } else if (blank != cell.npos && cell_number(cell.substr(0, blank)) && find_unit(cell.substr(blank + 1)) != nullptr) {
     remedy = "write numbers alone, and their unit in the name of the column";

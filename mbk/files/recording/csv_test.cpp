@@ -377,6 +377,20 @@ TEST(DecodeCsv, ReadsDatesAsIso8601WritesThem) {
   EXPECT_THAT(obstacle_of("time,x\n2024-02-30,1\n2024-02-31,2\n", 0).message, HasSubstr("is not a number"));
 }
 
+TEST(DecodeCsv, ReadsHoursThatAreCountedTwiceTo12) {
+  EXPECT_EQ(values_of("time,x\n11:59:59.5 AM,1\n12:00:00.25 PM,2\n")(1, 0), 43200.25);
+  EXPECT_EQ(values_of("time,x\n11:59:59 pm,1\n12:00:00 am,2\n1:00:00 am,2\n")(2, 0), 90000);
+  const auto contents = csv("time,x\n2/29/2024 11:59:59 PM,1\n3/1/2024 12:00:00.5 AM,2\n");
+  ASSERT_TRUE(contents) << contents.error().line();
+  EXPECT_EQ(contents->arrays[0].values, Vector((Vector(2) << 86399, 86400.5).finished()));
+  EXPECT_EQ(values_of("time;x\n9.2.2024 10:00:00,25;1\n10.2.2024 10:00:00,5;2\n")(1, 0), 86400 + 36000.5);
+  for (const char* time : {"13:00:00 PM", "0:00:00 AM", "10:00:00 XM", "AM", "2024-03-01 AM", "13/1/2024 1:00:00 AM"}) {
+    EXPECT_THAT(obstacle_of(std::string("time,x\n") + time + ",1\n" + time + ",2\n", 0).message,
+                HasSubstr("is not a number"))
+        << time;
+  }
+}
+
 TEST(DecodeCsv, RefusesTimesAmongOtherNumbers) {
   EXPECT_THAT(obstacle_of("time,x\n10:15:30,1\n37,2\n10:15:31,3\n", 0).message, HasSubstr("times and other numbers"));
   EXPECT_THAT(obstacle_of("time,x\n10:15:30,1\n2024-03-01T10:15:31,3\n", 0).message,
