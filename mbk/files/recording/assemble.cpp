@@ -23,6 +23,7 @@
 #include "mbk/files/recording/own_samples.h"
 #include "mbk/files/recording/robot_logs.h"
 #include "mbk/files/recording/slices.h"
+#include "mbk/files/recording/time_names.h"
 
 namespace mbk::recording {
 namespace {
@@ -188,6 +189,7 @@ class Assembler {
 
   Result<Recording> run() {
     name_robot_log(contents_);
+    if (auto ok = maps_time() ? Result<void>() : name_time(contents_); !ok) return tl::unexpected(ok.error());
     recording_.notes = contents_.notes;
     recording_.metadata = contents_.metadata;
     recording_.events = contents_.events;
@@ -209,6 +211,7 @@ class Assembler {
     if (auto ok = choose_clock(); !ok) return tl::unexpected(ok.error());
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     if (auto ok = name_joints(); !ok) return tl::unexpected(ok.error());
+    note_times();
     follow_metadata();
     extract();
     if (clock_ != nullptr && recording_.time.size() == 0) {
@@ -228,6 +231,13 @@ class Assembler {
 
  private:
   static bool is_time(const ChannelKind* kind) { return kind->name == "time"; }
+
+  [[nodiscard]] bool maps_time() const {
+    return std::ranges::any_of(options_.channels, [](const ChannelSource& entry) {
+      const auto kinds = kinds_called(entry.channel);
+      return !kinds.empty() && is_time(kinds.front());
+    });
+  }
 
   /// A map of the time alone, as to say its unit, leaves all else to its name.
   [[nodiscard]] bool maps_time_alone() const {
@@ -390,7 +400,11 @@ class Assembler {
         return stamped || (kind->only_if_asked && !is_requested(*kind));
       });
       if (name.kinds.empty() || !within_variable(array) || (!contents_.table && !is_vector(array) && !array.obstacle)) {
-        aside.push_back(array.name);
+        if (const std::string unknown = unknown_unit_of(array); !unknown.empty()) {
+          recording_.notes.push_back(unknown);
+        } else {
+          aside.push_back(array.name);
+        }
         continue;
       }
       meanings.push_back(name.kinds);
@@ -416,6 +430,17 @@ class Assembler {
       recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside)));
     }
     return {};
+  }
+
+  /// A note on "reaction (dyn)": a channel with a unit in brackets that it cannot have; "" of any other.
+  static std::string unknown_unit_of(const Array& array) {
+    const auto open = array.name.find_last_of("[(");
+    if (!array.means.empty() || open == array.name.npos || !ends_in_brackets(array.name)) return {};
+    const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(array.name.substr(0, open))).kinds;
+    if (kinds.empty()) return {};
+    return fmt::format("'{}' was ignored: {} cannot be in '{}'; say its unit, as in --channels \"{}={}:{}\"",
+                       array.name, kinds.front()->name, in_last_brackets(array.name), kinds.front()->alias, array.name,
+                       kinds.front()->measures.empty() ? "UNIT" : si_unit(kinds.front()->measures.front()));
   }
 
   /// A channel that is there and damaged is not left out as if there were none.
@@ -523,9 +548,10 @@ class Assembler {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
-      } else if (name.unit != nullptr && is_named(*line) && signal.is_plain() && ends_in_brackets(line->array->name)) {
+      } else if (is_named(*line) && signal.is_plain() && !kind->measures.empty() &&
+                 ends_in_brackets(line->array->name)) {
         recording_.notes.push_back(fmt::format("the name of '{}' says {}, which {} cannot be in: it was taken in {}",
-                                               line->array->name, name.unit->name, kind->name,
+                                               line->array->name, in_last_brackets(line->array->name), kind->name,
                                                kind->default_unit().empty() ? "no unit" : kind->default_unit()));
       } else if (signal.is_plain()) {
         const auto unit = unit_for_all(*kind, *line->array);
@@ -538,7 +564,16 @@ class Assembler {
     return find_time();
   }
 
-  static bool ends_in_brackets(std::string_view name) { return name.ends_with(']') || name.ends_with(')'); }
+  /// "V" of "cell [V]".
+  static std::string_view in_last_brackets(std::string_view name) {
+    const auto open = name.find_last_of("[(");
+    return open == name.npos ? std::string_view() : name.substr(open + 1, name.size() - open - 2);
+  }
+  /// As a unit, and not as a number: "cell [V]".
+  static bool ends_in_brackets(std::string_view name) {
+    return (name.ends_with(']') || name.ends_with(')')) &&
+           in_last_brackets(name).find_first_not_of("0123456789:,; ") == 0;
+  }
 
   /// Whether the file says a unit of the array that the channel can be in: a gain then keeps it, and else changes it.
   static bool in_unit_of(const ChannelKind& kind, const Array& array) {
@@ -1049,6 +1084,21 @@ class Assembler {
     return {};
   }
 
+  /// Other columns of time that say something else than the one that was recognised; what could be it where none was.
+  void note_times() {
+    const auto time = std::ranges::find_if(signals_, [](const Signal& signal) { return is_time(signal.kind); });
+    if (time != signals_.end()) {
+      if (time->mapped || is_matrix(*time->line.array)) return;
+      for (std::string& note : other_times(contents_, *time->line.array, time->unit)) {
+        recording_.notes.push_back(std::move(note));
+      }
+    } else if (clock_ == nullptr && said_rate() == 0.0) {
+      for (const Array* array : possible_times(contents_)) {
+        if (array->values.size() == signals_.front().line.size()) possible_times_.push_back(array->name);
+      }
+    }
+  }
+
   /// Units that the metadata say, where nothing nearer says another.
   void follow_metadata() {
     for (Signal& signal : signals_) {
@@ -1223,8 +1273,15 @@ class Assembler {
         return {};
       }
       if (own == 0.0 && !options_.rate) {
-        return bad_data("the file holds no time that is recognised",
-                        "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
+        if (possible_times_.empty()) {
+          return bad_data("the file holds no time that is recognised",
+                          "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
+        }
+        return bad_data(fmt::format("the file holds no time that is recognised: by their names, it may be {}",
+                                    quoted(possible_times_)),
+                        fmt::format("say so if it is, as in --channels \"time={}\", or pass the sample rate "
+                                    "(--rate 1000)",
+                                    possible_times_.front()));
       }
       const Index samples = recording_.channels.front().values.size();
       const double duration = own > 0.0 ? static_cast<double>(samples) / own : 0.0;
@@ -1296,9 +1353,10 @@ class Assembler {
   Contents contents_;
   const ReadOptions& options_;
   std::vector<Signal> signals_;
-  const Clock* clock_ = nullptr;  ///< of the recording, where the file has clocks
-  bool states_time_ = false;      ///< the map states the unit of time
-  Index trials_ = 0;              ///< that the slices of the map leave over; 0: none
+  const Clock* clock_ = nullptr;                  ///< of the recording, where the file has clocks
+  bool states_time_ = false;                      ///< the map states the unit of time
+  std::vector<std::string> possible_times_ = {};  ///< by their names, where none is recognised
+  Index trials_ = 0;                              ///< that the slices of the map leave over; 0: none
   Recording recording_;
 };
 
