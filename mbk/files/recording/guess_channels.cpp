@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mbk/files/recording/si_units.h"
+#include "mbk/files/recording/time_names.h"
 
 namespace mbk::recording {
 namespace guess {
@@ -53,7 +54,9 @@ bool begins_with_one_of(std::string_view word, std::initializer_list<std::string
 }
 
 Quantity quantity_of(std::string_view word) {
-  if (is_one_of(word, {"t"}) || begins_with_one_of(word, {"time", "zeit", "clock", "seconds"})) return Quantity::time;
+  if (is_one_of(word, {"t"}) ||
+      begins_with_one_of(word, {"time", "zeit", "clock", "seconds", "tout", "elapsed", "stamp"}))
+    return Quantity::time;
   if (begins_with_one_of(word, {"ref", "cmd", "command", "desired", "target", "setpoint", "xr", "yr", "soll"})) {
     return Quantity::reference;
   }
@@ -220,6 +223,10 @@ class Guesser {
     if (!entry.meaning.unit.empty()) return {entry.meaning.unit, ""};
     constexpr double kSlow = 0.2, kFar = 3.0;
     if (entry.channel == "time") {
+      const Vector& stamps = entry.signal->values;
+      if (const Unit* const unit = stamps.size() > 0 ? unit_since_1970(stamps[0]) : nullptr) {
+        return {std::string(unit->name), fmt::format("so large that it is taken for {} since 1970", unit->name)};
+      }
       const auto step = even_step(entry.signal->values);
       if (step && *step > kSlow) return {"ms", fmt::format("steps of {:.3g} are taken for ms", *step)};
       return {};

@@ -57,6 +57,15 @@ TEST(GuessChannels, OneAxisHasAForceOrATorque) {
             "time=1,x=2:deg,F=3:N.m");
 }
 
+TEST(GuessChannels, StampsSince1970AreInTheUnitOfTheirSize) {
+  const auto since_1970 = [](double scale) {
+    return Vector((1.7e9 * scale + 0.01 * scale * rising(1.0).array()).matrix());
+  };
+  EXPECT_EQ(guessed({{"rosbagTimestamp", since_1970(1e9)}, {"pos", moving(1)}, {"force", moving(2)}}).map,
+            "time=1:ns,x=2,F=3");
+  EXPECT_EQ(guessed({{"tout", since_1970(1e3)}, {"pos", moving(1)}, {"force", moving(2)}}).map, "time=1:ms,x=2,F=3");
+}
+
 TEST(GuessChannels, TimeIsWhatRisesByEvenSteps) {
   const ChannelGuess guess =
       guessed({{"a1", moving(1)}, {"count", rising(1.0)}, {"position", moving(0.1)}, {"force", moving(1)}});
