@@ -25,8 +25,6 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"mm", length, 1, 1e3},
     {"um", length, 1, 1e6},
     {"in", length, 0.0254, 1},
-    {"ft", length, 0.3048, 1},
-    {"mil", length, 0.0254, 1e3},
     {"rad", angle, 1, 1},
     {"mrad", angle, 1, 1e3},
     {"deg", angle, kPi, 180},
@@ -36,17 +34,12 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"mN", force, 1, 1e3},
     {"lbf", force, 4.4482216152605, 1},
     {"kgf", force, 9.80665, 1},
-    {"gf", force, 9.80665, 1e3},
-    {"ozf", force, 0.27801385095378125, 1},
     {"N.m", torque, 1, 1},
     {"Nm", torque, 1, 1},
     {"N*m", torque, 1, 1},
     {"N.mm", torque, 1, 1e3},
     {"Nmm", torque, 1, 1e3},
     {"mNm", torque, 1, 1e3},
-    {"N.cm", torque, 1, 1e2},
-    {"lbf.in", torque, 0.1129848290276167, 1},
-    {"lbf.ft", torque, 1.3558179483314004, 1},
     {"m/s2", acceleration, 1, 1},
     {"m/s^2", acceleration, 1, 1},
     {"mm/s2", acceleration, 1, 1e3},
@@ -59,6 +52,14 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"V", voltage, 1, 1},
     {"mV", voltage, 1, 1e3},
     {"uV", voltage, 1, 1e6},
+    // rare ones
+    {"ft", length, 0.3048, 1},
+    {"mil", length, 0.0254, 1e3},
+    {"gf", force, 9.80665, 1e3},
+    {"ozf", force, 0.27801385095378125, 1},
+    {"N.cm", torque, 1, 1e2},
+    {"lbf.in", torque, 0.1129848290276167, 1},
+    {"lbf.ft", torque, 1.3558179483314004, 1},
 });
 
 /// Names that are spelled out, for which case does not count, and other spellings; in small letters. Units of mass
@@ -215,7 +216,8 @@ std::string_view si_unit(Dimension dimension) {
 }
 
 std::span<const Unit> units() {
-  return kUnits;
+  constexpr std::size_t kRare = 7;
+  return std::span(kUnits).first(kUnits.size() - kRare);
 }
 
 std::string unit_names(std::span<const Dimension> dimensions) {

@@ -30,7 +30,7 @@ struct Unit {
 /// The SI unit of a dimension, as Channel::unit writes it.
 [[nodiscard]] std::string_view si_unit(Dimension dimension);
 
-/// All of them.
+/// Those that numbers may be in whose file says no unit: all but the rare ones, at the end of the table.
 [[nodiscard]] std::span<const Unit> units();
 
 /// "m, cm, mm, um, in": every unit that measures one of the dimensions, for messages.

@@ -95,6 +95,7 @@ TEST(Units, KnowWeightsAndInchesHoweverTheyAreWritten) {
   EXPECT_DOUBLE_EQ(in_si("lbf.in", Dimension::torque), 4.4482216152605 * 0.0254);
   EXPECT_EQ(in_si("g", Dimension::acceleration), 9.80665);
   EXPECT_EQ(find_unit("MN"), nullptr);
+  EXPECT_EQ(units().back().name, "uV");  // nobody's numbers are taken for ounces
 }
 
 }  // namespace
