@@ -18,9 +18,9 @@ namespace {
 using Json = nlohmann::json;
 
 /// What RapidJSON holds documents to, and what it need not know; it ignores any other keyword without a word.
-const std::set<std::string, std::less<>> kHeld = {"type",     "enum",     "required",  "additionalProperties",
+const std::set<std::string, std::less<>> kHeld = {"type",     "enum",     "required", "additionalProperties",
                                                   "minItems", "maxItems", "minimum",  "maximum",
-                                                  "items",    "anyOf",    "oneOf",     "properties"};
+                                                  "items",    "anyOf",    "oneOf",    "properties"};
 const std::set<std::string, std::less<>> kSaid = {"$schema", "title", "description", "definitions"};
 
 /// The schema with what it refers to in place of each reference, which RapidJSON would ignore where it is not found.

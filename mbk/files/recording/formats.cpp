@@ -43,23 +43,23 @@ bool is_text(std::string_view bytes) {
 
 // ---- what a file looks like ----
 
-template <bool (*looks_like)(std::span<const std::byte>)>
+template <bool (*LooksLike)(std::span<const std::byte>)>
 bool begins_as(OpenFile& file) {
-  return looks_like(file.begin_bytes());
+  return LooksLike(file.begin_bytes());
 }
 
-template <bool (*looks_like)(std::string_view)>
+template <bool (*LooksLike)(std::string_view)>
 bool text_begins_as(OpenFile& file) {
-  return looks_like(file.begin()) && is_text(file.begin());  // which takes longer
+  return LooksLike(file.begin()) && is_text(file.begin());  // which takes longer
 }
 
-template <bool (*is_such)(const ZipArchive&)>
+template <bool (*IsSuch)(const ZipArchive&)>
 bool zip_holds(OpenFile& file) {
   if (!ZipArchive::looks_like_zip(file.begin_bytes())) return false;
   const auto bytes = file.bytes();
   if (!bytes) return false;
   const auto archive = ZipArchive::open((*bytes)->bytes());
-  return archive && is_such(*archive);
+  return archive && IsSuch(*archive);
 }
 
 bool looks_like_mat(OpenFile& file) {
@@ -97,19 +97,19 @@ constexpr std::string_view kExports =
 
 // ---- how it is read ----
 
-template <Result<Contents> (*decode)(std::span<const std::byte>)>
+template <Result<Contents> (*Decode)(std::span<const std::byte>)>
 Result<Contents> whole(OpenFile& file) {
   const auto bytes = file.take();
   if (!bytes) return tl::unexpected(bytes.error());
-  return decode((*bytes)->bytes());
+  return Decode((*bytes)->bytes());
 }
 
-template <Result<Contents> (*decode)(FileInPassing&)>
+template <Result<Contents> (*Decode)(FileInPassing&)>
 Result<Contents> in_passing(OpenFile& file) {
   auto passing = file.in_passing();
   if (!passing) return tl::unexpected(passing.error());
   if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
-  return decode(*passing);
+  return Decode(*passing);
 }
 
 Result<Contents> decode_mat(OpenFile& file) {
@@ -150,11 +150,11 @@ Result<std::shared_ptr<const OpenTrials>> open_exam(OpenFile& file) {
 }
 
 /// Of a file that is decoded at once and may hold several records.
-template <Result<std::vector<NamedContents>> (*decode)(std::span<const std::byte>)>
+template <Result<std::vector<NamedContents>> (*Decode)(std::span<const std::byte>)>
 Result<std::shared_ptr<const OpenTrials>> all_records(OpenFile& file) {
   const auto bytes = file.take();
   if (!bytes) return tl::unexpected(bytes.error());
-  auto records = decode((*bytes)->bytes());
+  auto records = Decode((*bytes)->bytes());
   if (!records) return tl::unexpected(records.error());
   return decoded_trials(std::move(*records), file.sha256());
 }

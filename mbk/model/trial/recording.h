@@ -33,11 +33,8 @@ enum class Staleness {
 
 [[nodiscard]] constexpr auto word_table(Staleness) {
   using enum Staleness;
-  return std::to_array<Word<Staleness>>({{none, "none"},
-                                         {held, "held"},
-                                         {repeated, "repeated"},
-                                         {frozen, "frozen"},
-                                         {placeholder, "placeholder"}});
+  return std::to_array<Word<Staleness>>(
+      {{none, "none"}, {held, "held"}, {repeated, "repeated"}, {frozen, "frozen"}, {placeholder, "placeholder"}});
 }
 
 /// How often a channel was measured, where that is not once a sample.
