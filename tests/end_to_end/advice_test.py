@@ -238,7 +238,7 @@ def _(test):
 @advice_of("stiffness-not-positive")
 def _(test):
     code, path = "stiffness-not-positive", test.simulated("force_task")
-    raised = test.measured(path)
+    raised = test.measured("--method", "ls", path)
     test.assertEqual(first_options(hint_of(raised, code)), ("--method", "iv"))
     test.goes(code, raised, test.measured("--method", "iv", path))
 
@@ -423,7 +423,7 @@ def _(test):
 @advice_of("tremor")
 def _(test):
     path = departing(test, "[participant.departures]\ntremor_N = 1\ntremor_hz = 4.5")
-    raised = test.measured(path)
+    raised = test.measured("--method", "ls", path)
     test.assertEqual(first_options(hint_of(raised, "tremor")), ("--method", "iv"))
     followed = test.measured("--method", "iv", path)
     test.goes("tremor", raised, followed)
@@ -506,9 +506,9 @@ def _(test):  # leave --sg-window out
     def hum(amplitude, phase):
         return lambda values: [v + amplitude * math.sin(2 * math.pi * 93 * k / 1000 + phase) for k, v in enumerate(values)]
     path = test.with_columns(test.simulated("relaxed_sinusoidal"), "hum.csv", force_x=hum(3.0, 0), hand_x=hum(1e-4, 0.5))
-    raised = test.measured("--decimate-check", "--sg-window", "7", path)
+    raised = test.measured("--method", "ls", "--decimate-check", "--sg-window", "7", path)
     test.assertIn("--sg-window", hint_of(raised, "decimation-changes-model"))
-    test.goes("decimation-changes-model", raised, test.measured("--decimate-check", path))
+    test.goes("decimation-changes-model", raised, test.measured("--method", "ls", "--decimate-check", path))
 
 
 # ---- the recording ----

@@ -54,7 +54,7 @@ class Width(Case):
 
     def test_the_text_has_each_matrix_and_both_files(self):
         text = self.fine("compare", self.stored(), self.stored("other.json")).out
-        for word in (*MATRICES, "by least squares", f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinct"):
+        for word in (*MATRICES, "by instrumental variables", f"first   {make_log().path}\n", f"second  {make_log().path}\n", "not distinct"):
             self.assertIn(word, text)
         self.assert_lines_fit(text)
 

@@ -38,7 +38,7 @@ class Ellipse(Case):
         log = make_log().path
         alone = self.fine("ellipse", self.result(log)).out
         self.assertEqual(alone.splitlines()[0], str(log))
-        self.assertEqual(alone.splitlines()[1], "  by least squares")
+        self.assertEqual(alone.splitlines()[1], "  by instrumental variables")
         self.assertIn("\n".join(alone.splitlines()[2:]), run("measure", log).out)
 
     def test_several_results_give_one_document(self):

@@ -57,7 +57,7 @@ class Json(Case):
         self.assertRegex(source["sha256"], r"\A[0-9a-f]{64}\Z")
         self.assertGreater(source["duration_s"], 60.0)
         self.assertAlmostEqual(source["rate_hz"], 1000.0, places=5)
-        self.assertEqual((result["mode"], result["protocol"], result["method"]), (mode, protocol, "ls"))
+        self.assertEqual((result["mode"], result["protocol"], result["method"]), (mode, protocol, "iv" if mode == "default" else "ls"))
         for part in ("model", "standard_error"):
             for matrix in "MBK":
                 self.assert_shape(result[part][matrix], axes, axes)
@@ -181,7 +181,7 @@ class SeveralFiles(Case):
 
     def test_the_text_ends_with_the_mean(self):
         text = self.fine("measure", "--quiet", *self.logs()).out
-        self.assertIn("\nmean of 3 trials, by least squares\n", text)
+        self.assertIn("\nmean of 3 trials, by instrumental variables\n", text)
         self.assertIn("± is the 95 % interval of the mean", text)
 
     def test_pool_makes_one_fit_over_all(self):

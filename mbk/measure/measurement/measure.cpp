@@ -210,13 +210,15 @@ Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& source
 std::pair<Method, std::string> recommended(const std::vector<PreparedTrial>& trials, const identify::Comparison& both) {
   const auto by_force = [](const PreparedTrial& trial) { return trial.reference_quantity == ReferenceQuantity::force; };
   if (trials.front().preparation.mode == Mode::reference) return {Method::least_squares, "the published procedure"};
-  if (!std::ranges::all_of(trials, by_force)) {
-    return {Method::least_squares, "the robot controls the position"};
+  const Identification& instrumental = both.instrumental_variables;
+  if (!instrumental.instrument || !instrumental.instrument->strong()) {
+    return {Method::least_squares, "the recorded reference explains too little of the motion for instruments"};
   }
-  if (!both.instrumental_variables.usable) {
-    return {Method::least_squares, "the reference is a force, but instrumental variables are not usable"};
+  if (!instrumental.usable) return {Method::least_squares, "instrumental variables are not usable"};
+  if (std::ranges::all_of(trials, by_force)) {
+    return {Method::instrumental_variables, "the reference is a force: the limb and the robot move in a closed loop"};
   }
-  return {Method::instrumental_variables, "the reference is a force: the limb and the robot move in a closed loop"};
+  return {Method::instrumental_variables, "the recorded reference explains the motion"};
 }
 
 /// By the method that was asked for or is recommended and, where a reference was recorded, by the other one too.
@@ -271,9 +273,7 @@ std::pair<const Identification*, const Identification*> both_methods(const Measu
   const Identification* first = &measured.identification;
   const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
   const bool by_instruments = first->method == Method::instrumental_variables;
-  const Identification* instrumental = by_instruments ? first : other;
-  if (instrumental != nullptr && other != nullptr &&
-      (instrumental == other) == analyse::instruments_speak(*instrumental, measured.disagreement)) {
+  if (!by_instruments && other != nullptr && analyse::instruments_speak(*other, measured.disagreement)) {
     std::swap(first, other);
   }
   return {first, other};

@@ -33,8 +33,9 @@ struct Options {
 /// The pipeline as one call: inspect, prepare, identify, analyse. Several recordings are pooled into one fit.
 ///
 /// What is not asked for follows from the recording, so that whoever measures it gets one answer:
-/// - the method, in default mode: instrumental variables where the reference is a force (the limb then decides on the
-///   motion too, and least squares is biased) and they hold, else least squares; least squares in reference mode;
+/// - the method, in default mode: instrumental variables where a reference is recorded that explains the motion well
+///   (the limb moves the robot too, and least squares is biased) and they hold, else least squares; least squares in
+///   reference mode;
 /// - the handle's mass, as identify::Options says;
 /// - a clock: where a session missed ticks (gaps of at most 0.1 s, at most 5 % of the time), the samples are put on the
 ///   even clock that the recording names (`rate_hz`), in default mode; the result warns of it.
