@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -144,6 +147,57 @@ TEST(AnalyseEllipses, RefusesOneAxis) {
   Identification id;
   id.axes = 1;
   EXPECT_EQ(analyse_ellipses(id).error().message, "one axis has no ellipse");
+}
+
+/// How often the set of orientations holds the truth, and how often it holds all angles, over draws of K.
+std::pair<double, double> orientations(const Eigen::Matrix2d& truth, const Eigen::Matrix4d& covariance) {
+  constexpr int kDraws = 2000;
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  const Eigen::Matrix4d root = covariance.llt().matrixL();
+  const double angle = impedance::ellipse(truth).orientation;
+  double held = 0, all = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Eigen::Vector4d error;
+    for (double& one : error) one = normal(engine);
+    error = root * error;
+    const Matrix Z = truth + (Eigen::Matrix2d() << error[0], error[1], error[2], error[3]).finished();
+    const EllipseFinding finding = ellipse_finding(Z, covariance);
+    const auto [low, high] = finding.orientation95;
+    const double at = angle + std::numbers::pi * std::ceil((low - angle) / std::numbers::pi);
+    held += at <= high ? 1.0 : 0.0;
+    all += finding.round ? 1.0 : 0.0;
+    EXPECT_EQ(finding.round, high - low > 0.999 * std::numbers::pi);
+  }
+  return {held / kDraws, all / kDraws};
+}
+
+TEST(EllipseFinding, HoldsEveryAngleWhereTheEllipseMayBeRound) {
+  Eigen::Matrix4d covariance = identification().covariance.block<4, 4>(8, 8);
+  covariance *= 4.0;
+  const auto [held, all] = orientations(100.0 * Eigen::Matrix2d::Identity(), covariance);
+  EXPECT_GT(held, 0.94);
+  EXPECT_NEAR(all, 0.95, 0.015);
+}
+
+TEST(EllipseFinding, HoldsTheOrientationOfAnyEllipse) {
+  const Eigen::Matrix4d covariance = identification().covariance.block<4, 4>(8, 8);
+  for (const double difference : {2.0, 5.0, 10.0, 20.0, 80.0}) {
+    const Eigen::Rotation2Dd turn(0.4);
+    const Eigen::Matrix2d truth = turn * Eigen::Vector2d(100.0 + difference, 100.0).asDiagonal() * turn.inverse();
+    EXPECT_GT(orientations(truth, covariance).first, 0.935) << difference;
+  }
+  EXPECT_LT(orientations(Eigen::Vector2d(180.0, 100.0).asDiagonal(), covariance).second, 0.01);
+}
+
+TEST(EllipseFinding, GivesTheEigenvaluesTheirIntervals) {
+  const Findings findings = *analyse_ellipses(identification());
+  const EllipseFinding& stiffness = findings.ellipses[2];
+  EXPECT_LT(stiffness.lambda_max95.first, stiffness.ellipse.lambda_max);
+  EXPECT_GT(stiffness.lambda_max95.second, stiffness.ellipse.lambda_max);
+  EXPECT_LT(stiffness.lambda_min95.first, stiffness.ellipse.lambda_min);
+  EXPECT_GT(stiffness.lambda_min95.second, stiffness.ellipse.lambda_min);
+  EXPECT_FALSE(stiffness.round);
 }
 
 }  // namespace ellipses_test

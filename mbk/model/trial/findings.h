@@ -11,12 +11,16 @@ namespace mbk {
 
 using Interval = std::pair<double, double>;  ///< 95 %
 
-/// An ellipse and how sure it is. Area and shape by the delta method on their logarithms, the orientation on itself.
+/// An ellipse and how sure it is. Area and shape by the delta method on their logarithms; the orientation by Fieller's
+/// set (1954) of [(z_xx − z_yy)/2, z_s], which holds every angle where that vector may be zero: a round ellipse has no
+/// orientation. Then a shape of 1, and eigenvalues that are equal, are in their intervals, too.
 struct EllipseFinding {
   Matrix symmetric;  ///< (Z + Zᵀ)/2, whose ellipse it is
   impedance::Ellipse ellipse;
   Interval area95, shape95;
-  Interval orientation95;  ///< [rad]; may reach outside [0, π): the angle is only defined mod π
+  Interval orientation95;  ///< [rad]; may reach outside [0, π), the angle being defined mod π; π wide: any angle
+  Interval lambda_min95, lambda_max95;
+  bool round = false;  ///< whether a circle is not refuted (χ² of 2 degrees of freedom, 5 %)
 };
 
 /// How far a matrix is from symmetric.

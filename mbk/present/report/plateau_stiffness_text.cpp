@@ -34,10 +34,13 @@ std::string stiffness_regression_text(const StiffnessRegression& fit, Motion mot
     const impedance::Ellipse& e = fit.ellipse->ellipse;
     if (e.lambda_min > 0.0) {
       rows.push_back(
-          {"ellipse", fmt::format("area {:.0f}{}, shape {:.2f}{}, orientation {:.1f}°{}", e.area,
-                                  bracketed(fit.ellipse->area95, 0), e.shape, bracketed(fit.ellipse->shape95, 2),
-                                  180.0 / std::numbers::pi * e.orientation,
-                                  bracketed(fit.ellipse->orientation95, 1, 180.0 / std::numbers::pi))});
+          {"ellipse",
+           fmt::format("area {:.0f}{}, shape {:.2f}{}, orientation {}", e.area, bracketed(fit.ellipse->area95, 0),
+                       e.shape, bracketed(fit.ellipse->shape95, 2),
+                       fit.ellipse->round
+                           ? "any: it may be round"
+                           : fmt::format("{:.1f}°{}", 180.0 / std::numbers::pi * e.orientation,
+                                         bracketed(fit.ellipse->orientation95, 1, 180.0 / std::numbers::pi)))});
     } else {
       rows.push_back({"ellipse", fmt::format("none: eigenvalues {:.3g} and {:.3g}", e.lambda_min, e.lambda_max)});
     }

@@ -50,10 +50,12 @@ Chart ellipse_chart(const EllipseFinding& finding, const char* name, const std::
   chart.horizontal = {{0.0, ""}};
   chart.vertical = {{0.0, ""}};
   chart.equal_scale = true;
-  chart.notes = {fmt::format("shape {:.2f}, 95 % interval {:.2f} to {:.2f}; orientation {:.1f}°, {:.1f} to {:.1f}°",
-                             finding.ellipse.shape, finding.shape95.first, finding.shape95.second,
-                             kDegrees * finding.ellipse.orientation, kDegrees * finding.orientation95.first,
-                             kDegrees * finding.orientation95.second)};
+  const std::string orientation =
+      finding.round ? "any: it may be round"
+                    : fmt::format("{:.1f}°, {:.1f} to {:.1f}°", kDegrees * finding.ellipse.orientation,
+                                  kDegrees * finding.orientation95.first, kDegrees * finding.orientation95.second);
+  chart.notes = {fmt::format("shape {:.2f}, 95 % interval {:.2f} to {:.2f}; orientation {}", finding.ellipse.shape,
+                             finding.shape95.first, finding.shape95.second, orientation)};
   return chart;
 }
 

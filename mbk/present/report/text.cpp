@@ -219,7 +219,9 @@ std::string ellipses_text(const Findings& findings) {
       row.push_back(fmt::format("none (λ {:.3g}, {:.3g})", e.lambda_min, e.lambda_max));
       row.emplace_back();
     }
-    row.push_back(fmt::format("{:.1f}° {}", degrees * e.orientation, range(finding.orientation95, 1, degrees)));
+    row.push_back(finding.round
+                      ? "any: it may be round"
+                      : fmt::format("{:.1f}° {}", degrees * e.orientation, range(finding.orientation95, 1, degrees)));
     if (k != 1) {
       const AntisymmetryFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
       row.push_back(std::isfinite(a.zmean_percent) ? fmt::format("{:.1f} % {}", a.zmean_percent, range(a.zmean95, 1))

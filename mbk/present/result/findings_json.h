@@ -18,7 +18,8 @@ inline Json ellipse_json(const EllipseFinding& finding) {
           {"interval95",
            {{"area", interval(finding.area95)},
             {"shape", interval(finding.shape95)},
-            {"orientation_deg", interval(finding.orientation95, degrees)}}}};
+            {"orientation_deg", interval(finding.orientation95, degrees)},
+            {"eigenvalues", {interval(finding.lambda_min95), interval(finding.lambda_max95)}}}}};
 }
 
 inline Json antisymmetry_json(const AntisymmetryFinding& finding) {

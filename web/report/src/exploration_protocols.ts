@@ -1,6 +1,7 @@
 // Parts of an exploration that belong to a protocol or to time: change, the first moment after onset, ramps and holds.
 import type { AfterOnsetEstimate, Exploration, PlateauStiffnessEstimate, ReachPredictor, ReachStiffnessEstimate, StiffnessRegression, TimeCourseEstimate, Value } from "@mbk/shared/documents";
 import { facts, h, heading, table } from "@mbk/shared/dom";
+import { anyAngle } from "@mbk/shared/ellipses";
 import { data, fixed, significant } from "@mbk/shared/format";
 import { figure, type Panel, styles } from "./charts";
 
@@ -84,6 +85,7 @@ function ellipseWords({ ellipse }: StiffnessRegression): string | undefined {
   if (!ellipse) return undefined;
   const [shapeLow, shapeHigh] = ellipse.interval95.shape;
   const [turnLow, turnHigh] = ellipse.interval95.orientation_deg;
+  if (anyAngle(ellipse.interval95.orientation_deg)) return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation any: it may be round`;
   return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation ${fixed(ellipse.orientation_deg ?? NaN, 1)}° [${fixed(turnLow ?? NaN, 1)}, ${fixed(turnHigh ?? NaN, 1)}]`;
 }
 

@@ -1,7 +1,7 @@
 // Several recordings side by side.
 import type { Passivity, Prediction, Value } from "@mbk/shared/documents";
 import { h, heading, table } from "@mbk/shared/dom";
-import { ellipsesSideBySide } from "@mbk/shared/ellipses";
+import { anyAngle, ellipsesSideBySide } from "@mbk/shared/ellipses";
 import { data, decimalsFor, fixed, normal95, significant, withInterval } from "@mbk/shared/format";
 import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { conditionOf, fileOf, participantOf, type Report } from "./data";
@@ -111,7 +111,7 @@ export function overviewSection(report: Report): HTMLElement {
       return [
         e.area === null ? "none" : data(e.area, significant(e.area), `${name}-area`),
         e.shape === null ? "none" : data(e.shape, fixed(e.shape, 2), `${name}-shape`),
-        withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 0),
+        anyAngle(e.interval95.orientation_deg) ? "any" : withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 0),
       ];
     }),
   ]);

@@ -1,7 +1,7 @@
 // What was measured, the numbers, and where they come from.
 import type { Value } from "@mbk/shared/documents";
 import { facts, h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
-import { ellipsesOf } from "@mbk/shared/ellipses";
+import { anyAngle, ellipsesOf } from "@mbk/shared/ellipses";
 import { csvOf } from "@mbk/shared/sheet";
 import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withInterval } from "@mbk/shared/format";
 import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
@@ -102,8 +102,14 @@ export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): 
       `${name} ${symbol}`,
       e.area === null ? "none" : h("span", { class: "number" }, withInterval(e.area, e.interval95.area, `${name}-area`, areaDecimals), ` ${unit.includes("·") || unit.includes("/") ? `(${unit})` : unit}²`),
       e.shape === null ? "none" : withInterval(e.shape, e.interval95.shape, `${name}-shape`, 2),
-      h("span", { class: "number" }, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
-      h("span", { class: "number" }, data(e.eigenvalues[1], significant(e.eigenvalues[1]), `${name}-large`), " and ", data(e.eigenvalues[0], significant(e.eigenvalues[0]), `${name}-small`), ` ${unit}`),
+      anyAngle(e.interval95.orientation_deg)
+        ? "any: it may be round"
+        : h("span", { class: "number" }, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
+      h("span", { class: "number" }, ...([["large", 1], ["small", 0]] as const).flatMap(([which, k]) => [
+        data(e.eigenvalues[k], significant(e.eigenvalues[k]), `${name}-${which}`),
+        h("span", { class: "half" }, ` [${(e.interval95.eigenvalues[k] ?? []).map((end) => significant(end, 3)).join(", ")}]`),
+        which === "large" ? " and " : ` ${unit}`]))
+,
       anti === undefined ? "" : anti.zmean_percent === null ? "undefined" : h("span", { class: "number" }, withInterval(anti.zmean_percent, anti.interval95, `${name}-zmean`, 1), " %"),
     ];
   });

@@ -2,6 +2,7 @@
 import { angleBetween, direction } from "@mbk/shared/directions";
 import type { Method, Model, Value, Warning, WarningCode } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
+import { anyAngle } from "@mbk/shared/ellipses";
 import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
 import { type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
@@ -87,15 +88,17 @@ function principalAxes(matrix: Value[][]): { small: number; large: number; angle
 }
 
 /** In its directions: as the result says, with the interval, or of the other model. */
-function axesOf(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness"): { small: number; large: number; angle: number; interval: [Value, Value] } | undefined {
+function axesOf(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness"):
+  { small: number; large: number; angle: number; intervals: { small: [Value, Value]; large: [Value, Value]; angle: [Value, Value] } } | undefined {
   if (shown.method !== trial.result.method) {
     const axes = principalAxes(shown.model[symbol]);
-    return axes && { ...axes, interval: [null, null] };
+    return axes && { ...axes, intervals: { small: [null, null], large: [null, null], angle: [null, null] } };
   }
   const ellipse = trial.result.ellipses?.[name];
   const [small, large] = ellipse?.eigenvalues ?? [];
   if (!ellipse || typeof small !== "number" || typeof large !== "number") return undefined;
-  return { small, large, angle: ellipse.orientation_deg ?? 0, interval: ellipse.interval95.orientation_deg };
+  const { orientation_deg: angle, eigenvalues: [ofSmall = [null, null], ofLarge = [null, null]] } = ellipse.interval95;
+  return { small, large, angle: ellipse.orientation_deg ?? 0, intervals: { small: ofSmall, large: ofLarge, angle } };
 }
 
 function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness", title: string): HTMLElement {
@@ -107,12 +110,15 @@ function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | 
     parts.push(h("p", { class: "headline" }, withHalfWidth(value, shown.standard_error[symbol][0]?.[0] ?? null, `card-${symbol}`), ` ${unit}`));
     if (value !== null) parts.push(h("p", {}, everyday(symbol, value, unit)));
   } else if (axes) {
-    const { small, large, angle, interval: [low, high] } = axes;
+    const { small, large, angle, intervals } = axes;
+    const [low, high] = intervals.angle;
+    const between = ([from, to]: [Value, Value]) =>
+      h("span", { class: "half" }, from !== null && to !== null ? ` [${significant(from, 3)}, ${significant(to, 3)}]` : "");
     parts.push(
-      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, h("span", { class: "half" }, " maximum (major axis)")),
-      h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
+      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), between(intervals.large), ` ${unit}`, h("span", { class: "half" }, " maximum (major axis)")),
+      anyAngle(intervals.angle) ? h("p", {}, "in any direction: it may be round") : h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
         h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
-      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), ` ${unit} perpendicular (minor axis)`),
+      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), between(intervals.small), ` ${unit} perpendicular (minor axis)`),
     );
     if (small > 0) parts.push(h("p", {}, everyday(symbol, large, unit)));
   } else {

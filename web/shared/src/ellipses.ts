@@ -1,6 +1,6 @@
 // Ellipses to scale at the hand, with a reference circle and the posture under them (Dyck 2013, figs. 3.10, 3.11).
 import { angleBetween } from "./directions";
-import type { Ellipse, Posture, Result } from "./documents";
+import type { Ellipse, Posture, Result, Value } from "./documents";
 import { h, svg } from "./dom";
 import { fixed, plain, significant } from "./format";
 import { matrices, type Trial, unitsOf } from "./result";
@@ -70,10 +70,15 @@ function drawPosture(posture: Posture, frame: Frame): SVGElement {
   );
 }
 
+/** Whether an interval of an orientation holds every angle: the ellipse may be round. */
+export function anyAngle([low, high]: [Value, Value]): boolean {
+  return low !== null && high !== null && high - low >= 179.999;
+}
+
 /** Arcs at both ends of the major axis that span the interval of its orientation. */
 function orientationArcs(ellipse: Ellipse, r: number): SVGElement[] {
   const [low, high] = ellipse.interval95.orientation_deg;
-  if (low === null || high === null || high - low >= 180) return [];
+  if (low === null || high === null || anyAngle([low, high])) return [];
   const at = (degrees: number, turn: number) => {
     const angle = ((degrees + turn) * Math.PI) / 180;
     return `${(r * Math.cos(angle)).toFixed(2)} ${(-r * Math.sin(angle)).toFixed(2)}`;
