@@ -119,6 +119,8 @@ std::optional<participant::Departures::Options> read_departures(const Section& s
   o.tremor_frequency = Hertz(s.number("tremor_hz", o.tremor_frequency.value, above(0)));
   o.tremor_width = Hertz(s.number("tremor_width_hz", o.tremor_width.value, at_least(0)));
   o.equilibrium_drift = s.vector2("equilibrium_drift_mm_per_s", o.equilibrium_drift);
+  o.relaxing_share = s.number("relaxing_share", o.relaxing_share, at_least(0));
+  o.one_sided_share = s.number("one_sided_share", o.one_sided_share);
   return o;
 }
 
@@ -368,8 +370,9 @@ PlanarTrial read_planar(const Section& root, const Section& robot, const perturb
     } else {
       participant::ArmOptions arm = read_will(person, trial.home);
       for (const Section& at : person.sections("stiffness_at")) {
-        arm.stiffness_schedule.push_back(
-            {at.required_number("time_s", at_least(0)), at.required_number("factor", at_least(0))});
+        arm.stiffness_schedule.push_back({at.required_number("time_s", at_least(0)),
+                                          at.required_number("factor", at_least(0)),
+                                          at.number("damping_factor", 1.0, at_least(0))});
       }
       arm.departures = read_departures(person.section("departures"));
       arm.reaching = read_reaching(person.section("reaching"), perturbation, trial.home);

@@ -110,8 +110,12 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
   const auto remnant = Remnant<2>::create(options.remnant, sample_time, options.seed, kRemnantStream);
   if (!remnant) return tl::unexpected(remnant.error());
   for (std::size_t k = 0; k < options.stiffness_schedule.size(); ++k) {
-    const auto& [time, factor] = options.stiffness_schedule[k];
-    if (auto ok = not_negative({{"factor of the stiffness", factor, ""}}); !ok) return tl::unexpected(ok.error());
+    const auto& [time, factor, damping_factor] = options.stiffness_schedule[k];
+    if (auto ok =
+            not_negative({{"factor of the stiffness", factor, ""}, {"factor of the damping", damping_factor, ""}});
+        !ok) {
+      return tl::unexpected(ok.error());
+    }
     if (!std::isfinite(time) || (k > 0 && !(time > options.stiffness_schedule[k - 1].time))) {
       return bad_usage("times of a stiffness schedule must rise");
     }
@@ -150,18 +154,19 @@ Arm::Arm(Limb limb, IntermittentController controller, const Cocontraction& coco
   reach(0.0);
 }
 
-double Arm::scheduled(double t) const {
+double Arm::scheduled(double t, double StiffnessAt::*factor) const {
   if (schedule_.empty()) return 1.0;
   const auto after = std::ranges::upper_bound(schedule_, t, {}, &StiffnessAt::time);
-  if (after == schedule_.begin()) return after->factor;
+  if (after == schedule_.begin()) return *after.*factor;
   const StiffnessAt& before = *std::prev(after);
-  if (after == schedule_.end()) return before.factor;
-  return before.factor + (t - before.time) / (after->time - before.time) * (after->factor - before.factor);
+  if (after == schedule_.end()) return before.*factor;
+  return before.*factor + (t - before.time) / (after->time - before.time) * (*after.*factor - before.*factor);
 }
 
 void Arm::tense(double t) {
-  const double stiffness = cocontraction_.stiffness_scale() * scheduled(t);
-  std::visit([&](auto& limb) { limb.scale(stiffness, cocontraction_.damping_scale()); }, limb_);
+  const double stiffness = cocontraction_.stiffness_scale() * scheduled(t, &StiffnessAt::factor),
+               damping = cocontraction_.damping_scale() * scheduled(t, &StiffnessAt::damping_factor);
+  std::visit([&](auto& limb) { limb.scale(stiffness, damping); }, limb_);
 }
 
 void Arm::reach(double t) {

@@ -15,11 +15,12 @@
 
 namespace mbk::participant {
 
-/// From then on the limb's own stiffness is so many times what it is; before the first and after the last it stays,
-/// between two it goes straight.
+/// From then on the limb's own stiffness and damping are so many times what they are; before the first and after the
+/// last they stay, between two they go straight.
 struct StiffnessAt {
-  double time = 0.0;    ///< [s]
-  double factor = 1.0;  ///< ≥ 0
+  double time = 0.0;            ///< [s]
+  double factor = 1.0;          ///< of the stiffness, ≥ 0
+  double damping_factor = 1.0;  ///< ≥ 0
 };
 
 /// Everything that tells one simulated arm from another. A relaxed and a rigid arm differ in these numbers only.
@@ -83,7 +84,7 @@ class Arm : public Load<2> {
       std::optional<Departures> departures, std::optional<Reaching> reaching, std::vector<StiffnessAt> schedule);
   void reach(double t);
   void tense(double t);
-  [[nodiscard]] double scheduled(double t) const;
+  [[nodiscard]] double scheduled(double t, double StiffnessAt::*factor) const;
 
   Limb limb_;
   IntermittentController controller_;

@@ -20,7 +20,9 @@ Result<Departures> Departures::create(const Options& options, const Vector2d& re
   if (auto ok = not_negative({{"dry friction", options.dry_friction, "N"},
                               {"delay of the reflex", options.reflex_delay, "s"},
                               {"force of tremor", options.tremor_force, "N"},
-                              {"width of tremor", options.tremor_width.value, "Hz"}});
+                              {"width of tremor", options.tremor_width.value, "Hz"},
+                              {"share of the stiffness that relaxes", options.relaxing_share, ""},
+                              {"stiffness on the softer side", 1.0 - std::abs(options.one_sided_share), ""}});
       !ok) {
     return tl::unexpected(ok.error());
   }
@@ -49,6 +51,13 @@ void Departures::step(double t, const Vector2d& position, const Eigen::Matrix2d&
   delayed_[next_] = position - rest_;
   next_ = (next_ + 1) % delayed_.size();  // the oldest, d ago
   held_ = options_.reflex_gain * delayed_[next_] - stiffness * options_.equilibrium_drift * t;
+  const Vector2d away = position - rest_;
+  held_ += options_.one_sided_share * stiffness * away.cwiseAbs();
+  constexpr std::array kTimes = {0.1, 0.5, 1.5};
+  for (std::size_t k = 0; k < kTimes.size(); ++k) {
+    relaxed_[k] += (1.0 - std::exp(-sample_time_ / kTimes[k])) * (away - relaxed_[k]);
+    held_ += options_.relaxing_share * stiffness * (away - relaxed_[k]);
+  }
   if (options_.tremor_force == 0.0) return;
   const double turn = 2.0 * std::numbers::pi * sample_time_;
   for (int axis = 0; axis < 2; ++axis) {

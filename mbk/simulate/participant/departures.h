@@ -16,7 +16,10 @@ namespace mbk::participant {
 /// K (x − x₀) = −F takes for granted does not hold where one of them is there. To be added to h of LoadDynamics,
 ///   F_c v/√(|v|² + v_c²) + k₃ |x − x₀|² (x − x₀) + g (x(t − d) − x₀) − K ṙ t − A cos φ(t),   dφ = 2πf dt + √(2πw) dW
 /// dry friction, hardening, a stretch response after a delay, an equilibrium that moves at ṙ, and a tremor whose line
-/// has the width w. All are zero by default.
+/// has the width w;
+///   + r K Σ_τ (x − x₀ − z_τ) + e K |x − x₀|,   τ ż_τ = x − x₀ − z_τ
+/// three springs behind dampers (τ = 0.1, 0.5, 1.5 s), and a stiffness that is 1 + e times as large on one side and
+/// 1 − e times on the other. All are zero by default.
 class Departures {
  public:
   struct Options {
@@ -29,6 +32,8 @@ class Departures {
     Hertz tremor_frequency{4.5};                     ///< f > 0
     Hertz tremor_width{0.1};                         ///< w, between the half-power points ≥ 0
     Eigen::Vector2d equilibrium_drift = {0.0, 0.0};  ///< ṙ [m/s]
+    double relaxing_share = 0.0;                     ///< r ≥ 0
+    double one_sided_share = 0.0;                    ///< e, −1…1
   };
 
   /// @param sample_time  T [s] > 0    @param rest x₀ [m]
@@ -52,7 +57,9 @@ class Departures {
   std::array<double, 2> phase_;
   std::vector<Eigen::Vector2d> delayed_;  // ring, x − x₀
   std::size_t next_ = 0;
-  Eigen::Vector2d held_ = {0.0, 0.0};  // reflex, drift and tremor, over the tick
+  std::array<Eigen::Vector2d, 3> relaxed_{Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.0, 0.0),
+                                          Eigen::Vector2d(0.0, 0.0)};  // z_τ
+  Eigen::Vector2d held_ = {0.0, 0.0};                                  // reflex, drift and tremor, over the tick
 };
 
 }  // namespace mbk::participant

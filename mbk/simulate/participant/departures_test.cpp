@@ -51,6 +51,26 @@ TEST(Departures, AReflexAnswersAfterItsDelay) {
   }
 }
 
+TEST(Departures, ARelaxingForceIsThatOfTheSpringsAtFirstAndNothingInTheEnd) {
+  Departures relaxing = made({.relaxing_share = 0.3});
+  const Vector2d away(0.01, 0.0);
+  relaxing.step(0.0, kRest + away, 100.0 * Matrix2d::Identity());
+  EXPECT_NEAR(relaxing.force(at({0.0, 0.0})).x(), 0.9, 0.01);
+  for (int tick = 1; tick <= 500; ++tick) relaxing.step(tick * kTick, kRest + away, 100.0 * Matrix2d::Identity());
+  EXPECT_NEAR(relaxing.force(at({0.0, 0.0})).x(), 0.3 * (std::exp(-5.0) + std::exp(-1.0) + std::exp(-1.0 / 3.0)), 1e-3);
+  for (int tick = 501; tick <= 30000; ++tick) relaxing.step(tick * kTick, kRest + away, 100.0 * Matrix2d::Identity());
+  EXPECT_NEAR(relaxing.force(at({0.0, 0.0})).x(), 0.0, 1e-6);
+}
+
+TEST(Departures, AStiffnessOnOneSideAddsTheSameForceBothWays) {
+  Departures one_sided = made({.one_sided_share = 0.6});
+  for (const double away : {0.01, -0.01}) {
+    one_sided.step(0.0, kRest + Vector2d(away, 0.0), 100.0 * Matrix2d::Identity());
+    EXPECT_NEAR(one_sided.force(at({0.0, 0.0})).x(), 0.6, 1e-12);
+  }
+  EXPECT_FALSE(Departures::create({.one_sided_share = 1.5}, kRest, kTick, 1, 3));
+}
+
 TEST(Departures, ATremorHasItsForceAndFrequency) {
   Departures tremor = made({.tremor_force = 1.0, .tremor_frequency = Hertz(5.0), .tremor_width = Hertz(0.0)});
   double power = 0.0;
@@ -102,6 +122,10 @@ TEST(Departures, AStiffnessScheduleIsFollowed) {
     arm.tick(time, kTick, at({0.0, 0.0}), {0.0, 0.0});
     EXPECT_NEAR(arm.impedance(kRest).K(0, 0), 100.0 * factor, 1e-9) << time;
   }
+  Arm damped = quiet_arm({{1.0, 1.0, 1.0}, {2.0, 1.0, 3.0}});
+  damped.tick(1.5, kTick, at({0.0, 0.0}), {0.0, 0.0});
+  EXPECT_NEAR(damped.impedance(kRest).B(0, 0), 16.0, 1e-9);
+  EXPECT_NEAR(damped.impedance(kRest).K(0, 0), 100.0, 1e-9);
   ArmOptions wrong = relaxed_arm_options();
   wrong.stiffness_schedule = {{2.0, 1.0}, {1.0, 1.0}};
   EXPECT_FALSE(Arm::create(wrong, kTick));
