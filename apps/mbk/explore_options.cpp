@@ -17,6 +17,7 @@ Result<measurement::ExploreOptions> options_of(const ExploringArguments& a) {
   options.preprocess.axes = a.reading.axes;
   if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
   options.force_delay = a.force_delay_ms / kMilliseconds;
+  options.force_rotation = a.force_rotation_deg / kDegrees;
   options.only = a.only;
   options.frequency_response = a.response;
   if (a.plateau_from_ms) options.plateau.from_s = *a.plateau_from_ms / kMilliseconds;
@@ -80,6 +81,11 @@ void add_exploring_options(Command command, ExploringArguments& arguments) {
                   "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)")
       .type_name("MS")
       .check(number_within(1000.0));
+  command
+      .add_option("--force-rotation-deg", arguments.force_rotation_deg,
+                  "turn the force by this angle from x to y first: for a force sensor mounted at an angle (0)")
+      .type_name("DEG")
+      .check(number_within(180.0));
   add_choice(command, "--only", arguments.only, "nothing but this part (all of them)");
   const char* const group = "Frequency response";
   add_choice_or_auto(

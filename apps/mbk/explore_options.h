@@ -18,6 +18,7 @@ struct ExploringArguments {
   std::optional<Protocol> protocol;
   std::optional<double> resample_hz;
   double force_delay_ms = 0.0;
+  double force_rotation_deg = 0.0;
   std::optional<ExplorationPart> only;
   std::optional<double> after_onset_ms;
   std::string schedule, align, trigger;

@@ -84,6 +84,10 @@ Result<measurement::Options> measurement_options(const MeasureArguments& argumen
     return bad_usage("--force-delay-ms belongs to a force that was measured", "leave it out");
   }
   options.force_delay = a.force_delay_ms / kMilliseconds;
+  if (a.force_rotation_deg != 0.0 && p.force_source != ForceSource::sensor) {
+    return bad_usage("--force-rotation-deg belongs to a force that was measured", "leave it out");
+  }
+  options.force_rotation = a.force_rotation_deg / kDegrees;
   options.identify = arguments.identify;
   options.ignored_ranges = arguments.ignored_ranges;
   if (a.filters.resample_hz) options.resample = Hertz(*a.filters.resample_hz);

@@ -110,6 +110,12 @@ void add_signal_options(Command command, PreprocessArguments& a) {
       .type_name("MS")
       .check(number_within(kLongestDelayMs))
       .group(kFilters);
+  command
+      .add_option("--force-rotation-deg", a.force_rotation_deg,
+                  "turn the force by this angle from x to y first: for a force sensor mounted at an angle (0)")
+      .type_name("DEG")
+      .check(number_within(180.0))
+      .group(kFilters);
 }
 
 Result<preprocess::WindowLimits> window_limits(const WindowArguments& a) {

@@ -39,6 +39,7 @@ struct PreprocessArguments {
   std::optional<AccelerationSource> acceleration;
   ForceSource force_source = ForceSource::sensor;
   double force_delay_ms = 0.0;
+  double force_rotation_deg = 0.0;
   std::optional<std::filesystem::path> robot;
 
   [[nodiscard]] bool operator==(const PreprocessArguments&) const = default;

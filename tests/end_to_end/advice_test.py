@@ -165,6 +165,27 @@ def _(test):
     read_wrongly(test, "axes-mismatched", lambda e: {**e, "Fx": "-force_x"})
 
 
+@advice_of("inertia-not-symmetric")
+def _(test):  # turn the force back, or correct its gain
+    path = test.simulated("relaxed_sinusoidal")
+    names, columns = test.columns(path)
+    x, y = (columns[next(k for k, full in enumerate(names) if full.startswith(name))] for name in ("force_x", "force_y"))
+    for degrees in (4, -12):
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        turned = test.with_columns(path, f"turned_{degrees}.csv",
+                                   force_x=lambda _: [c * a - s * b for a, b in zip(x, y)],
+                                   force_y=lambda _: [s * a + c * b for a, b in zip(x, y)])
+        raised = test.measured("--handle-mass", 0.194, turned)
+        options = first_options(hint_of(raised, "inertia-not-symmetric"))
+        test.assertEqual(options[0], "--force-rotation-deg")
+        test.assertAlmostEqual(float(options[1]), -degrees, delta=1)
+        followed = test.measured("--handle-mass", 0.194, *options, turned)
+        test.goes("inertia-not-symmetric", raised, followed)
+        truth = test.measured(path).json["model"]["K"]
+        for a, b in zip(flat(followed.json["model"]["K"]), flat(truth)):
+            test.assertAlmostEqual(a, b, delta=3)
+
+
 @advice_of("same-column")
 def _(test):  # name the right column
     path = test.simulated("relaxed_sinusoidal")

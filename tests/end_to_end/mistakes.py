@@ -142,6 +142,7 @@ MISTAKES = (
 
 def first_options(hint):
     """The first options that a hint holds, as they are typed: "…: --channels x=2:mm,y=3; or …"."""
-    match = re.search(r"(--(?:channels|rate|method|handle-mass|axes|cutoff|structure|split|to|from|resample|terms) "
+    match = re.search(r"(--(?:channels|rate|method|handle-mass|axes|cutoff|structure|split|to|from|resample|terms|"
+                      r"force-rotation-deg) "
                       r"(?:'[^']*'|[^\s;']+)(?: --channels (?:'[^']*'|[^\s;']+))?)", hint)
     return tuple(shlex.split(match.group(1))) if match else ()

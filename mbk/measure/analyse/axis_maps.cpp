@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -27,6 +28,8 @@ constexpr double kSmallestMotion = 0.05;      ///< across the main direction: be
 constexpr double kBothMoved = 0.2;   ///< the same, for what no map explains: a guide that holds one axis does that too
 constexpr double kTurned = 20.0;     ///< degrees from which a rotation is told
 constexpr double kSameAngle = 10.0;  ///< degrees within which M, B and K must agree on it
+constexpr double kAsymmetric = 4.4;  ///< standard errors of m_yx − m_xy: 10⁻⁵ by chance
+constexpr double kAgreeOfThree = 13.8, kAgreeOfTwo = 10.8;  ///< χ² of 2 and 1 degrees of freedom, 0.1 % by chance
 
 /// F = R·(F as read), R a signed permutation: row i takes `from[i]` with `sign[i]`.
 struct AxisMap {
@@ -240,6 +243,87 @@ std::optional<double> turned(const Identification& id) {
   return angle;
 }
 
+/// What to do about a force that is turned by so many degrees.
+std::string turn_back(double angle) {
+  return fmt::format(
+      "turn the force back with --force-rotation-deg {:.1f} where its sensor is mounted at that angle; where the "
+      "frame of the position is the one that is turned, M, B and K come out in that frame",
+      -angle);
+}
+
+/// One parameter that makes M, B and K symmetric.
+struct Symmetric {
+  double value = 0, standard_error = 0;
+  double misfit = 0;  ///< χ² of the antisymmetric parts that are left, of one degree less than there are matrices
+};
+
+/// D(p) Z symmetric for each Z of M, B and K: minimises aᵀ V⁻¹ a over p, a of the antisymmetric parts and V their
+/// covariance, by Gauss–Newton.
+/// @param map  D of p, and its derivative
+template <class Map>
+std::optional<Symmetric> made_symmetric(const Identification& id, std::span<const Index> parts, double start,
+                                        const Map& map) {
+  Matrix M = id.model.M;
+  M.diagonal().array() += id.handle_mass;  // the sensor carries the handle too
+  const std::array<const Matrix*, 3> all = {&M, &id.model.B, &id.model.K};
+  const auto count = static_cast<Index>(parts.size());
+  Vector left(count), slope(count), gain;
+  Matrix to_parts = Matrix::Zero(count, id.covariance.rows());
+  Symmetric result{start};
+  constexpr int kSteps = 20;
+  for (int step = 0; step < kSteps; ++step) {
+    const auto [D, derivative] = map(result.value);
+    for (Index k = 0; k < count; ++k) {
+      const Index part = parts[static_cast<std::size_t>(k)];
+      const Matrix &Z = *all[static_cast<std::size_t>(part)], turned = D * Z, change = derivative * Z;
+      left[k] = turned(1, 0) - turned(0, 1);
+      slope[k] = change(1, 0) - change(0, 1);
+      to_parts.row(k).segment(4 * part, 4) << D(1, 0), -D(0, 0), D(1, 1), -D(0, 1);
+    }
+    const Matrix V = to_parts * id.covariance * to_parts.transpose();
+    const numeric::PivotedCholesky weight(V);
+    gain = weight.solve(slope);
+    const double information = gain.dot(slope);
+    if (!(information > 0.0)) return std::nullopt;
+    result.standard_error = 1.0 / std::sqrt(information);
+    result.misfit = left.dot(weight.solve(left));
+    const double move = -gain.dot(left) / information;
+    if (!std::isfinite(move)) return std::nullopt;
+    if (std::abs(move) < 1e-3 * result.standard_error) return result;
+    result.value += move;
+  }
+  return std::nullopt;
+}
+
+/// In place of F, R(−θ) F.
+std::optional<Symmetric> turned_by(const Identification& id, std::span<const Index> parts) {
+  return made_symmetric(id, parts, 0.0, [](double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    Matrix turn(2, 2), derivative(2, 2);
+    turn << c, s, -s, c;
+    derivative << -s, c, -c, -s;
+    return std::pair(turn, derivative);
+  });
+}
+
+/// In place of F_y, F_y/g.
+std::optional<Symmetric> scaled_by(const Identification& id, std::span<const Index> parts) {
+  return made_symmetric(id, parts, 1.0, [](double gain) {
+    Matrix scale = Matrix::Identity(2, 2), derivative = Matrix::Zero(2, 2);
+    scale(1, 1) = 1.0 / gain;
+    derivative(1, 1) = -1.0 / (gain * gain);
+    return std::pair(scale, derivative);
+  });
+}
+
+/// m_yx − m_xy in standard errors; 0 where it is not known.
+double asymmetry_of(const Identification& id) {
+  if (id.axes != 2 || id.structure == Structure::symmetric || !can_be_judged(id)) return 0.0;
+  const Matrix& C = id.covariance;
+  const double variance = C(1, 1) + C(2, 2) - 2.0 * C(1, 2);
+  return variance > 0.0 ? (id.model.M(1, 0) - id.model.M(0, 1)) / std::sqrt(variance) : 0.0;
+}
+
 /// Whether the reference moves the limb along all axes. Along one that it does not move, least squares finds the
 /// negative robot, whose sign says nothing of how the axes were read.
 bool moved_by_reference(const Measurement& measured) {
@@ -280,7 +364,7 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
         fmt::format("the force is turned by {:.0f}° against the motion: inertia, damping and stiffness are all "
                     "lopsided by that angle, which no limb is",
                     *angle),
-        "give force and position in one frame: turn the force of the recording into the robot's base frame"};
+        turn_back(*angle)};
   }
   // Either the force as read is Rᵀ F, or the motion as read R x: then the reference, which moves x, is seen by R.
   const bool by_position = trials.front().reference_quantity == ReferenceQuantity::position;
@@ -303,6 +387,52 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
   return Warning{WarningCode::axes_mismatched,
                  fmt::format("as given, force and motion cannot belong to one limb; {} they do", likelier.words),
                  remedy};
+}
+
+std::optional<Warning> check_symmetry(const Measurement& measured) {
+  const Identification& id = measured.identification;
+  if (std::ranges::find(id.warnings, WarningCode::too_little_data, &Warning::code) != id.warnings.end() ||
+      !moved_by_reference(measured)) {
+    return std::nullopt;
+  }
+  const double asymmetry = asymmetry_of(id);
+  if (!(std::abs(asymmetry) > kAsymmetric)) return std::nullopt;
+  if (measured.alternative && measured.alternative->usable &&
+      !(asymmetry_of(*measured.alternative) * asymmetry > kAsymmetric * kAsymmetric)) {
+    return std::nullopt;
+  }
+  constexpr std::array<Index, 3> kAll = {0, 1, 2};
+  constexpr std::array<Index, 2> kUndamped = {0, 2};
+  constexpr std::array<Index, 1> kInertia = {0};
+  const bool damped = id.structure == Structure::full;
+  const std::span<const Index> parts = damped ? std::span<const Index>(kAll) : std::span<const Index>(kUndamped);
+  const double agree = damped ? kAgreeOfThree : kAgreeOfTwo;
+  std::optional<Symmetric> turn = turned_by(id, parts);
+  const auto scale = scaled_by(id, parts);
+  const bool turn_fits = turn && turn->misfit < agree;
+  const std::string what =
+      fmt::format("the inertia is not symmetric, which no limb's is: m_yx − m_xy is {:.2g} ± {:.1g} kg",
+                  id.model.M(1, 0) - id.model.M(0, 1),
+                  numeric::kNormal95 * std::abs((id.model.M(1, 0) - id.model.M(0, 1)) / asymmetry));
+  if (!turn_fits && scale && scale->misfit < agree && scale->value > 0.0) {
+    return Warning{WarningCode::inertia_not_symmetric,
+                   fmt::format("{}; M, B and K are symmetric if Fy is read {:.3g} ± {:.2g} times too large against Fx",
+                               what, scale->value, numeric::kNormal95 * scale->standard_error),
+                   "check the gain of both axes of the force: 'mbk sensor calibrate'"};
+  }
+  if (!turn_fits) turn = turned_by(id, kInertia);
+  if (!turn) {
+    return Warning{WarningCode::inertia_not_symmetric, what,
+                   "check the frames, gains and crosstalk of force and position"};
+  }
+  const double angle = kDegrees * turn->value, half = kDegrees * numeric::kNormal95 * turn->standard_error;
+  return Warning{WarningCode::inertia_not_symmetric,
+                 turn_fits
+                     ? fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion", what, angle, half)
+                     : fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion by M alone, "
+                                   "which B and K contradict: gains, crosstalk or reflexes may be the cause",
+                                   what, angle, half),
+                 turn_back(angle)};
 }
 
 }  // namespace mbk::analyse

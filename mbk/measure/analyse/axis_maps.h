@@ -19,4 +19,11 @@ namespace mbk::analyse {
 [[nodiscard]] std::optional<Warning> check_axes(const std::vector<const Recording*>& recordings,
                                                 const std::vector<PreparedTrial>& trials, const Measurement& measured);
 
+/// Whether the inertia is symmetric, as that of every limb is: |m_yx − m_xy| above 4.4 standard errors says no (10⁻⁵
+/// by chance), by both methods where both are usable. The angle θ by which the force is then turned against the motion
+/// makes R(−θ)(M + Λ I), R(−θ) B and R(−θ) K symmetric, Λ the handle's mass: by generalised least squares over the
+/// three, or over M alone where the three contradict each other (a reflex may make B and K antisymmetric). Where a
+/// gain of one axis explains M, B and K and an angle does not, that is named.
+[[nodiscard]] std::optional<Warning> check_symmetry(const Measurement& measured);
+
 }  // namespace mbk::analyse

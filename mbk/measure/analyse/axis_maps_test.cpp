@@ -1,11 +1,13 @@
 #include "mbk/measure/analyse/axis_maps.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <string>
 #include <utility>
 
+#include "mbk/base/core/units.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -100,6 +102,61 @@ TEST(AxisMaps, AForceThatIsTurnedIsNamedByItsAngle) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->code, WarningCode::axes_mismatched);
   EXPECT_NE(found->message.find("34°"), std::string::npos) << found->message;
+}
+
+impedance::Model relaxed_arm() {
+  return {Matrix{{1.326, -0.935}, {-0.935, 1.883}}, Matrix{{5.76, -2.14}, {-2.14, 10.56}},
+          Matrix{{42.4, -28.6}, {-28.6, 125.3}}, Vector::Zero(2)};
+}
+
+TEST(Symmetry, OfAForceThatIsTurnedByLessTheAngleIsNamedWithWhatTurnsItBack) {
+  for (const double degrees : {-15.0, 4.0, 12.0}) {
+    const Matrix turn = Eigen::Rotation2D<double>(degrees / kDegrees).toRotationMatrix();
+    const Measurement one = measured(turn, relaxed_arm(), 0.005);
+    EXPECT_FALSE(checked(one)) << degrees;
+    const auto found = check_symmetry(one);
+    ASSERT_TRUE(found) << degrees;
+    EXPECT_EQ(found->code, WarningCode::inertia_not_symmetric);
+    EXPECT_NE(found->message.find(fmt::format("turned by {:.1f}°", degrees)), std::string::npos) << found->message;
+    EXPECT_NE(found->remedy.find(fmt::format("--force-rotation-deg {:.1f} ", -degrees)), std::string::npos)
+        << found->remedy;
+  }
+}
+
+TEST(Symmetry, CountsTheHandleThatTheTurnedSensorCarries) {
+  const Matrix turn = Eigen::Rotation2D<double>(12.0 / kDegrees).toRotationMatrix();
+  impedance::Model with_handle = relaxed_arm();
+  with_handle.M.diagonal().array() += 0.6;
+  Measurement one = measured(turn, with_handle, 1e-3);
+  one.identification.handle_mass = 0.6;
+  one.identification.model.M.diagonal().array() -= 0.6;
+  const auto found = check_symmetry(one);
+  ASSERT_TRUE(found);
+  EXPECT_NE(found->message.find("turned by 12.0°"), std::string::npos) << found->message;
+}
+
+TEST(Symmetry, ToleratesStiffnessAndDampingThatAreNotSymmetric) {
+  impedance::Model reflex = relaxed_arm();
+  reflex.K(0, 1) += 20.0;
+  reflex.K(1, 0) -= 20.0;
+  EXPECT_FALSE(check_symmetry(measured(Matrix::Identity(2, 2), reflex, 0.005)));
+}
+
+TEST(Symmetry, NamesAGainOfOneAxisWhereThatIsTheCause) {
+  const Matrix gain = Eigen::Vector2d(1.0, 1.3).asDiagonal();
+  const auto found = check_symmetry(measured(gain, relaxed_arm(), 0.003));
+  ASSERT_TRUE(found);
+  EXPECT_NE(found->message.find("Fy is read 1.3 "), std::string::npos) << found->message;
+  EXPECT_EQ(found->message.find("turned"), std::string::npos) << found->message;
+}
+
+TEST(Symmetry, AsksBothMethodsWhereBothAreUsable) {
+  const Matrix turn = Eigen::Rotation2D<double>(0.2).toRotationMatrix();
+  Measurement one = measured(turn, relaxed_arm(), 0.005);
+  one.alternative = measured(Matrix::Identity(2, 2), relaxed_arm(), 0.005).identification;
+  EXPECT_FALSE(check_symmetry(one));
+  one.alternative->usable = false;
+  EXPECT_TRUE(check_symmetry(one));
 }
 
 }  // namespace

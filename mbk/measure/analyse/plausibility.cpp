@@ -193,6 +193,9 @@ void judge_plausibility(const std::vector<const Recording*>& recordings, const s
   } else if (names) {
     id.warnings.insert(id.warnings.begin(), *names);
   }
+  if (plausible) {
+    if (auto found = check_symmetry(measured)) id.warnings.push_back(std::move(*found));
+  }
   if (!ignored.empty()) {
     std::string switched_off;
     for (const PlausibleQuantity quantity : ignored) {

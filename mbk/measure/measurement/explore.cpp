@@ -20,6 +20,7 @@
 #include "mbk/measure/measurement/course_variable.h"
 #include "mbk/measure/preprocess/exploration_trial_of.h"
 #include "mbk/measure/preprocess/force_delay.h"
+#include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
 
 namespace mbk::measurement {
@@ -88,6 +89,11 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
     auto in_time = preprocess::undo_force_delay(even->recording ? *even->recording : recording, options.force_delay);
     if (!in_time) return tl::unexpected(in_time.error());
     even->recording = std::move(*in_time);
+  }
+  if (options.force_rotation != 0.0) {
+    auto turned = preprocess::turn_force(even->recording ? *even->recording : recording, options.force_rotation);
+    if (!turned) return tl::unexpected(turned.error());
+    even->recording = std::move(*turned);
   }
   const Recording& source = even->recording ? *even->recording : recording;
   auto trial = preprocess::exploration_trial_of(source, even->recording ? recording::inspect(source) : recorded,

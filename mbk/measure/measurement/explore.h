@@ -29,6 +29,7 @@ struct ExploreOptions {
   preprocess::Options preprocess;
   std::optional<Hertz> resample;           ///< put the samples on an even clock first
   double force_delay = 0.0;                ///< by which the force was read late, undone first [s]
+  double force_rotation = 0.0;             ///< by which the force is turned from x to y first [rad]
   std::optional<ExploredSignals> signals;  ///< absent: from the position to −F
   std::optional<ExplorationPart> only;     ///< absent: every part
   explore::FrequencyResponseOptions frequency_response;

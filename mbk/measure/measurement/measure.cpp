@@ -28,6 +28,7 @@
 #include "mbk/measure/identify/consistent_model.h"
 #include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/force_delay.h"
+#include "mbk/measure/preprocess/force_rotation.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -122,6 +123,11 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
     if (!in_time) return tl::unexpected(in_time.error());
     source.even = std::move(*in_time);
   }
+  if (options.force_rotation != 0.0) {
+    auto turned = preprocess::turn_force(source.recording(), options.force_rotation);
+    if (!turned) return tl::unexpected(turned.error());
+    source.even = std::move(*turned);
+  }
   if (options.preprocess.force_source == ForceSource::sensor) return source;
   if (!options.preprocess.robot) return bad_usage("a computed force needs a robot", "name it with --robot");
   const Inspection inspection = source.even ? recording::inspect(*source.even) : source.recorded;
@@ -165,6 +171,10 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
   warn_of_clipping(*source.given, *trial);
   if (options.force_delay != 0.0) {
     trial->notes.push_back(fmt::format("the force was moved {:g} ms earlier, as asked", 1e3 * options.force_delay));
+  }
+  if (options.force_rotation != 0.0) {
+    trial->notes.push_back(
+        fmt::format("the force was turned by {:g}° from x to y, as asked", kDegrees * options.force_rotation));
   }
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   if (source.jitter) trial->warnings.push_back(*source.jitter);

@@ -23,6 +23,7 @@ struct Options {
   identify::Options identify;
   std::optional<Hertz> resample;  ///< put the samples on an even clock first
   double force_delay = 0.0;       ///< by which the force was read late, undone first [s]
+  double force_rotation = 0.0;    ///< by which the force is turned from x to y first [rad]
   bool passivity = true;          ///< judge it too
   bool joint_domain = false;      ///< the result at the joints too
   /// Frequencies for which a model is asked; absent: those at which the data show how the limb answers.

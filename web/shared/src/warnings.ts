@@ -21,6 +21,10 @@ export const plainWarnings: PlainWarnings = {
     title: "Force and motion do not belong to the same axes",
     meaning: "An axis was probably flipped or two columns swapped: with another order or sign the model is that of a limb, as given it is not.",
   },
+  "inertia-not-symmetric": {
+    title: "The inertia is not symmetric, as that of every limb is",
+    meaning: "The force is probably turned against the position, or one of its axes has a wrong gain. All numbers are biased.",
+  },
   "same-column": {
     title: "Two channels are one column",
     meaning: "The same data stand for two quantities. The numbers are not those of this limb.",
