@@ -432,6 +432,37 @@ def _(test):
         test.goes("stiffness-changes", raised, test.measured(*part, path))
 
 
+@advice_of("damping-changes")
+def _(test):
+    path = departing(test, "[[participant.stiffness_at]]\ntime_s = 30\nfactor = 1\n\n"
+                           "[[participant.stiffness_at]]\ntime_s = 31\nfactor = 1\ndamping_factor = 2")
+    raised = test.measured(path)
+    test.assertIn("--to", hint_of(raised, "damping-changes"))
+    for part in (("--to", 29), ("--from", 33)):
+        test.goes("damping-changes", raised, test.measured(*part, path))
+
+
+@advice_of("memory")
+def _(test):  # 'mbk explore' shows what M, B and K lack
+    raised = test.measured(departing(test, "[participant.departures]\nrelaxing_share = 0.3"))
+    test.assertIn("mbk explore", hint_of(raised, "memory"))
+    test.goes("memory", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+
+
+@advice_of("even-nonlinearity")
+def _(test):
+    raised = test.measured(departing(test, "[participant.departures]\none_sided_share = 0.6"))
+    test.assertIn("mbk explore", hint_of(raised, "even-nonlinearity"))
+    test.goes("even-nonlinearity", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+
+
+@advice_of("lack-of-fit")
+def _(test):  # a limb that is stiffer on one side, which no M, B and K are
+    raised = test.measured(departing(test, "[participant.departures]\none_sided_share = 0.6"))
+    test.assertIn("mbk explore", hint_of(raised, "lack-of-fit"))
+    test.goes("lack-of-fit", raised, test.measured(test.simulated("relaxed_sinusoidal")))
+
+
 @advice_of("force-drifts")
 def _(test):
     path = test.simulated("relaxed_sinusoidal",

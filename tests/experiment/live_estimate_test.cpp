@@ -142,6 +142,29 @@ factor = 3
   }
 }
 
+TEST(LiveEstimate, ADampingThatGrowsIsFollowedWithinFiveSeconds) {
+  constexpr double kFactor = 2.5, kTruth = 10.56;
+  const journal::Journal changed = recorded(std::string(kForAWhile) + R"(
+[[participant.stiffness_at]]
+time_s = 22
+factor = 1
+[[participant.stiffness_at]]
+time_s = 22.1
+factor = 1
+damping_factor = 2.5
+)");
+  const auto change = std::ranges::find_if(changed.ticks, [](const journal::Tick& tick) { return tick.time >= 22.1; });
+  ASSERT_NE(change, changed.ticks.end());
+  const double at = change->perturbation_time;
+  for (double later : {5.0, 10.0, 15.0}) {
+    const auto now = estimate_now(until(changed, at + later), with_handle());
+    ASSERT_TRUE(now) << now.error().line();
+    EXPECT_TRUE(warns_of(now->measured, WarningCode::damping_changes)) << later;
+    EXPECT_NEAR(now->from, at + later - 5.0, 0.1);
+    EXPECT_NEAR(now->measured.identification.model.B(1, 1), kFactor * kTruth, 0.2 * kFactor * kTruth) << later;
+  }
+}
+
 TEST(LiveEstimate, AnExceptionIsShownAndEndsNothing) {
   const journal::Journal journal = recorded();
   std::vector<std::string> why;

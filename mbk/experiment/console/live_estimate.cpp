@@ -20,7 +20,7 @@ namespace {
 constexpr auto kInterval = std::chrono::seconds(1);
 constexpr double kShortest = 2.0;      // of a perturbation worth a look [s]
 constexpr double kRecent = 5.0;        // that tell of the limb as it is now, once it has changed [s]
-constexpr double kChange = 0.3;        // of the stiffness, by norm, from which it changed
+constexpr double kChange = 0.3;        // of stiffness or damping, by norm, from which it changed
 constexpr double kBeyondChance = 8.0;  // standard errors: each second of each trial asks, of four elements
 constexpr int kNiceness = 10;
 
@@ -38,12 +38,18 @@ void cut_unread(Recording& recording, int latency) {
 }
 
 /// By more than chance, and by enough to matter. What the fit of all so far holds back at its end, a change there above
-/// all, its own test of a constant stiffness does not see.
-bool stiffness_differs(const Identification& now, const Identification& all) {
-  const Matrix difference = now.model.K - all.model.K;
-  const Matrix chance = (now.standard_error.K.array().square() + all.standard_error.K.array().square()).sqrt().matrix();
-  return difference.norm() > kChange * all.model.K.norm() &&
+/// all, its own tests of constant stiffness and damping do not see.
+bool differs(const Identification& now, const Identification& all, Matrix impedance::Model::*part) {
+  const Matrix &recent = now.model.*part, &whole = all.model.*part;
+  const Matrix difference = recent - whole;
+  const Matrix chance =
+      ((now.standard_error.*part).array().square() + (all.standard_error.*part).array().square()).sqrt();
+  return difference.norm() > kChange * whole.norm() &&
          (difference.array().abs() > kBeyondChance * chance.array()).any();
+}
+
+bool warns_of(const Identification& id, WarningCode code) {
+  return std::ranges::find(id.warnings, code, &Warning::code) != id.warnings.end();
 }
 
 /// The perturbation in it, as far as its readings have come.
@@ -82,15 +88,18 @@ Result<Recent> estimate_now(const journal::Journal& journal, const measurement::
   if (!recent) return Recent{0.0, std::move(*whole)};
   const Identification& all = whole->identification;
   Identification& now = recent->identification;
-  const auto warned = [](const Identification& one) {
-    return std::ranges::find(one.warnings, WarningCode::stiffness_changes, &Warning::code) != one.warnings.end();
+  const auto say = [&](const char* what, WarningCode code, Matrix impedance::Model::*part) {
+    if (!warns_of(all, code) && !differs(now, all, part)) return false;
+    if (!warns_of(now, code)) {
+      now.warnings.push_back({code,
+                              fmt::format("the {} changed: M, B and K are those of the last {:g} s", what, kRecent),
+                              "ask for the same state throughout, or measure the parts with --from and --to"});
+    }
+    return true;
   };
-  if (!warned(all) && !stiffness_differs(now, all)) return Recent{0.0, std::move(*whole)};
-  if (!warned(now)) {
-    now.warnings.push_back({WarningCode::stiffness_changes,
-                            fmt::format("the stiffness changed: M, B and K are those of the last {:g} s", kRecent),
-                            "ask for the same state throughout, or measure the parts with --from and --to"});
-  }
+  const bool stiffness = say("stiffness", WarningCode::stiffness_changes, &impedance::Model::K);
+  const bool damping = say("damping", WarningCode::damping_changes, &impedance::Model::B);
+  if (!stiffness && !damping) return Recent{0.0, std::move(*whole)};
   return Recent{from, std::move(*recent)};
 }
 

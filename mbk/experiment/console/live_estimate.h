@@ -25,9 +25,10 @@ struct Recent {
   Measurement measured;
 };
 
-/// `estimate` of all ticks so far, or, where the last five seconds have another stiffness (8 standard errors of the
-/// difference of an element, and 30 % of K by norm), or that of all warns of a change, of those five seconds with
-/// the warning stiffness-changes: a mean over two states of the limb is that of neither.
+/// `estimate` of all ticks so far, or, where the last five seconds have another stiffness or damping (8 standard errors
+/// of the difference of an element, and 30 % of K or B by norm), or that of all warns of a change, of those five
+/// seconds with the warning stiffness-changes or damping-changes: a mean over two states of the limb is that of
+/// neither.
 /// @fails  as `estimate`
 [[nodiscard]] Result<Recent> estimate_now(const journal::Journal& journal, const measurement::Options& options);
 

@@ -1,8 +1,11 @@
 #include "mbk/measure/analyse/energy_lines.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <tuple>
@@ -12,6 +15,7 @@
 #include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
+#include "mbk/model/trial/filtered_band.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
@@ -24,6 +28,9 @@ constexpr double kUnlike = 0.5;         ///< that far a signal has to go from it
 constexpr Index kMinPeriods = 3;        ///< with fewer, nothing shows how they differ
 constexpr double kHighestLine = 50.0;   ///< [Hz]
 constexpr double kShareOfLine = 0.005;  ///< of the variance of an axis
+constexpr double kChanceAtLines = 1e-5;
+constexpr double kMisfit = 0.03;         ///< of the force at the lines, root mean square
+constexpr double kSameFrequency = 1e-6;  ///< relative
 
 /// The window of a recording, sample by sample.
 struct Window {
@@ -188,48 +195,102 @@ std::vector<Index> harmonics_of(const Columns& whole, const Periods& periods, do
   return harmonics;
 }
 
-/// −∫ F·v dt of each of those harmonics over one period: −T/2 Re(F* jωX), summed over the axes.
-std::vector<double> absorbed_at(const std::vector<Index>& harmonics, const Matrix& position, const Matrix& force) {
-  const Eigen::MatrixXcd X = amplitudes(position), F = amplitudes(force);
+/// −∫ F·v dt of each line over one period: −T/2 Re(F* jωX), summed over the axes; T ω = 2π h.
+std::vector<double> absorbed_at(const std::vector<Index>& harmonics, const Eigen::MatrixXcd& X,
+                                const Eigen::MatrixXcd& F) {
   std::vector<double> absorbed;
-  for (const Index h : harmonics) {  // T ω = 2π h
+  for (std::size_t line = 0; line < harmonics.size(); ++line) {
+    const auto row = static_cast<Index>(line);
     const std::complex<double> work =
-        F.row(h).conjugate().cwiseProduct(std::complex<double>(0.0, 1.0) * X.row(h)).sum();
-    absorbed.push_back(-std::numbers::pi * static_cast<double>(h) * work.real());
+        F.row(row).conjugate().cwiseProduct(std::complex<double>(0.0, 1.0) * X.row(row)).sum();
+    absorbed.push_back(-std::numbers::pi * static_cast<double>(harmonics[line]) * work.real());
   }
   return absorbed;
 }
 
+/// Mean of a line's residual over the periods, and how it scatters.
+struct LineResidual {
+  double p_value = 1;
+  double systematic = 0;  ///< |mean|² beyond what the scatter makes of it [N²]
+};
+
+/// Hotelling's test of complex vectors, one of each period: (P − n)/(n (P − 1)) T² is F(2n, 2(P − n)).
+/// @param residual P×n
+LineResidual judged(const Eigen::MatrixXcd& residual) {
+  const Index n = residual.cols();
+  const auto periods = static_cast<double>(residual.rows()), axes = static_cast<double>(n);
+  const Eigen::VectorXcd mean = residual.colwise().mean().transpose();
+  const Eigen::MatrixXcd away = residual.rowwise() - mean.transpose();
+  const Eigen::MatrixXcd scatter = (away.transpose() * away.conjugate()) / (periods - 1.0);
+  // T² = P meanᴴ S⁻¹ mean, n at most 2
+  double square = 0.0;
+  if (n == 1) {
+    square = std::norm(mean[0]) / scatter(0, 0).real();
+  } else {
+    const double determinant = scatter(0, 0).real() * scatter(1, 1).real() - std::norm(scatter(0, 1));
+    square = (std::norm(mean[0]) * scatter(1, 1).real() + std::norm(mean[1]) * scatter(0, 0).real() -
+              2.0 * (std::conj(mean[0]) * scatter(0, 1) * mean[1]).real()) /
+             determinant;
+  }
+  LineResidual result;
+  result.systematic = mean.squaredNorm() - scatter.trace().real() / periods;
+  const double statistic = (periods - axes) / (axes * (periods - 1.0)) * periods * square;
+  if (std::isfinite(statistic)) {
+    result.p_value = numeric::f_probability_above(std::max(0.0, statistic), 2.0 * axes, 2.0 * (periods - axes));
+  }
+  return result;
+}
+
+/// P(χ² > x), 2k degrees of freedom.
+double chi_square_above(double x, std::size_t k) {
+  double term = std::exp(-0.5 * x), sum = term;
+  for (std::size_t i = 1; i < k; ++i) {
+    term *= 0.5 * x / static_cast<double>(i);
+    sum += term;
+  }
+  return std::min(1.0, sum);
+}
+
 }  // namespace
 
-std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recordings,
-                                     std::span<const PreparedTrial> trials) {
-  std::vector<Index> harmonics;
-  std::vector<std::vector<double>> absorbed;  // of each period, line by line
+LineSpectra line_spectra(std::span<const Recording* const> recordings, std::span<const PreparedTrial> trials) {
+  LineSpectra found;
   Index length = 0;
   double rate = 0.0;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     const auto window = window_of(*recordings[k], trials[k]);
     if (!window) return {};
-    const auto found = periods_of(window->reference, window->rate);
-    if (!found) return {};
-    auto own = harmonics_of(window->reference, *found, window->rate);
-    if (own.empty() || (k > 0 && (found->length != length || window->rate != rate || own != harmonics))) return {};
-    length = found->length;
-    rate = window->rate;
-    harmonics = std::move(own);
-    recording::InPassing passing({window->position, window->force}, found->begin);
-    for (Index one = 0; one < found->count; ++one) {
-      const Index begin = found->begin + one * length;
-      passing.reached(begin);
-      absorbed.push_back(absorbed_at(harmonics, window->position.middle_rows(begin, length),
-                                     window->force.middle_rows(begin, length)));
+    const auto periods = periods_of(window->reference, window->rate);
+    if (!periods) return {};
+    auto own = harmonics_of(window->reference, *periods, window->rate);
+    if (own.empty() || (k > 0 && (periods->length != length || window->rate != rate || own != found.harmonics))) {
+      return {};
     }
-    passing.let_go_before(found->begin + found->count * length);
+    length = periods->length;
+    rate = window->rate;
+    found.harmonics = std::move(own);
+    recording::InPassing passing({window->position, window->force}, periods->begin);
+    for (Index one = 0; one < periods->count; ++one) {
+      const Index begin = periods->begin + one * length;
+      passing.reached(begin);
+      found.position.emplace_back(amplitudes(window->position.middle_rows(begin, length))(found.harmonics, Eigen::all));
+      found.force.emplace_back(amplitudes(window->force.middle_rows(begin, length))(found.harmonics, Eigen::all));
+    }
+    passing.let_go_before(periods->begin + periods->count * length);
   }
-  const auto periods = static_cast<Index>(absorbed.size());
-  if (periods < kMinPeriods) return {};
-  const double period_s = static_cast<double>(length) / rate;
+  if (found.periods() < kMinPeriods) return {};
+  found.period_s = static_cast<double>(length) / rate;
+  return found;
+}
+
+std::vector<EnergyLine> energy_lines(const LineSpectra& spectra) {
+  const std::vector<Index>& harmonics = spectra.harmonics;
+  if (harmonics.empty()) return {};
+  const Index periods = spectra.periods();
+  std::vector<std::vector<double>> absorbed;  // of each period, line by line
+  for (std::size_t b = 0; b < spectra.force.size(); ++b) {
+    absorbed.push_back(absorbed_at(harmonics, spectra.position[b], spectra.force[b]));
+  }
   const double quantile =
       numeric::student_quantile(1.0 - 0.025 / static_cast<double>(harmonics.size()), static_cast<int>(periods) - 1);
   std::vector<EnergyLine> lines;
@@ -237,12 +298,54 @@ std::vector<EnergyLine> energy_lines(std::span<const Recording* const> recording
     Vector each(periods);
     for (Index b = 0; b < periods; ++b) each[b] = absorbed[static_cast<std::size_t>(b)][line];
     const double half = quantile * std::sqrt(static_cast<double>(periods) * numeric::variance(each)), sum = each.sum();
-    lines.push_back({Hertz(static_cast<double>(harmonics[line]) / period_s),
-                     static_cast<double>(periods) * period_s,
-                     sum,
-                     {sum - half, sum + half}});
+    lines.push_back(
+        {spectra.frequency(line), static_cast<double>(periods) * spectra.period_s, sum, {sum - half, sum + half}});
   }
   return lines;
+}
+
+std::optional<AssumptionTest> test_lines(const LineSpectra& spectra, std::span<const PreparedTrial> trials,
+                                         const Identification& id) {
+  if (spectra.periods() <= id.axes + 1 || !id.model.M.allFinite() || !id.model.K.allFinite()) return std::nullopt;
+  double top = std::numeric_limits<double>::infinity();
+  for (const PreparedTrial& trial : trials) top = std::min(top, passed_band(trial.preparation));
+  const Matrix inertia = id.model.M + id.handle_mass * Matrix::Identity(id.axes, id.axes);
+  AssumptionTest result{Assumption::fits_at_lines};
+  double fisher = 0.0, systematic = 0.0, force = 0.0;
+  std::size_t lines = 0;
+  for (std::size_t line = 0; line < spectra.harmonics.size(); ++line) {
+    const double hz = spectra.frequency(line).value, omega = 2.0 * std::numbers::pi * hz;
+    if (hz > top * (1.0 + kSameFrequency)) continue;
+    const auto row = static_cast<Index>(line);
+    const Eigen::MatrixXcd Z = (id.model.K - omega * omega * inertia).cast<std::complex<double>>() +
+                               std::complex<double>(0.0, omega) * id.model.B.cast<std::complex<double>>();
+    Eigen::MatrixXcd residual(spectra.periods(), id.axes);
+    for (Index b = 0; b < spectra.periods(); ++b) {
+      const auto period = static_cast<std::size_t>(b);
+      residual.row(b) = spectra.force[period].row(row) + spectra.position[period].row(row) * Z.transpose();
+      force += spectra.force[period].row(row).squaredNorm() / static_cast<double>(spectra.periods());
+    }
+    const LineResidual found = judged(residual);
+    fisher -= 2.0 * std::log(found.p_value);
+    systematic += found.systematic;
+    ++lines;
+  }
+  if (lines == 0 || !(force > 0.0)) return std::nullopt;
+  result.p_value = std::isfinite(fisher) ? chi_square_above(fisher, lines) : 0.0;
+  result.size = std::sqrt(std::max(0.0, systematic) / force);
+  result.contradicted = result.p_value < kChanceAtLines && result.size > kMisfit;
+  return result;
+}
+
+void warn_of_lines(const AssumptionTest& test, Identification& identification) {
+  identification.assumptions.push_back(test);
+  if (!test.contradicted) return;
+  identification.warnings.push_back(
+      {WarningCode::lack_of_fit,
+       fmt::format("at the frequencies of the perturbation M, B and K miss {:.0f} % of the force (root mean square) in "
+                   "the same way in every period: the limb's impedance has another shape than theirs",
+                   100.0 * test.size),
+       "do not read M, B and K as the limb's at each frequency; 'mbk explore' shows its frequency response"});
 }
 
 }  // namespace mbk::analyse

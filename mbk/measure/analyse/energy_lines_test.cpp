@@ -62,7 +62,7 @@ std::vector<EnergyLine> lines_of(const Recording& recording, Protocol protocol =
   const Recording* const one = &recording;
   PreparedTrial trial = trial_of(recording);
   trial.preparation.protocol = protocol;
-  return energy_lines({&one, 1}, {&trial, 1});
+  return energy_lines(line_spectra({&one, 1}, {&trial, 1}));
 }
 
 TEST(EnergyLines, AreThoseOfTheDamperAtEachFrequency) {
@@ -113,7 +113,7 @@ TEST(EnergyLines, OfSeveralRecordingsAddUp) {
   const Recording a = recording_of(1), b = recording_of(2);
   const std::array<const Recording*, 2> both = {&a, &b};
   const std::vector<PreparedTrial> trials = {trial_of(a), trial_of(b)};
-  const auto one = lines_of(a), two = lines_of(b), together = energy_lines(both, trials);
+  const auto one = lines_of(a), two = lines_of(b), together = energy_lines(line_spectra(both, trials));
   ASSERT_EQ(together.size(), one.size());
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_NEAR(together[k].absorbed, one[k].absorbed + two[k].absorbed, 1e-12);
@@ -143,6 +143,52 @@ TEST(EnergyLines, AreNotThereWhereThereIsNoneToSpeakOf) {
   once.time.conservativeResize(5900);
   for (Channel& channel : once.channels) channel.values.conservativeResize(5900);
   EXPECT_TRUE(lines_of(once).empty());
+}
+
+/// M, B and K for both axes alike.
+Identification model_of(double damping) {
+  Identification id;
+  id.axes = 2;
+  id.model = {Matrix::Identity(2, 2), damping * Matrix::Identity(2, 2), 80.0 * Matrix::Identity(2, 2), Vector::Zero(2)};
+  return id;
+}
+
+std::optional<AssumptionTest> test_of(Recording recording, double damping, std::array<double, 3> dampers) {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (Index i = 0; i < kSamples; ++i) {
+      for (std::size_t line = 0; line < kHarmonics.size(); ++line) {
+        const double w = omega_of(line), phase = w * recording.time[i] + 1.3 * static_cast<double>(axis * (line + 1));
+        recording.channels[2 + axis].values[i] -= kAmplitude * (dampers[line] - kDampers[line]) * w * std::cos(phase);
+      }
+    }
+  }
+  const Recording* const one = &recording;
+  PreparedTrial trial = trial_of(recording);
+  trial.preparation.band_high = Hertz(10.0);
+  return test_lines(line_spectra({&one, 1}, {&trial, 1}), {&trial, 1}, model_of(damping));
+}
+
+TEST(Lines, AreNotExplainedByOneDamperWhereEachHasItsOwn) {
+  const auto found = test_of(recording_of(1), 8.0, {6.0, -4.0, 9.0});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->contradicted);
+  EXPECT_LT(found->p_value, 1e-6);
+  Identification id = model_of(8.0);
+  warn_of_lines(*found, id);
+  ASSERT_EQ(id.warnings.size(), 1U);
+  EXPECT_EQ(id.warnings[0].code, WarningCode::lack_of_fit);
+}
+
+TEST(Lines, AreExplainedByTheTruthAsOftenAsTheLevelSays) {
+  int below = 0;
+  constexpr int kRuns = 200;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto found = test_of(recording_of(100 + static_cast<std::uint64_t>(run)), 6.0, {6.0, 6.0, 6.0});
+    ASSERT_TRUE(found);
+    EXPECT_FALSE(found->contradicted);
+    below += found->p_value < 0.05 ? 1 : 0;
+  }
+  EXPECT_NEAR(below, 0.05 * kRuns, 8.0);  // two and a half standard deviations
 }
 
 }  // namespace

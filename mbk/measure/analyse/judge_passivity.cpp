@@ -32,9 +32,17 @@ constexpr std::array kImplausible = {WarningCode::force_sign_reversed,     Warni
                                      WarningCode::implausible_scale,       WarningCode::axes_mismatched,
                                      WarningCode::axes_scaled_differently, WarningCode::same_column};
 /// With these the model explains too little of the force to predict any.
-constexpr std::array kPoorFit = {WarningCode::fit_poor,         WarningCode::held_out_fit_poor,
-                                 WarningCode::missing_dynamics, WarningCode::nonlinear_stiffness,
-                                 WarningCode::dry_friction,     WarningCode::stiffness_changes};
+constexpr std::array kPoorFit = {WarningCode::fit_poor,
+                                 WarningCode::held_out_fit_poor,
+                                 WarningCode::missing_dynamics,
+                                 WarningCode::nonlinear_stiffness,
+                                 WarningCode::dry_friction,
+                                 WarningCode::stiffness_changes,
+                                 WarningCode::inertia_not_symmetric,
+                                 WarningCode::damping_changes,
+                                 WarningCode::memory,
+                                 WarningCode::even_nonlinearity,
+                                 WarningCode::lack_of_fit};
 
 template <std::size_t Size>
 bool warns_of(const Identification& id, const std::array<WarningCode, Size>& codes) {
@@ -173,6 +181,21 @@ std::string where_circles_generate(const ModelPassivity& model) {
   std::string text = low > model.band.low.value ? fmt::format("below {:.2g} Hz", low) : "";
   if (high < model.band.high.value) text += fmt::format("{}above {:.2g} Hz", text.empty() ? "" : " and ", high);
   return text.empty() ? "at any frequency" : text;
+}
+
+/// "1.75 Hz (95 %: -0.116 to -0.025 J)": the lines within the band at which the limb surely delivered energy.
+std::string delivering_lines(const std::vector<EnergyLine>& lines, const PassivityBand& band) {
+  std::string text;
+  for (const EnergyLine& line : lines) {
+    const double f = line.frequency.value;
+    if (!(line.absorbed95.second < 0.0) || f < (1.0 - kAsPrinted) * band.low.value ||
+        f > (1.0 + kAsPrinted) * band.high.value) {
+      continue;
+    }
+    text += fmt::format("{}{:.3g} Hz (95 %: {:.3g} to {:.3g} J)", text.empty() ? "" : ", ", f, line.absorbed95.first,
+                        line.absorbed95.second);
+  }
+  return text;
 }
 
 std::string in_straight_motion(Verdict verdict) {
@@ -356,7 +379,8 @@ std::optional<TrialPassivity> trial_passivity(const Identification& result, Ener
 }
 
 PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models, bool usable,
-                                      const std::optional<PassivityBand>& coherent) {
+                                      const std::optional<PassivityBand>& coherent,
+                                      const std::vector<EnergyLine>& lines) {
   PassivityPrediction prediction;
   if (models.empty()) {
     prediction.statement = "no prediction: there is no model";
@@ -373,7 +397,8 @@ PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models,
     if (model.antisymmetric) prediction.antisymmetric = Verdict::undecided;
     prediction.statement =
         model.fits ? "nothing is predicted: at no two frequencies are all axes excited with a coherence above 0.8"
-                   : fmt::format("nothing is predicted: {} explains too little of the force", words(model));
+                   : fmt::format("nothing is predicted: {} does not describe the limb well enough, see the warnings",
+                                 words(model));
     return prediction;
   }
   prediction.symmetric = model.symmetric;
@@ -382,6 +407,14 @@ PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models,
     prediction.antisymmetric = Verdict::undecided;
   prediction.verdict = verdict_of(model.symmetric, prediction.antisymmetric);
   prediction.statement = predicted(model, prediction);
+  if (const std::string contrary = delivering_lines(lines, model.band);
+      !contrary.empty() && prediction.symmetric != Verdict::active && prediction.verdict != Verdict::active) {
+    for (auto* verdict : {&prediction.verdict, &prediction.symmetric, &prediction.antisymmetric}) {
+      if (*verdict) *verdict = Verdict::undecided;
+    }
+    prediction.statement = fmt::format("{}, but the limb delivered energy at {}: the prediction is not decided",
+                                       prediction.statement, contrary);
+  }
   if (prediction.extrapolated) {
     prediction.statement = fmt::format("extrapolated beyond the coherent band, {:.3g} to {:.3g} Hz: {}",
                                        coherent->low.value, coherent->high.value, prediction.statement);

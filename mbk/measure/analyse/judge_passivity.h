@@ -53,10 +53,12 @@ namespace mbk::analyse {
 /// What the first model predicts. There is no prediction where the result or that model is not usable. It is undecided
 /// at most where the model fits poorly or the data show at no frequency how the limb answers; and not active by the
 /// antisymmetric part alone where much of what the model leaves of the force answers the perturbation too, for the
-/// intervals know noise, and that answer is none.
+/// intervals know noise, and that answer is none. It is not passive over a band in which the limb surely delivered
+/// energy at a line.
 /// @param usable  the result
-/// @param coherent  coherent_band()
+/// @param coherent  coherent_band()    @param lines  energy_lines()
 [[nodiscard]] PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models, bool usable,
-                                                    const std::optional<PassivityBand>& coherent);
+                                                    const std::optional<PassivityBand>& coherent,
+                                                    const std::vector<EnergyLine>& lines = {});
 
 }  // namespace mbk::analyse

@@ -282,7 +282,9 @@ TEST(Prediction, IsUndecidedAtMostWhereTheModelFitsPoorlyOrDoesNotHoldOrNoBandIs
   for (const double k_a : {2.0, 40.0}) {  // passive and active otherwise
     for (const WarningCode code :
          {WarningCode::fit_poor, WarningCode::held_out_fit_poor, WarningCode::missing_dynamics,
-          WarningCode::nonlinear_stiffness, WarningCode::dry_friction, WarningCode::stiffness_changes}) {
+          WarningCode::nonlinear_stiffness, WarningCode::dry_friction, WarningCode::stiffness_changes,
+          WarningCode::damping_changes, WarningCode::memory, WarningCode::even_nonlinearity, WarningCode::lack_of_fit,
+          WarningCode::inertia_not_symmetric}) {
       Identification id = arm(k_a);
       id.warnings.push_back({code, "", ""});
       const PassivityPrediction poor = predicted(id);
@@ -293,6 +295,18 @@ TEST(Prediction, IsUndecidedAtMostWhereTheModelFitsPoorlyOrDoesNotHoldOrNoBandIs
     }
     EXPECT_EQ(predict_passivity({judged(arm(k_a))}, true, std::nullopt).verdict, Verdict::undecided);
   }
+}
+
+TEST(Prediction, IsNotPassiveOverALineAtWhichTheLimbDeliveredEnergy) {
+  const auto with = [](double hz, Interval absorbed95) {
+    return predict_passivity({judged(arm())}, true, kBand, {{Hertz(hz), 50.0, -0.07, absorbed95}});
+  };
+  const PassivityPrediction within = with(1.75, {-0.116, -0.025});
+  EXPECT_EQ(within.verdict, Verdict::undecided);
+  EXPECT_EQ(within.symmetric, Verdict::undecided);
+  EXPECT_THAT(within.statement, HasSubstr("1.75 Hz"));
+  EXPECT_EQ(with(1.75, {-0.116, 0.025}).verdict, Verdict::passive);
+  EXPECT_EQ(with(3.5, {-0.116, -0.025}).verdict, Verdict::passive) << "beyond the band";
 }
 
 TEST(Prediction, IsNotActiveByItsAntisymmetryAloneWhereTheResidualFollowsThePerturbation) {

@@ -236,6 +236,32 @@ class Checker {
                "state "
                "throughout");
           break;
+        case Assumption::constant_damping:
+          warn(WarningCode::damping_changes,
+               fmt::format("the damping changed during the recording, by {:.0f} % (standard deviation): M, B and K are "
+                           "means of it",
+                           100.0 * size),
+               "'mbk explore' shows its course over time; measure the parts with --from and --to, and ask for the same "
+               "state throughout");
+          break;
+        case Assumption::no_memory:
+          warn(WarningCode::memory,
+               fmt::format("{:.0f} % of the force (root mean square) lags behind the position by 0.1 s to 1.5 s: the "
+                           "limb relaxes, or follows the motion slowly, and K depends on how fast it is moved",
+                           100.0 * size),
+               "read K as that of the perturbed frequencies, not as a static stiffness; ask for no response; 'mbk "
+               "explore' shows the frequency response");
+          break;
+        case Assumption::alike_both_ways:
+          warn(WarningCode::even_nonlinearity,
+               fmt::format("{:.0f} % of the force (root mean square) is the same for opposite motions: stiffness, "
+                           "damping or a reflex act in one direction more than in the other, and x0 is biased",
+                           100.0 * size),
+               "perturb less, and do not read M, B and K as those of both directions; 'mbk explore' of trials with "
+               "other phases shows how much of the force is not linear");
+          break;
+        case Assumption::fits_at_lines:
+          break;  // found in the periods of the recording, which are not here
         case Assumption::constant_rest:
           warn(WarningCode::force_drifts,
                fmt::format("the force drifts by {:.2g} {} from beginning to end: the equilibrium moved, or the force "

@@ -25,13 +25,17 @@ constexpr double kExplained = 0.5;  ///< share of the motion that the reference 
 constexpr double kShareOfForce =
     0.002;                           ///< that matters where no reference is known: noise in a loop explains half of it
 constexpr double kHardening = 0.05;  ///< of the stiffness, at the amplitude of the motion
-constexpr double kChangeOfStiffness = 0.1;
-constexpr Index kWaves = 12;  ///< slow cosines, the fastest of about 0.1 Hz in a minute
+constexpr double kChangeOfStiffness = 0.1, kChangeOfDamping = 0.1;
+constexpr double kMemory = 0.03;                          ///< of the force, root mean square
+constexpr double kEven = 0.06;                            ///< likewise: the geometry of an arm is quadratic, too
+constexpr std::array kRelaxationTimes = {0.1, 0.5, 1.5};  ///< τ [s] of what lags behind the position
+constexpr Index kWaves = 12;                              ///< slow cosines, the fastest of about 0.1 Hz in a minute
 constexpr Index kTrend = 1, kBesideTrend = 9;
 
 /// Motion row by row: what was measured, or what the reference explains of it.
 struct Motion {
   Matrix jerk, acceleration, velocity, position;
+  Matrix lagging;  ///< position behind 1/(1 + sτ), each τ
 };
 
 Matrix unit_velocity(const Matrix& velocity) {
@@ -41,9 +45,24 @@ Matrix unit_velocity(const Matrix& velocity) {
   return (speed.array().square() + slow * slow).sqrt().inverse().matrix().asDiagonal() * velocity;
 }
 
+/// |ẋ_i| and x_i x_j.
+Matrix even_part(const Motion& motion) {
+  const Index n = motion.position.cols();
+  Matrix even(motion.position.rows(), n + n * (n + 1) / 2);
+  even.leftCols(n) = motion.velocity.cwiseAbs();
+  Index column = n;
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = i; j < n; ++j) {
+      even.col(column++) = motion.position.col(i).cwiseProduct(motion.position.col(j));
+    }
+  }
+  return even;
+}
+
 /// What each assumption excludes, for one axis of the force.
-/// @param stiffness n, the axis' row of K    @param wave N×k, cosines of time
-Matrix excluded(Assumption assumption, const Motion& motion, const Vector& stiffness, const Matrix& waves) {
+/// @param stiffness, damping n, the axis' rows of K and B    @param wave N×k, cosines of time
+Matrix excluded(Assumption assumption, const Motion& motion, const Vector& stiffness, const Vector& damping,
+                const Matrix& waves) {
   switch (assumption) {
     case Assumption::simultaneous:
       return motion.jerk;
@@ -53,6 +72,12 @@ Matrix excluded(Assumption assumption, const Motion& motion, const Vector& stiff
       return unit_velocity(motion.velocity);
     case Assumption::constant_stiffness:
       return (motion.position * stiffness).asDiagonal() * waves;
+    case Assumption::constant_damping:
+      return (motion.velocity * damping).asDiagonal() * waves;
+    case Assumption::no_memory:
+      return motion.lagging;
+    case Assumption::alike_both_ways:
+      return even_part(motion);
     default:
       return {};
   }
@@ -101,7 +126,7 @@ class Tester {
       if (rows() > first) pieces_.push_back({first, rows()});
     }
     if (!enough_rows()) return;
-    measured_ = {Matrix(rows(), n_), Matrix(rows(), n_), Matrix(rows(), n_), Matrix(rows(), n_)};
+    measured_ = {Matrix(rows(), n_), Matrix(rows(), n_), Matrix(rows(), n_), Matrix(rows(), n_), lagging_position()};
     force_.resize(rows(), n_);
     for (Index k = 0; k < rows(); ++k) {
       const Index i = at_[static_cast<std::size_t>(k)];
@@ -113,6 +138,27 @@ class Tester {
     }
     measured_.position.rowwise() -= measured_.position.colwise().mean().eval();
     let_go(r_);
+  }
+
+  /// The position behind 1/(1 + sτ) at the thinned rows, from rest at the beginning of each range.
+  [[nodiscard]] Matrix lagging_position() const {
+    constexpr std::size_t kCount = kRelaxationTimes.size();
+    Matrix lagging(rows(), static_cast<Index>(kCount) * n_);
+    for (std::size_t k = 0; k < kCount; ++k) {
+      const double keep = std::exp(-r_.sample_time / kRelaxationTimes[k]);
+      for (Index axis = 0; axis < n_; ++axis) {
+        Index next = 0;
+        double state = 0.0;
+        for (const RowRange& range : ranges_) {
+          for (Index i = range.begin; i < range.end && next < rows(); ++i) {
+            const double x = r_.Z(i, 2 * n_ + axis);
+            state = i == range.begin ? x : x + keep * (state - x);
+            if (at_[static_cast<std::size_t>(next)] == i) lagging(next++, static_cast<Index>(k) * n_ + axis) = state;
+          }
+        }
+      }
+    }
+    return lagging.rowwise() - lagging.colwise().mean().eval();
   }
 
   /// cos jφ of j = 1 … count, φ over half a turn; from the first by cos (j+1)φ = 2 cos φ cos jφ − cos (j−1)φ.
@@ -161,8 +207,9 @@ class Tester {
     const Matrix X = reference_around();
     let_go(r_);  // from here on there are rows of their own
     const Index half = rows() / 2, rest = rows() - half;
-    Matrix motion(rows(), 4 * n_);
-    motion << measured_.jerk, measured_.acceleration, measured_.velocity, measured_.position;
+    const Index lags = measured_.lagging.cols(), columns = 4 * n_ + lags;
+    Matrix motion(rows(), columns);
+    motion << measured_.jerk, measured_.acceleration, measured_.velocity, measured_.position, measured_.lagging;
     const auto response = [&](Index from, Index count) {
       const auto part = X.middleRows(from, count);
       Matrix gram = numeric::gram_of({part});
@@ -170,9 +217,9 @@ class Tester {
       return Matrix(numeric::PivotedCholesky(gram).solve(numeric::products_of(part, motion.middleRows(from, count))));
     };
     const auto answer = [&](const auto& reference, const Matrix& coefficients) {
-      return numeric::residuals_of({reference}, Matrix::Zero(reference.rows(), 4 * n_), -coefficients);
+      return numeric::residuals_of({reference}, Matrix::Zero(reference.rows(), columns), -coefficients);
     };
-    Matrix explained(rows(), 4 * n_);
+    Matrix explained(rows(), columns);
     explained.topRows(half) = answer(X.topRows(half), response(half, rest));
     explained.bottomRows(rest) = answer(X.bottomRows(rest), response(0, half));
     for (Index axis = 0; axis < n_; ++axis) {
@@ -182,15 +229,26 @@ class Tester {
     }
     by_reference_ = true;
     explained_ = {explained.leftCols(n_), explained.middleCols(n_, n_), explained.middleCols(2 * n_, n_),
-                  explained.rightCols(n_)};
+                  explained.middleCols(3 * n_, n_), explained.rightCols(lags)};
     explained_.position.rowwise() -= explained_.position.colwise().mean().eval();
   }
 
   [[nodiscard]] Vector stiffness(Index axis) const { return coefficients_.col(axis).segment(2 * n_, n_); }
+  [[nodiscard]] Vector damping(Index axis) const { return coefficients_.col(axis).segment(n_, n_); }
 
   /// Of what the assumption excludes, for one axis of the force.
   [[nodiscard]] Index columns_of(Assumption assumption) const {
-    return assumption == Assumption::constant_stiffness ? waves_.cols() : n_;
+    switch (assumption) {
+      case Assumption::constant_stiffness:
+      case Assumption::constant_damping:
+        return waves_.cols();
+      case Assumption::no_memory:
+        return measured_.lagging.cols();
+      case Assumption::alike_both_ways:
+        return n_ + n_ * (n_ + 1) / 2;
+      default:
+        return n_;
+    }
   }
 
   /// [ẍ ẋ x 1] and what the assumptions exclude.
@@ -198,7 +256,7 @@ class Tester {
     Matrix Z(rows(), 3 * n_ + 1);
     Z << motion.acceleration, motion.velocity, motion.position, Vector::Ones(rows());
     for (const Assumption assumption : added) {
-      const Matrix more = excluded(assumption, motion, stiffness(axis), waves_);
+      const Matrix more = excluded(assumption, motion, stiffness(axis), damping(axis), waves_);
       Z.conservativeResize(Eigen::NoChange, Z.cols() + more.cols());
       Z.rightCols(more.cols()) = more;
     }
@@ -298,13 +356,21 @@ class Tester {
       }
       fits.push_back(std::move(*one));
     }
-    result.size = size_of(assumption, fits);
+    result.size = beside_linear(assumption) ? std::sqrt(std::max(0.0, gain)) : size_of(assumption, fits);
     result.contradicted = result.p_value < kChance && matters(result) && (by_reference_ || gain > kShareOfForce);
     return result;
   }
 
+  /// Whether the size is that of the force which W explains.
+  [[nodiscard]] static bool beside_linear(Assumption assumption) {
+    return assumption == Assumption::no_memory || assumption == Assumption::alike_both_ways;
+  }
+
   [[nodiscard]] static bool matters(const AssumptionTest& found) {
     if (found.assumption == Assumption::constant_stiffness) return found.size > kChangeOfStiffness;
+    if (found.assumption == Assumption::constant_damping) return found.size > kChangeOfDamping;
+    if (found.assumption == Assumption::alike_both_ways) return found.size > kEven;
+    if (found.assumption == Assumption::no_memory) return found.size > kMemory;
     if (found.assumption == Assumption::linear_stiffness && std::abs(found.size) < kHardening) return false;
     return found.shift > 1.0;
   }
@@ -333,7 +399,9 @@ class Tester {
   /// The most certain first; what was found belongs to the model of the others.
   [[nodiscard]] std::vector<AssumptionTest> test_dynamics() const {
     using enum Assumption;
-    std::vector<Assumption> open = {simultaneous, linear_stiffness, no_dry_friction, constant_stiffness}, model;
+    std::vector<Assumption> open = {simultaneous,     linear_stiffness, no_dry_friction, constant_stiffness,
+                                    constant_damping, no_memory,        alike_both_ways},
+                            model;
     std::vector<AssumptionTest> tests;
     while (!open.empty()) {
       std::vector<AssumptionTest> now;

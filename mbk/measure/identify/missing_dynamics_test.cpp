@@ -69,7 +69,7 @@ TEST(MissingDynamics, NothingIsContradictedWhereTheModelHolds) {
   constexpr unsigned kTrials = 40;
   for (unsigned seed = 1; seed <= kTrials; ++seed) {
     const auto tests = tested(trial_with({.noise = 0.3, .seed = seed}, nothing));
-    EXPECT_EQ(tests.size(), 5U);
+    EXPECT_EQ(tests.size(), 8U);
     alarms += static_cast<int>(std::ranges::count_if(tests, &AssumptionTest::contradicted));
   }
   EXPECT_LE(alarms, 1);  // 11 of 400 together would be 2.75 %
@@ -122,6 +122,38 @@ TEST(MissingDynamics, AStiffnessThatChangesIsFoundAtOnceAndAsAWave) {
   // ± 50 % at 0.1 Hz in 40 s
   expect_only(tested(trial_with(quiet(), with([](double share) { return 1.0 + 0.5 * std::sin(8.0 * M_PI * share); }))),
               Assumption::constant_stiffness, 0.35, 0.08);
+}
+
+TEST(MissingDynamics, ADampingThatChangesIsFound) {
+  const Extra doubled = [](const PreparedTrial& trial, Index i, double share) {
+    return Vector((share < 0.4 ? 0.0 : 1.0) * arm().B * trial.velocity.row(i).transpose());
+  };
+  // × 2 at half of the data behind the parameters: a standard deviation of 0.5 over a mean of 1.5
+  expect_only(tested(trial_with(quiet(), doubled)), Assumption::constant_damping, 0.33, 0.06);
+}
+
+TEST(MissingDynamics, AForceThatRelaxesIsFound) {
+  Vector lagging;
+  const Extra maxwell = [&lagging](const PreparedTrial& trial, Index i, double) {
+    const Vector x = trial.position.row(i).transpose();
+    if (i == 0) lagging = x;
+    lagging += trial.sample_time / 0.5 * (x - lagging);
+    return Vector(0.3 * arm().K * (x - lagging));
+  };
+  const auto tests = tested(trial_with(quiet(), maxwell));
+  EXPECT_TRUE(about(tests, Assumption::no_memory).contradicted);
+  EXPECT_FALSE(about(tests, Assumption::alike_both_ways).contradicted);
+}
+
+TEST(MissingDynamics, AStiffnessOnOneSideIsFoundAndALittleOfItIsNot) {
+  const auto one_sided = [](double share) -> Extra {
+    return [share](const PreparedTrial& trial, Index i, double) {
+      const Vector away = trial.position.row(i).transpose() - (Vector(2) << 0.28, 0.02).finished();
+      return Vector(share * arm().K * away.cwiseAbs());
+    };
+  };
+  EXPECT_TRUE(about(tested(trial_with(quiet(), one_sided(0.6))), Assumption::alike_both_ways).contradicted);
+  EXPECT_FALSE(about(tested(trial_with(quiet(), one_sided(0.02))), Assumption::alike_both_ways).contradicted);
 }
 
 TEST(MissingDynamics, ADriftIsFoundWithItsHeight) {

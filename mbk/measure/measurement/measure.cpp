@@ -302,7 +302,7 @@ Result<void> add_consistent_model(const std::vector<PreparedTrial>& trials, Meas
 
 /// What happened in the trial, and what the model predicts.
 Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
-                                  const Options& options, Measurement& measured) {
+                                  const analyse::LineSpectra& spectra, const Options& options, Measurement& measured) {
   const auto [first, other] = both_methods(measured);
   auto energy = account_for_energy(sources, trials, measured);
   if (!energy) return tl::unexpected(energy.error());
@@ -314,15 +314,17 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
   auto models = analyse::model_passivities({first, other}, band);
   if (!models) return tl::unexpected(models.error());
   passivity.models = std::move(*models);
-  passivity.trial = analyse::trial_passivity(measured.identification, std::move(*energy),
-                                             analyse::energy_lines(recordings_of(sources), trials));
+  passivity.trial =
+      analyse::trial_passivity(measured.identification, std::move(*energy), analyse::energy_lines(spectra));
   if (!passivity.trial) {
     for (Energy& one : measured.energies) {
       one.account.verdict = Verdict::undecided;
       one.account.reason = "force or motion is not plausible: see the warnings";
     }
   }
-  passivity.prediction = analyse::predict_passivity(passivity.models, measured.identification.usable, passivity.band);
+  passivity.prediction =
+      analyse::predict_passivity(passivity.models, measured.identification.usable, passivity.band,
+                                 passivity.trial ? passivity.trial->lines : std::vector<EnergyLine>());
   return passivity;
 }
 
@@ -404,6 +406,11 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     analyse::warn_of_tremor(*tremor, measured.identification);
     if (measured.alternative) analyse::warn_of_tremor(*tremor, *measured.alternative);
   }
+  const analyse::LineSpectra spectra = analyse::line_spectra(recordings_of(sources), trials);
+  for (Identification* id : {&measured.identification, measured.alternative ? &*measured.alternative : nullptr}) {
+    if (id == nullptr) continue;
+    if (const auto fit = analyse::test_lines(spectra, trials, *id)) analyse::warn_of_lines(*fit, *id);
+  }
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
     auto findings = analyse::analyse_ellipses(measured.identification);
     if (!findings) return tl::unexpected(findings.error());
@@ -423,7 +430,7 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
   if (auto ok = add_consistent_model(trials, measured); !ok) return sources[0].in_file(ok.error());
   for (const PreparedTrial& trial : trials) recording::let_go(trial);
   if (options.passivity) {
-    auto passivity = judge_passivity(sources, trials, options, measured);
+    auto passivity = judge_passivity(sources, trials, spectra, options, measured);
     if (!passivity) {
       return sources[0].in_file(passivity.error());
     }

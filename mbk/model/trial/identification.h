@@ -91,6 +91,10 @@ enum class Assumption {
   linear_stiffness,    ///< as stiff in large motion as in small
   no_dry_friction,     ///< no force that depends on the direction of motion alone
   constant_stiffness,  ///< one stiffness for the whole recording
+  constant_damping,    ///< one damping for the whole recording
+  no_memory,           ///< no force that relaxes after a displacement
+  alike_both_ways,     ///< as stiff and as damped in one direction as in the opposite one
+  fits_at_lines,       ///< M, B and K explain the force at each frequency of a periodic perturbation
   constant_rest,       ///< one equilibrium, and a force sensor whose zero stays
   no_tremor,           ///< no rhythm of the limb's own
 };
@@ -101,6 +105,10 @@ enum class Assumption {
                                           {linear_stiffness, "linear-stiffness"},
                                           {no_dry_friction, "no-dry-friction"},
                                           {constant_stiffness, "constant-stiffness"},
+                                          {constant_damping, "constant-damping"},
+                                          {no_memory, "no-memory"},
+                                          {alike_both_ways, "alike-both-ways"},
+                                          {fits_at_lines, "fits-at-lines"},
                                           {constant_rest, "constant-rest"},
                                           {no_tremor, "no-tremor"}});
 }
@@ -110,7 +118,9 @@ struct AssumptionTest {
   Assumption assumption;
   double p_value = 1;  ///< chance of such data where the assumption holds
   /// What contradicts it, as large as it was found: the force late by [s]; stiffness at the motion's amplitude more
-  /// than at none, as a share; dry friction [N or N·m]; standard deviation of the stiffness over time, as a share;
+  /// than at none, as a share; dry friction [N or N·m]; standard deviation of the stiffness or damping over time, as
+  /// a share; force of the memory, or of what is even, as a share of that of the stiffness; residual at the lines that
+  /// no scatter explains, as a share of the force;
   /// drift of the force over the data behind the parameters [N or N·m]; standard deviation of the tremor's force [N or
   /// N·m].
   double size = 0;

@@ -126,6 +126,15 @@ std::vector<Misspecification> broken() {
   const auto stiffer = [](std::vector<participant::StiffnessAt> schedule) {
     return [schedule](Scenario& s) { stiffness_changes(s, schedule); };
   };
+  const auto damped = stiffer;
+  const auto turned = [](double degrees) {
+    return [degrees](Scenario& s) {
+      const double angle = degrees / kDegrees;
+      cell(s).gain << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    };
+  };
+  const auto relaxing = [](double share) { return [share](Scenario& s) { departures(s).relaxing_share = share; }; };
+  const auto one_sided = [](double share) { return [share](Scenario& s) { departures(s).one_sided_share = share; }; };
   std::vector<Misspecification> list = {
       {"both joints moved alike", sine, warning,
        [](Scenario& s) { sines(s).phases = perturbation::MultisinePlan::Phases::schroeder; }},
@@ -169,6 +178,16 @@ std::vector<Misspecification> broken() {
          planar(s).sensors.clock.jitter = 5e-5;
          planar(s).sensors.clock.timestamps = laboratory::ClockOptions::Timestamps::nominal;
        }},
+      {"force turned by 4°", sine, warning, turned(4.0)},
+      {"force turned by 12°", sine, warning, turned(12.0)},
+      {"force turned by 12°, pulses", pulses, nothing, turned(12.0)},
+      {"force of y 20 % too large", sine, nothing, [](Scenario& s) { cell(s).gain << 1.0, 0.0, 0.0, 1.2; }},
+      {"damping × 2 from half time", sine, warning, damped({{30.0, 1.0, 1.0}, {31.0, 1.0, 2.0}})},
+      {"damping × 2 from half time, pulses", pulses, nothing, damped({{60.0, 1.0, 1.0}, {61.0, 1.0, 2.0}})},
+      {"three springs of 0.3 K behind dampers", sine, warning, relaxing(0.3)},
+      {"three springs of 0.3 K behind dampers, pulses", pulses, nothing, relaxing(0.3)},
+      {"stiffness × 1.6 on one side, × 0.4 on the other", sine, warning, one_sided(0.6)},
+      {"stiffness × 1.6 on one side, × 0.4 on the other, pulses", pulses, nothing, one_sided(0.6)},
       {"rigid grasp, 6 N multisine", "rigid_sinusoidal_6N", warning},
       {"rigid grasp, 8 N pulses", "rigid_underdamped_8N", warning},
       {"rigid grasp, 2 N pulses", "rigid_underdamped_2N", warning}};
@@ -176,9 +195,12 @@ std::vector<Misspecification> broken() {
 }
 
 /// Warnings of what M, B and K take for granted.
-constexpr std::array kMisspecified = {WarningCode::missing_dynamics, WarningCode::nonlinear_stiffness,
-                                      WarningCode::dry_friction,     WarningCode::stiffness_changes,
-                                      WarningCode::force_drifts,     WarningCode::tremor};
+constexpr std::array kMisspecified = {WarningCode::missing_dynamics,     WarningCode::nonlinear_stiffness,
+                                      WarningCode::dry_friction,         WarningCode::stiffness_changes,
+                                      WarningCode::force_drifts,         WarningCode::tremor,
+                                      WarningCode::damping_changes,      WarningCode::memory,
+                                      WarningCode::even_nonlinearity,    WarningCode::lack_of_fit,
+                                      WarningCode::inertia_not_symmetric};
 
 /// What came of one trial under one condition.
 struct MisspecifiedTrial {

@@ -85,6 +85,22 @@ export const plainWarnings: PlainWarnings = {
     title: "The limb became stiffer or softer during the recording",
     meaning: "The numbers are means over states that differ.",
   },
+  "damping-changes": {
+    title: "The damping of the limb changed during the recording",
+    meaning: "The numbers are means over states that differ.",
+  },
+  "memory": {
+    title: "The force relaxes after a displacement",
+    meaning: "Part of the force lags behind the position by up to seconds, so the stiffness depends on how fast the limb is moved.",
+  },
+  "even-nonlinearity": {
+    title: "The limb does not respond alike in opposite directions",
+    meaning: "Stiffness, damping or a reflex act more in one direction. The numbers are means of both, and the equilibrium is biased.",
+  },
+  "lack-of-fit": {
+    title: "Inertia, damping and stiffness do not fit at the frequencies of the perturbation",
+    meaning: "The difference is the same in every period, so it is not noise. The numbers do not hold at each frequency.",
+  },
   "force-drifts": {
     title: "The force drifted from beginning to end",
     meaning: "The hand's place of rest moved, or the zero of the force sensor did. The equilibrium is a mean.",
