@@ -154,8 +154,10 @@ DetectableChange detectable_change(const statistics::OutcomeReliability& reliabi
   if (model.support != reliability::Support::enough || model.of_trials.empty()) {
     return not_known("the variances of this study are not identifiable");
   }
-  error.session = std::isfinite(model.session) ? model.session : 0.0;
-  error.trial = model.residual + (std::isfinite(model.known) ? model.known : 0.0);
+  // Where sessions and trials are not separable, no mean of trials is taken to be better than one.
+  const bool separable = std::isfinite(model.session);
+  error.session = separable ? model.session : model.within;
+  error.trial = (separable ? model.residual : 0.0) + (std::isfinite(model.known) ? model.known : 0.0);
   const reliability::ModelReliability& typical = model.of_trials.back();
   error.lower_factor = typical.sem_between95.first / typical.sem_between;
   error.upper_factor = typical.sem_between95.second / typical.sem_between;

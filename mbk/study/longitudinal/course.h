@@ -70,8 +70,10 @@ struct OutcomeCourses {
 
 /// The minimal detectable change between the means of so many results in two sessions,
 ///   1.96 √(2 σ_s² + (σ_e² + v̄)(1/m₁ + 1/m₂)),
-/// with the variances of the mixed model. It is unknown where fewer than kMinPeople people have two sessions: the
-/// variances of too few people, or of trials of one session alone, say nothing of what a person changes by.
+/// with the variances of the mixed model; where they are not separable, their sum is taken for σ_s², which is exact for
+/// one trial in each session and too large for more. It is unknown where fewer than kMinPeople people have two
+/// sessions: the variances of too few people, or of trials of one session alone, say nothing of what a person changes
+/// by.
 struct DetectableChange {
   std::string why_unknown;                    ///< a clause; "": it is known
   double session = 0, trial = 0;              ///< σ_s², σ_e² + v̄ [unit²]

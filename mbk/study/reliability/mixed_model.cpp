@@ -844,6 +844,8 @@ ModelReliability without_numbers(Support support, int trials) {
 /// Of the mean of so many trials.   @param of_residual  the interval of σ_e²
 ModelReliability reliability_of_mean(const Prepared& data, const Fitted& fit, const MixedModel& model,
                                      const Interval& of_residual, int trials) {
+  const bool separable = separates_sessions_from_trials(model);
+  if (!separable && trials > 1) return without_numbers(Support::too_few_trials, trials);
   ModelReliability result;
   result.trials = trials;
   const double m = trials;
@@ -860,6 +862,10 @@ ModelReliability reliability_of_mean(const Prepared& data, const Fitted& fit, co
   result.sem_between95 = {root(of_between.first), root(of_between.second)};
   result.sem_within95 = {root(of_residual.first / m), root(of_residual.second / m)};
   result.icc95 = icc_interval(data, fit, m);
+  if (!separable) {
+    result.sem_within = result.mdc95_within = kNaN;
+    result.sem_within95 = {kNaN, kNaN};
+  }
   return result;
 }
 
@@ -871,6 +877,10 @@ Result<MixedModel> fit_mixed_model(const Measurements& measurements) {
   const auto fit = fitted(*data);
   if (!fit) return tl::unexpected(fit.error());
   return summarised(*data, *fit);
+}
+
+bool separates_sessions_from_trials(const MixedModel& model) {
+  return model.rows - model.sessions >= kMinPeople;
 }
 
 FixedEffect contrast(const MixedModel& model, const Vector& weights) {

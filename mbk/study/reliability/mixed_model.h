@@ -65,6 +65,11 @@ struct MixedModel {
 ///   sessions explain (the residual is 0).
 [[nodiscard]] Result<MixedModel> fit_mixed_model(const Measurements& measurements);
 
+/// Whether the data separate the variance between sessions from that between trials: at least kMinPeople results beyond
+/// the first of each session. With one trial in each session only the sum of both is identifiable, and with a few more
+/// the split rests on a handful of differences.
+[[nodiscard]] bool separates_sessions_from_trials(const MixedModel& model);
+
 /// wᵀβ with its standard error, degrees of freedom and interval.
 /// @param weights p
 [[nodiscard]] FixedEffect contrast(const MixedModel& model, const Vector& weights);
@@ -78,7 +83,7 @@ struct ModelReliability {
   Interval icc95;
   double sem_between = 0;  ///< √(σ_s² + (σ_e² + v̄)/m): between sessions
   Interval sem_between95;
-  double sem_within = 0;  ///< √((σ_e² + v̄)/m): within a session
+  double sem_within = 0;  ///< √((σ_e² + v̄)/m): within a session; NaN where that is not separable from sessions
   Interval sem_within95;
   double mdc95_between = 0, mdc95_within = 0;  ///< 1.96 √2 SEM
 };
@@ -87,7 +92,8 @@ struct ModelReliability {
 /// its minimum over the other variances. They need neither equal numbers of trials nor variances above 0; how often
 /// they hold the truth is in `mbk validate reliability`. Near 0 a variance cannot be missed below, and they hold it
 /// more often. Fixed effects decide what is counted as error: with a column for each session the ICC is one of
-/// consistency.
+/// consistency. Where sessions and trials are not separable (above), the ICC and the SEM between sessions of one trial
+/// remain, and means of more trials have too_few_trials.
 /// @param trials ≥ 1: m
 /// @fails  as fit_mixed_model; usage: trials < 1.
 [[nodiscard]] Result<ModelReliability> model_reliability(const Measurements& measurements, int trials = 1);

@@ -15,6 +15,7 @@ enum class Support {
   enough,
   too_few_people,    ///< fewer than the statistic needs; where it says how many, that is there too
   too_few_sessions,  ///< of one session or trial nothing repeats
+  too_few_trials,    ///< too few sessions with two trials or more: sessions and trials are not identifiable
   no_variation,      ///< all values are alike, or all that could be compared
 };
 
@@ -23,6 +24,7 @@ enum class Support {
   return std::to_array<Word<Support>>({{enough, "enough"},
                                        {too_few_people, "too few people"},
                                        {too_few_sessions, "too few sessions"},
+                                       {too_few_trials, "too few trials"},
                                        {no_variation, "no variation"}});
 }
 

@@ -98,7 +98,8 @@ bool overstated(const reliability::MixedModel& weighted, reliability::Measuremen
 }
 
 MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Cell>& cells, int participants,
-                                   std::vector<std::string>& notes) {
+                                   OutcomeReliability& outcome) {
+  std::vector<std::string>& notes = outcome.notes;
   MixedReliability result;
   result.participants = participants;
   result.sessions = static_cast<int>(cells.size());
@@ -130,10 +131,19 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
   if (!fit) notes.push_back("no mixed model: " + fit.error().message);
   if (!fit || !fit->model) return result;
   result.participant = fit->model->participant.value;
-  result.session = fit->model->session.value;
-  result.residual = fit->model->residual.value;
+  result.within = fit->model->session.value + fit->model->residual.value;
+  if (reliability::separates_sessions_from_trials(*fit->model)) {
+    result.session = fit->model->session.value;
+    result.residual = fit->model->residual.value;
+  } else {
+    outcome.warnings.push_back(ReliabilityWarning::sessions_and_trials);
+    notes.emplace_back(
+        "the variances between sessions and between trials are not identifiable, since too few sessions have two "
+        "trials or more: only their sum is known, and how the mean of more trials would improve is not");
+  }
   result.known = fit->model->typical_known_variance;
   result.of_trials = std::move(fit->of_trials);
+  std::erase_if(result.of_trials, [](const auto& one) { return one.support != Support::enough; });
   result.support = Support::enough;
   return result;
 }
@@ -167,7 +177,7 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   if (result.session == 0 && result.participants >= reliability::kMinPeople) {
     result.within_session.support = Support::too_few_sessions;
   }
-  result.mixed_model = mixed_reliability(rows, cells, result.participants, result.notes);
+  result.mixed_model = mixed_reliability(rows, cells, result.participants, result);
 
   const Repeated& sessions = result.between_sessions;
   if (sessions.support == Support::no_variation) {

@@ -57,6 +57,25 @@ VarianceComponents components_of(const reliability::MixedModel& model) {
   return {model.participant.value, model.session.value, model.residual.value};
 }
 
+std::vector<ReliabilityWarning> not_separated(const reliability::MixedModel& model) {
+  std::vector<ReliabilityWarning> warnings;
+  const bool repeated = model.sessions - model.participants >= reliability::kMinPeople;
+  if (!reliability::separates_sessions_from_trials(model)) warnings.push_back(ReliabilityWarning::sessions_and_trials);
+  if (!repeated) warnings.push_back(ReliabilityWarning::people_and_sessions);
+  return warnings;
+}
+
+/// What is not separated, summed up in the outer one of both.
+VarianceComponents merged(VarianceComponents variances, const Pilot& pilot) {
+  if (pilot.warns_of(ReliabilityWarning::sessions_and_trials)) {
+    variances.session += std::exchange(variances.residual, 0.0);
+  }
+  if (pilot.warns_of(ReliabilityWarning::people_and_sessions)) {
+    variances.participant += std::exchange(variances.session, 0.0);
+  }
+  return variances;
+}
+
 /// Values of the same people, sessions and trials, drawn from the variances.
 void redraw(reliability::Measurements& m, const VarianceComponents& variances, numeric::Random& random) {
   std::map<int, double> people;
@@ -128,7 +147,7 @@ Planned simulated(const VarianceComponents& variances, const PlanGoal& goal, con
   return {double(all) / goal.simulated_studies, numeric::binomial_interval(all, goal.simulated_studies, kConfidence)};
 }
 
-Result<void> check_goal(const PlanGoal& goal) {
+Result<void> check_goal(const Pilot& pilot, const PlanGoal& goal) {
   if (!goal.difference && !goal.change) {
     return bad_usage("nothing is wanted of the study", "pass --difference or --mdc, in the unit of the outcome");
   }
@@ -136,6 +155,14 @@ Result<void> check_goal(const PlanGoal& goal) {
     if (wanted && !(*wanted > 0.0 && std::isfinite(*wanted))) {
       return bad_usage(fmt::format("{:g} is wanted", *wanted), "ask for more than 0");
     }
+  }
+  if (pilot.warns_of(ReliabilityWarning::people_and_sessions) && (goal.change || goal.pairing == Pairing::paired)) {
+    return bad_data(
+        "too few people of the pilot have two sessions, so how much a person changes between sessions is "
+        "not known",
+        "measure at least five people in two sessions, or state the variances with --sd-people, "
+        "--sd-sessions and --sd-trials",
+        pilot.outcome);
   }
   return {};
 }
@@ -177,6 +204,10 @@ Result<void> plan_people(const Pilot& pilot, const PlanGoal& goal, StudyPlan& pl
 }
 
 }  // namespace
+
+bool Pilot::warns_of(ReliabilityWarning warning) const {
+  return std::ranges::find(warnings, warning) != warnings.end();
+}
 
 Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& outcome,
                        const std::vector<std::string>& conditions, int draws, std::uint64_t seed) {
@@ -220,15 +251,17 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
   }
   pilot.sessions = model->sessions;
   pilot.results = model->rows;
-  pilot.variances = components_of(*model);
+  pilot.warnings = not_separated(*model);
+  const VarianceComponents fitted = components_of(*model);
+  pilot.variances = merged(fitted, pilot);
   pilot.redrawn.resize(static_cast<std::size_t>(draws));
   const auto ok = numeric::parallel_for(draws, 0, [&](int draw) -> Result<void> {
     reliability::Measurements again = *m;
     numeric::Random random(seed, static_cast<std::uint32_t>(draw + 1));
-    redraw(again, pilot.variances, random);
+    redraw(again, fitted, random);
     const auto refitted = reliability::fit_mixed_model(again);
     if (!refitted) return tl::unexpected(refitted.error().in(outcome));
-    pilot.redrawn[static_cast<std::size_t>(draw)] = components_of(*refitted);
+    pilot.redrawn[static_cast<std::size_t>(draw)] = merged(components_of(*refitted), pilot);
     return {};
   });
   if (!ok) return tl::unexpected(ok.error());
@@ -236,19 +269,24 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
 }
 
 Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& goal) {
-  if (auto ok = check_goal(goal); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_goal(pilot, goal); !ok) return tl::unexpected(ok.error());
   std::vector<StudyPlan> plans;
   constexpr double kChange = reliability::kPublishedNormal95 * std::numbers::sqrt2;
-  for (int sessions = 1; sessions <= goal.most_sessions; ++sessions) {
-    for (int trials = 1; trials <= goal.most_trials; ++trials) {
+  const bool change_known = !pilot.warns_of(ReliabilityWarning::people_and_sessions);
+  const int most_sessions = change_known ? goal.most_sessions : 1;
+  const int most_trials = pilot.warns_of(ReliabilityWarning::sessions_and_trials) ? 1 : goal.most_trials;
+  for (int sessions = 1; sessions <= most_sessions; ++sessions) {
+    for (int trials = 1; trials <= most_trials; ++trials) {
       StudyPlan plan{.sessions = sessions, .trials = trials};
       const auto error = [&](const VarianceComponents& variances) {
         return error_of_mean(variances, sessions, trials);
       };
       const double of_mean = error(pilot.variances);
       const Interval between = variance_interval(pilot, of_mean, error);
-      plan.mdc95 = {kChange * std::sqrt(of_mean),
-                    {kChange * std::sqrt(between.first), kChange * std::sqrt(between.second)}};
+      if (change_known) {
+        plan.mdc95 = {kChange * std::sqrt(of_mean),
+                      {kChange * std::sqrt(between.first), kChange * std::sqrt(between.second)}};
+      }
       if (goal.change) plan.change_is_detectable = plan.mdc95.value <= *goal.change;
       if (goal.difference) {
         if (auto ok = plan_people(pilot, goal, plan); !ok) return tl::unexpected(ok.error());

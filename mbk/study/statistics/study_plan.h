@@ -10,6 +10,7 @@
 #include "mbk/study/reliability/comparison.h"
 #include "mbk/study/reliability/power.h"
 #include "mbk/study/reliability/support.h"
+#include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/store/store_values.h"
 
 /// How many people, sessions and trials a study takes.
@@ -36,6 +37,11 @@ struct Pilot {
   /// Each as a study of the same people, sessions and trials gives it, drawn from `variances`: how sure they are. Empty
   /// where variances were stated.
   std::vector<reliability::VarianceComponents> redrawn;
+  /// Which variances it does not separate. Then `session` holds those of trials too, or `participant` those of
+  /// sessions, and nothing is planned that needs them apart.
+  std::vector<ReliabilityWarning> warnings;
+
+  [[nodiscard]] bool warns_of(ReliabilityWarning warning) const;
 };
 
 /// Variances of one outcome by the mixed model (residual: with the trials' own errors).
@@ -66,8 +72,11 @@ struct StudyPlan {
 /// Plans of 1 … most_sessions sessions and 1 … most_trials trials. A person's mean over k sessions of m trials errs by
 ///   E = (σ_s² + σ_e²/m)/k;  MDC = 1.96 √2 √E;  V = σ_p² + E unpaired, V = 2E paired;  d = difference/√V
 /// and people follow from the t test of d (reliability/power.h). Intervals are by the parametric bootstrap: where a
-/// pilot like this gives V* for V, V lies between V²/V*(0.975) and V²/V*(0.025).
-/// @fails  usage: neither difference nor change is wanted, or one that is not above 0; as people_for_effect.
+/// pilot like this gives V* for V, V lies between V²/V*(0.975) and V²/V*(0.025). Where the pilot does not separate
+/// sessions from trials, plans have one trial in each session; where it does not separate people from sessions, one
+/// session and no MDC.
+/// @fails  usage: neither difference nor change is wanted, or one that is not above 0; as people_for_effect. data: a
+///   change or a paired difference is wanted, and the pilot does not separate people from sessions.
 [[nodiscard]] Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& goal);
 
 /// Schema "mbk.study_plan/1".

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "mbk/base/numeric/random.h"
@@ -89,6 +90,51 @@ TEST(APlan, OfAPilotSaysHowSureItIs) {
     if (low <= truth && truth <= high) ++held;
   }
   EXPECT_GE(held, 86);
+}
+
+TEST(APlan, OfOneTrialASessionPromisesNothingOfMoreTrials) {
+  PlanGoal goal;
+  goal.difference = 3.0;
+  goal.change = 4.0;
+  goal.most_sessions = 2;
+  for (const int more : {0, 1}) {  // sessions with a second trial
+    auto columns = pilot_columns(10, 2, 2, 5);
+    for (std::size_t k = 1; k < columns.trials.size(); k += 2) {
+      if (k > static_cast<std::size_t>(2 * more)) columns.outcomes[0].values[k] = kNaN;
+    }
+    const auto pilot = pilot_of(columns, "K", {"relaxed"}, 100, 1);
+    ASSERT_TRUE(pilot) << pilot.error().line();
+    EXPECT_TRUE(pilot->warns_of(ReliabilityWarning::sessions_and_trials));
+    const auto plans = study_plans(*pilot, goal);
+    ASSERT_TRUE(plans);
+    ASSERT_EQ(plans->size(), 2U);
+    for (const StudyPlan& plan : *plans) EXPECT_EQ(plan.trials, 1);
+    EXPECT_NE(plan_text(*pilot, goal, *plans).find("! Too few sessions of the pilot have two trials"),
+              std::string::npos);
+    const auto json = nlohmann::json::parse(to_json(*pilot, goal, *plans));
+    EXPECT_TRUE(json["variance"]["session"].is_null() && json["variance"]["residual"].is_null());
+    EXPECT_EQ(json["warnings"], nlohmann::json({"sessions-and-trials-not-identifiable"}));
+  }
+  const auto two = pilot_of(pilot_columns(10, 2, 2, 5), "K", {"relaxed"}, 100, 1);
+  EXPECT_TRUE(two->warnings.empty());
+  EXPECT_EQ(study_plans(*two, goal)->size(), 20U);
+}
+
+TEST(APlan, OfOneSessionPromisesNothingOfChanges) {
+  const auto pilot = pilot_of(pilot_columns(10, 1, 3, 5), "K", {"relaxed"}, 100, 1);
+  ASSERT_TRUE(pilot) << pilot.error().line();
+  PlanGoal goal;
+  goal.difference = 3.0;
+  goal.most_sessions = 3;
+  const auto plans = study_plans(*pilot, goal);
+  ASSERT_TRUE(plans) << plans.error().line();
+  EXPECT_EQ(plans->size(), 10U) << "one session";
+  EXPECT_TRUE(std::isnan(plans->front().mdc95.value));
+  EXPECT_GT(plans->front().people.value, 2.0);
+  EXPECT_TRUE(nlohmann::json::parse(to_json(*pilot, goal, *plans))["plans"][0]["mdc95"].is_null());
+  goal.pairing = Pairing::paired;
+  EXPECT_FALSE(study_plans(*pilot, goal));
+  EXPECT_FALSE(study_plans(*pilot, PlanGoal{.change = 4.0}));
 }
 
 TEST(APlan, IsNotMadeFromTooLittle) {

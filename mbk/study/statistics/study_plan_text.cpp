@@ -57,9 +57,19 @@ std::string head_of(const Pilot& pilot, const PlanGoal& goal) {
                            : ", " + fmt::format("{}", fmt::join(pilot.conditions, " and ")),
                        pilot.participants, pilot.results, pilot.sessions);
   }
-  text += fmt::format("\nstandard deviations: people {}{unit}, sessions {}{unit}, trials {}{unit}\n",
-                      three_digits(std::sqrt(v.participant)), three_digits(std::sqrt(v.session)),
-                      three_digits(std::sqrt(v.residual)), fmt::arg("unit", unit));
+  const bool no_sessions = pilot.warns_of(ReliabilityWarning::people_and_sessions);
+  const bool no_trials = pilot.warns_of(ReliabilityWarning::sessions_and_trials);
+  std::vector<std::string> deviations;
+  const auto add = [&](const char* of, double variance) {
+    deviations.push_back(fmt::format("{} {}{}", of, three_digits(std::sqrt(variance)), unit));
+  };
+  add(!no_sessions ? "people"
+      : no_trials  ? "people, sessions and trials together"
+                   : "people and sessions together",
+      v.participant);
+  if (!no_sessions) add(no_trials ? "sessions and trials together" : "sessions", v.session);
+  if (!no_trials) add("trials", v.residual);
+  text += report::wrapped(fmt::format("\nstandard deviations: {}\n", fmt::join(deviations, ", ")), kPlanWidth);
   if (goal.difference) {
     text += fmt::format("to find a difference of {:g}{} {} with power {:g} at {:g}\n", *goal.difference, unit,
                         goal.pairing == reliability::Pairing::paired ? "in the same people" : "between two groups",
@@ -69,6 +79,24 @@ std::string head_of(const Pilot& pilot, const PlanGoal& goal) {
     text += fmt::format("to detect a change of {:g}{} of one person (MDC, 95 %)\n", *goal.change, unit);
   }
   return text;
+}
+
+/// What the pilot does not separate; sentences.
+std::vector<std::string> pilot_notes(const Pilot& pilot) {
+  std::vector<std::string> notes;
+  if (pilot.warns_of(ReliabilityWarning::sessions_and_trials)) {
+    notes.emplace_back(
+        "Too few sessions of the pilot have two trials or more to separate the variance between trials from that "
+        "between sessions: what more trials in a session would give is not known, so plans have one. Measure two "
+        "trials in each session to learn it.");
+  }
+  if (pilot.warns_of(ReliabilityWarning::people_and_sessions)) {
+    notes.emplace_back(
+        "Too few people of the pilot have two sessions to separate the variance between sessions from that between "
+        "people: what more sessions would give and the minimal detectable change are not known, so plans have one "
+        "session. Measure people in two sessions to learn it.");
+  }
+  return notes;
 }
 
 }  // namespace plan_detail
@@ -84,9 +112,14 @@ std::string to_json(const Pilot& pilot, const PlanGoal& goal, const std::vector<
                                                    {"sessions", pilot.sessions},
                                                    {"results", pilot.results},
                                                    {"draws", pilot.redrawn.size()}};
-  json["variance"] = {{"participant", pilot.variances.participant},
-                      {"session", pilot.variances.session},
-                      {"residual", pilot.variances.residual}};
+  const bool no_sessions = pilot.warns_of(ReliabilityWarning::people_and_sessions);
+  const bool no_trials = pilot.warns_of(ReliabilityWarning::sessions_and_trials);
+  const reliability::VarianceComponents& v = pilot.variances;
+  json["variance"] = {{"participant", no_sessions ? Document() : Document(v.participant)},
+                      {"session", no_sessions || no_trials ? Document() : Document(v.session)},
+                      {"residual", no_trials ? Document() : Document(v.residual)},
+                      {"within_participant", no_sessions ? Document() : Document(v.session + v.residual)},
+                      {"total", v.participant + v.session + v.residual}};
   json["wanted"] = {{"difference", goal.difference ? Document(*goal.difference) : Document()},
                     {"mdc95", goal.change ? Document(*goal.change) : Document()},
                     {"pairing", word_of(goal.pairing)},
@@ -104,6 +137,9 @@ std::string to_json(const Pilot& pilot, const PlanGoal& goal, const std::vector<
          {"power", planned_json(plan.power)},
          {"simulated_power", plan.simulated_power ? planned_json(*plan.simulated_power) : Document()}});
   }
+  json["warnings"] = Document::array();
+  for (const ReliabilityWarning warning : pilot.warnings) json["warnings"].push_back(word_of(warning));
+  json["notes"] = pilot_notes(pilot);
   return json.dump(2, ' ', false, Document::error_handler_t::replace) + "\n";
 }
 
@@ -140,7 +176,9 @@ std::string plan_text(const Pilot& pilot, const PlanGoal& goal, const std::vecto
         "In parentheses: 95 % intervals that a pilot of this size leaves ({} pilots were drawn from its variances).",
         pilot.redrawn.size());
   }
-  return text + "\n" + report::wrapped(rest, kPlanWidth) + "\n";
+  text += "\n" + report::wrapped(rest, kPlanWidth) + "\n";
+  for (const std::string& note : pilot_notes(pilot)) text += report::wrapped("! " + note, kPlanWidth) + "\n";
+  return text;
 }
 
 }  // namespace mbk::statistics

@@ -89,6 +89,18 @@ struct ReliabilityBootstrap {
   BootstrapInterval sem_agreement;                   ///< [unit]; MDC is 1.96 √2 of it
 };
 
+/// Why numbers of an outcome do not hold as they stand. A sentence in OutcomeReliability::notes goes with each.
+enum class ReliabilityWarning {
+  sessions_and_trials,  ///< their variances are not identifiable: too few sessions have two trials
+  people_and_sessions,  ///< of a pilot: too few people have two sessions
+};
+
+[[nodiscard]] constexpr auto word_table(ReliabilityWarning) {
+  using enum ReliabilityWarning;
+  return std::to_array<Word<ReliabilityWarning>>({{sessions_and_trials, "sessions-and-trials-not-identifiable"},
+                                                  {people_and_sessions, "people-and-sessions-not-identifiable"}});
+}
+
 /// Variances by restricted maximum likelihood from every trial, whoever lacks whichever session.
 struct MixedReliability {
   Support support = Support::too_few_people;
@@ -96,7 +108,9 @@ struct MixedReliability {
   int participants = 0, sessions = 0, results = 0;
   /// Between people, between sessions of a person, between trials of a session beyond what `known` says, and the mean
   /// of the trials' own squared standard errors (0 where not weighted) [unit²].
-  double participant = kNaN, session = kNaN, residual = kNaN, known = kNaN;
+  /// `session` and `residual` are NaN where the data do not separate them; `within` is their sum, which is always
+  /// known.
+  double participant = kNaN, session = kNaN, residual = kNaN, within = kNaN, known = kNaN;
   std::vector<reliability::ModelReliability> of_trials;  ///< of one trial, and of the mean of `typical_trials`
   int typical_trials = 1;                                ///< in a session, the median
 };
@@ -115,7 +129,8 @@ struct OutcomeReliability {
   Repeated within_session;                  ///< of single trials, in their order
   MixedReliability mixed_model;
   std::optional<ReliabilityBootstrap> bootstrap;  ///< of `between_sessions`, where it was asked for
-  std::vector<std::string> notes;                 ///< what must be known beside the numbers; sentences
+  std::vector<ReliabilityWarning> warnings;
+  std::vector<std::string> notes;  ///< what must be known beside the numbers; sentences
 };
 
 /// Quartiles of distances.

@@ -78,6 +78,7 @@ Document mixed_json(const MixedReliability& model) {
                     {{"participant", number(model.participant)},
                      {"session", number(model.session)},
                      {"residual", number(model.residual)},
+                     {"within_participant", number(model.within)},
                      {"known", number(model.known)}}}};
   json["of_trials"] = Document::array();
   for (const reliability::ModelReliability& one : model.of_trials) {
@@ -122,6 +123,8 @@ Document reliability_json(const OutcomeReliability& one) {
                          {"icc_consistency", bootstrap_json(one.bootstrap->icc_consistency)},
                          {"sem_agreement", bootstrap_json(one.bootstrap->sem_agreement)}};
   }
+  json["warnings"] = Document::array();
+  for (const ReliabilityWarning warning : one.warnings) json["warnings"].push_back(word_of(warning));
   json["notes"] = one.notes;
   return json;
 }

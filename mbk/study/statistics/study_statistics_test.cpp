@@ -126,6 +126,32 @@ TEST(Reliability, CountsAMissingCellAsMissing) {
   EXPECT_EQ(one.mixed_model.results, 73) << "the mixed model takes what there is";
 }
 
+TEST(Reliability, OneTrialASessionDoesNotSeparateSessionsFromTrials) {
+  const auto warned = testing::ElementsAre(ReliabilityWarning::sessions_and_trials);
+  for (const bool one_more : {false, true}) {
+    Results results = drawn(8, 2, 1, 20, 10, 5);
+    if (one_more) results.add(3, 2, {100.0});  // one difference between trials says nothing of all
+    const StudyStatistics found = statistics_of(results);
+    const OutcomeReliability& one = found.reliability[0];
+    EXPECT_THAT(one.warnings, warned);
+    EXPECT_TRUE(std::isnan(one.mixed_model.session));
+    EXPECT_TRUE(std::isnan(one.mixed_model.residual));
+    EXPECT_GT(one.mixed_model.within, 0.0);
+    ASSERT_EQ(one.mixed_model.of_trials.size(), 1U);
+    EXPECT_NEAR(one.mixed_model.of_trials[0].sem_between, std::sqrt(one.mixed_model.within), 1e-9);
+    EXPECT_TRUE(std::isnan(one.mixed_model.of_trials[0].mdc95_within));
+    const auto json = nlohmann::json::parse(to_json(found))["reliability"][0];
+    EXPECT_EQ(json["warnings"], nlohmann::json({"sessions-and-trials-not-identifiable"}));
+    EXPECT_TRUE(json["mixed_model"]["variance"]["session"].is_null());
+    EXPECT_THAT(reliability_text(found, false), HasSubstr("not identifiable"));
+    EXPECT_THAT(reliability_text(found, true), HasSubstr("sessions and trials together"));
+    EXPECT_THAT(reliability_text(found, true), Not(HasSubstr("within a session 1")));
+  }
+  const OutcomeReliability two = statistics_of(drawn(8, 2, 2, 20, 10, 5)).reliability[0];
+  EXPECT_THAT(two.warnings, IsEmpty());
+  EXPECT_NEAR(two.mixed_model.within, two.mixed_model.session + two.mixed_model.residual, 1e-9);
+}
+
 TEST(Reliability, WhereASessionHasNoNumbersIsOfTheOthers) {
   numeric::Random random(3);
   Results results({"K"});

@@ -66,6 +66,8 @@ std::string why_not(Support support, int people) {
       return fmt::format("too few people ({} of {} needed)", people, reliability::kMinPeople);
     case Support::too_few_sessions:
       return "nobody was measured in two sessions";
+    case Support::too_few_trials:
+      return "too few sessions have two trials";
     case Support::no_variation:
       return "no variation that could be compared";
     case Support::enough:
@@ -197,18 +199,21 @@ std::string model_details(const MixedReliability& model) {
   std::string text = item("  mixed model (REML): ",
                           fmt::format("{} results of {} people in {} sessions{}", model.results, model.participants,
                                       model.sessions, model.weighted ? ", weighted by their standard errors" : ""));
+  const bool separable = std::isfinite(model.session);
   text +=
       item("    ",
-           fmt::format("variance between people {}, sessions {}, trials {}{}", digits(model.participant),
-                       digits(model.session), digits(model.residual),
+           fmt::format("variance between people {}, {}{}", digits(model.participant),
+                       separable ? fmt::format("sessions {}, trials {}", digits(model.session), digits(model.residual))
+                                 : fmt::format("sessions and trials together {}", digits(model.within)),
                        model.weighted ? fmt::format(" beside {} by their standard errors", digits(model.known)) : ""));
   for (const reliability::ModelReliability& one : model.of_trials) {
     const std::string what = one.trials == 1 ? "one trial" : fmt::format("mean of {} trials", one.trials);
     text += item(fmt::format("    {}: ", what),
-                 fmt::format("ICC {} ({}); SEM between sessions {} ({}), MDC {}; SEM within a session {} ({}), MDC {}",
-                             share(one.icc), shares(one.icc95), digits(one.sem_between), range(one.sem_between95),
-                             digits(one.mdc95_between), digits(one.sem_within), range(one.sem_within95),
-                             digits(one.mdc95_within)));
+                 fmt::format("ICC {} ({}); SEM between sessions {} ({}), MDC {}", share(one.icc), shares(one.icc95),
+                             digits(one.sem_between), range(one.sem_between95), digits(one.mdc95_between)) +
+                     (separable ? fmt::format("; SEM within a session {} ({}), MDC {}", digits(one.sem_within),
+                                              range(one.sem_within95), digits(one.mdc95_within))
+                                : ""));
   }
   return text;
 }
