@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -29,9 +28,11 @@ double icc_of_ratio(double ratio, double k) {
   return std::isinf(ratio) ? 1.0 : (ratio - 1.0) / (ratio + k - 1.0);
 }
 
-/// What the mean of k has of what one has (Spearman and Brown); it rises with r.
+/// What the mean of k has of what one has (Spearman and Brown); it rises with r, from −∞ at −1/(k − 1). ICC(A,1) and
+/// the ends of its interval may be below that.
 double of_mean(double r, double k) {
-  return k * r / (1.0 + (k - 1.0) * r);
+  const double denominator = 1.0 + (k - 1.0) * r;
+  return denominator > 0.0 ? k * r / denominator : -std::numeric_limits<double>::infinity();
 }
 
 double ratio_of(double numerator, double denominator) {
@@ -69,76 +70,6 @@ Icc icc_of_agreement(const MeanSquares& squares) {
   icc.interval95 = {n * (MSB - lower * MSE) / (lower * error + n * MSB),
                     n * (upper * MSB - MSE) / (error + n * upper * MSB)};
   return icc;
-}
-
-/// A mean square in a sum: its coefficient times its value, and its degrees of freedom.
-struct Term {
-  double value, degrees;
-};
-
-/// 1 − ν/χ²(1 − α) and ν/χ²(α) − 1: how far below and above a mean square its expectation may be.
-double reach_below(double degrees) {
-  return 1.0 - degrees / chi_square_quantile(1.0 - kTail95, degrees);
-}
-double reach_above(double degrees) {
-  return degrees / chi_square_quantile(kTail95, degrees) - 1.0;
-}
-
-/// Lower bound, one-sided 97.5 %, of plus − Σ minus (Ting et al. 1990; Burdick & Graybill 1992, eq. 3.3.1).
-double lower_bound(const Term& plus, const std::array<Term, 2>& minus) {
-  const double G = reach_below(plus.degrees);
-  double estimate = plus.value, spread = std::pow(G * plus.value, 2);
-  for (const Term& term : minus) {
-    const double H = reach_above(term.degrees), F = f_quantile(1.0 - kTail95, plus.degrees, term.degrees);
-    const double joint = (std::pow(F - 1.0, 2) - std::pow(G * F, 2) - H * H) / F;
-    estimate -= term.value;
-    spread += std::pow(H * term.value, 2) + joint * plus.value * term.value;
-  }
-  return estimate - std::sqrt(std::max(spread, 0.0));
-}
-
-/// Upper bound of the same. That of the two that are subtracted is a pair, too (eq. 3.3.2).
-double upper_bound(const Term& plus, const std::array<Term, 2>& minus) {
-  const double H = reach_above(plus.degrees);
-  double estimate = plus.value, spread = std::pow(H * plus.value, 2);
-  for (const Term& term : minus) {
-    const double G = reach_below(term.degrees), F = f_quantile(kTail95, plus.degrees, term.degrees);
-    const double joint = (std::pow(1.0 - F, 2) - std::pow(H * F, 2) - G * G) / F;
-    estimate -= term.value;
-    spread += std::pow(G * term.value, 2) + joint * plus.value * term.value;
-  }
-  const auto& [a, b] = minus;
-  const double sum = a.degrees + b.degrees;
-  const double pair = std::pow(reach_below(sum) * sum, 2) / (a.degrees * b.degrees) -
-                      std::pow(reach_below(a.degrees), 2) * a.degrees / b.degrees -
-                      std::pow(reach_below(b.degrees), 2) * b.degrees / a.degrees;
-  spread += pair * a.value * b.value;
-  return estimate + std::sqrt(std::max(spread, 0.0));
-}
-
-/// The ICC at which a bound that falls as it rises is 0, within [0, 1].
-template <class Bound>
-double root_of(const Bound& bound) {
-  double low = 0.0, high = 1.0;
-  if (bound(low) <= 0.0) return low;
-  constexpr int kHalvings = 50;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (bound(middle) > 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-Interval agreement_by_large_samples(const MeanSquares& squares) {
-  const double n = squares.people, k = squares.sessions;
-  const auto bound_at = [&](double icc, const auto& bound) {
-    const Term plus{(1.0 - icc) / k * squares.between_people, n - 1.0};
-    const std::array minus = {Term{icc / n * squares.between_sessions, k - 1.0},
-                              Term{((1.0 - icc) / k + icc * (n - 1.0) / n) * squares.residual, (n - 1.0) * (k - 1.0)}};
-    return bound(plus, minus);
-  };
-  return {root_of([&](double icc) { return bound_at(icc, lower_bound); }),
-          root_of([&](double icc) { return bound_at(icc, upper_bound); })};
 }
 
 MeasurementError error_of(IccForm form, double variance, double degrees) {
@@ -212,7 +143,6 @@ Result<TestRetest> test_retest(const Matrix& scores) {
                           of_mean(one.value, k),
                           {of_mean(one.interval95.first, k), of_mean(one.interval95.second, k)}});
   }
-  result.agreement_by_large_samples95 = agreement_by_large_samples(*squares);
   const double agreement = (squares->between_sessions - squares->residual) / n + squares->residual;
   result.error = {error_of(IccForm::agreement, agreement, satterthwaite(*squares, 1.0 / n, 1.0 - 1.0 / n)),
                   error_of(IccForm::consistency, squares->residual, residual_degrees)};

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -31,7 +30,8 @@ enum class IccForm {
   return std::to_array<Word<IccForm>>({{one_way, "one-way"}, {agreement, "agreement"}, {consistency, "consistency"}});
 }
 
-/// An intraclass correlation. It may be below 0, and is 1 at most.
+/// An intraclass correlation. It may be below 0, and is 1 at most; so may the ends of its interval, which is nowhere
+/// cut.
 struct Icc {
   IccForm form = IccForm::agreement;
   int averaged = 1;  ///< of one measurement, or of the mean over all k sessions
@@ -54,10 +54,6 @@ struct TestRetest {
   MeanSquares mean_squares;
   std::vector<Icc> icc;                 ///< of one: one-way, agreement, consistency; then of k; empty where not enough
   std::vector<MeasurementError> error;  ///< agreement, consistency; empty where not enough
-  /// Of ICC(A, 1), by modified large samples (Cappelleri & Ting 2003); within [0, 1]. The published interval, which
-  /// stands in `icc`, holds the truth in 91 % of studies with three sessions that differ as much as the residual; this
-  /// one in 96 % (`mbk validate reliability`).
-  Interval agreement_by_large_samples95;
 };
 
 ///   MSB = k Σᵢ(x̄ᵢ − x̄)²/(n − 1), MSJ = n Σⱼ(x̄ⱼ − x̄)²/(k − 1), MSE = Σᵢⱼ(xᵢⱼ − x̄ᵢ − x̄ⱼ + x̄)²/((n − 1)(k − 1))
@@ -75,10 +71,6 @@ struct TestRetest {
 /// agreement form, whose degrees of freedom are Satterthwaite's (there a negative estimate counts as 0).
 ///   SEM: agreement √((MSJ − MSE)/n + MSE), consistency √MSE; MDC = 1.96 √2 SEM
 /// with intervals by χ², that of the agreement by Satterthwaite's degrees of freedom.
-///
-/// By modified large samples: ρ is above L where c_B θ_B − c_J θ_J − c_E θ_E > 0 for the expected mean squares θ, with
-///   c_B = (1−L)/k, c_J = L/n, c_E = (1−L)/k + L(n−1)/n
-/// and L is where the lower bound of that sum (Ting, Burdick, Graybill, Jeyaratnam & Lu 1990) is 0; likewise above.
 ///
 /// Sessions that differ in trials, missing cells, groups: mixed_model.h.
 /// @param scores  n×k, a person in each row, a session in each column

@@ -185,9 +185,8 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
         "the values of each person are the same in all sessions: check that they were not copied; no reliability");
   }
   if (result.influence) {
-    const auto [low, high] = sessions.test_retest.agreement_by_large_samples95;
-    // Below 0 the interval ends, and one ICC says what another does.
-    const double without = std::max(0.0, result.influence->without);
+    const auto [low, high] = sessions.test_retest.icc[1].interval95;
+    const double without = result.influence->without;
     if (without < low || without > high) {
       result.notes.push_back(fmt::format("participant {} decides: without them ICC(A,1) is {:.2f}, not {:.2f}",
                                          result.influence->participant, result.influence->without,

@@ -41,9 +41,6 @@ Document repeated_json(const Repeated& repeated, const char* repetitions) {
   json["error"] = Document::array();
   for (const reliability::Icc& one : repeated.test_retest.icc) json["icc"].push_back(icc_json(one));
   for (const auto& one : repeated.test_retest.error) json["error"].push_back(error_json(one));
-  if (repeated.support == Support::enough) {
-    json["agreement_by_large_samples95"] = pair(repeated.test_retest.agreement_by_large_samples95);
-  }
   return json;
 }
 

@@ -1,5 +1,6 @@
 #include "mbk/study/statistics/study_statistics.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -104,6 +105,23 @@ TEST(Reliability, OfShroutAndFleissIsThePublishedOne) {
   EXPECT_NEAR(sessions.test_retest.error[1].mdc95, 2.798677, 1e-6);
   EXPECT_EQ(found.reliability[0].agreement.size(), 3U);
   EXPECT_EQ(found.reliability[0].within_session.support, Support::too_few_sessions) << "one trial a session";
+}
+
+TEST(Reliability, HasOneIntervalOfTheIccEverywhere) {
+  Results mirrored({"K"});  // who is high in one session is low in the other: an ICC below 0
+  const double first[6] = {3.0, -2.0, 1.0, -1.5, 2.5, -3.1};
+  for (int i = 0; i < 6; ++i) mirrored.add(i + 1, 1, {first[i]}).add(i + 1, 2, {0.3 - 0.8 * first[i]});
+  for (const Results& results : {shrout_and_fleiss(), mirrored}) {
+    const StudyStatistics found = statistics_of(results);
+    const auto [low, high] = found.reliability[0].between_sessions.test_retest.icc[1].interval95;
+    EXPECT_THAT(reliability_text(found, false), HasSubstr(fmt::format("{:.2f} to {:.2f}", low, high)));
+    EXPECT_THAT(reliability_text(found, false), HasSubstr("McGraw and Wong"));
+    EXPECT_THAT(reliability_text(found, true), HasSubstr(fmt::format("({:.2f} to {:.2f})", low, high)));
+    const auto json = nlohmann::json::parse(to_json(found))["reliability"][0]["between_sessions"];
+    EXPECT_EQ(json["icc"][1]["interval95"], nlohmann::json({low, high}));
+    EXPECT_FALSE(json.contains("agreement_by_large_samples95"));
+  }
+  EXPECT_LT(statistics_of(mirrored).reliability[0].between_sessions.test_retest.icc[1].interval95.second, 0.3);
 }
 
 TEST(Reliability, DoesNotDependOnTheOrderInWhichResultsCame) {

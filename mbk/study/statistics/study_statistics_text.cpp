@@ -87,10 +87,10 @@ std::string reliability_line(const OutcomeReliability& one) {
   const std::string name = fmt::format("  {:<23}", one.outcome);
   if (sessions.support != Support::enough) return name + "  " + why_not(sessions.support, people_of(one)) + "\n";
   const reliability::TestRetest& found = sessions.test_retest;
-  return name + fmt::format("  {:>5}  {:>5}  {:>13}  {:>7}  {:>7}  {}\n",
+  return name + fmt::format("  {:>5}  {:>5} {:>14}  {:>7}  {:>7}  {}\n",
                             fmt::format("{}×{}", sessions.participants.size(), sessions.repetitions.size()),
-                            share(found.icc[1].value), shares(found.agreement_by_large_samples95),
-                            digits(found.error[0].sem), digits(found.error[0].mdc95), one.unit);
+                            share(found.icc[1].value), shares(found.icc[1].interval95), digits(found.error[0].sem),
+                            digits(found.error[0].mdc95), one.unit);
 }
 
 /// Each note once, behind all outcomes that it is of.
@@ -153,7 +153,6 @@ std::string repeated_details(const Repeated& repeated) {
   for (std::size_t k = 0; k < found.icc.size(); ++k) {
     text += fmt::format("    {:<10} {:>5} ({})", form_name(found.icc[k]), share(found.icc[k].value),
                         shares(found.icc[k].interval95));
-    if (k == 1) text += fmt::format(", by large samples ({})", shares(found.agreement_by_large_samples95));
     text += "\n";
   }
   for (const reliability::MeasurementError& one : found.error) {
@@ -362,9 +361,9 @@ std::string reliability_text(const StudyStatistics& statistics, bool details) {
   });
   if (any) {
     text +=
-        "\nn×k: people who have each of k sessions. ICC(A,1) with its 95 % interval; SEM:\n"
-        "standard error of measurement (agreement) of a session's mean; MDC: 1.96 √2 SEM.\n"
-        "An ICC below 0 says no more than 0 does: its interval begins there.\n"
+        "\nn×k: people who have each of k sessions. ICC(A,1) with its 95 % interval by\n"
+        "McGraw and Wong; SEM: standard error of measurement (agreement) of a session's\n"
+        "mean; MDC: 1.96 √2 SEM. An ICC below 0 means no more than 0.\n"
         "--outcome NAME shows all forms, limits of agreement, trials, the mixed model.\n";
   }
   return text;

@@ -104,7 +104,7 @@ Result<std::vector<RecordedAnswer>> answers_of(std::span<const SimulatedTrial> t
     const Vector true_values = values_of(true_columns, name);
     RecordedAnswer& answer = answers.emplace_back();
     answer.icc = found.test_retest.icc[1].value;
-    answer.icc95 = found.test_retest.agreement_by_large_samples95;
+    answer.icc95 = found.test_retest.icc[1].interval95;
     answer.mdc = found.test_retest.error[0].mdc95;
     answer.true_icc = true_one.test_retest.icc[1].value;
     answer.true_variance = std::pow(true_one.test_retest.error[0].sem, 2);
