@@ -100,7 +100,7 @@ Action add_study_report(Command group) {
   const Option participant = command.add_option("--participant", arguments->participant, "a page of this one")
                                  .type_name("N")
                                  .check(whole_number(1, 999999999));
-  command.add_option("--outcome", arguments->outcome, "is shown first (stiffness_area, or a stiffness)")
+  command.add_option("--outcome", arguments->outcome, "is shown first (stiffness_lambda_max, or a stiffness)")
       .type_name("NAME")
       .check(not_empty());
   add_comparing_options(command, arguments->comparing);

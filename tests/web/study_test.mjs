@@ -57,16 +57,16 @@ const claims = /more than measurement error/;
 test("a change beyond the minimal detectable change is said once, in words, and another is not", async () => {
   await reading(stiffer, async (tab) => {
     const said = await tab.textContent(".said");
-    assert.match(said, /In session 2 the area of the stiffness ellipse is [\d\u202f]+\u00a0% higher than in session 1: more than measurement error explains\./);
+    assert.match(said, /In session 2 the largest stiffness is [\d\u202f]+\u00a0% higher than in session 1: more than measurement error explains\./);
     const { courses } = documentOf(stiffer);
-    const { changes } = courses.find(({ outcome }) => outcome === "stiffness_area").participants[0];
+    const { changes } = courses.find(({ outcome }) => outcome === "stiffness_lambda_max").participants[0];
     assert.equal(changes[0].verdict, "beyond-error");
     assert.ok(changes[0].difference > changes[0].mdc95_interval[1]);
     assert.equal(Number(await tab.getAttribute('.statement data[data-name="difference"]', "value")), changes[0].difference);
     assert.match(await tab.textContent("#limits"), /good or bad/);
   });
   await reading(same, async (tab) => {
-    assert.match(await tab.textContent(".said"), /no change of the area of the stiffness ellipse is shown/);
+    assert.match(await tab.textContent(".said"), /no change of the largest stiffness is shown/);
     assert.match(await tab.textContent(".statement"), /no proof that nothing changed/);
     assert.doesNotMatch(await tab.textContent("#change"), claims);
   });
@@ -85,6 +85,20 @@ test("where too few people came again nothing is claimed, however large the diff
     assert.match(await tab.textContent('#sessions [data-name="mdc-unknown"]'), /not known: only 3 people/);
     assert.match(await tab.textContent("#summary"), /no reliability stated, too few people: 3/);
     assert.doesNotMatch(await tab.textContent("main"), claims);
+  });
+});
+
+test("no change of one outcome hides no other that changed", () => {
+  const file = changed(same, "others", ({ courses }) => {
+    for (const { outcome, participants } of courses) {
+      if (["damping_lambda_max", "M_xx"].includes(outcome)) participants[0].changes[0].verdict = "beyond-error";
+      else participants[0].changes[0].verdict = "within-error";
+    }
+  });
+  return onPage(file, async (tab) => {
+    assert.match(await tab.textContent(".said"), /no change of the largest stiffness is shown/);
+    assert.match(await tab.textContent(".others"), /^2 other outcomes of \d+ changed by more than measurement error explains: largest damping \(.+\), inertia xx \(.+\)\.$/);
+    assert.match(await tab.textContent("#outcomes"), /inertia xx/);
   });
 });
 
@@ -107,18 +121,18 @@ test("the page of the study shows every participant, and what does not count wit
   const rows = await tab.$$eval("#left-out tbody tr", (all) => all.map((row) => [...row.children].map((cell) => cell.textContent)));
   assert.deepEqual(rows, [["13", "1", "2", "relaxed", "2", "excluded", hostile]]);
   const { summary } = documentOf(whole);
-  const area = summary.reliability.find(({ outcome }) => outcome === "stiffness_area");
-  const icc = area.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
+  const stiffness = summary.reliability.find(({ outcome }) => outcome === "stiffness_lambda_max");
+  const icc = stiffness.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
   assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="icc"]', "value")), icc.value);
-  assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="mdc"]', "value")), area.between_sessions.error[0].mdc95);
+  assert.equal(Number(await tab.getAttribute('#reliability tbody tr data[data-name="mdc"]', "value")), stiffness.between_sessions.error[0].mdc95);
 }));
 
 test("differences have the p that was corrected for all tests, and an effect size", () => reading(whole, async (tab) => {
   const { comparison } = documentOf(whole).summary;
-  const area = comparison.outcomes.find(({ outcome }) => outcome === "stiffness_area");
+  const stiffness = comparison.outcomes.find(({ outcome }) => outcome === "stiffness_lambda_max");
   const row = await tab.$eval("#comparison tbody tr", (one) => [...one.children].map((cell) => cell.textContent));
-  assert.equal(row[1], `${area.first_participants}\u00a0paired`);
-  assert.deepEqual(row.slice(3, 6).map(Number), [area.p, area.p_holm, area.permutation.p].map((value) => Number(value.toFixed(3))));
+  assert.equal(row[1], `${stiffness.first_participants}\u00a0paired`);
+  assert.deepEqual(row.slice(3, 6).map(Number), [stiffness.p, stiffness.p_holm, stiffness.permutation.p].map((value) => Number(value.toFixed(3))));
   assert.equal(row[6], "no difference shown");
   assert.match(await tab.textContent("#comparison caption"), new RegExp(`corrected for ${comparison.tests} tests`));
   assert.ok((await tab.locator("#comparison svg.forest rect.value").count()) > 8);

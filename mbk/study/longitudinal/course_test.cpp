@@ -168,6 +168,17 @@ TEST(Courses, OrientationsAreAxes) {
   for (const Course& one : all[0].courses) EXPECT_LT(std::abs(one.changes.at(0).difference), 8.0);
 }
 
+TEST(ParticipantReport, LeadsWithTheLargestStiffness) {
+  const auto first_of = [](std::vector<std::string> names) {
+    store::OutcomeColumns columns;
+    for (std::string& name : names) columns.outcomes.push_back({std::move(name), "", {}, {}});
+    return primary_outcome(columns);
+  };
+  EXPECT_EQ(first_of({"K_xx", "stiffness_area", "stiffness_lambda_max"}), "stiffness_lambda_max");
+  EXPECT_EQ(first_of({"M", "K"}), "K");
+  EXPECT_EQ(first_of({}), "");
+}
+
 TEST(ParticipantReport, HoldsNoNumbersOfOthers) {
   auto columns = study_of(6, 2, 2, "K_xx", [](int p, int s, int t) { return 1000.0 * p + scatter(p, s, t); });
   store::StudyList list;

@@ -172,7 +172,7 @@ std::string written(const Document& json) {
 }  // namespace
 
 std::string primary_outcome(const store::OutcomeColumns& columns) {
-  for (const char* name : {"stiffness_area", "K", "K_xx"}) {
+  for (const char* name : {"stiffness_lambda_max", "K", "K_xx"}) {
     if (std::ranges::find(columns.outcomes, name, &store::OutcomeColumn::name) != columns.outcomes.end()) return name;
   }
   return columns.outcomes.empty() ? "" : columns.outcomes.front().name;

@@ -21,8 +21,8 @@ struct StudyReport {
   std::vector<std::string> jobs;  ///< documents of schema mbk.job_efficiency/1
 };
 
-/// The outcome that a page shows first unless it is asked for another: the area of the stiffness ellipse, or else a
-/// stiffness; "" where nothing was measured.
+/// The outcome that a page shows first unless it is asked for another: the largest stiffness [N/m], or else that of
+/// an axis; "" where nothing was measured.
 [[nodiscard]] std::string primary_outcome(const store::OutcomeColumns& columns);
 
 /// The list of courses, for one person that of them alone.

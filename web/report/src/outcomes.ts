@@ -41,14 +41,15 @@ export function outcomeName(name: string): string {
   return name.replaceAll("_", " ");
 }
 
-/** What tables show first: the ellipses, then the elements; the others say how good a fit is, or where it was. */
+/** What tables show first: eigenvalues and ellipses, then the elements; the others say how good a fit is, or where it was. */
 const ranked = (name: string): number => {
   const order = ["stiffness", "damping", "inertia", "K", "B", "M"];
   const first = order.indexOf(name.split("_")[0] ?? "");
   if (first < 0) return 100;
   if (first > 2) return 30 + first;
-  const part = ["area", "shape", "orientation"].indexOf(name.slice(name.indexOf("_") + 1));
-  return part < 0 ? 60 + first : 3 * first + part;
+  const parts_ = ["lambda_max", "lambda_min", "area", "shape", "orientation"];
+  const part = parts_.indexOf(name.slice(name.indexOf("_") + 1));
+  return part < 0 ? 60 + first : parts_.length * first + part;
 };
 /** An ellipse, or what stands for it where there is one axis. */
 export const isFirst = (name: string): boolean => ranked(name) < 30 || /^[MBK]$/.test(name);

@@ -25,8 +25,30 @@ function pair({ first, last, difference, mdc95 }: SessionChange): [string, strin
 }
 const moved = ({ difference, mdc95 }: SessionChange): string => signed(difference, Math.max(Math.abs(difference ?? 0), mdc95 ?? 0));
 
+const claimed = (one: OutcomeCourses): boolean => ["beyond-error", "uncertain"].includes(lastOf(one)?.verdict ?? "");
+
+/** Outcomes that the page looks at under a condition: all that describe the limb. */
+const lookedAt = (courses: OutcomeCourses[], condition: string): OutcomeCourses[] =>
+  inOutcomeOrder(courses.filter((one) => one.condition === condition && isMain(one.outcome)), ({ outcome }) => outcome);
+
+/** What else changed, so that one outcome that did not hides no other that did. */
+function othersThatChanged(primary: OutcomeCourses, courses: OutcomeCourses[]): HTMLElement[] {
+  const others = lookedAt(courses, primary.condition).filter((one) => one.outcome !== primary.outcome);
+  const sentence = (verdict: SessionChange["verdict"], words: string) => {
+    const changed = others.filter((one) => lastOf(one)?.verdict === verdict);
+    if (changed.length === 0) return [];
+    const names = changed.slice(0, 6).map((one) => {
+      const change = lastOf(one) as SessionChange;
+      return `${outcomeName(one.outcome)} (${percentOf(change, one) || withUnit(moved(change), one.unit)})`;
+    });
+    const more = changed.length > names.length ? ` and ${changed.length - names.length} more` : "";
+    return [h("p", { class: "others", "data-verdict": verdict }, `${counted(changed.length, "other outcome", "other outcomes")} of ${others.length} changed by ${words}: ${names.join(", ")}${more}.`)];
+  };
+  return [...sentence("beyond-error", "more than measurement error explains"), ...sentence("uncertain", "more than the minimal detectable change, which is itself uncertain")];
+}
+
 /** What happened between the first session and the last, and whether that is more than error. */
-function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
+function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: string[]): HTMLElement {
   const course = one.participants[0];
   const change = lastOf(one);
   const condition = ofCondition(one.condition, conditions);
@@ -66,6 +88,7 @@ function statement(one: OutcomeCourses, conditions: string[]): HTMLElement {
   const [said, why] = verdicts[change.verdict];
   return h("div", { class: "statement", "data-verdict": change.verdict, "data-condition": one.condition }, lead,
     h("p", { class: "said" }, said),
+    ...othersThatChanged(one, courses),
     h("p", {}, `Session ${change.first_session}: `, data(change.first, withUnit(first, one.unit), "first"), `; session ${change.last_session}: `, data(change.last, withUnit(last, one.unit), "last"),
       "; difference ", data(change.difference, withUnit(moved(change), one.unit), "difference"), size ? ` (${size})` : "", ". ", why));
 }
@@ -84,7 +107,7 @@ function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLEle
 
 function changesTable(courses: OutcomeCourses[], condition: string, conditions: string[]): HTMLElement | undefined {
   const first = courses.some(({ outcome }) => isFirst(outcome)) ? isFirst : isMain;
-  const rows = inOutcomeOrder(courses.filter((one) => one.condition === condition && first(one.outcome)), ({ outcome }) => outcome)
+  const rows = lookedAt(courses, condition).filter((one) => first(one.outcome) || claimed(one))
     .flatMap((one) => {
       const change = lastOf(one);
       if (!change) return [];
@@ -117,12 +140,12 @@ export function participantSections(report: ParticipantReport): HTMLElement[] {
   const conditions = conditionsOf(report.courses);
   const primary = report.courses.filter(({ outcome }) => outcome === report.primary);
   const tables = conditions.flatMap((condition) => changesTable(report.courses, condition, conditions) ?? []);
-  const shown = tables.reduce((sum, one) => sum + one.querySelectorAll("tbody tr").length, 0);
+  const shown = conditions.reduce((sum, condition) => sum + lookedAt(report.courses, condition).filter(lastOf).length, 0);
   const usable = report.recordings.filter(({ state }) => state === "usable").length;
   const ellipses = ellipseFigure(report.matrices, "K", (_, condition) => ofCondition(condition, conditions) || "stiffness");
   return [
     h("section", { id: "change" }, heading(2, "What changed since the first session"),
-      ...(primary.length > 0 ? primary.map((one) => statement(one, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `There is no result of the ${outcomeName(report.primary)} of this participant.` : "There is no usable result of this participant: nothing can be said.")]),
+      ...(primary.length > 0 ? primary.map((one) => statement(one, report.courses, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `There is no result of the ${outcomeName(report.primary)} of this participant.` : "There is no usable result of this participant: nothing can be said.")]),
       primary.some(lastOf) ? courseFigures(primary.filter(lastOf), conditions) : ""),
     limits(report, shown),
     ...(tables.length > 0 ? [h("section", { id: "outcomes" }, heading(2, "All outcomes"), ...tables)] : []),
