@@ -102,6 +102,13 @@ test("no change of one outcome hides no other that changed", () => {
   });
 });
 
+test("where errors have heavy tails the page says that its interval does not hold", () => {
+  const file = changed(same, "tails", ({ courses }) => {
+    for (const { participants } of courses) for (const one of participants[0].changes) one.heavy_tails = true;
+  });
+  return onPage(file, async (tab) => assert.match(await tab.textContent(".statement"), /heavier tails than normal ones.* does not hold/));
+});
+
 test("an uncertain minimal detectable change makes no sure claim", () => {
   const file = changed(stiffer, "uncertain", ({ courses }) => {
     for (const { participants } of courses) for (const { changes } of participants) for (const one of changes) one.verdict = "uncertain";

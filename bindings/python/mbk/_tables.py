@@ -194,7 +194,8 @@ def reliability_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
             "participants": between.get("participants", one["participants"]),
             "sessions": len(between.get("sessions", [])), "support": between.get("support"),
             "ICC": number(icc.get("value")), "ICC_low95": number(low), "ICC_high95": number(high),
-            "SEM": number(error.get("sem")), "MDC95": number(error.get("mdc95"))})
+            "SEM": number(error.get("sem")), "MDC95": number(error.get("mdc95")),
+            "warnings": ", ".join(one.get("warnings", []))})
     return rows
 
 

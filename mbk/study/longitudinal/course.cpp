@@ -53,7 +53,9 @@ void judge(Change& change, const Course& course, const DetectableChange& error) 
     change.mdc = error.between(results(change.first_session), results(change.last_session));
     change.mdc95 = {error.lower_factor * change.mdc, error.upper_factor * change.mdc};
   }
+  change.heavy_tails = error.heavy_tails;
   change.verdict = verdict_of(change.difference, change.mdc, change.mdc95);
+  if (change.heavy_tails && change.verdict == ChangeVerdict::beyond_error) change.verdict = ChangeVerdict::uncertain;
 }
 
 /// The minimal detectable change by everyone else.
@@ -158,6 +160,8 @@ DetectableChange detectable_change(const statistics::OutcomeReliability& reliabi
   const bool separable = std::isfinite(model.session);
   error.session = separable ? model.session : model.within;
   error.trial = (separable ? model.residual : 0.0) + (std::isfinite(model.known) ? model.known : 0.0);
+  error.heavy_tails = std::ranges::find(reliability.warnings, statistics::ReliabilityWarning::heavy_tails) !=
+                      reliability.warnings.end();
   const reliability::ModelReliability& typical = model.of_trials.back();
   error.lower_factor = typical.sem_between95.first / typical.sem_between;
   error.upper_factor = typical.sem_between95.second / typical.sem_between;

@@ -18,7 +18,7 @@ using reliability::Interval;
 
 /// What may be said of a change of one person between two sessions.
 enum class ChangeVerdict {
-  beyond_error,  ///< more than even the upper end of the interval of the minimal detectable change
+  beyond_error,  ///< more than even the upper end of the interval of the minimal detectable change, which holds
   uncertain,     ///< more than the minimal detectable change, and less than that end
   within_error,  ///< no more than the minimal detectable change: no change is shown
   unknown,       ///< the minimal detectable change is not known
@@ -45,6 +45,7 @@ struct Change {
   double mdc = kNaN;              ///< minimal detectable change (95 %) between means of so many results; NaN: unknown
   Interval mdc95 = {kNaN, kNaN};  ///< how well that is known
   bool by_others = false;         ///< by the variances of all other people, since it is more than by those of all
+  bool heavy_tails = false;       ///< errors of those people have heavy tails: mdc95 does not hold
   ChangeVerdict verdict = ChangeVerdict::unknown;
 };
 
@@ -78,6 +79,7 @@ struct DetectableChange {
   std::string why_unknown;                    ///< a clause; "": it is known
   double session = 0, trial = 0;              ///< σ_s², σ_e² + v̄ [unit²]
   double lower_factor = 1, upper_factor = 1;  ///< ends of its 95 % interval, as factors
+  bool heavy_tails = false;                   ///< errors have heavy tails, so that this interval does not hold
 
   [[nodiscard]] bool known() const { return why_unknown.empty(); }
   [[nodiscard]] double between(int first_results, int second_results) const;

@@ -72,6 +72,23 @@ TEST(Courses, LargeChangeAmongFewPeopleDoesNotHideItself) {
   EXPECT_LT(all[0].courses[2].changes[0].mdc, 0.5 * all[0].courses[0].changes[0].mdc);
 }
 
+TEST(Courses, NothingIsCertainWhereErrorsHaveHeavyTails) {
+  // Two people's sessions are far off, so that neither of them is judged by people without heavy tails.
+  const auto of_study = [](double off) {
+    return study_of(14, 2, 1, "K_xx", [=](int p, int s, int t) {
+      const double error = (p == 5 || p == 9) && s == 2 ? (p == 5 ? off : -off) : 0.0;
+      return 100.0 + 10.0 * p + scatter(p, s, t) + error;
+    });
+  };
+  for (const Course& one : courses_of(of_study(0.0)).at(0).courses) EXPECT_FALSE(one.changes.at(0).heavy_tails);
+  const auto all = courses_of(of_study(200.0));
+  for (const Course& one : all.at(0).courses) {
+    const Change& change = one.changes.at(0);
+    EXPECT_TRUE(change.heavy_tails) << one.participant;
+    EXPECT_NE(change.verdict, ChangeVerdict::beyond_error) << one.participant;
+  }
+}
+
 TEST(Courses, WhoDidNotChangeIsSeldomSaidToHave) {
   constexpr int kStudies = 150, kPeople = 8;
   std::mt19937_64 random(1);

@@ -32,7 +32,7 @@ Document change_json(const Change& change) {
           {"first", number(change.first)},           {"last", number(change.last)},
           {"difference", number(change.difference)}, {"mdc95", number(change.mdc)},
           {"mdc95_interval", pair(change.mdc95)},    {"by_others", change.by_others},
-          {"verdict", word_of(change.verdict)}};
+          {"heavy_tails", change.heavy_tails},       {"verdict", word_of(change.verdict)}};
 }
 
 Document course_json(const Course& course) {

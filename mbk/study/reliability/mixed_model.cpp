@@ -15,6 +15,7 @@
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/study/reliability/distributions.h"
+#include "mbk/study/reliability/heavy_tails.h"
 #include "mbk/study/reliability/second_order_jet.h"
 
 namespace mbk::reliability {
@@ -859,8 +860,9 @@ ModelReliability reliability_of_mean(const Prepared& data, const Fitted& fit, co
   const double scale2 = data.scale * data.scale;
   const auto root = [&](double variance) { return std::sqrt(scale2 * variance + model.typical_known_variance / m); };
   const Interval of_between = between_interval(data, fit, m);
-  result.sem_between95 = {root(of_between.first), root(of_between.second)};
-  result.sem_within95 = {root(of_residual.first / m), root(of_residual.second / m)};
+  result.sem_between95 = widened_for_tails(result.sem_between, {root(of_between.first), root(of_between.second)});
+  result.sem_within95 =
+      widened_for_tails(result.sem_within, {root(of_residual.first / m), root(of_residual.second / m)});
   result.icc95 = icc_interval(data, fit, m);
   if (!separable) {
     result.sem_within = result.mdc95_within = kNaN;

@@ -90,10 +90,10 @@ struct ModelReliability {
 
 /// Intervals are those of profile restricted likelihoods: the values at which −2 ln of it rises by less than 3.84 above
 /// its minimum over the other variances. They need neither equal numbers of trials nor variances above 0; how often
-/// they hold the truth is in `mbk validate reliability`. Near 0 a variance cannot be missed below, and they hold it
-/// more often. Fixed effects decide what is counted as error: with a column for each session the ICC is one of
-/// consistency. Where sessions and trials are not separable (above), the ICC and the SEM between sessions of one trial
-/// remain, and means of more trials have too_few_trials.
+/// they hold the truth is in `mbk validate reliability`. Those of SEM are widened for tails (heavy_tails.h). Near 0 a
+/// variance cannot be missed below, and they hold it more often. Fixed effects decide what is counted as error: with a
+/// column for each session the ICC is one of consistency. Where sessions and trials are not separable (above), the ICC
+/// and the SEM between sessions of one trial remain, and means of more trials have too_few_trials.
 /// @param trials ≥ 1: m
 /// @fails  as fit_mixed_model; usage: trials < 1.
 [[nodiscard]] Result<ModelReliability> model_reliability(const Measurements& measurements, int trials = 1);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mbk/study/reliability/distributions.h"
+#include "mbk/study/reliability/heavy_tails.h"
 
 namespace mbk::reliability {
 namespace {
@@ -74,8 +75,8 @@ Icc icc_of_agreement(const MeanSquares& squares) {
 
 MeasurementError error_of(IccForm form, double variance, double degrees) {
   const double sem = std::sqrt(variance);
-  const Interval sem95 = {sem * std::sqrt(degrees / chi_square_quantile(1.0 - kTail95, degrees)),
-                          sem * std::sqrt(degrees / chi_square_quantile(kTail95, degrees))};
+  const Interval sem95 = widened_for_tails(sem, {sem * std::sqrt(degrees / chi_square_quantile(1.0 - kTail95, degrees)),
+                                                 sem * std::sqrt(degrees / chi_square_quantile(kTail95, degrees))});
   constexpr double kChange = kPublishedNormal95 * std::numbers::sqrt2;
   return {form, sem, sem95, kChange * sem, {kChange * sem95.first, kChange * sem95.second}};
 }

@@ -70,7 +70,8 @@ struct TestRetest {
 /// and of the mean of k, k r/(1 + (k−1) r). Intervals by the F distribution, exact for normal numbers but in the
 /// agreement form, whose degrees of freedom are Satterthwaite's (there a negative estimate counts as 0).
 ///   SEM: agreement √((MSJ − MSE)/n + MSE), consistency √MSE; MDC = 1.96 √2 SEM
-/// with intervals by χ², that of the agreement by Satterthwaite's degrees of freedom.
+/// with intervals by χ², that of the agreement by Satterthwaite's degrees of freedom, widened for tails
+/// (heavy_tails.h).
 ///
 /// Sessions that differ in trials, missing cells, groups: mixed_model.h.
 /// @param scores  n×k, a person in each row, a session in each column

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/study/reliability/heavy_tails.h"
 #include "mbk/study/statistics/outcome_rows.h"
 
 namespace mbk::statistics {
@@ -148,7 +149,62 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
   return result;
 }
 
+/// Sessions in rows, their first trials in columns: as many as half of those with two or more have.
+Matrix trials_of_sessions(const OutcomeRows& rows, std::vector<std::pair<std::int64_t, std::int64_t>>& which) {
+  std::vector<std::vector<double>> sessions;
+  for (std::size_t k = 0; k < rows.rows.size(); ++k) {
+    const OutcomeRow& row = rows.rows[k];
+    if (k == 0 || row.participant != rows.rows[k - 1].participant || row.session != rows.rows[k - 1].session) {
+      sessions.emplace_back();
+      which.emplace_back(row.participant, row.session);
+    }
+    sessions.back().push_back(row.value);
+  }
+  std::vector<double> counts;
+  for (const auto& one : sessions) {
+    if (one.size() >= 2) counts.push_back(static_cast<double>(one.size()));
+  }
+  const auto columns = counts.empty() ? 2 : static_cast<std::size_t>(numeric::upper_median(std::move(counts)));
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < sessions.size(); ++k) {
+    if (sessions[k].size() < columns) continue;
+    which[kept] = which[k];
+    sessions[kept++] = std::vector<double>(sessions[k].begin(), sessions[k].begin() + std::ptrdiff_t(columns));
+  }
+  which.resize(kept);
+  Matrix trials(static_cast<Index>(kept), static_cast<Index>(columns));
+  for (std::size_t k = 0; k < kept; ++k) trials.row(static_cast<Index>(k)) = as_vector(sessions[k]).transpose();
+  return trials;
+}
+
 }  // namespace
+
+std::string heavy_tails_in(const OutcomeRows& rows, const Repeated& sessions) {
+  std::vector<std::pair<std::int64_t, std::int64_t>> which;
+  const Matrix trials = trials_of_sessions(rows, which);
+  const bool of_trials = trials.rows() >= reliability::kMinPeople;
+  const double level = of_trials ? 0.5 * reliability::kTailFalseAlarms : reliability::kTailFalseAlarms;
+  const reliability::TailTest between = reliability::tail_test(sessions.scores);
+  const reliability::TailTest within = of_trials ? reliability::tail_test(trials) : reliability::TailTest();
+  if (between.p > level && within.p > level) return "";
+  const bool is_between = between.p <= within.p;
+  const double kurtosis = is_between ? between.kurtosis : within.kurtosis;
+  std::string where;
+  if (is_between) {
+    where = fmt::format("participant {}", sessions.participants[static_cast<std::size_t>(between.row)]);
+    // Of two sessions both are equally far from their mean.
+    if (sessions.repetitions.size() > 2) {
+      where += fmt::format(", session {}", sessions.repetitions[static_cast<std::size_t>(between.column)]);
+    }
+  } else {
+    const auto [participant, session] = which[static_cast<std::size_t>(within.row)];
+    where = fmt::format("participant {}, session {}", participant, session);
+  }
+  return fmt::format(
+      "errors between {} have heavier tails than normal ones (kurtosis {:.1f} of the residuals): the intervals of SEM, "
+      "MDC and ICC do not hold; {} is farthest off, look at the recordings",
+      is_between ? "sessions" : "trials", kurtosis, where);
+}
 
 OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   OutcomeReliability result = std::move(named);
@@ -180,6 +236,10 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
   result.mixed_model = mixed_reliability(rows, cells, result.participants, result);
 
   const Repeated& sessions = result.between_sessions;
+  if (std::string tails = heavy_tails_in(rows, sessions); !tails.empty()) {
+    result.warnings.push_back(ReliabilityWarning::heavy_tails);
+    result.notes.push_back(std::move(tails));
+  }
   if (sessions.support == Support::no_variation) {
     result.notes.emplace_back(
         "the values of each person are the same in all sessions: check that they were not copied; no reliability");

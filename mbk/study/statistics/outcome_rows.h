@@ -54,6 +54,10 @@ struct Cell {
 /// "1, 2, 7"; "1, 2, 3 and 9 more" where they are many.
 [[nodiscard]] std::string listed(const std::vector<std::int64_t>& numbers);
 
+/// Heavy tails of the errors between sessions or between trials, as a sentence; "" where there are none. All tests of
+/// one outcome together call kTailFalseAlarms of normal errors heavy-tailed.
+[[nodiscard]] std::string heavy_tails_in(const OutcomeRows& rows, const Repeated& sessions);
+
 [[nodiscard]] OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named);
 
 [[nodiscard]] std::vector<MatrixSpread> matrix_spreads(const store::OutcomeColumns& columns);

@@ -13,6 +13,7 @@
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/study/reliability/heavy_tails.h"
 #include "mbk/study/statistics/outcome_rows.h"
 
 namespace mbk::statistics {
@@ -252,6 +253,12 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
   pilot.sessions = model->sessions;
   pilot.results = model->rows;
   pilot.warnings = not_separated(*model);
+  if (places.size() == 1) {
+    const OutcomeRows rows = rows_of(columns, *column, places.front());
+    if (!heavy_tails_in(rows, repeated(session_cells(rows))).empty()) {
+      pilot.warnings.push_back(ReliabilityWarning::heavy_tails);
+    }
+  }
   const VarianceComponents fitted = components_of(*model);
   pilot.variances = merged(fitted, pilot);
   pilot.redrawn.resize(static_cast<std::size_t>(draws));
@@ -284,8 +291,9 @@ Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& g
       const double of_mean = error(pilot.variances);
       const Interval between = variance_interval(pilot, of_mean, error);
       if (change_known) {
-        plan.mdc95 = {kChange * std::sqrt(of_mean),
-                      {kChange * std::sqrt(between.first), kChange * std::sqrt(between.second)}};
+        const double mdc = kChange * std::sqrt(of_mean);
+        plan.mdc95 = {mdc, reliability::widened_for_tails(
+                               mdc, {kChange * std::sqrt(between.first), kChange * std::sqrt(between.second)})};
       }
       if (goal.change) plan.change_is_detectable = plan.mdc95.value <= *goal.change;
       if (goal.difference) {

@@ -37,8 +37,8 @@ struct Pilot {
   /// Each as a study of the same people, sessions and trials gives it, drawn from `variances`: how sure they are. Empty
   /// where variances were stated.
   std::vector<reliability::VarianceComponents> redrawn;
-  /// Which variances it does not separate. Then `session` holds those of trials too, or `participant` those of
-  /// sessions, and nothing is planned that needs them apart.
+  /// Which variances it does not separate, and whether its errors have heavy tails. Where not separated, `session`
+  /// holds those of trials too, or `participant` those of sessions, and nothing is planned that needs them apart.
   std::vector<ReliabilityWarning> warnings;
 
   [[nodiscard]] bool warns_of(ReliabilityWarning warning) const;

@@ -96,6 +96,11 @@ std::vector<std::string> pilot_notes(const Pilot& pilot) {
         "people: what more sessions would give and the minimal detectable change are not known, so plans have one "
         "session. Measure people in two sessions to learn it.");
   }
+  if (pilot.warns_of(ReliabilityWarning::heavy_tails)) {
+    notes.emplace_back(
+        "Errors of the pilot have heavier tails than normal ones: these intervals do not hold. 'mbk study summary' "
+        "names the recording that is farthest off.");
+  }
   return notes;
 }
 

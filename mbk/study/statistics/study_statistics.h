@@ -93,12 +93,14 @@ struct ReliabilityBootstrap {
 enum class ReliabilityWarning {
   sessions_and_trials,  ///< their variances are not identifiable: too few sessions have two trials
   people_and_sessions,  ///< of a pilot: too few people have two sessions
+  heavy_tails,          ///< errors scatter with heavier tails than the intervals of SEM and MDC allow for
 };
 
 [[nodiscard]] constexpr auto word_table(ReliabilityWarning) {
   using enum ReliabilityWarning;
   return std::to_array<Word<ReliabilityWarning>>({{sessions_and_trials, "sessions-and-trials-not-identifiable"},
-                                                  {people_and_sessions, "people-and-sessions-not-identifiable"}});
+                                                  {people_and_sessions, "people-and-sessions-not-identifiable"},
+                                                  {heavy_tails, "heavy-tails"}});
 }
 
 /// Variances by restricted maximum likelihood from every trial, whoever lacks whichever session.

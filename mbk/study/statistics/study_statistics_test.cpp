@@ -144,6 +144,29 @@ TEST(Reliability, CountsAMissingCellAsMissing) {
   EXPECT_EQ(one.mixed_model.results, 73) << "the mixed model takes what there is";
 }
 
+TEST(Reliability, WarnsOfErrorsWithHeavyTailsBetweenSessionsAndBetweenTrials) {
+  const auto tails = testing::Contains(ReliabilityWarning::heavy_tails);
+  EXPECT_THAT(statistics_of(drawn(12, 2, 3, 20, 5, 5)).reliability[0].warnings, Not(tails));
+  for (const bool one_trial : {false, true}) {
+    numeric::Random random(2);
+    Results results({"K"});
+    for (int i = 1; i <= 12; ++i) {
+      const double own = 100.0 + 20.0 * random.normal();
+      for (int j = 1; j <= 2; ++j) {
+        for (int k = 1; k <= 3; ++k) {
+          const bool off = i == 4 && j == 2 && (!one_trial || k == 2);
+          results.add(i, j, {own + 3.0 * random.normal() + (off ? 50.0 : 0.0)});
+        }
+      }
+    }
+    const StudyStatistics found = statistics_of(results);
+    EXPECT_THAT(found.reliability[0].warnings, tails);
+    EXPECT_THAT(found.reliability[0].notes, testing::Contains(HasSubstr("participant 4")));
+    EXPECT_THAT(reliability_text(found, false), HasSubstr("heavier tails"));
+    EXPECT_THAT(to_json(found), HasSubstr("\"heavy-tails\""));
+  }
+}
+
 TEST(Reliability, OneTrialASessionDoesNotSeparateSessionsFromTrials) {
   const auto warned = testing::ElementsAre(ReliabilityWarning::sessions_and_trials);
   for (const bool one_more : {false, true}) {

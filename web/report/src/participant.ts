@@ -86,11 +86,12 @@ function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: s
       `The minimal detectable change is not known: ${one.why_unknown ?? "the difference is undefined"}.`],
   };
   const [said, why] = verdicts[change.verdict];
+  const tails = change.heavy_tails ? " Measurement errors in this study have heavier tails than normal ones (some sessions are far off), so the interval of the minimal detectable change does not hold and no change is certain by it." : "";
   return h("div", { class: "statement", "data-verdict": change.verdict, "data-condition": one.condition }, lead,
     h("p", { class: "said" }, said),
     ...othersThatChanged(one, courses),
     h("p", {}, `Session ${change.first_session}: `, data(change.first, withUnit(first, one.unit), "first"), `; session ${change.last_session}: `, data(change.last, withUnit(last, one.unit), "last"),
-      "; difference ", data(change.difference, withUnit(moved(change), one.unit), "difference"), size ? ` (${size})` : "", ". ", why));
+      "; difference ", data(change.difference, withUnit(moved(change), one.unit), "difference"), size ? ` (${size})` : "", ". ", why, tails));
 }
 
 function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLElement {

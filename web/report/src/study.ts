@@ -113,7 +113,7 @@ function reliabilitySection(report: StudyReport, conditions: string[]): HTMLElem
   if (tables.length === 0) return undefined;
   return h("section", { id: "reliability" }, heading(2, "Reliability"), ...tables,
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
-      "ICC(A,1): share of the variance between single sessions that is between people, with what all people change by counted as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; less than that between two sessions may be error. In brackets 95 % intervals. These are computed from the means of sessions, of people who have all the sessions that are compared; the mixed model takes every trial, and is of single trials."),
+      "ICC(A,1): share of the variance between single sessions that is between people, with what all people change by counted as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; less than that between two sessions may be error. In brackets 95 % intervals, those of ICC(A,1) by McGraw and Wong; an ICC below 0 means no more than 0. Intervals of SEM and MDC allow for errors with a kurtosis up to 6 (normal: 3); heavier tails are noted. These are computed from the means of sessions, of people who have all the sessions that are compared; the mixed model takes every trial, and is of single trials."),
     noteList(notes),
     others.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), ...others, noteList(more)) : "");
 }
