@@ -348,6 +348,14 @@ def _(test):
     test.truth_is_nearer(code, raised, followed, path)
 
 
+@advice_of("no-reference")
+def _(test):
+    path = test.simulated("relaxed_sinusoidal")
+    raised = test.measured("--channels", "time=time,x=hand_x,y=hand_y,Fx=force_x,Fy=force_y", path)
+    test.assertIn("xr, yr", hint_of(raised, "no-reference"))
+    test.goes("no-reference", raised, test.measured(path))
+
+
 @advice_of("unmodelled-response")
 def _(test):  # ask for no response
     raised = test.measured(test.simulated("rigid_underdamped_2N"))

@@ -303,6 +303,7 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   result.method = id.method;
   result.vaf = id.fit.vaf;
   result.usable = id.usable;
+  result.judged = !warns_of(id, std::array{WarningCode::no_reference});
   result.fits = !warns_of(id, kPoorFit);
   result.band = band;
   const auto add = [&](std::string name, std::string source, const char* unit, const impedance::Sensitive& quantity) {
@@ -392,13 +393,15 @@ PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models,
     prediction.statement = "no prediction: the model is not usable";
     return prediction;
   }
-  if (!model.fits || !coherent) {
+  if (!model.fits || !model.judged || !coherent) {
     prediction.verdict = prediction.symmetric = Verdict::undecided;
     if (model.antisymmetric) prediction.antisymmetric = Verdict::undecided;
     prediction.statement =
-        model.fits ? "nothing is predicted: at no two frequencies are all axes excited with a coherence above 0.8"
-                   : fmt::format("nothing is predicted: {} does not describe the limb well enough, see the warnings",
-                                 words(model));
+        !model.judged
+            ? "nothing is predicted: without a recorded reference no method can be judged; what happened counts"
+        : model.fits ? "nothing is predicted: at no two frequencies are all axes excited with a coherence above 0.8"
+                     : fmt::format("nothing is predicted: {} does not describe the limb well enough, see the warnings",
+                                   words(model));
     return prediction;
   }
   prediction.symmetric = model.symmetric;

@@ -201,6 +201,10 @@ export const plainWarnings: PlainWarnings = {
     title: "Least squares is biased here",
     meaning: "The limb and the robot move each other. What follows the known perturbation alone gives another model: that of instrumental variables.",
   },
+  "no-reference": {
+    title: "What the robot was told to do was not recorded",
+    meaning: "If the limb itself moved the robot, these numbers are biased, and nothing shows it. The energy that was measured holds all the same.",
+  },
   "unmodelled-response": {
     title: "The limb responded to the perturbation",
     meaning: "By will or by reflex. A part of that response looks like mechanics and stands in the numbers.",
