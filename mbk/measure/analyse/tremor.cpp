@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
@@ -59,28 +60,69 @@ double prominence(const dsp::Spectrum& spectrum, Index line) {
   return floor > 0.0 ? spectrum.density[line] / floor : 0.0;
 }
 
+/// The lines of the force that the references make, told by their coherence with all of them: what reaches the robot
+/// through a filter, or from the other axis, need be no line of a reference.
+class MadeByReferences {
+ public:
+  MadeByReferences(const Matrix& signals, double rate) : signals_(signals), rate_(rate) {}
+
+  [[nodiscard]] bool at(double frequency_hz) {
+    constexpr double kCoherent = 0.5;
+    if (!known_) {
+      known_ = true;
+      const Index length = dsp::segment_length(Hertz(rate_), Hertz(kResolution), signals_.rows());
+      const auto spectra = dsp::cross_spectra({signals_}, Hertz(rate_), length, Hertz(kHighest + kFar));
+      if (spectra) {
+        frequency_ = spectra->frequency;
+        coherence_ = dsp::multiple_coherence(*spectra, signals_.cols() - 1);
+      }
+    }
+    for (Index k = 0; k < frequency_.size(); ++k) {
+      if (std::abs(frequency_[k] - frequency_hz) <= kResolution && coherence_(k, 0) > kCoherent) return true;
+    }
+    return false;
+  }
+
+ private:
+  const Matrix& signals_;
+  double rate_;
+  bool known_ = false;
+  Vector frequency_;
+  Matrix coherence_;
+};
+
 /// The clearest line of one axis.
-AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<const Vector>& reference, double rate) {
+/// @param signals  [references of all axes | force]
+AssumptionTest line_of(const Matrix& signals, double rate) {
   AssumptionTest result{Assumption::no_tremor};
-  const auto spectrum_of = [rate](const Eigen::Ref<const Vector>& signal) {
-    return dsp::welch(signal, Hertz(rate), Hertz(kResolution), recording::let_go_behind(signal));
+  const auto spectrum_of = [&](Index column) {
+    return dsp::welch(signals.col(column), Hertz(rate), Hertz(kResolution));
   };
-  const auto of_force = spectrum_of(force), of_reference = spectrum_of(reference);
-  if (!of_force || !of_reference) return result;
+  const Index references = signals.cols() - 1;
+  const auto of_force = spectrum_of(references);
+  if (!of_force) return result;
+  std::vector<dsp::Spectrum> of_reference;
+  for (Index k = 0; k < references; ++k) {
+    auto one = spectrum_of(k);
+    if (!one) return result;
+    of_reference.push_back(std::move(*one));
+  }
+  const auto is_of_a_reference = [&](Index line) {
+    return std::ranges::any_of(of_reference,
+                               [&](const dsp::Spectrum& one) { return has_line(one, one.density.maxCoeff(), line); });
+  };
   const double width = of_force->frequency[1] - of_force->frequency[0];
-  const double segments = static_cast<double>(force.size()) / rate * width;
-  const double strongest = of_reference->density.maxCoeff();
+  const double segments = static_cast<double>(signals.rows()) / rate * width;
+  MadeByReferences made(signals, rate);
   Index lines = 0, best = 0;
   double highest = 0.0;
   for (Index k = 1; k + 1 < of_force->frequency.size(); ++k) {
     if (of_force->frequency[k] < kLowest || of_force->frequency[k] > kHighest) continue;
     ++lines;
-    if (has_line(*of_reference, strongest, k)) continue;
     const double above = prominence(*of_force, k);
-    if (above > highest) {
-      highest = above;
-      best = k;
-    }
+    if (above <= highest || is_of_a_reference(k) || (above > kAbove && made.at(of_force->frequency[k]))) continue;
+    highest = above;
+    best = k;
   }
   if (best == 0) return result;
   // Hann windows that overlap by half: about 1.9 degrees of freedom for each length of data that a segment takes.
@@ -90,8 +132,8 @@ AssumptionTest line_of(const Eigen::Ref<const Vector>& force, const Eigen::Ref<c
   const double floor = beside(*of_force, best).second;
   result.size = std::sqrt(std::max(0.0, of_force->density.segment(best - 1, 3).sum() - 3.0 * floor) * width);
   result.frequency_hz = of_force->frequency[best];
-  result.contradicted =
-      highest > kAbove && result.p_value < kChance && result.size > kShareOfForce * std::sqrt(numeric::variance(force));
+  result.contradicted = highest > kAbove && result.p_value < kChance &&
+                        result.size > kShareOfForce * std::sqrt(numeric::variance(signals.col(references)));
   return result;
 }
 
@@ -121,11 +163,18 @@ std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> reco
       longest = std::max(longest, (time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff());
     });
     if (longest * rate > 1.5) continue;
-    for (Index axis = 0; axis < trial.axes; ++axis) {
-      const auto of_force = force.col(axis).segment(begin, end - begin),
-                 of_reference = reference.col(axis).segment(begin, end - begin);
-      if (!is_finite(of_force) || !is_finite(of_reference)) continue;
-      const AssumptionTest found = line_of(of_force, of_reference, rate);
+    Matrix signals(end - begin, reference.cols() + 1);
+    bool finite = true;
+    for (Index axis = 0; axis < reference.cols(); ++axis) {
+      signals.col(axis) = reference.col(axis).segment(begin, end - begin);
+      finite = finite && is_finite(signals.col(axis));
+      recording::let_go(reference.col(axis));
+    }
+    for (Index axis = 0; finite && axis < trial.axes; ++axis) {
+      signals.col(reference.cols()) = force.col(axis).segment(begin, end - begin);
+      recording::let_go(force.col(axis));
+      if (!is_finite(signals.col(reference.cols()))) continue;
+      const AssumptionTest found = line_of(signals, rate);
       if (!clearest || found.p_value < clearest->p_value) clearest = found;
     }
   }

@@ -15,6 +15,8 @@ struct Making {
   double tremor = 0.0, tremor_hz = 6.0;  ///< amplitude [N]
   double reference_hz = 1.0;
   double noise = 0.1;
+  double other_axis_hz = 0.0;  ///< a line of reference_y that moves both axes' forces
+  double ringing_hz = 0.0;     ///< a step of the reference makes the force ring
   double seconds = 40.0;
   bool reference = true;
 };
@@ -31,9 +33,17 @@ Recording recording(const Making& making) {
     for (Index i = 0; i < samples; ++i) {
       const double t = made.time[i], sine = std::sin(2.0 * M_PI * making.reference_hz * t);
       const bool force = channel.name.starts_with("force");
-      channel.values[i] = force ? 2.0 * sine + making.tremor * std::sin(2.0 * M_PI * making.tremor_hz * t) +
+      const double other = making.other_axis_hz > 0.0 ? std::sin(2.0 * M_PI * making.other_axis_hz * t) : 0.0;
+      // Every two seconds a step there and back, and what a filter with little damping makes of it.
+      const double since = std::fmod(t, 2.0), side = std::fmod(t, 4.0) < 2.0 ? 1.0 : -1.0;
+      const double step = making.ringing_hz > 0.0 ? side : 0.0;
+      const double ringing = step * std::exp(-2.0 * since) * std::cos(2.0 * M_PI * making.ringing_hz * since);
+      channel.values[i] = force ? 2.0 * sine + 1.5 * other + 2.0 * (step - ringing) +
+                                      making.tremor * std::sin(2.0 * M_PI * making.tremor_hz * t) +
                                       making.noise * normal(random)
-                                : 0.01 * sine;
+                          : channel.name == "reference_y" ? 0.01 * (sine + other + step)
+                          : channel.name == "reference_x" ? 0.01 * (sine + step)
+                                                          : 0.01 * sine;
     }
     if (making.reference || !channel.name.starts_with("reference")) made.channels.push_back(std::move(channel));
   }
@@ -74,6 +84,23 @@ TEST(Tremor, IsNotWhatTheReferenceDoes) {
   const auto found = tested({.reference_hz = 6.2});
   ASSERT_TRUE(found);
   EXPECT_FALSE(found->contradicted);
+}
+
+TEST(Tremor, IsNotWhatTheOtherAxisDoes) {
+  const auto found = tested({.other_axis_hz = 5.0});
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->contradicted) << found->frequency_hz;
+}
+
+TEST(Tremor, IsNotTheRingingOfAFilterBehindTheReference) {
+  for (const double ringing : {3.5, 6.0}) {
+    const auto found = tested({.ringing_hz = ringing});
+    ASSERT_TRUE(found);
+    EXPECT_FALSE(found->contradicted) << found->frequency_hz;
+    const auto with_tremor = tested({.tremor = 1.5, .tremor_hz = 9.0, .ringing_hz = ringing});
+    EXPECT_TRUE(with_tremor->contradicted) << ringing;
+    EXPECT_NEAR(with_tremor->frequency_hz, 9.0, 0.3);
+  }
 }
 
 TEST(Tremor, IsNotLookedForWithoutAReferenceOrInLittleData) {
