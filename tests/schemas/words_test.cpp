@@ -64,6 +64,7 @@ TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
   expect_words<reliability::IccForm>("study_summary", "/definitions/StudyIcc/properties/form");
   expect_words<reliability::Pairing>("study_summary", "/definitions/StudyDifference/properties/pairing");
   expect_words<statistics::Verdict>("study_summary", "/definitions/StudyDifference/properties/verdict");
+  expect_words<statistics::ReliabilityWarning>("study_plan", "/properties/warnings/items");
   expect_words<statistics::ComparedBy>("study_summary", "/definitions/StudyComparison/properties/by");
   expect_words<drivers::BridgeRule>("robot_check", "/definitions/BridgeRule");
   expect_words<drivers::RuleVerdict>("robot_check", "/definitions/LinkCheck/properties/rules/items/properties/verdict");

@@ -30,7 +30,7 @@ double kurtosis_of(const Matrix& residuals) {
 
 /// Kurtoses of normal tables of one size, sorted.
 Vector drawn_kurtoses(Index rows, Index columns) {
-  constexpr Index kNumbers = 1'000'000, kMinDraws = 500, kMaxDraws = 4'000;
+  constexpr Index kNumbers = 2'000'000, kMinDraws = 500, kMaxDraws = 8'000;
   const Index draws = std::clamp(kNumbers / (rows * columns), kMinDraws, kMaxDraws);
   numeric::Random random(1, static_cast<std::uint32_t>(1000 * columns + rows));
   Matrix scores(rows, columns);
@@ -49,7 +49,7 @@ double chance_of(double kurtosis, Index rows, Index columns) {
     const double spread = std::sqrt(24.0 / (static_cast<double>(rows) * static_cast<double>(columns - 1)));
     return 1.0 - numeric::normal_probability((kurtosis - 3.0) / spread);
   }
-  // Outcomes of a study share their sizes, and each size costs as much as a million random numbers.
+  // Outcomes of a study share their sizes, and each size costs as much as two million random numbers.
   static std::mutex mutex;
   static std::map<std::pair<Index, Index>, Vector> known;
   const std::scoped_lock lock(mutex);

@@ -201,9 +201,12 @@ std::string heavy_tails_in(const OutcomeRows& rows, const Repeated& sessions) {
     where = fmt::format("participant {}, session {}", participant, session);
   }
   return fmt::format(
-      "errors between {} have heavier tails than normal ones (kurtosis {:.1f} of the residuals): the intervals of SEM, "
-      "MDC and ICC do not hold; {} is farthest off, look at the recordings",
-      is_between ? "sessions" : "trials", kurtosis, where);
+      "errors between {} have heavier tails than normal ones (kurtosis {:.1f} of the residuals, which normal errors "
+      "reach "
+      "in {:.1g} % of studies): the intervals of SEM, MDC and ICC and the limits of agreement do not hold; {} is "
+      "farthest "
+      "off, look at the recordings",
+      is_between ? "sessions" : "trials", kurtosis, 100.0 * std::min(between.p, within.p), where);
 }
 
 OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
