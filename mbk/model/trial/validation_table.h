@@ -17,8 +17,8 @@ namespace mbk {
 /// that they never make it easier.
 enum class RowVerdict {
   met,          ///< the 95 % interval lies inside the accepted range
-  falls_short,  ///< the estimate lies outside
-  not_shown,    ///< too few runs: the estimate could lie inside or does, the interval does not
+  falls_short,  ///< the interval lies outside
+  not_shown,    ///< too few runs: the interval reaches across an end of the range
   informative   ///< there is no accepted range
 };
 
@@ -42,26 +42,18 @@ struct ValidationRow {
 
   [[nodiscard]] bool judged() const { return expected.has_value(); }
 
-  /// Where no share of so few trials could lie inside the range, such as of 4 within 92 to 98 %, an estimate outside it
-  /// says nothing; then the row falls short only where the whole interval lies beyond the range.
   [[nodiscard]] RowVerdict verdict() const {
     if (!expected) return RowVerdict::informative;
     if (!interval95) return accepts(value) ? RowVerdict::met : RowVerdict::falls_short;
     const auto& [low, high] = *interval95;
     if (accepts(low) && accepts(high)) return RowVerdict::met;
-    if (accepts(value)) return RowVerdict::not_shown;
-    const bool beyond = !(high >= expected->first && low <= expected->second);
-    return too_few_trials() && !beyond ? RowVerdict::not_shown : RowVerdict::falls_short;
+    const bool reaches_in = high >= expected->first && low <= expected->second;
+    return reaches_in && !std::isnan(value) ? RowVerdict::not_shown : RowVerdict::falls_short;
   }
   [[nodiscard]] bool met() const { return !judged() || verdict() == RowVerdict::met; }
 
  private:
   [[nodiscard]] bool accepts(double x) const { return expected->first <= x && x <= expected->second; }
-  [[nodiscard]] bool too_few_trials() const {
-    if (!trials) return false;
-    const double first_inside = std::ceil(expected->first / 100.0 * *trials);
-    return *trials == 0 || first_inside > std::floor(expected->second / 100.0 * *trials);
-  }
 };
 
 /// A method against known truth.
