@@ -66,6 +66,19 @@ void put(Recording& recording, const std::string& name, const char* unit, const 
   recording.channels.push_back({name, unit, "base", values});
 }
 
+/// What the force rests on where the hand may be pushed in other directions, too, than those in which it is measured;
+/// "" where it may not.
+std::string assumed_of_hand(const robot::Mechanism& mechanism, const robot::JointVector& position) {
+  const Index others = mechanism.jacobian_across(position).rows();
+  if (others == 0) return {};
+  std::string axes;
+  for (int k = 0; k < mechanism.hand_axes(); ++k) axes += (k == 0 ? "" : " and ") + mechanism.hand_axis_name(k);
+  const Index told = robot::told_across(mechanism, position);
+  return fmt::format("the force is that along {} of the base, of a hand that exerts no moment{}", axes,
+                     told == others ? "; what pushes across is told apart"
+                                    : "; what pushes across cannot be told apart: none is assumed");
+}
+
 }  // namespace
 
 Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
@@ -189,6 +202,9 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
           : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
                         "(virtual sensor), q̈ {}",
                         accelerometer ? "from the accelerometer" : "from the joints"));
+  if (auto assumed = assumed_of_hand(mechanism, joints->motion.position.row(0).transpose()); !assumed.empty()) {
+    made.recording.notes.push_back(std::move(assumed));
+  }
   return made;
 }
 

@@ -324,6 +324,9 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
   parts.tip_link = (*tip)->name;
   parts.gravity = vector(options.gravity);
   for (const SerialChain::Axis axis : options.hand_axes) parts.hand_axes.push_back(static_cast<int>(axis));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::ranges::find(parts.hand_axes, axis) == parts.hand_axes.end()) parts.other_axes.push_back(axis);
+  }
   KDL::Frame from_body;  // of the link that is reached, from the last body that moves
   for (const JointOfTree& joint : *joints) {
     const KDL::Frame origin = from_body * frame(joint->parent_to_joint_origin_transform);

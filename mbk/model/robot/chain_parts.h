@@ -33,7 +33,7 @@ struct ChainParts {
   std::vector<ChainJoint> joints;
   KDL::Vector hand;     ///< from the last body, in its frame [m]
   KDL::Vector gravity;  ///< base frame [m/s²]
-  std::vector<int> hand_axes;
+  std::vector<int> hand_axes, other_axes;
   std::vector<SerialChain::Joint> descriptions;
   std::vector<Coefficient> coefficients;
   Vector stated;

@@ -87,9 +87,48 @@ JointVector DynamicModel::drive_torque(const JointVector& position, const JointV
   return torque;
 }
 
+namespace {
+
+double volume(const HandJacobian& J) {
+  const HandMatrix gram = J * J.transpose();
+  return std::sqrt(std::max(0.0, gram.rows() == 1 ? gram(0, 0) : gram.determinant()));
+}
+
+/// J without what a push across its axes would do to the joints, too, as far as the joints tell both apart.
+/// @param told  in how many directions across they do
+HandJacobian apart_from_across(const HandJacobian& J, HandJacobian across, Index& told) {
+  constexpr double kNoMotion = 1e-6, kLeft = 0.1;
+  const double whole = volume(J), length = J.norm();
+  HandJacobian apart = J;
+  told = 0;
+  for (Index k = 0; k < across.rows(); ++k) {
+    for (Index before = 0; before < told; ++before) {
+      across.row(k) -= across.row(k).dot(across.row(before)) * across.row(before).eval();
+    }
+    const double size = across.row(k).norm();
+    if (!(size > kNoMotion * length)) continue;
+    const Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxJoints> direction = across.row(k) / size;
+    HandJacobian without = apart;
+    for (Index row = 0; row < apart.rows(); ++row) without.row(row) -= apart.row(row).dot(direction) * direction;
+    if (!(volume(without) > kLeft * whole)) continue;
+    apart = without;
+    across.row(told++) = direction;
+  }
+  return apart;
+}
+
+}  // namespace
+
+Index told_across(const Mechanism& mechanism, const JointVector& position) {
+  Index told = 0;
+  apart_from_across(mechanism.jacobian(position), mechanism.jacobian_across(position), told);
+  return told;
+}
+
 std::optional<HandJacobian> regular_hand_from_joints(const Mechanism& mechanism, const JointVector& position) noexcept {
   constexpr double kSmallestRatio = 1e-3;
-  const HandJacobian J = mechanism.jacobian(position);
+  Index told = 0;
+  const HandJacobian J = apart_from_across(mechanism.jacobian(position), mechanism.jacobian_across(position), told);
   const HandMatrix gram = J * J.transpose();
   if (gram.rows() == 1) {
     if (!(gram(0, 0) > 0.0)) return std::nullopt;

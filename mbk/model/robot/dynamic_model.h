@@ -41,11 +41,16 @@ struct DynamicModel {
 
 /// What turns a torque that is missing at the joints into the force at the hand, F_h = L (W θ − τ): the inverse of Jᵀ,
 /// or where there are more joints than axes the least-squares one, (J Jᵀ)⁻¹ J, which takes what J cannot pass for
-/// error.
+/// error. A push across the axes of the hand, of which the joints know, is not taken for one along them: its part of
+/// the torque is left out of both. Where the joints cannot tell it apart (less than a tenth of J would be left), none
+/// is assumed; nor is a moment at the hand.
 /// @returns L, axes×n [1/m]
 /// @fails  data: the posture is singular: the smallest singular value of J is below 10⁻³ of the largest (the joints are
 /// named).
 [[nodiscard]] Result<HandJacobian> hand_from_joints(const Mechanism& mechanism, const JointVector& position);
+
+/// In how many directions across the hand's axes the joints tell a push from one along them.
+[[nodiscard]] Index told_across(const Mechanism& mechanism, const JointVector& position);
 
 /// The same L for a loop that cannot wait for words; nothing where the posture is singular. Does not allocate.
 [[nodiscard]] std::optional<HandJacobian> regular_hand_from_joints(const Mechanism& mechanism,

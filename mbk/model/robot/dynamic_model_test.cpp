@@ -99,6 +99,25 @@ TEST(HandFromJoints, WithMoreJointsThanAxesIsTheLeastSquaresInverse) {
   EXPECT_LE((L * null).norm(), 1e-13);
 }
 
+/// Three joints in space, measured along x and z.
+class SpatialArm : public ThreePointMasses {
+ public:
+  [[nodiscard]] HandJacobian jacobian_across(const JointVector& position) const override {
+    return (HandJacobian(1, 3) << 0.3, 0.1 * std::cos(position[1]), -0.2).finished();
+  }
+};
+
+TEST(HandFromJoints, TellsAPushAcrossTheHandsAxesApart) {
+  const SpatialArm mechanism;
+  for (const JointVector& q :
+       {JointVector(Eigen::Vector3d(0.2, 0.7, -0.4)), JointVector(Eigen::Vector3d(-0.3, 1.1, 0.5))}) {
+    const Matrix L = hand_from_joints(mechanism, q).value();
+    EXPECT_LE((L * Matrix(mechanism.jacobian(q).transpose()) - Matrix2d::Identity()).norm(), 1e-10);
+    EXPECT_LE((L * Matrix(mechanism.jacobian_across(q).transpose())).norm(), 1e-10);
+    EXPECT_EQ(told_across(mechanism, q), 1);
+  }
+}
+
 TEST(HandFromJoints, OfOneJointIsOne) {
   EXPECT_EQ(hand_from_joints(SingleJoint({}), JointVector::Constant(1, 0.3)).value()(0, 0), 1.0);
 }

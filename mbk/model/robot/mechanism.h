@@ -95,6 +95,12 @@ class Mechanism {
   [[nodiscard]] virtual HandVector hand_position(const JointVector& position) const = 0;
   /// ∂p/∂q, axes×n [m; 1 where a joint slides].
   [[nodiscard]] virtual HandJacobian jacobian(const JointVector& position) const = 0;
+  /// ∂p/∂q along the other axes of the base, in which the hand may be pushed too, n columns; no rows where none can.
+  [[nodiscard]] virtual HandJacobian jacobian_across(const JointVector& /*position*/) const {
+    return HandJacobian(0, joints());
+  }
+  /// Of the base: "x", "y" or "z".
+  [[nodiscard]] virtual std::string hand_axis_name(int axis) const { return axis == 0 ? "x" : "y"; }
   /// dJ/dt.
   [[nodiscard]] virtual HandJacobian jacobian_rate(const JointVector& position, const JointVector& velocity) const = 0;
 

@@ -195,15 +195,27 @@ HandVector SerialChain::hand_position(const JointVector& position) const {
   return along(parts_->hand_axes, Lines(*parts_, position).hand);
 }
 
-HandJacobian SerialChain::jacobian(const JointVector& position) const {
+HandJacobian SerialChain::jacobian_along(const std::vector<int>& axes, const JointVector& position) const {
   const Lines lines(*parts_, position);
-  HandJacobian J(hand_axes(), joints());
+  HandJacobian J(static_cast<Index>(axes.size()), joints());
   for (std::size_t i = 0; i < parts_->joints.size(); ++i) {
     const KDL::Vector column =
         slides(static_cast<int>(i)) ? lines.axis[i] : lines.axis[i] * (lines.hand - lines.origin[i]);
-    J.col(static_cast<Index>(i)) = along(parts_->hand_axes, column);
+    J.col(static_cast<Index>(i)) = along(axes, column);
   }
   return J;
+}
+
+HandJacobian SerialChain::jacobian(const JointVector& position) const {
+  return jacobian_along(parts_->hand_axes, position);
+}
+
+HandJacobian SerialChain::jacobian_across(const JointVector& position) const {
+  return jacobian_along(parts_->other_axes, position);
+}
+
+std::string SerialChain::hand_axis_name(int axis) const {
+  return std::string(1, "xyz"[parts_->hand_axes[static_cast<std::size_t>(axis)]]);
 }
 
 HandJacobian SerialChain::jacobian_rate(const JointVector& position, const JointVector& velocity) const {

@@ -75,6 +75,8 @@ class SerialChain : public Mechanism {
                                  const Vector& phi) const override;
   [[nodiscard]] HandVector hand_position(const JointVector& position) const override;
   [[nodiscard]] HandJacobian jacobian(const JointVector& position) const override;
+  [[nodiscard]] HandJacobian jacobian_across(const JointVector& position) const override;
+  [[nodiscard]] std::string hand_axis_name(int axis) const override;
   [[nodiscard]] HandJacobian jacobian_rate(const JointVector& position, const JointVector& velocity) const override;
   [[nodiscard]] Result<void> check_joints(const JointVector& position) const override;
   /// A joint that turns without end is spread over one turn; fewer along each joint where there would be more than
@@ -82,6 +84,8 @@ class SerialChain : public Mechanism {
   [[nodiscard]] std::vector<JointVector> postures(int per_joint) const override;
 
  private:
+  [[nodiscard]] HandJacobian jacobian_along(const std::vector<int>& axes, const JointVector& position) const;
+
   std::unique_ptr<const ChainParts> parts_;
 };
 
