@@ -316,6 +316,16 @@ std::optional<Symmetric> scaled_by(const Identification& id, std::span<const Ind
   });
 }
 
+/// Whether a limb that is no M, B and K biases the inertia, too.
+bool biased(const Identification& id) {
+  constexpr std::array kBiasing = {WarningCode::missing_dynamics,  WarningCode::nonlinear_stiffness,
+                                   WarningCode::dry_friction,      WarningCode::stiffness_changes,
+                                   WarningCode::damping_changes,   WarningCode::memory,
+                                   WarningCode::even_nonlinearity, WarningCode::unmodelled_response};
+  return std::ranges::any_of(id.warnings,
+                             [&](const Warning& one) { return std::ranges::count(kBiasing, one.code) > 0; });
+}
+
 /// m_yx − m_xy in standard errors; 0 where it is not known.
 double asymmetry_of(const Identification& id) {
   if (id.axes != 2 || id.structure == Structure::symmetric || !can_be_judged(id)) return 0.0;
@@ -420,6 +430,7 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
                                what, scale->value, numeric::kNormal95 * scale->standard_error),
                    "check the gain of both axes of the force: 'mbk sensor calibrate'"};
   }
+  if (!turn_fits && biased(id)) return std::nullopt;  // what biases M is said already
   if (!turn_fits) turn = turned_by(id, kInertia);
   if (!turn) {
     return Warning{WarningCode::inertia_not_symmetric, what,
@@ -428,7 +439,8 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
   const double angle = kDegrees * turn->value, half = kDegrees * numeric::kNormal95 * turn->standard_error;
   return Warning{WarningCode::inertia_not_symmetric,
                  turn_fits
-                     ? fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion", what, angle, half)
+                     ? fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion, or has crosstalk",
+                                   what, angle, half)
                      : fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion by M alone, "
                                    "which B and K contradict: gains, crosstalk or reflexes may be the cause",
                                    what, angle, half),

@@ -23,7 +23,8 @@ namespace mbk::analyse {
 /// by chance), by both methods where both are usable. The angle θ by which the force is then turned against the motion
 /// makes R(−θ)(M + Λ I), R(−θ) B and R(−θ) K symmetric, Λ the handle's mass: by generalised least squares over the
 /// three, or over M alone where the three contradict each other (a reflex may make B and K antisymmetric). Where a
-/// gain of one axis explains M, B and K and an angle does not, that is named.
+/// gain of one axis explains M, B and K and an angle does not, that is named; where neither does and another warning
+/// says that M is biased, nothing.
 [[nodiscard]] std::optional<Warning> check_symmetry(const Measurement& measured);
 
 }  // namespace mbk::analyse
