@@ -466,7 +466,7 @@ def _(test):
 
 @advice_of("lack-of-fit")
 def _(test):  # a limb that is stiffer on one side, which no M, B and K are
-    raised = test.measured(departing(test, "[participant.departures]\none_sided_share = 0.6"))
+    raised = test.measured(departing(test, "[participant.departures]\none_sided_share = 0.9"))
     test.assertIn("mbk explore", hint_of(raised, "lack-of-fit"))
     test.goes("lack-of-fit", raised, test.measured(test.simulated("relaxed_sinusoidal")))
 

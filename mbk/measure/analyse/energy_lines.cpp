@@ -29,7 +29,7 @@ constexpr Index kMinPeriods = 3;        ///< with fewer, nothing shows how they 
 constexpr double kHighestLine = 50.0;   ///< [Hz]
 constexpr double kShareOfLine = 0.005;  ///< of the variance of an axis
 constexpr double kChanceAtLines = 1e-5;
-constexpr double kMisfit = 0.03;         ///< of the force at the lines, root mean square
+constexpr double kMisfit = 0.04;         ///< of the force at the lines, root mean square
 constexpr double kSameFrequency = 1e-6;  ///< relative
 
 /// The window of a recording, sample by sample.

@@ -40,7 +40,7 @@ struct LineSpectra {
 
 /// Whether the model explains the force at each line: F + Z(jω) X, Z = K − ω² (M + Λ I) + jω B, is zero on average over
 /// the periods. Hotelling's test of each line against its scatter between periods, Fisher's of all together. It is
-/// contradicted where chance is below 10⁻⁵ and the systematic part is 3 % of the force (root mean square): the geometry
+/// contradicted where chance is below 10⁻⁵ and the systematic part is 4 % of the force (root mean square): the geometry
 /// of an arm leaves a little at every line. Parameters that were fitted to the same periods make the test conservative.
 /// @returns absent where there are no lines in the band that the fit saw, no model, or too few periods
 [[nodiscard]] std::optional<AssumptionTest> test_lines(const LineSpectra& spectra,
