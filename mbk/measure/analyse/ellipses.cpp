@@ -44,7 +44,8 @@ class Deviator {
     if (!known_) return {kNaN, kNaN};
     const double at = 0.5 * std::atan2(v_[1], v_[0]);
     const double centre = at < 0.0 ? at + std::numbers::pi : at;
-    if (may_be_zero()) return {centre - 0.5 * std::numbers::pi, centre + 0.5 * std::numbers::pi};
+    constexpr double kAny = 0.5 * std::numbers::pi * (1.0 + 1e-12);  // 180° wide in any unit
+    if (may_be_zero()) return {centre - kAny, centre + kAny};
     const double half = std::asin(numeric::kNormal95 / white_.norm());
     const auto turned = [&](double angle) {
       const Eigen::Vector2d edge = root_ * (Eigen::Rotation2Dd(angle) * white_);
@@ -76,12 +77,13 @@ EllipseFinding ellipse_finding(const Matrix& Z, const Eigen::Matrix4d& covarianc
   const Deviator deviator(Z, covariance);
   finding.orientation95 = deviator.orientation95();
   finding.round = deviator.may_be_zero();
-  finding.shape95.first = std::max(finding.shape95.first, 1.0);
+  const bool closed = finding.ellipse.lambda_min > 0.0;
+  if (closed) finding.shape95.first = std::max(finding.shape95.first, 1.0);
   if (!finding.round) return finding;
   // Both eigenvalues may be their mean.
   const Interval mean =
       numeric::interval95(0.5 * (Z(0, 0) + Z(1, 1)), standard_error({0.5, 0.0, 0.0, 0.5}, covariance));
-  finding.shape95.first = 1.0;
+  if (closed) finding.shape95.first = 1.0;
   finding.lambda_min95.second = std::max(finding.lambda_min95.second, mean.second);
   finding.lambda_max95.first = std::min(finding.lambda_max95.first, mean.first);
   return finding;

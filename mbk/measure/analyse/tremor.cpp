@@ -67,7 +67,7 @@ class MadeByReferences {
   MadeByReferences(const Matrix& signals, double rate) : signals_(signals), rate_(rate) {}
 
   [[nodiscard]] bool at(double frequency_hz) {
-    constexpr double kCoherent = 0.5;
+    constexpr double kMade = 0.5;
     if (!known_) {
       known_ = true;
       const Index length = dsp::segment_length(Hertz(rate_), Hertz(kResolution), signals_.rows());
@@ -78,7 +78,7 @@ class MadeByReferences {
       }
     }
     for (Index k = 0; k < frequency_.size(); ++k) {
-      if (std::abs(frequency_[k] - frequency_hz) <= kResolution && coherence_(k, 0) > kCoherent) return true;
+      if (std::abs(frequency_[k] - frequency_hz) <= kResolution && coherence_(k, 0) > kMade) return true;
     }
     return false;
   }

@@ -370,7 +370,7 @@ class Tester {
     if (found.assumption == Assumption::constant_stiffness) return found.size > kChangeOfStiffness;
     if (found.assumption == Assumption::constant_damping) return found.size > kChangeOfDamping;
     if (found.assumption == Assumption::alike_both_ways) return found.size > kEven;
-    if (found.assumption == Assumption::no_memory) return found.size > kMemory;
+    if (found.assumption == Assumption::no_memory) return found.size > kMemory && found.shift > 1.0;
     if (found.assumption == Assumption::linear_stiffness && std::abs(found.size) < kHardening) return false;
     return found.shift > 1.0;
   }

@@ -44,6 +44,7 @@ struct ValidationRow {
 
   [[nodiscard]] RowVerdict verdict() const {
     if (!expected) return RowVerdict::informative;
+    if (trials == 0) return RowVerdict::not_shown;
     if (!interval95) return accepts(value) ? RowVerdict::met : RowVerdict::falls_short;
     const auto& [low, high] = *interval95;
     if (accepts(low) && accepts(high)) return RowVerdict::met;
