@@ -85,7 +85,8 @@ void add_exploring_options(Command command, ExploringArguments& arguments) {
       .add_option("--force-rotation-deg", arguments.force_rotation_deg,
                   "turn the force by this angle from x to y first: for a force sensor mounted at an angle (0)")
       .type_name("DEG")
-      .check(number_within(180.0));
+      .check(number_within(180.0))
+      .group("Analysed interval");
   add_choice(command, "--only", arguments.only, "nothing but this part (all of them)");
   const char* const group = "Frequency response";
   add_choice_or_auto(
