@@ -164,7 +164,7 @@ class Teleoperation(Step):
         self.assertAlmostEqual(low, middle - root, places=6)
         self.assertAlmostEqual(high, middle + root, places=6)
         self.assertLess(interval("this_hand.json")[0], low - 20)
-        self.assertGreater(interval("this_hand.json")[1], high + 200)
+        self.assertGreater(interval("this_hand.json")[1], high + 100)
         self.assertIn("92.76 to 431.2", self.said)
         self.assertIn("with that operator for", self.said)
 

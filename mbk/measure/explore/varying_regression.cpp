@@ -17,7 +17,7 @@ constexpr Index kRowsPerCoefficient = 5;
 constexpr Index kMaxOrder = 25;
 constexpr int kMoves = 24;
 constexpr std::size_t kMostBefore = 11;  ///< knots from which moving them begins
-constexpr double kLeastTold = 0.15;      ///< of what all rows tell, in the direction of which a function's tell least
+constexpr double kLeastTold = 0.03;      ///< of what all rows tell, in the direction of which a function's tell least
 
 /// Whitened products of all columns φ_j(s) z_k on the finest basis, of one output.
 struct Products {
