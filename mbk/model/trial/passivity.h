@@ -59,7 +59,7 @@ struct ModelPassivity {
   Vector vaf;                             ///< [%], of each axis, on held-out data where there are any
   bool usable = true;
   bool judged = true;  ///< false: no reference shows whether the model is that of the limb
-  bool fits = true;  ///< it explains enough of the force to describe the limb (WarningCode::fit_poor)
+  bool fits = true;    ///< it explains enough of the force to describe the limb (WarningCode::fit_poor)
   Verdict symmetric = Verdict::undecided;  ///< M_s, B_s, K_s: all that straight motion can show
   /// The antisymmetric parts, which do work in circular motion only; absent with one axis, which has none.
   std::optional<Verdict> antisymmetric;
