@@ -17,6 +17,7 @@ constexpr Index kRowsPerCoefficient = 5;
 constexpr Index kMaxOrder = 25;
 constexpr int kMoves = 24;
 constexpr std::size_t kMostBefore = 11;  ///< knots from which moving them begins
+constexpr double kMostOfOneCell = 0.5;   ///< of what a function's rows tell, in any direction
 constexpr double kLeastTold = 0.03;      ///< of what all rows tell, in the direction of which a function's tell least
 
 /// Whitened products of all columns φ_j(s) z_k on the finest basis, of one output.
@@ -172,31 +173,65 @@ class Excitation {
     const Matrix upper = root.upper();  // UᵀU
     const Matrix even = upper.transpose().triangularView<Eigen::Lower>().solve(Z.transpose());
     share_ = Vector::Zero(fine.size());
-    moments_.assign(static_cast<std::size_t>(fine.size()), Matrix::Zero(columns, columns));
+    const Index cells = fine.size() - fine.degree;
+    cells_.assign(static_cast<std::size_t>(cells),
+                  std::vector<Matrix>(static_cast<std::size_t>(fine.degree) + 1, Matrix::Zero(columns, columns)));
     for (Index t = 0; t < Z.rows(); ++t) {
       const ActiveSplines active = active_splines(fine, rows.s[t]);
       for (Index j = 0; j <= fine.degree; ++j) {
         share_[active.first + j] += active.value[j];
-        moments_[static_cast<std::size_t>(active.first + j)] += active.value[j] * even.col(t) * even.col(t).transpose();
+        cells_[static_cast<std::size_t>(active.first)][static_cast<std::size_t>(j)] +=
+            active.value[j] * even.col(t) * even.col(t).transpose();
       }
     }
+    constexpr double kAtRest = 0.1;  // of the mean motion, and of the cells
+    Index resting = 0;
+    for (const auto& cell : cells_) {
+      double motion = 0.0;
+      for (const Matrix& one : cell) motion += one.trace();
+      resting += motion < kAtRest * static_cast<double>(columns * Z.rows()) / static_cast<double>(cells) ? 1 : 0;
+    }
+    pulses_ = static_cast<double>(resting) > kAtRest * static_cast<double>(cells);
   }
 
   /// @param T  of a basis, its functions as sums of those of the fine one
   [[nodiscard]] bool tells(const Matrix& T) const {
-    if (moments_.empty()) return false;
+    if (cells_.empty()) return false;
     for (Index j = 0; j < T.rows(); ++j) {
-      Matrix own = Matrix::Zero(moments_.front().rows(), moments_.front().cols());
-      for (Index k = 0; k < T.cols(); ++k) own += T(j, k) * moments_[static_cast<std::size_t>(k)];
+      std::vector<Matrix> of_cells;
+      Matrix own = Matrix::Zero(cells_.front().front().rows(), cells_.front().front().cols());
+      for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+        Matrix here = Matrix::Zero(own.rows(), own.cols());
+        for (std::size_t k = 0; k < cells_[cell].size(); ++k) {
+          here += T(j, static_cast<Index>(cell + k)) * cells_[cell][k];
+        }
+        own += here;
+        of_cells.push_back(std::move(here));
+      }
       const double share = T.row(j).dot(share_);
       if (!(numeric::symmetric_eigenvalues(own).minCoeff() >= kLeastTold * share)) return false;
+      if (T.rows() > 1 && pulses_ && rests_on_one_cell(own, of_cells)) return false;
     }
     return true;
   }
 
  private:
-  Vector share_;                 ///< Σ φ_k(s_t)
-  std::vector<Matrix> moments_;  ///< Σ φ_k(s_t) z zᵀ in coordinates in which the mean of z zᵀ is I
+  /// Whether in some direction one cell tells more than the others together, as a single pulse does.
+  static bool rests_on_one_cell(const Matrix& own, const std::vector<Matrix>& of_cells) {
+    const numeric::Cholesky root(own);
+    if (!root.positive_definite()) return true;
+    const Matrix upper = root.upper();
+    return std::ranges::any_of(of_cells, [&](const Matrix& here) {
+      const Matrix half = upper.transpose().triangularView<Eigen::Lower>().solve(here);
+      const Matrix part = upper.transpose().triangularView<Eigen::Lower>().solve(half.transpose());
+      return numeric::symmetric_eigenvalues(part).maxCoeff() > kMostOfOneCell;
+    });
+  }
+
+  Vector share_;         ///< Σ φ_k(s_t)
+  bool pulses_ = false;  ///< the hand rests in between
+  /// Σ φ_k(s_t) z zᵀ over each cell, of the functions that live there, in coordinates in which the mean of z zᵀ is I.
+  std::vector<std::vector<Matrix>> cells_;
 };
 
 /// Compares bases.
