@@ -220,20 +220,41 @@ Matrix greatest_power(const std::vector<Averages>& averages, const Sizes& sizes)
   return power;
 }
 
+/// Of the means over the periods along each input, the greatest of all realisations; infinite where one period shows
+/// none.
+Matrix greatest_noise(const std::vector<Averages>& averages, const Sizes& sizes) {
+  Matrix noise = Matrix::Zero(sizes.inputs, sizes.lines);
+  for (const Averages& one : averages) {
+    for (Index k = 0; k < sizes.lines; ++k) {
+      for (Index j = 0; j < sizes.inputs; ++j) {
+        const Index at = sizes.outputs + j;
+        const double here = one.periods > 1 ? one.covariance[static_cast<std::size_t>(k)](at, at).real() /
+                                                  static_cast<double>(one.periods)
+                                            : std::numeric_limits<double>::infinity();
+        noise(j, k) = std::max(noise(j, k), here);
+      }
+    }
+  }
+  return noise;
+}
+
 /// Lines that a commanded signal holds: it is exact, so that the others are empty but for rounding.
 void add_commanded(const Vector& power, std::vector<bool>& excited) {
-  constexpr double kLeast = 1e-3;  // of the greatest power: bent axes make lines of 1 % of the amplitude of theirs
+  constexpr double kLeast = 2e-4;  // of the greatest power: bent axes make lines of 1 % of the amplitude of theirs
   for (Index k = 0; k < power.size(); ++k) {
     if (power[k] > kLeast * power.maxCoeff()) excited[static_cast<std::size_t>(k)] = true;
   }
 }
 
-/// Lines that a measured signal was given, by its power alone: within the band that leaves 0.1 % of it below and 1 %
-/// above, of odd lines alone where the even ones hold less than 5 %, those above a twentieth of the median amplitude
-/// of their sixteen neighbours. A resonance of what is measured may take most of a line away; noise and distortion fill
-/// the empty ones.
-void add_measured(const Vector& power, std::vector<bool>& excited) {
-  constexpr double kBelow = 1e-3, kAbove = 1e-2, kEven = 0.05, kLeast = 0.05;
+/// Lines that a measured signal was given, by its power alone: within the band that leaves 0.1 % of it below and above
+/// (the last hundredth only where the lines stand above their noise and go on from those before), of odd lines alone
+/// where the even ones hold less than 5 %, those above a twentieth of the amplitude that one in ten of their sixteen
+/// neighbours exceeds: of every fourth line excited, the median would be that of an empty one. A resonance of what is
+/// measured may take most of a line away; noise and distortion fill the empty ones.
+/// @param noise  of the power, at each line
+void add_measured(const Vector& power, const Vector& noise, std::vector<bool>& excited) {
+  constexpr double kBelow = 1e-3, kAbove = 1e-2, kFarAbove = 1e-3, kEven = 0.05, kLeast = 0.05, kClear = 30.0,
+                   kStep = 0.3;
   constexpr Index kNeighbours = 8;
   double even = 0.0;
   for (Index k = 1; k < power.size(); k += 2) even += power[k];
@@ -246,13 +267,21 @@ void add_measured(const Vector& power, std::vector<bool>& excited) {
   for (const Index k : lines) {
     const double before = sum;
     sum += power[k];
-    if (sum > kBelow * total && before < (1.0 - kAbove) * total) band.push_back(k);
+    double largest = 0.0;  // of the band's last lines: what follows a sudden end is distortion
+    for (std::size_t i = band.size() - std::min<std::size_t>(band.size(), kNeighbours); i < band.size(); ++i) {
+      largest = std::max(largest, power[band[i]]);
+    }
+    const bool clear =
+        power[k] > std::max(kClear * noise[k], kStep * kStep * largest) && before < (1.0 - kFarAbove) * total;
+    if (sum > kBelow * total && (clear || before < (1.0 - kAbove) * total)) band.push_back(k);
   }
   for (std::size_t i = 0; i < band.size(); ++i) {
     std::vector<double> near;
     const std::size_t first = i > kNeighbours ? i - kNeighbours : 0;
     for (std::size_t l = first; l < std::min(band.size(), i + kNeighbours + 1); ++l) near.push_back(power[band[l]]);
-    if (power[band[i]] > kLeast * kLeast * numeric::median(std::move(near))) {
+    const auto high = near.begin() + static_cast<std::ptrdiff_t>(9 * near.size() / 10);
+    std::ranges::nth_element(near, high);
+    if (power[band[i]] > kLeast * kLeast * *high) {
       excited[static_cast<std::size_t>(band[i])] = true;
     }
   }
@@ -260,10 +289,10 @@ void add_measured(const Vector& power, std::vector<bool>& excited) {
 
 /// Lines at which some realisation is excited along some input.
 std::vector<Index> excited_lines(const std::vector<Averages>& averages, const Sizes& sizes, bool by_reference) {
-  const Matrix power = greatest_power(averages, sizes);
+  const Matrix power = greatest_power(averages, sizes), noise = greatest_noise(averages, sizes);
   std::vector<bool> excited(static_cast<std::size_t>(sizes.lines), false);
   for (Index j = 0; j < sizes.inputs; ++j) {
-    by_reference ? add_commanded(power.row(j), excited) : add_measured(power.row(j), excited);
+    by_reference ? add_commanded(power.row(j), excited) : add_measured(power.row(j), noise.row(j), excited);
   }
   std::vector<Index> lines;
   for (Index k = 0; k < sizes.lines; ++k) {

@@ -56,6 +56,38 @@ TEST(PeriodicResponse, WithoutNoiseIsExact) {
   }
 }
 
+TEST(PeriodicResponse, WithoutAReferenceFindsTheLinesThatWereExcited) {
+  for (const std::vector<int>& lines : {std::vector<int>{1, 5, 9, 13, 17, 21, 25, 29, 33, 37},
+                                        std::vector<int>{1, 3, 5, 9, 11, 13, 15, 19, 21, 23, 25, 29, 31, 33, 35, 39},
+                                        std::vector<int>{2, 7, 12, 17, 22, 27, 32}}) {
+    auto trial = realisation(lines, 3, 8, 1e-3, 0.0);
+    trial.reference.resize(0, 0);
+    trial.input.col(0) += 2e-3 * white_noise(trial.input.rows(), 99);
+    const auto found = periodic_response({&trial, 1}, {.period_s = 2.0});
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    std::vector<int> at;
+    for (Index k = 0; k < found->size(); ++k) at.push_back(static_cast<int>(std::lround(2.0 * found->frequency[k])));
+    EXPECT_EQ(at, lines);
+  }
+}
+
+TEST(PeriodicResponse, LeavesNoLineOutWhosePowerFallsWithFrequency) {
+  Vector u = Vector::Zero(9 * kPeriod);
+  for (int line = 1; line <= 36; ++line) {
+    for (Index i = 0; i < u.size(); ++i) {
+      u[i] += std::cos(2.0 * M_PI * line * static_cast<double>(i) / static_cast<double>(kPeriod) + line * line) / line;
+    }
+  }
+  const Vector y = two_taps(u, kA, kB) + 1e-3 * white_noise(u.size(), 4);
+  for (const bool with_reference : {true, false}) {
+    const auto trial = with_reference ? trial_of(settled(u), settled(y), kStep, settled(u))
+                                      : trial_of(settled(u) + 1e-4 * white_noise(8 * kPeriod, 5), settled(y), kStep);
+    const auto found = periodic_response({&trial, 1}, {.period_s = 2.0});
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_GE(found->size(), 34) << with_reference;
+  }
+}
+
 TEST(PeriodicResponse, OfALinearSystemHasNoMoreVarianceOverRealisationsThanOverPeriods) {
   double total = 0.0, noise = 0.0;
   int alarms = 0;
