@@ -220,10 +220,8 @@ class Assembler {
     if (clock_ == nullptr) unwrap_time(recording_);
     if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
     if (clock_ == nullptr) {
-      const bool said = options_.rate || std::ranges::any_of(options_.channels, [](const ChannelSource& entry) {
-                          return !entry.unit.empty() && is_time(kinds_called(entry.channel).front());
-                        });
-      if (auto ok = check_unit_of_time(recording_, said); !ok) return tl::unexpected(ok.error());
+      if (auto ok = check_unit_of_time(recording_, options_.rate || states_time_); !ok)
+        return tl::unexpected(ok.error());
     }
     find_updates(recording_);
     return options_.own_samples ? at_own_samples(std::move(recording_), options_.commands) : std::move(recording_);
@@ -240,9 +238,7 @@ class Assembler {
   }
 
   /// A map of the time alone, as to say its unit, leaves all else to its name.
-  [[nodiscard]] bool maps_time_alone() const {
-    return options_.channels.size() == 1 && kinds_called(options_.channels.front().channel).front()->name == "time";
-  }
+  [[nodiscard]] bool maps_time_alone() const { return options_.channels.size() == 1 && maps_time(); }
 
   // ---- which signals ----
 

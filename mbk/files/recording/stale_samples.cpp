@@ -43,7 +43,6 @@ struct Runs {
   std::vector<double> jumps;   ///< by how much
   double least = 0.0;          ///< the 5 % quantile of their sizes
   double step = 0.0;           ///< the same, or what `common_size` finds
-  double usual = 0.0;          ///< the lower quartile
   double varied = 0.0;         ///< share of the changes that are at least twice as large
   double low = 0.0, high = 0.0;
 };
@@ -102,7 +101,6 @@ Runs runs_of(const Eigen::Ref<const Vector>& values) {
   if (std::ssize(all.changes) < kMinChanges) return all;
   all.least = quantile(sizes, 0.05);
   all.step = std::max(all.least, common_size(sizes));
-  all.usual = quantile(sizes, 0.25);
   const auto large = std::ranges::count_if(sizes, [&](double size) { return size >= 2.0 * all.step; });
   all.varied = static_cast<double>(large) / static_cast<double>(sizes.size());
   all.low = values.minCoeff();
@@ -121,32 +119,20 @@ std::vector<double> sizes_of(const Runs& all) {
   return sizes;
 }
 
-/// The four changes before a run and the four after it.
-struct Around {
-  double scale = 0.0;  ///< median of their sizes
-  double small = 0.0;  ///< lower quartile
-  int turns = 0;       ///< how many have another sign than the one before, on the same side
-};
-
-Around around(const Runs& all, std::size_t run) {
+/// The median size of the four changes before a run and the four after it.
+double scale_around(const Runs& all, std::size_t run) {
   constexpr Index kEachSide = 4;
   const Index k = static_cast<Index>(run), count = std::ssize(all.jumps);
   const Index first = std::max<Index>(0, k + 1 - kEachSide), last = std::min(count - 1, k + kEachSide);
   std::array<double, 2 * kEachSide> sizes{};
   std::size_t found = 0;
-  Around result;
   for (Index j = first; j <= last; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    const double size = std::abs(all.jumps[at]);
+    const double size = std::abs(all.jumps[static_cast<std::size_t>(j)]);
     std::size_t place = found++;
     for (; place > 0 && sizes[place - 1] > size; --place) sizes[place] = sizes[place - 1];
     sizes[place] = size;
-    const bool same_side = j > first && j != k + 1;
-    if (same_side && (all.jumps[at] < 0.0) != (all.jumps[at - 1] < 0.0)) ++result.turns;
   }
-  result.scale = found % 2 == 1 ? sizes[found / 2] : 0.5 * (sizes[found / 2 - 1] + sizes[found / 2]);
-  result.small = sizes[found / 4];
-  return result;
+  return found % 2 == 1 ? sizes[found / 2] : 0.5 * (sizes[found / 2 - 1] + sizes[found / 2]);
 }
 
 /// The value that most of some runs have.
@@ -371,9 +357,9 @@ std::optional<Stale> find_held(const Runs& all, Index samples) {
 class Repeats {
  public:
   Repeats(const Runs& all, Index samples) : all_(all), samples_(samples) {
-    around_.resize(all.runs.size());
+    scale_.resize(all.runs.size());
     for (std::size_t k = 0; k < all.runs.size(); ++k) {
-      if (all.runs[k].length >= 2 || k % kSampled == 0) around_[k] = around(all, k);
+      if (all.runs[k].length >= 2 || k % kSampled == 0) scale_[k] = scale_around(all, k);
     }
     many_sizes_ = blocks_of_many_sizes(sizes_of(all));
     rest_ = most_common(all, [&](std::size_t k) { return moves(k) && all.runs[k].length >= 2; });
@@ -393,7 +379,7 @@ class Repeats {
   /// A signal in steps moves by many of them in each sample.
   [[nodiscard]] bool moves(std::size_t k) const {
     constexpr double kSteps = 4.0;
-    return many_sizes_[k / kBlock] && around_[k].scale >= kSteps * all_.least && !at_extreme(all_.runs[k]);
+    return many_sizes_[k / kBlock] && scale_[k] >= kSteps * all_.least && !at_extreme(all_.runs[k]);
   }
   /// At the value to which the channel returns again and again.
   [[nodiscard]] bool rests(const Run& run) const {
@@ -420,7 +406,7 @@ class Repeats {
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
       if (run.length < 2 || run.length > kShortRun || !moves(k)) continue;
-      larger.push_back(std::abs(run.after) / around_[k].scale);
+      larger.push_back(std::abs(run.after) / scale_[k]);
     }
     if (larger.empty()) return false;
     return turns() / kOfNoise + std::max(0.0, numeric::median(std::move(larger)) - 1.0) / kOfMotion > 1.0;
@@ -557,7 +543,7 @@ class Repeats {
 
   const Runs& all_;
   Index samples_;
-  std::vector<Around> around_;
+  std::vector<double> scale_;  ///< around each run that is looked at
   std::vector<bool> many_sizes_;
   Common rest_;
 };
