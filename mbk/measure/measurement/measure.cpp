@@ -231,11 +231,6 @@ std::pair<Method, std::string> recommended(const std::vector<PreparedTrial>& tri
   return {Method::instrumental_variables, "the recorded reference explains the motion"};
 }
 
-const Warning kNoReference = {
-    WarningCode::no_reference,
-    "no reference was recorded: whether the limb itself moved the robot, which biases least squares, cannot be judged",
-    "record what the robot was told to do, as position or force (xr, yr); the energy of the trial holds all the same"};
-
 /// By the method that was asked for or is recommended and, where a reference was recorded, by the other one too.
 Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, const identify::Options& options) {
   const bool by_instruments = options.method == Method::instrumental_variables;
@@ -258,7 +253,14 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   }
   auto alone = identify::identify_impedance(trials, options);
   if (!alone) return tl::unexpected(alone.error());
-  if (trials.front().preparation.mode == Mode::default_mode && !known) alone->warnings.push_back(kNoReference);
+  if (trials.front().preparation.mode == Mode::default_mode && !known) {
+    alone->warnings.push_back(
+        {WarningCode::no_reference,
+         "no reference was recorded: whether the limb itself moved the robot, which biases least squares, cannot be "
+         "judged",
+         "record what the robot was told to do, as position or force (xr, yr); the energy of the trial holds all the "
+         "same"});
+  }
   Measurement measured;
   measured.identification = std::move(*alone);
   return measured;

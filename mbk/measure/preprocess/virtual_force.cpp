@@ -75,8 +75,8 @@ std::string assumed_of_hand(const robot::Mechanism& mechanism, const robot::Join
   for (int k = 0; k < mechanism.hand_axes(); ++k) axes += (k == 0 ? "" : " and ") + mechanism.hand_axis_name(k);
   const Index told = robot::told_across(mechanism, position);
   return fmt::format("the force is that along {} of the base, of a hand that exerts no moment{}", axes,
-                     told == others ? "; what pushes across is told apart"
-                                    : "; what pushes across cannot be told apart: none is assumed");
+                     told == others ? "; a push across them is estimated and left out"
+                                    : "; the joints do not show a push across them, so none is assumed");
 }
 
 }  // namespace
