@@ -430,24 +430,23 @@ def _(test):  # take the play out of the drive, or move more slowly
     test.goes("backlash", raised, on_a_drive(test, stiff))
 
 
+def changes_half_way(test, code, change):
+    path = departing(test, "[[participant.stiffness_at]]\ntime_s = 30\nfactor = 1\n\n"
+                           f"[[participant.stiffness_at]]\ntime_s = 31\n{change}")
+    raised = test.measured(path)
+    test.assertIn("--to", hint_of(raised, code))
+    for part in (("--to", 29), ("--from", 33)):
+        test.goes(code, raised, test.measured(*part, path))
+
+
 @advice_of("stiffness-changes")
 def _(test):
-    path = departing(test, "[[participant.stiffness_at]]\ntime_s = 30\nfactor = 1\n\n"
-                           "[[participant.stiffness_at]]\ntime_s = 31\nfactor = 2")
-    raised = test.measured(path)
-    test.assertIn("--to", hint_of(raised, "stiffness-changes"))
-    for part in (("--to", 29), ("--from", 33)):
-        test.goes("stiffness-changes", raised, test.measured(*part, path))
+    changes_half_way(test, "stiffness-changes", "factor = 2")
 
 
 @advice_of("damping-changes")
 def _(test):
-    path = departing(test, "[[participant.stiffness_at]]\ntime_s = 30\nfactor = 1\n\n"
-                           "[[participant.stiffness_at]]\ntime_s = 31\nfactor = 1\ndamping_factor = 2")
-    raised = test.measured(path)
-    test.assertIn("--to", hint_of(raised, "damping-changes"))
-    for part in (("--to", 29), ("--from", 33)):
-        test.goes("damping-changes", raised, test.measured(*part, path))
+    changes_half_way(test, "damping-changes", "factor = 1\ndamping_factor = 2")
 
 
 @advice_of("memory")
