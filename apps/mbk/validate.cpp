@@ -308,9 +308,8 @@ Action add_validate(Command app) {
            "      on the cluster; the table is the same to the byte\n"
            "  mbk validate faults --link udp --runs 2\n"
            "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
-           "A row is met where its 95 % interval lies inside what is expected. It falls short where its\n"
-           "value lies outside. It is not shown where the value lies inside and the interval does not:\n"
-           "that takes more runs.\n\n"
+           "A row is met where its 95 % interval lies inside what is expected. It falls short where\n"
+           "the whole interval lies outside. Otherwise it is not shown: that takes more runs.\n\n"
            "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data,\n"
            "6 not shown by this many runs.";
   });

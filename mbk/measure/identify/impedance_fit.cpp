@@ -11,6 +11,7 @@
 
 #include "mbk/base/numeric/block_bootstrap.h"
 #include "mbk/base/numeric/column_products.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/long_run_covariances.h"
@@ -88,7 +89,8 @@ class Fitter {
   /// @param fraction  what the instruments explain of the residual, axis by axis
   [[nodiscard]] UnmodelledResponse response_in(const Matrix& residual, const Vector& fraction) const;
   [[nodiscard]] Index rows_by_cutoff() const;
-  [[nodiscard]] const std::vector<AssumptionTest>& assumptions_tested(Method method, const Estimate& estimate);
+  void widen_by_curvature(const Vector& curvature, Identification& result);
+  [[nodiscard]] const TestedAssumptions& assumptions_tested(Method method, const Estimate& estimate);
 
   const std::vector<PreparedTrial>& trials_;
   const Options& options_;
@@ -107,7 +109,7 @@ class Fitter {
   std::array<Vector, 2> coherent_;                          ///< fractions of their residuals
   std::optional<Spread> spread_;                            ///< of the rows behind the parameters
   std::array<Vector, 2> errors_;                            ///< standard errors of their coefficients, stacked
-  std::optional<std::vector<AssumptionTest>> assumptions_;  ///< of the data, by whichever method comes first
+  std::optional<TestedAssumptions> assumptions_;  ///< of the data, by whichever method comes first
 };
 
 Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
@@ -397,7 +399,11 @@ Result<Identification> Fitter::identify(Method method) {
       if (one) recording::let_go(one->residuals.data(), one->residuals.size());
     }
   }
-  if (is_full(*fit)) result.assumptions = assumptions_tested(method, *fit);
+  if (is_full(*fit)) {
+    const TestedAssumptions& tested = assumptions_tested(method, *fit);
+    result.assumptions = tested.found;
+    widen_by_curvature(tested.curvature, result);
+  }
   if (options_.bootstrap > 0 && is_full(*fit)) {
     auto replicates = resample(method);
     if (!replicates) return tl::unexpected(replicates.error());
@@ -439,6 +445,15 @@ Result<Replicates> Fitter::resample(Method method) const {
   return result;
 }
 
+/// Where stiffness depends on posture x₀ is off by K⁻¹ times the mean force of that curvature: its interval holds both.
+void Fitter::widen_by_curvature(const Vector& curvature, Identification& result) {
+  if (curvature.size() == 0) return;
+  const Index n = r_.axes();
+  const Matrix compliance = numeric::inverse(result.model.K);
+  result.covariance.diagonal().tail(n) += compliance.cwiseAbs2() * curvature.cwiseAbs2();
+  result.standard_error.x0 = result.covariance.diagonal().tail(n).cwiseSqrt();
+}
+
 UnmodelledResponse Fitter::response_in(const Matrix& residual, const Vector& fraction) const {
   const Index n = r_.axes();
   const SelectedRows left(residual, ranges_), force(r_.Y, ranges_);
@@ -461,7 +476,7 @@ UnmodelledResponse Fitter::response_in(const Matrix& residual, const Vector& fra
   return result;
 }
 
-const std::vector<AssumptionTest>& Fitter::assumptions_tested(Method method, const Estimate& estimate) {
+const TestedAssumptions& Fitter::assumptions_tested(Method method, const Estimate& estimate) {
   if (!assumptions_) {
     const Matrix errors = errors_[static_cast<std::size_t>(method)].reshaped(estimate.coefficients.rows(), r_.axes());
     assumptions_ =

@@ -20,6 +20,7 @@ constexpr double kRowsPerBand = 2.6;         ///< rate of the rows over the top 
 constexpr double kBack = 1.4, kAhead = 0.5;  ///< what of the reference explains the motion of one instant [s]
 constexpr Index kRowsPerLag = 5;
 constexpr double kRidge = 1e-9;
+constexpr double kMostLeverage = 0.9;
 constexpr Index kMostOrder = 25;    ///< of the autoregression
 constexpr double kExplained = 0.5;  ///< share of the motion that the reference must explain to stand for it
 constexpr double kShareOfForce =
@@ -89,6 +90,7 @@ struct AxisFit {
   Vector without;        ///< of [ẍ ẋ x 1] alone
   double statistic = 0;  ///< Wald's, of the last columns, over their number
   double freedom = 0;    ///< rows less coefficients
+  Matrix covariance;     ///< of the last coefficients
   double gain = 0;       ///< variance of the force that the last columns explain, as a share
 };
 
@@ -103,11 +105,11 @@ class Tester {
     explain();
   }
 
-  [[nodiscard]] std::vector<AssumptionTest> run() const {
+  [[nodiscard]] TestedAssumptions run() {
     if (!enough_rows()) return {};
     std::vector<AssumptionTest> tests = test_dynamics();
     tests.push_back(test_trend());
-    return tests;
+    return {std::move(tests), curvature_};
   }
 
  private:
@@ -322,13 +324,17 @@ class Tester {
     result.freedom = count - static_cast<double>(p);
     if (!(result.freedom > 0.0)) return std::nullopt;
     const Matrix bread = numeric::inverse(numeric::products_of(Rw, Aw));
-    const Vector residual = yw - Aw * b;
+    // Each residual over 1 − its leverage: few rows carry the damping of a quick pulse, and a fit draws near them.
+    const Vector leverage = (Aw * bread).cwiseProduct(Rw).rowwise().sum();
+    const Vector residual = (yw - Aw * b).array() / (1.0 - leverage.array().min(kMostLeverage));
     const Vector b0 = solved(Aw.leftCols(base), Rw.leftCols(base), yw);
     Rw.array().colwise() *= residual.array();  // the scores
-    const Matrix V = count / result.freedom * bread * numeric::gram_of({Rw}) * bread.transpose();
+    const Matrix V = bread * numeric::gram_of({Rw}) * bread.transpose();
     const Vector tested = b.tail(last);
     result.statistic =
         tested.dot(numeric::PivotedCholesky(V.bottomRightCorner(last, last)).solve(tested)) / static_cast<double>(last);
+    const Vector unscaled = scale.tail(last).cwiseInverse();
+    result.covariance = unscaled.asDiagonal() * V.bottomRightCorner(last, last) * unscaled.asDiagonal();
     const double power = numeric::variance(y);
     result.gain = (numeric::variance(y - A.leftCols(base) * b0) - numeric::variance(y - A * b)) / power;
     result.coefficients = b.cwiseQuotient(scale);
@@ -338,7 +344,7 @@ class Tester {
   }
 
   /// All axes with one more kind of dynamics; absent where the rows do not tell it from the rest.
-  [[nodiscard]] std::optional<AssumptionTest> test(Assumption assumption, std::vector<Assumption> model) const {
+  [[nodiscard]] std::optional<AssumptionTest> test(Assumption assumption, std::vector<Assumption> model) {
     model.push_back(assumption);
     AssumptionTest result{assumption};
     const Index last = columns_of(assumption);
@@ -356,9 +362,24 @@ class Tester {
       }
       fits.push_back(std::move(*one));
     }
+    if (assumption == Assumption::alike_both_ways) note_curvature(fits);
     result.size = beside_linear(assumption) ? std::sqrt(std::max(0.0, gain)) : size_of(assumption, fits);
     result.contradicted = result.p_value < kChance && matters(result) && (by_reference_ || gain > kShareOfForce);
     return result;
+  }
+
+  /// The force that γ of x_i x_j adds on average, without what the noise of γ adds to its square.
+  void note_curvature(const std::vector<AxisFit>& fits) {
+    const Matrix even = even_part(measured_);
+    const Index squares = even.cols() - n_;
+    const Vector mean = even.rightCols(squares).colwise().mean();
+    curvature_.resize(n_);
+    for (Index axis = 0; axis < n_; ++axis) {
+      const AxisFit& fit = fits[static_cast<std::size_t>(axis)];
+      const double force = mean.dot(fit.coefficients.tail(squares));
+      const double chance = mean.dot(fit.covariance.bottomRightCorner(squares, squares) * mean);
+      curvature_[axis] = std::sqrt(std::max(0.0, force * force - chance));
+    }
   }
 
   /// Whether the size is that of the force which W explains.
@@ -397,7 +418,7 @@ class Tester {
   }
 
   /// The most certain first; what was found belongs to the model of the others.
-  [[nodiscard]] std::vector<AssumptionTest> test_dynamics() const {
+  [[nodiscard]] std::vector<AssumptionTest> test_dynamics() {
     using enum Assumption;
     std::vector<Assumption> open = {simultaneous,     linear_stiffness, no_dry_friction, constant_stiffness,
                                     constant_damping, no_memory,        alike_both_ways},
@@ -464,13 +485,14 @@ class Tester {
   std::vector<RowRange> pieces_;    ///< rows here without a break
   Motion measured_, explained_;
   Matrix force_, waves_;  ///< N×n, −F_h; N×k
+  Vector curvature_;      ///< of TestedAssumptions
   bool by_reference_ = false;
 };
 
 }  // namespace
 
-std::vector<AssumptionTest> test_assumptions(const Regression& r, const Matrix& coefficients, const Matrix& errors,
-                                             double band, const std::vector<RowRange>& ranges) {
+TestedAssumptions test_assumptions(const Regression& r, const Matrix& coefficients, const Matrix& errors, double band,
+                                   const std::vector<RowRange>& ranges) {
   if (!(band > 0.0) || !coefficients.allFinite() || !(errors.array() > 0.0).all()) return {};
   return Tester(r, coefficients, errors, band, ranges).run();
 }

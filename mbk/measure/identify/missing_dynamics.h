@@ -6,6 +6,13 @@
 
 namespace mbk::identify {
 
+struct TestedAssumptions {
+  std::vector<AssumptionTest> found;
+  /// n, size of the mean of −F that the products x_i x_j account for: the constant of the model holds it, so that x₀ is
+  /// off by K⁻¹ times this [N or N·m]. Zero where noise makes as much, empty where it was not fitted.
+  Vector curvature;
+};
+
 /// Tests what M, B and K leave out: each kind of dynamics that a limb or a sensor may have beside them is added to the
 /// regression, and what it explains is compared with chance,
 ///   −F = M ẍ + B ẋ + K x + c + Σ_k W_k γ_k,
@@ -14,7 +21,8 @@ namespace mbk::identify {
 /// |ẋ_i| with x_i x_j (what is not alike in opposite directions). Where the reference is known, motion is replaced by
 /// what the past and present of the reference explain of it (each half of the rows by the response of the other half),
 /// so that noise in a closed loop is not taken for dynamics. Rows are whitened by an autoregression of the residual;
-/// the covariance of γ is that of White (1980), and the test an F test for each axis, with Bonferroni's bound over the
+/// the covariance of γ is that of White (1980), each residual divided by one less its leverage (MacKinnon and White
+/// 1985), and the test an F test for each axis, with Bonferroni's bound over the
 /// axes. What is found first, with the smallest chance, joins the model before the others are tested again. A slow
 /// trend of the residual is compared with the slow waves beside it.
 ///
@@ -26,8 +34,7 @@ namespace mbk::identify {
 /// @param coefficients (3n+1)×n, of the fit    @param errors standard errors of the same    @param band [Hz] up to
 /// which the rows hold anything    @param ranges rows that count
 /// @returns none where there are too few rows for that
-[[nodiscard]] std::vector<AssumptionTest> test_assumptions(const Regression& r, const Matrix& coefficients,
-                                                           const Matrix& errors, double band,
-                                                           const std::vector<RowRange>& ranges);
+[[nodiscard]] TestedAssumptions test_assumptions(const Regression& r, const Matrix& coefficients, const Matrix& errors,
+                                                 double band, const std::vector<RowRange>& ranges);
 
 }  // namespace mbk::identify

@@ -156,6 +156,26 @@ TEST(MissingDynamics, AStiffnessOnOneSideIsFoundAndALittleOfItIsNot) {
   EXPECT_FALSE(about(tested(trial_with(quiet(), one_sided(0.02))), Assumption::alike_both_ways).contradicted);
 }
 
+TEST(MissingDynamics, TheIntervalOfTheEquilibriumHoldsWhatCurvatureShifts) {
+  // A force that grows with the square of the displacement, as the geometry of an arm makes one, too small to warn of.
+  static constexpr double kCurvature = 2e3;  // [N/m²]
+  const Extra curved = [](const PreparedTrial& trial, Index i, double) {
+    const double away = trial.position(i, 0) - 0.28;
+    return Vector(kCurvature * away * away * Vector::Unit(2, 1));
+  };
+  Making straight = quiet();
+  straight.noise = 0.005;
+  const auto without = identify_impedance({trial_with(straight, nothing)}, Options());
+  const auto found = identify_impedance({trial_with(straight, curved)}, Options());
+  ASSERT_TRUE(without && found);
+  EXPECT_FALSE(about(found->assumptions, Assumption::alike_both_ways).contradicted);
+  const Vector off = (found->model.x0 - arm().x0).cwiseAbs();
+  EXPECT_GT(off[1], 2.0 * without->standard_error.x0[1]);
+  EXPECT_LT(off[1], 2.0 * found->standard_error.x0[1]);
+  const Index last = found->covariance.rows() - 1;
+  EXPECT_DOUBLE_EQ(found->standard_error.x0[1], std::sqrt(found->covariance(last, last)));
+}
+
 TEST(MissingDynamics, ADriftIsFoundWithItsHeight) {
   const Extra drift = [](const PreparedTrial&, Index, double share) { return Vector(Vector::Constant(2, -share)); };
   // Behind the parameters stand the first 80 % of the data.

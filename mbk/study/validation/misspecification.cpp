@@ -48,6 +48,18 @@ perturbation::MultisinePlan& sines(Scenario& scenario) {
   return std::get<perturbation::MultisinePlan>(scenario.perturbation.kind);
 }
 
+perturbation::PulseSchedule::Options& train(Scenario& scenario) {
+  return std::get<perturbation::PulsePlan>(scenario.perturbation.kind).pulses;
+}
+
+/// The same multisine, `speed` times as fast and `size` times as far.
+std::function<void(Scenario&)> faster(double speed, double size) {
+  return [speed, size](Scenario& s) {
+    sines(s).period /= speed;
+    sines(s).peak *= size;
+  };
+}
+
 /// What mbk should do about a condition.
 enum class Expected {
   silence,  ///< M, B and K hold: no warning of what they take for granted
@@ -78,6 +90,19 @@ std::vector<participant::StiffnessAt> wave(double amplitude, double frequency, d
 std::vector<Misspecification> honest() {
   using enum Expected;
   const std::string sine = "relaxed_sinusoidal", pulses = "relaxed_underdamped";
+  const auto shoulder = [](double x, double y) {
+    return [x, y](Scenario& s) {
+      auto& limb = std::get<participant::TwoLinkArm::Options>(arm(s).limb);
+      limb.geometry.shoulder = limb.equilibrium + Vector2d(x, y);
+    };
+  };
+  const auto pauses = [](double shortest, double longest) {
+    return [shortest, longest](Scenario& s) {
+      train(s).shortest_pause = shortest;
+      train(s).longest_pause = longest;
+      train(s).quiet = 2.0;
+    };
+  };
   std::vector<Misspecification> list = {
       {"multisine", sine, silence},
       {"pulses", pulses, silence},
@@ -98,7 +123,27 @@ std::vector<Misspecification> honest() {
       {"200 Hz", sine, silence, [](Scenario& s) { s.rate = Hertz(200.0); }},
       {"35 s", sine, silence, [](Scenario& s) { sines(s).duration = 35.0; }},
       {"springs and a mass", "rig_table_5_1", silence},
-      {"springs and a mass, pulses", "rig_table_3_1", silence}};
+      {"springs and a mass, pulses", "rig_table_3_1", silence},
+      {"shoulder 40 cm behind the hand", sine, silence, shoulder(0.0, -0.40)},
+      {"shoulder 58 cm behind the hand", sine, silence, shoulder(0.0, -0.58)},
+      {"shoulder 20 cm to the left", sine, silence, shoulder(-0.20, -0.48)},
+      {"shoulder 20 cm to the right", sine, silence, shoulder(0.20, -0.48)},
+      {"shoulder 40 cm behind the hand, pulses", pulses, silence, shoulder(0.0, -0.40)},
+      {"shoulder 20 cm to the left, pulses", pulses, silence, shoulder(-0.20, -0.48)},
+      {"half as fast", sine, silence, faster(0.5, 1.0)},
+      {"twice as fast, half as far", sine, silence, faster(2.0, 0.5)},
+      {"four times as fast, a quarter as far", sine, silence, faster(4.0, 0.25)},
+      {"interleaved lines up to 10 Hz", sine, silence,
+       [](Scenario& s) {
+         sines(s).harmonics = {10, 13, 23, 30, 41, 51, 63, 72, 89, 97};
+         sines(s).axes = perturbation::MultisinePlan::Axes::interleaved;
+       }},
+      {"interleaved lines up to 3 Hz", sine, silence,
+       [](Scenario& s) { sines(s).axes = perturbation::MultisinePlan::Axes::interleaved; }},
+      {"pulses with pauses of 2 to 3 s", pulses, silence, pauses(2.0, 3.0)},
+      {"pulses with pauses of 1 to 1.5 s", pulses, silence, pauses(1.0, 1.5)},
+      {"pulses in 16 directions", pulses, silence, [](Scenario& s) { train(s).directions = 16; }},
+      {"pulses of damping ratio 0.4", pulses, silence, [](Scenario& s) { train(s).damping_ratio = 0.4; }}};
   return list;
 }
 
@@ -189,6 +234,8 @@ std::vector<Misspecification> broken() {
       {"three springs of 0.3 K behind dampers, pulses", pulses, nothing, relaxing(0.3)},
       {"stiffness × 1.6 on one side, × 0.4 on the other", sine, warning, one_sided(0.6)},
       {"stiffness × 1.6 on one side, × 0.4 on the other, pulses", pulses, nothing, one_sided(0.6)},
+      {"twice as fast, as far", sine, nothing, faster(2.0, 1.0)},
+      {"four times as fast, as far", sine, nothing, faster(4.0, 1.0)},
       {"rigid grasp, 6 N multisine", "rigid_sinusoidal_6N", warning},
       {"rigid grasp, 8 N pulses", "rigid_underdamped_8N", warning},
       {"rigid grasp, 2 N pulses", "rigid_underdamped_2N", warning}};
