@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <string_view>
 
 namespace mbk::app {
 namespace {
@@ -26,7 +28,20 @@ extern "C" void on_fatal_signal(int signal) {
 
 }  // namespace
 
+/// Somebody calls exit() while a trial runs: a driver, since nothing of mbk does.
+void on_exit_in_trial() {
+  if (robot_at_work == nullptr) return;
+  LastWords::say();
+  constexpr std::string_view kWhat =
+      "\a\nmbk: MOTORS NOT CONFIRMED OFF: the robot's driver ended the program. Press the hardware stop button; the "
+      "journal is kept, and 'mbk recover' makes a recording of it.\n";
+  static_cast<void>(!::write(STDERR_FILENO, kWhat.data(), kWhat.size()));
+  std::_Exit(kMotorsNotOff);
+}
+
 LastWords::LastWords(device::Device& robot) {
+  static const int registered = std::atexit(on_exit_in_trial);
+  static_cast<void>(registered);
   static_assert(kFatalSignals.size() == kFatal);
   robot_at_work = &robot;
   struct sigaction action {};

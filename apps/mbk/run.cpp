@@ -35,7 +35,7 @@ using conduct::Next;
 using protocol::Trial;
 using session::Session;
 
-constexpr int kSafetyStop = 5, kMotorsNotOff = 7;
+constexpr int kSafetyStop = 5;
 
 struct RunArguments {
   std::string experiment;
@@ -103,7 +103,8 @@ class StatusLine {
 };
 
 std::string outcome_text(const session::TrialOutcome& outcome, const session::Pace& pace) {
-  std::string text = fmt::format("{}: {}", outcome.recording.string(), outcome.ended);
+  const std::string file = (outcome.unrecorded ? outcome.journal : outcome.recording).string();
+  std::string text = fmt::format("{}: {}", file, outcome.ended);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
   text += "\n  motors: " + safety::sentence(outcome.motors);
   text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,
@@ -111,6 +112,9 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
   if (!pace.virtual_clock) {
     text += fmt::format("  lateness: {}; {} ticks missed\n", time_text(outcome.times.lateness), outcome.times.missed);
     text += fmt::format("  time between commands: {}\n", time_text(outcome.times.interval));
+    if (outcome.times.early > 0) {
+      text += fmt::format("  ! the clock woke the loop too early {} times; it waited on\n", outcome.times.early);
+    }
     if (!outcome.setup.refused.empty()) text += fmt::format("  {}\n", outcome.setup.refused);
   }
   return text;
@@ -124,13 +128,11 @@ std::string damage_text(const session::TrialOutcome& outcome) {
   return text;
 }
 
-int dry_run(const std::vector<Trial>& trials, const std::string& experiment) {
-  for (const Trial& trial : trials) {
-    const auto plan = session::make_plan(trial);
-    if (!plan) return report_error(plan.error().in(experiment));
-    const auto rehearsal = session::rehearse(*plan);
-    if (!rehearsal) return report_error(rehearsal.error().in(experiment));
-    if (auto ok = Output().write(plan_text(*plan, *rehearsal)); !ok) return report_error(ok.error());
+int dry_run(const conduct::Experiment& experiment, const std::string& file) {
+  for (const session::Plan& plan : experiment.plans) {
+    const auto rehearsal = session::rehearse(plan);
+    if (!rehearsal) return report_error(rehearsal.error().in(file));
+    if (auto ok = Output().write(plan_text(plan, *rehearsal)); !ok) return report_error(ok.error());
     if (rehearsal->trip.reason != safety::Reason::none) return kSafetyStop;
   }
   return kFine;
@@ -209,12 +211,24 @@ class TerminalOperator : public conduct::Operator {
   }
 
   void motors(const safety::MotorsOff& motors) override {
-    if (motors.state == safety::MotorsOff::State::missing) say("{}", alarm(motors));
+    using State = safety::MotorsOff::State;
+    if (motors.state == State::missing) say("{}", alarm(motors));
+    if (motors.state == State::waiting) say("mbk: the robot's driver returned after {:.2f} s\n", motors.after);
     if (page_ != nullptr) page_->motors(motors);
   }
 
   void idle(const session::IdleState& seen) override {
     if (page_ != nullptr) page_->idle(seen);
+  }
+
+  void given_up(const session::TrialOutcome& outcome) override {
+    motors(outcome.motors);
+    if (page_ != nullptr) page_->recorded(outcome);
+    const auto written = Output().write(outcome_text(outcome, pace_));
+    if (!written) report_error(written.error());
+    if (outcome.unrecorded) report_error(*outcome.unrecorded);
+    say("mbk: the robot's driver still does not return. Press Ctrl-C, or send SIGTERM, to end mbk with exit code {}.\n",
+        kMotorsNotOff);
   }
 
   void recorded(const session::TrialOutcome& outcome) override {
@@ -229,12 +243,12 @@ class TerminalOperator : public conduct::Operator {
       text_ += *measured ? report::measurement_text(**measured)
                          : fmt::format("not measured: {}\n", measured->error().line());
     }
-    if (performed.attempt.plan.schedule.reaches() != nullptr) {
+    if (performed.attempt.plan.schedule.reaches() != nullptr && !performed.outcome.unrecorded) {
       text_ +=
           fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
     }
     const auto written = Output().write(text_);
-    if (!notes_.empty()) {
+    if (!notes_.empty() && !performed.outcome.unrecorded) {
       if (auto ok = session::annotate(performed.outcome.recording, notes_); !ok) return ok;
     }
     if (page_ != nullptr) {
@@ -297,12 +311,12 @@ int run(const RunArguments& arguments) {
   for (const std::string& warning : protocol::personal_warnings(*trials)) {
     say("mbk: {}: warning: {}\n", arguments.experiment, warning);
   }
-  if (arguments.dry_run) return dry_run(*trials, arguments.experiment);
   session::Pace pace;
   pace.virtual_clock = arguments.as_fast_as_possible || arguments.speed.has_value();
   pace.speed = arguments.speed.value_or(0.0);
   const auto experiment = conduct::plan_experiment(*trials, arguments.out, arguments.experiment);
   if (!experiment) return report_error(experiment.error());
+  if (arguments.dry_run) return dry_run(*experiment, arguments.experiment);
   Session session(pace);
   int code = kFine, ended_by = 0;
   {

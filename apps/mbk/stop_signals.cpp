@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "apps/mbk/last_words.h"
+
 namespace mbk::app {
 namespace {
 
@@ -15,6 +17,7 @@ std::atomic<session::LoopFlags*> told{nullptr};
 std::atomic<bool> in_trial{false};
 std::atomic<int> ended{0};              // by this signal
 std::atomic<bool> came_outside{false};  // of a trial
+std::atomic<bool> stopped_silent{false};  // in a trial whose loop does not come back
 static_assert(std::atomic<session::LoopFlags*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 void act(int signal, void (*handler)(int), struct sigaction* before) {
@@ -34,6 +37,11 @@ extern "C" void on_stop_signal(int signal) {
     flags->end_session = true;
   }
   if (in_trial) {
+    // The loop does not come back, and a signal has asked for its end before: nothing is left that could end in order.
+    if (flags->silent && stopped_silent.exchange(true)) {
+      LastWords::say();
+      std::_Exit(kMotorsNotOff);
+    }
     flags->operator_stop = true;
   } else if (came_outside.exchange(true) && signal != SIGHUP) {
     act(signal, SIG_DFL, nullptr);  // asked twice; a terminal that is closed asks twice by itself
@@ -48,6 +56,7 @@ StopSignals::StopSignals(session::LoopFlags& flags) {
   told = &flags;
   ended = 0;
   came_outside = false;
+  stopped_silent = false;
   std::size_t i = 0;
   for (const int signal : kEndingSignals) {
     act(signal, on_stop_signal, &before_[i]);

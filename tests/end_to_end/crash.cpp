@@ -1,5 +1,6 @@
 // Loaded under a program (LD_PRELOAD), it lets one of its threads crash: in the MBK_CRASH_AFTERth call of the function
-// MBK_CRASH_IN, by MBK_CRASH: pointer, stack, abort or terminate.
+// MBK_CRASH_IN, by MBK_CRASH: pointer, stack, abort or terminate. Where MBK_SLEEPLESS is set,
+// a sleep up to a time returns at once.
 #include <dlfcn.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -7,6 +8,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 
 namespace {
@@ -56,4 +58,10 @@ extern "C" int fdatasync(int descriptor) {
   static const auto function = real<decltype(&fdatasync)>("fdatasync");
   count("fdatasync");
   return function(descriptor);
+}
+
+extern "C" int clock_nanosleep(clockid_t clock, int flags, const timespec* until, timespec* left) {
+  static const auto function = real<decltype(&clock_nanosleep)>("clock_nanosleep");
+  static const bool sleepless = std::getenv("MBK_SLEEPLESS") != nullptr;
+  return sleepless && flags == TIMER_ABSTIME ? 0 : function(clock, flags, until, left);
 }

@@ -5,6 +5,9 @@ import os
 import pathlib
 import pty
 import select
+import shutil
+import signal
+import subprocess
 import time
 
 from command import BAD_DATA, FINE, WRONG_USAGE, Case, main, program, run
@@ -109,6 +112,76 @@ class Running(Case):
         ran = run("run", self.experiment(), "--fast", "--out", self.target())
         self.assertEqual(ran.code, WRONG_USAGE, ran)
         self.assertEqual(self.target().read_bytes(), before)
+
+    def test_the_name_of_the_recording_is_judged_before_anything_moves(self):
+        experiment = self.experiment()
+        (self.folder / "nowhere.h5").symlink_to(self.folder / "gone" / "there.h5")
+        (self.folder / "round.h5").symlink_to("round.h5")
+        for name, says in (("p07", "does not say a format"), ("p07.xlsx", "not a format"), (247 * "a" + ".h5", "too long"),
+                           ("nowhere.h5", "there already"), ("round.h5", "symbolic links"), ("gone/p07.h5", "No such")):
+            for more in ((), ("--dry-run",)):
+                ran = run("run", experiment, "--fast", "--quiet", "--out", self.target(name), *more)
+                self.assertIn(ran.code, (WRONG_USAGE, BAD_DATA), ran)
+                self.assertIn(says, ran.err)
+                self.assertEqual(ran.out, "")
+        self.assertEqual(sorted(self.names()), ["nowhere.h5", "round.h5", "short.toml"])
+
+    def in_mid_trial(self, act, *options, duration=20, signals=()):
+        """Begins a trial, acts once it perturbs; its outcome."""
+        with subprocess.Popen([program("MBK"), "run", self.experiment(duration), "--no-measure", "--out", self.target(),
+                               *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            for line in process.stderr:
+                if "perturb" in line:
+                    break
+            act(process)
+            for signum in signals:
+                process.send_signal(signum)
+            out, err = process.communicate(timeout=120)
+        return process.returncode, out, err
+
+    def test_a_stop_is_told_though_the_recording_cannot_be_written(self):
+        def take_the_name(process):
+            self.target().write_text("mine")
+        code, out, err = self.in_mid_trial(take_the_name, signals=[signal.SIGINT])
+        self.assertEqual(code, SAFETY_STOP, err)
+        self.assertIn("safety stop: the operator stopped it", out)
+        self.assertIn("motors: confirmed off", out)
+        self.assertIn("trial.h5.journal", out)
+        self.assertIn("there already", err)
+        self.assertEqual(self.target().read_text(), "mine")
+        self.fine("recover", self.target("trial.h5.journal"), "--out", self.target("other.h5"))
+        self.assertIn("safety stop", self.metadata(self.target("other.h5"))["ended"])
+
+    def test_a_folder_that_is_removed_loses_nothing(self):
+        self.name = "inner/trial.h5"
+        self.target().parent.mkdir()
+        code, out, err = self.in_mid_trial(lambda process: shutil.rmtree(self.target().parent))
+        self.assertEqual(code, SAFETY_STOP, err)
+        saved = pathlib.Path(out.split(": ")[0])
+        self.assertTrue(saved.is_file(), out)
+        self.assertGreater(self.mbk("info", saved, "--json").json["samples"], 500)
+
+    def test_a_journal_that_is_being_recorded_is_left_alone(self):
+        def recover(process):
+            ran = self.refused(WRONG_USAGE, "recover", self.target("trial.h5.journal"), says="is being recorded by process")
+            self.assertIn(str(process.pid), ran.err)
+            self.refused(WRONG_USAGE, "run", self.experiment(), "--fast", "--quiet", "--out", self.target(),
+                         says="is being recorded by process")
+        code, out, err = self.in_mid_trial(recover, duration=3)
+        self.assertEqual(code, FINE, err)
+        self.assertIn("completed", out)
+
+    def test_sleeps_that_return_at_once_do_not_hurry_the_clock(self):
+        shim = os.environ.get("MBK_CRASH_SHIM")
+        if not shim:
+            self.skipTest("MBK_CRASH_SHIM is not set")
+        began = time.monotonic()
+        ran = run("run", self.experiment(), "--no-measure", "--quiet", "--out", self.target(),
+                  environment={"LD_PRELOAD": shim, "MBK_SLEEPLESS": "1"})
+        self.assertEqual(ran.code, FINE, ran)
+        self.assertIn("the clock woke the loop too early", ran.out)
+        samples = self.mbk("info", self.target(), "--json").json["samples"]
+        self.assertGreaterEqual(time.monotonic() - began, 0.99e-3 * samples)  # no faster than time
 
     def test_whoever_has_withdrawn_is_neither_perturbed_nor_measured(self):
         ran = run("run", self.experiment(more="withdrawn = true\n"), "--fast", "--out", self.target())

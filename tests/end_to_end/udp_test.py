@@ -224,6 +224,47 @@ class Plugin(Case):
         self.assertIn("two wheels", text)
         self.assertIn("joint 1             11.4592", text)
 
+    def stalling(self, how):
+        """`mbk run` of a robot whose driver goes wrong, begun."""
+        text = (EXAMPLES / "device_plugin" / "experiment.toml").read_text()
+        text = text.replace("build/my_robot.so", program("MBK_STALLING_ROBOT")).replace("0.2 0.9", how)
+        process = subprocess.Popen([program("MBK"), "run", self.file("stalls.toml", text), "--no-measure", "--out",
+                                    self.folder / "stalls.h5"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        return process
+
+    def until(self, stream, words):
+        for line in stream:
+            if words in line:
+                return
+        raise AssertionError(f"no '{words}'")
+
+    def test_a_driver_that_does_not_return_is_seen_and_can_be_left(self):
+        process = self.stalling("forever")
+        self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
+        process.send_signal(signal.SIGTERM)
+        self.until(process.stderr, "still does not return")
+        info = self.fine("info", self.folder / "stalls.h5").out
+        self.assertIn("the robot's driver did not return for", info)
+        self.assertIn("NOT CONFIRMED OFF", info)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, MOTORS_NOT_OFF)
+        self.assertIn("safety stop: the robot's driver did not return", out)
+
+    def test_a_driver_that_returns_late_is_told_of(self):
+        process = self.stalling("briefly")
+        self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
+        self.until(process.stderr, "the robot's driver returned after")
+
+    def test_a_driver_that_ends_the_program_leaves_no_success(self):
+        process = self.stalling("exit")
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, MOTORS_NOT_OFF, err)
+        self.assertIn("MOTORS NOT CONFIRMED OFF: the robot's driver ended the program", err)
+        self.fine("recover", self.folder / "stalls.h5.journal")
+
     def test_a_library_that_is_not_there(self):
         path = self.file("gone.toml", self.experiment().read_text().replace(program("MBK_MY_ROBOT"), "gone.so"))
         self.refused(BAD_DATA, "run", path, "--fast", "--quiet", says=["cannot be loaded", "gone.so"])

@@ -28,7 +28,7 @@ WallClock::WallClock(double period) noexcept : period_(nanoseconds(period)) {}
 void WallClock::start() noexcept {
   origin_ = monotonic_ns();
   next_ = origin_ + period_;
-  missed_ = 0;
+  missed_ = early_ = 0;
 }
 
 double WallClock::wait() noexcept {
@@ -39,9 +39,14 @@ double WallClock::wait() noexcept {
     next_ += over * period_;
   }
   const timespec until{next_ / kSecond, next_ % kSecond};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  std::int64_t woken = 0;
+  while (true) {  // a sleep that returns at once must not make time run faster
+    const int interrupted = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    woken = monotonic_ns();
+    if (woken >= next_) break;
+    if (interrupted != EINTR) ++early_;
   }
-  const std::int64_t late = monotonic_ns() - due;  // also of the ticks that went by
+  const std::int64_t late = woken - due;  // also of the ticks that went by
   next_ += period_;
   return static_cast<double>(late) / static_cast<double>(kSecond);
 }

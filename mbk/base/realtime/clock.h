@@ -27,6 +27,9 @@ class Clock {
   /// Ticks that went by without a wake-up.
   [[nodiscard]] virtual std::uint64_t missed() const noexcept = 0;
 
+  /// Wake-ups before their time: the wait went on.
+  [[nodiscard]] virtual std::uint64_t early() const noexcept { return 0; }
+
  protected:
   Clock() = default;
   Clock(const Clock&) = default;
@@ -45,10 +48,11 @@ class WallClock : public Clock {
   [[nodiscard]] double period() const noexcept override { return 1e-9 * static_cast<double>(period_); }
   [[nodiscard]] double now() const noexcept override;
   [[nodiscard]] std::uint64_t missed() const noexcept override { return missed_; }
+  [[nodiscard]] std::uint64_t early() const noexcept override { return early_; }
 
  private:
   std::int64_t period_, origin_ = 0, next_ = 0;  // [ns]
-  std::uint64_t missed_ = 0;
+  std::uint64_t missed_ = 0, early_ = 0;
 };
 
 /// Time that a tick moves on by itself: the same loop as fast as the machine can. `speed` > 0 holds it to so many

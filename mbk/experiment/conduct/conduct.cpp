@@ -58,15 +58,18 @@ class Run {
     const Attempt attempt{index, plan, next_free(experiment_.target(index)), **robot};
     auto watcher = operator_.begin(attempt);
     if (asked_to_end()) return Next::end;
-    auto outcome = session_.perform(**robot, plan, attempt.target, [&](std::span<const journal::Tick> ticks) {
-      if (watcher) watcher->watch(ticks);
-    });
+    auto outcome = session_.perform(
+        **robot, plan, attempt.target,
+        [&](std::span<const journal::Tick> ticks) {
+          if (watcher) watcher->watch(ticks);
+        },
+        {[&](const safety::MotorsOff& motors) { operator_.motors(motors); },
+         [&](const session::TrialOutcome& given_up) { operator_.given_up(given_up); }});
     watcher.reset();
-    if (const safety::Gate* const gate = session_.gate(); gate != nullptr) conclusion_.motors = gate->motors();
-    const bool alarm = conclusion_.motors.state == safety::MotorsOff::State::missing;
-    if (outcome || alarm) operator_.motors(conclusion_.motors);
     if (!outcome) return fail(outcome.error());
     conclusion_.trip = outcome->trip;
+    conclusion_.motors = outcome->motors;
+    operator_.motors(conclusion_.motors);
     std::optional<session::IdleWatch> idle;
     if (!plan.trial.device.simulated()) {
       idle.emplace(**robot, [this](const session::IdleState& seen) {
@@ -77,10 +80,11 @@ class Run {
     operator_.recorded(*outcome);
     Performed performed{attempt, std::move(*outcome), std::nullopt};
     const bool reaches = plan.schedule.reaches() != nullptr;  // M, B and K about one place are not theirs
-    if (!performed.stopped() && measure_ && !reaches && !asked_to_end()) {
+    if (!performed.stopped() && measure_ && !reaches && !asked_to_end() && !performed.outcome.unrecorded) {
       performed.measured = measure_trial(performed.outcome.recording, measure_);
     }
     if (auto ok = operator_.judged(performed); !ok) return fail(ok.error());
+    if (performed.outcome.unrecorded) return fail(*performed.outcome.unrecorded);
     if (performed.outcome.incomplete) {
       return fail({ErrorKind::data, performed.outcome.ended,
                    "look at the disk before the next trial; the journal is kept", attempt.target.string()});
@@ -110,10 +114,7 @@ Result<Experiment> plan_experiment(const std::vector<protocol::Trial>& trials, c
     if (!plan) return tl::unexpected(plan.error().in(file));
     experiment.plans.push_back(std::move(*plan));
     const fs::path target = recording_of(trial, out, trials.size() > 1);
-    if (std::error_code ignored; fs::exists(target, ignored)) {
-      return tl::unexpected(
-          Error{ErrorKind::usage, "is there already", "choose another --out, or move it away", target.string()});
-    }
+    if (auto ok = session::check_target(experiment.plans.back(), target); !ok) return tl::unexpected(ok.error());
   }
   return experiment;
 }

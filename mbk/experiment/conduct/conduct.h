@@ -30,7 +30,7 @@ struct Experiment {
 };
 
 /// Plans every trial.   @param file  how messages call the experiment
-/// @fails  usage: as session::make_plan; the recording of a trial is there already.
+/// @fails  as session::make_plan and session::check_target.
 [[nodiscard]] Result<Experiment> plan_experiment(const std::vector<protocol::Trial>& trials,
                                                  const std::filesystem::path& out, std::string_view file);
 
@@ -45,7 +45,7 @@ struct Attempt {
   device::Device& robot;
 };
 
-/// A trial that is over and recorded.
+/// A trial that is over, and recorded unless its outcome says why not.
 struct Performed {
   const Attempt& attempt;
   session::TrialOutcome outcome;
@@ -84,13 +84,17 @@ class Operator {
   /// A trial begins.   @returns  what is to live as long as it runs; may be null
   [[nodiscard]] virtual std::unique_ptr<Watcher> begin(const Attempt& /*attempt*/) { return nullptr; }
 
-  /// The robot is at rest: first of all what it says of its motors.
+  /// The robot is at rest: first of all what it says of its motors. While a trial runs, from another thread: that no tick
+  /// comes from the robot's driver (`missing`), and that ticks come again (`waiting`).
   virtual void motors(const safety::MotorsOff& /*motors*/) {}
 
   /// What a robot that is not simulated says until the next trial, each time that it changes. From another thread.
   virtual void idle(const session::IdleState& /*seen*/) {}
 
-  /// The trial is recorded, and will be measured next.
+  /// The robot's driver does not return, and the trial was given up: nothing follows until it does. From another thread.
+  virtual void given_up(const session::TrialOutcome& /*outcome*/) {}
+
+  /// The trial is over. It is recorded, and will be measured next, unless the outcome says why not.
   virtual void recorded(const session::TrialOutcome& /*outcome*/) {}
 
   /// All is known of it.   @fails  as it likes; no trial follows then

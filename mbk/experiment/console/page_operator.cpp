@@ -92,7 +92,8 @@ Result<void> PageOperator::keep_notes() {
         one.recording, {{preprocess::kExcluded, one.excluded}, {preprocess::kExcludedWindows, one.excluded_windows}});
     if (!kept) return kept;
   }
-  if (recording_.empty()) return {};
+  std::error_code ignored;
+  if (!std::filesystem::exists(recording_, ignored)) return {};
   const auto notes = console_.take_notes();
   for (const std::string& note : notes) warn_of_names("the note", note);
   return notes.empty() ? Result<void>{} : session::annotate(recording_, notes);

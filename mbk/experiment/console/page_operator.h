@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -51,7 +52,7 @@ class PageOperator : public conduct::Operator {
   Console& console_;
   bool wait_;
   std::function<void(const std::string&)> warn_;
-  bool motors_missing_ = false;  // the last trial ended without the robot's word that its motors are off
+  std::atomic<bool> motors_missing_{false};  // the last trial ended without the robot's word that its motors are off
   std::filesystem::path recording_;
 };
 

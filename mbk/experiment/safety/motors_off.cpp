@@ -18,6 +18,8 @@ std::string reason(const MotorsOff& motors) {
       return "the robot says that its motors are on";
     case Why::drives:
       return fmt::format("its drives measure a torque of {:.2f} N·m", motors.torque);
+    case Why::no_tick:
+      return "the robot's driver does not return, so that no command reaches it";
     case Why::motion:
       return motors.torque > 0.0 ? fmt::format("the motion shows a torque of the motors of {:.2f} N·m", motors.torque)
                                  : "its states were too few to see whether it is still driven";

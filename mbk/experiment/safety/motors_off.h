@@ -17,7 +17,7 @@ struct MotorsOff {
     cannot_say,  ///< the robot reports nothing of its motors
   };
   /// The first thing that is missing for a confirmation.
-  enum class Why : std::uint8_t { nothing, no_state, not_answered, flag, drives, motion };
+  enum class Why : std::uint8_t { nothing, no_state, not_answered, flag, drives, motion, no_tick };
 
   State state = State::not_asked;
   double after = 0.0;      ///< from the first command with motors off to the confirmation, or to giving up [s]

@@ -63,6 +63,8 @@ constexpr std::array<Sentence, kReasons> kSentences = {{
      "look at its plug and supply"},
     {Reason::torque_disagrees, "the torque of a motor was beside its command by", "N·m",
      "drives, force sensor, or inertia and friction in [robot]: one of them is wrong"},
+    {Reason::loop_stalled, "the robot's driver did not return for", "s",
+     "its read and write must return within a tick; with lock_step lower answer_within_s"},
 }};
 
 const Sentence& parts(Reason reason) {

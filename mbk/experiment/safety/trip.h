@@ -44,9 +44,10 @@ enum class Reason : std::uint8_t {
   motors_on,         ///< its motors were not confirmed to be off after the end of the trial
   sensor_missing,    ///< a sensor that was there is gone
   torque_disagrees,  ///< drives or motion show another torque than was commanded
+  loop_stalled,      ///< the robot's driver did not return
 };
 
-inline constexpr int kReasons = static_cast<int>(Reason::torque_disagrees) + 1;
+inline constexpr int kReasons = static_cast<int>(Reason::loop_stalled) + 1;
 
 /// For files and machines.
 [[nodiscard]] constexpr auto word_table(Reason) {
@@ -86,6 +87,7 @@ inline constexpr int kReasons = static_cast<int>(Reason::torque_disagrees) + 1;
       {motors_on, "motors-on"},
       {sensor_missing, "sensor-missing"},
       {torque_disagrees, "torque-disagrees"},
+      {loop_stalled, "loop-stalled"},
   });
 }
 

@@ -51,10 +51,12 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
   double compute = 0.0, first_time = 0.0, left = 0.0, interval = 0.0;
   bool link = true;
   clock.start();
-  for (std::uint64_t number = 0; !gate.settled(); ++number) {
+  bool awaited = flags.beat();
+  for (std::uint64_t number = 0; awaited && !gate.settled(); ++number) {
     const double late = clock.wait();
     const std::int64_t begin = monotonic_ns();
     const bool reads = robot.read(state);
+    if (awaited = flags.beat(); !awaited) break;
     const double now = clock.now();  // when the state was here
     link = link && reads;
     if (flags.end_trial.load(std::memory_order_relaxed)) sequence.end_early();
@@ -89,6 +91,7 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     seen.perturbing = step.phase == control::Phase::perturbing;
     const safety::Gate::Decision decision = gate.step(seen, step.torque);
     link = robot.write({number, decision.torque, decision.enabled}) && link;
+    if (awaited = flags.beat(); !awaited) break;
     last_sequence = state.sequence;
     const double leaves = clock.now();
     if (number > 0) {
@@ -123,7 +126,10 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     times.lateness.add(static_cast<std::int64_t>(1e9 * late));
     ++times.ticks;
   }
-  times.missed += clock.missed();
+  if (awaited) {
+    times.missed += clock.missed();
+    times.early += clock.early();
+  }
   robot.stop();
 }
 

@@ -19,6 +19,18 @@ struct LoopFlags {
   std::atomic<bool> end_trial{false};      ///< end the perturbation early, and go back
   std::atomic<bool> end_session{false};    ///< the program is asked to end: no question is asked, no trial begun
   std::atomic<bool> recording{true};       ///< what is recorded reaches its file
+  std::atomic<bool> silent{false};         ///< the loop has not ticked for a while (LoopWatch)
+
+  static constexpr std::uint64_t kGivenUp = ~std::uint64_t{0};
+  std::atomic<std::uint64_t> beats{0};  ///< how often the loop came back from the robot; kGivenUp: nobody waits for it
+
+  /// By the loop, wherever it comes back from the robot: what it did until then is seen by whoever reads `beats`.
+  /// @returns  false where it was given up: it touches nothing any more
+  [[nodiscard]] bool beat() noexcept {
+    std::uint64_t last = beats.load(std::memory_order_relaxed);
+    return last != kGivenUp && beats.compare_exchange_strong(last, last + 1, std::memory_order_acq_rel);
+  }
+  [[nodiscard]] bool given_up() const noexcept { return beats.load(std::memory_order_acquire) == kGivenUp; }
 };
 
 /// What the loop says of its own time.
@@ -28,12 +40,13 @@ struct LoopTimes {
   realtime::CycleRecord interval;  ///< from one command that left to the next
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;  ///< ticks that went by without a wake-up
+  std::uint64_t early = 0;   ///< wake-ups before their time, which the loop waited on from
 };
 
 /// Runs a trial from the first tick to the last: wait, read the robot, decide, pass the gate, write the robot, hand the
 /// tick over. Where the sequence is done, or a trip's ramp is over, it goes on with motors off until the robot has
 /// confirmed that, or has not within Limits::motors_off (Gate::motors). Nothing in it allocates, locks, prints or
-/// touches a file. A robot that waits for its commands (Facts::keeps_time) is made to wait for a recorder that lags,
+/// touches a file. Where LoopFlags::beat says that it was given up, it stops the robot and ends. A robot that waits for its commands (Facts::keeps_time) is made to wait for a recorder that lags,
 /// up to two seconds; any other is not, and a lagging recorder trips the gate.
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
               realtime::BoundedRing<journal::Tick>& ticks, LoopFlags& flags, LoopTimes& times) noexcept;

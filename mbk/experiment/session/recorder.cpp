@@ -109,7 +109,7 @@ void Recorder::look_after_file() {
       misplaced_ = saved ? std::nullopt : std::optional(saved.error());
       if (saved) {
         remark_ = fmt::format("{} was removed or replaced while it was written; what it held went on in {}", lost_name,
-                              writer_.file().filename().string());
+                              writer_.file().string());
       }
     }
   }

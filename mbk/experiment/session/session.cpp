@@ -33,17 +33,18 @@ std::string now_text() {
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
-journal::Ending ending_of(const safety::Gate& gate, const LoopFlags& flags, const LoopTimes& times) {
+journal::Ending ending_of(const TrialOutcome& outcome, const LoopFlags& flags) {
   journal::Ending ending;
   using How = journal::Ending::How;
-  ending.how = gate.tripped() ? How::safety_stop : flags.end_trial ? How::ended_early : How::completed;
-  if (gate.tripped()) {
-    ending.detail = safety::sentence(gate.trip());
-    ending.trip = word_of(gate.trip().reason);
+  const bool tripped = outcome.trip.reason != safety::Reason::none;
+  ending.how = tripped ? How::safety_stop : flags.end_trial ? How::ended_early : How::completed;
+  if (tripped) {
+    ending.detail = safety::sentence(outcome.trip);
+    ending.trip = word_of(outcome.trip.reason);
   }
-  ending.motors = safety::sentence(gate.motors());
-  ending.overruns = times.missed;
-  ending.ticks = times.ticks;
+  ending.motors = safety::sentence(outcome.motors);
+  ending.overruns = outcome.times.missed;
+  ending.ticks = outcome.times.ticks;
   return ending;
 }
 
@@ -97,6 +98,37 @@ Result<void> change_metadata(const fs::path& file, const Change& change) {
   return recording::write(*recording, file, *format, true, recording::readers_of(file));
 }
 
+std::uint64_t expected_ticks(const Plan& plan) {
+  return static_cast<std::uint64_t>(plan.sequence.duration(0.5) / plan.sample_time());
+}
+
+/// Closes the journal and makes the recording of it. What fails is in the outcome beside how the trial ended.
+void make_recording(Recorder& recorder, TrialOutcome& outcome) {
+  const auto closed = recorder.finish(outcome.ending);
+  outcome.journal = recorder.journal();
+  outcome.ended = outcome.ending.word();
+  const auto unrecorded = [&](Error error, std::string_view remedy) {
+    error.remedy = fmt::format("{}'mbk recover {}'", remedy, outcome.journal.string());
+    outcome.unrecorded = std::move(error);
+    outcome.incomplete = true;
+  };
+  if (!closed) return unrecorded(closed.error(), "free space, then ");
+  outcome.ending = *closed;
+  std::error_code ignored;
+  if (const fs::path folder = outcome.recording.parent_path(); !folder.empty() && !fs::exists(folder, ignored)) {
+    outcome.recording = outcome.journal.parent_path() / outcome.journal.stem();  // where the journal was saved
+  }
+  const auto recovered = recover(outcome.journal, outcome.recording, {.ending = outcome.ending});
+  if (!recovered) {
+    const bool taken = fs::exists(outcome.recording, ignored);
+    unrecorded(recovered.error(), taken ? "move that file away, then " : "look at the folder and the disk, then ");
+    return;
+  }
+  outcome.damage = recovered->damage;
+  outcome.incomplete = recovered->incomplete || recovered->ticks != outcome.times.ticks;
+  outcome.ended = recovered->recording.metadata.at("ended");
+}
+
 /// Until the loop has a thread: whatever is in the way leaves the robot stopped, and no journal without ticks.
 struct NotBegun {
   fs::path journal;
@@ -137,6 +169,25 @@ Header header_of(const Plan& plan, const device::Facts& facts) {
   return header;
 }
 
+Result<void> check_target(const Plan& plan, const fs::path& target) {
+  if (const auto format = recording::format_of(target); !format) return tl::unexpected(format.error());
+  if (auto ok = recording::can_write_file(target, false); !ok) {
+    Error error = ok.error();
+    if (error.kind == ErrorKind::usage) error.remedy = "choose another name, or move it away";
+    return tl::unexpected(error);
+  }
+  const fs::path journal = journal_of(target);
+  std::error_code ignored;
+  if (fs::exists(journal, ignored)) return journal::Writer::already_there(journal);
+  if (auto ok = recording::can_write_file(journal, false); !ok) return ok;
+  constexpr std::uintmax_t kTickInRecording = 18 * sizeof(double), kMore = 16 << 20;  // channels and time; spare
+  const std::uintmax_t needed = expected_ticks(plan) * (sizeof(Tick) * 11 / 10 + kTickInRecording) + kMore;
+  const auto space = fs::space(target.has_parent_path() ? target.parent_path() : fs::path("."), ignored);
+  if (ignored || space.available >= needed) return {};
+  return bad_data(fmt::format("the disk has {} MB free; the trial needs {} MB", space.available >> 20U, needed >> 20U),
+                  "free space, or record to another disk", target.string());
+}
+
 fs::path journal_of(const fs::path& recording) {
   return recording.string() + ".journal";
 }
@@ -157,7 +208,7 @@ Result<void> Session::reset() {
 }
 
 Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, const fs::path& target,
-                                      const Watch& watch) {
+                                      const Watch& watch, const Stalled& stalled) {
   const protocol::Trial& trial = plan.trial;
   if (trial.person.withdrawn) {
     return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
@@ -165,10 +216,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   if (gate_ && gate_->tripped()) {
     return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "see to the reason, then reset");
   }
-  std::error_code ignored;
-  if (fs::exists(target, ignored)) {
-    return fail(ErrorKind::usage, "is there already", "choose another name, or move it away", target.string());
-  }
+  if (auto ok = check_target(plan, target); !ok) return tl::unexpected(ok.error());
   if (pace_.virtual_clock && robot.facts().keeps_time && !trial.device.simulated()) {
     return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
                      "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
@@ -180,8 +228,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   TrialOutcome outcome;
   outcome.recording = target;
   outcome.journal = journal_of(target);
-  const auto expected = static_cast<std::uint64_t>(plan.sequence.duration(0.5) / sample_time);
-  auto writer = journal::Writer::create(outcome.journal, header_of(plan, robot.facts()), expected);
+  auto writer = journal::Writer::create(outcome.journal, header_of(plan, robot.facts()), expected_ticks(plan));
   if (!writer) return tl::unexpected(writer.error());
   NotBegun guard{outcome.journal};
   const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
@@ -193,6 +240,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   control::Sequencer sequence = plan.sequence;
   flags_->end_trial = false;
   flags_->recording = true;
+  flags_->silent = false;
+  flags_->beats = 0;
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *flags_, watch, in_real_time);
   std::thread loop([&] {
@@ -209,26 +258,50 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
     }
   });
   guard.begun = true;
-  loop.join();
-
-  outcome.trip = gate_->trip();
-  outcome.motors = gate_->motors();
-  outcome.ending = ending_of(*gate_, *flags_, outcome.times);
-  const auto closed = recorder.finish(outcome.ending);
-  outcome.journal = recorder.journal();
-  if (!closed) {
-    Error error = closed.error();
-    if (gate_->tripped()) error.message += "; safety stop: " + outcome.ending.detail;
-    error.remedy = fmt::format("free space, then 'mbk recover {}'", outcome.journal.string());
-    return tl::unexpected(error);
+  {
+    std::optional<LoopWatch> loop_watch;
+    if (in_real_time && !trial.device.simulated()) {
+      loop_watch.emplace(*flags_, robot.facts().keeps_time, watched_loop(robot, recorder, stalled, sample_time, outcome));
+    }
+    loop.join();
   }
-  outcome.ending = *closed;
-  const auto recovered = recover(outcome.journal, target, {.ending = outcome.ending});
-  if (!recovered) return tl::unexpected(recovered.error());
-  outcome.damage = recovered->damage;
-  outcome.incomplete = recovered->incomplete || recovered->ticks != outcome.times.ticks;
-  outcome.ended = recovered->recording.metadata.at("ended");
+  if (!flags_->given_up()) conclude(recorder, outcome);
   return outcome;
+}
+
+void Session::conclude(Recorder& recorder, TrialOutcome& outcome) const {
+  if (outcome.trip.reason == safety::Reason::none) outcome.trip = gate_->trip();
+  if (outcome.motors.state == safety::MotorsOff::State::not_asked) outcome.motors = gate_->motors();
+  outcome.ending = ending_of(outcome, *flags_);
+  make_recording(recorder, outcome);
+}
+
+LoopWatch::Told Session::watched_loop(device::Device& robot, Recorder& recorder, const Stalled& stalled,
+                                      double sample_time, TrialOutcome& outcome) const {
+  using State = safety::MotorsOff::State;
+  const auto motors_of = [](double silent, State state) {
+    safety::MotorsOff motors;
+    motors.state = state;
+    motors.after = silent;
+    motors.why = safety::MotorsOff::Why::no_tick;
+    return motors;
+  };
+  const auto tell = [&stalled](const safety::MotorsOff& motors) {
+    if (stalled.motors) stalled.motors(motors);
+  };
+  return {[=](double silent) { tell(motors_of(silent, State::missing)); },
+          [=](double silent) { tell(motors_of(silent, State::waiting)); },
+          [=, this, &robot, &recorder, &stalled, &outcome](double silent) {
+            robot.emergency_off();
+            outcome.trip = gate_->trip();
+            if (!gate_->tripped()) {
+              const double now = static_cast<double>(outcome.times.ticks) * sample_time;
+              outcome.trip = {safety::Reason::loop_stalled, now, outcome.times.ticks, silent, LoopWatch::kLongest};
+            }
+            outcome.motors = gate_->settled() ? gate_->motors() : motors_of(silent, State::missing);
+            conclude(recorder, outcome);
+            if (stalled.given_up) stalled.given_up(outcome);
+          }};
 }
 
 Result<void> annotate(const fs::path& file, const std::vector<std::string>& notes) {
@@ -248,6 +321,10 @@ Result<void> set_metadata(const fs::path& file, const std::map<std::string, std:
 }
 
 Result<Recovered> recover(const fs::path& file, const fs::path& target, const RecoverOptions& options) {
+  if (const int process = journal::recorded_by(file); process != 0) {
+    return fail(ErrorKind::usage, fmt::format("is being recorded by process {}", process),
+                "wait until the trial is over; mbk makes the recording by itself then", file.string());
+  }
   Recovered recovered;
   auto readers = options.readers;
   {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "mbk/experiment/device/device.h"
 #include "mbk/experiment/session/idle_watch.h"
 #include "mbk/experiment/session/loop.h"
+#include "mbk/experiment/session/loop_watch.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/recorder.h"
 
@@ -26,7 +28,8 @@ struct Pace {
 
 /// A trial that is over.
 struct TrialOutcome {
-  std::filesystem::path recording;  ///< absent file where it could not be made: the journal then still is
+  std::filesystem::path recording;  ///< where the file is; another than the target where the target's folder was removed
+  std::optional<Error> unrecorded;  ///< why the recording could not be made: the journal then still is
   std::filesystem::path journal;    ///< removed once the recording is there and holds every tick
   bool incomplete = false;          ///< not every tick that the loop made came back from the recording
   journal::Damage damage;           ///< of the journal; where there is any, it is kept
@@ -38,19 +41,30 @@ struct TrialOutcome {
   realtime::ThreadSetup setup;
 };
 
+/// Told of a loop that does not come back from the robot, by another thread.
+struct Stalled {
+  /// What is known of the motors meanwhile: `missing` while no tick comes, `waiting` when ticks come again.
+  std::function<void(const safety::MotorsOff&)> motors;
+  /// The trial is given up: its journal is closed and the recording made. `perform` returns only where the robot's
+  /// driver does.
+  std::function<void(const TrialOutcome&)> given_up;
+};
+
 /// Runs trials one after the other. A trip outlives its trial: none begins before `reset`.
 class Session {
  public:
   explicit Session(const Pace& pace = {}) : pace_(pace) {}
 
-  /// Everything that can be known to fail is asked before the robot moves.
+  /// Everything that can be known to fail is asked before the robot moves, and an error means that it did not move:
+  /// from then on there is an outcome, whatever becomes of the recording.
   /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
-  /// @param watch  see Recorder; may be empty
+  /// @param watch  see Recorder; may be empty    @param stalled  may be empty
   /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot's stop
   ///         button is pressed; the robot keeps its own time and the clock is virtual. data: the robot does
   ///         not answer; the folder, space or disk.
   [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Plan& plan,
-                                             const std::filesystem::path& target, const Watch& watch = {});
+                                             const std::filesystem::path& target, const Watch& watch = {},
+                                             const Stalled& stalled = {});
 
   /// For other threads, and for signal handlers: a stop, or an early end, of the trial that runs.
   [[nodiscard]] LoopFlags& flags() { return *flags_; }
@@ -65,11 +79,20 @@ class Session {
   void see_idle(const IdleState& state);
 
  private:
+  void conclude(Recorder& recorder, TrialOutcome& outcome) const;
+  [[nodiscard]] LoopWatch::Told watched_loop(device::Device& robot, Recorder& recorder, const Stalled& stalled,
+                                             double sample_time, TrialOutcome& outcome) const;
+
   Pace pace_;
   std::unique_ptr<std::mutex> gate_mutex_ = std::make_unique<std::mutex>();  // between trials: reset and see_idle
   std::optional<safety::Gate> gate_;
   std::unique_ptr<LoopFlags> flags_ = std::make_unique<LoopFlags>();
 };
+
+/// Whether the recording of a trial can be written: its name says a format, it can be made beside its journal, and both
+/// find room on the disk.
+/// @fails  usage: no format; the file or its journal is there. data: the folder, the name or the space.
+[[nodiscard]] Result<void> check_target(const Plan& plan, const std::filesystem::path& target);
 
 /// What a trial's journal says before the first tick.
 [[nodiscard]] journal::Header header_of(const Plan& plan, const device::Facts& facts);
@@ -105,7 +128,7 @@ struct Recovered {
 
 /// Makes the recording that a journal holds, reads it back, and removes the journal where it was exactly as it was
 /// written and the recording holds it to the bit. A target that is there and holds the same is left as it is.
-/// @fails  usage: another target is there and `overwrite` is false. data: as journal::read; the recording cannot be
+/// @fails  usage: the journal is being recorded; another target is there and `overwrite` is false. data: as journal::read; the recording cannot be
 ///         written, or does not read back as it was written, and is then removed.
 [[nodiscard]] Result<Recovered> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
                                         const RecoverOptions& options = {});

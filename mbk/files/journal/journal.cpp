@@ -111,13 +111,22 @@ bool copy(int from, int to, std::int64_t length) {
   return true;
 }
 
+/// The file's folder, those above it, and that of temporary files.
+std::vector<fs::path> refuges(const fs::path& file) {
+  std::error_code ignored;
+  std::vector<fs::path> folders = {file.parent_path()};
+  fs::path above = fs::absolute(file, ignored).parent_path();
+  while (!ignored && above.has_relative_path()) folders.push_back(above = above.parent_path());
+  if (fs::path temporary = fs::temp_directory_path(ignored); !ignored) folders.push_back(std::move(temporary));
+  return folders;
+}
+
 /// trial.h5.journal → trial_saved.h5.journal, which `mbk recover` makes trial_saved.h5 of; then trial_saved_2 …
 fs::path saved_name(const fs::path& file, int k) {
   const bool journal = file.extension() == ".journal";
   const fs::path recording = journal ? file.stem() : file.filename();
-  return file.parent_path() / fmt::format("{}_saved{}{}{}", recording.stem().string(),
-                                          k > 1 ? fmt::format("_{}", k) : "", recording.extension().string(),
-                                          journal ? ".journal" : "");
+  return fmt::format("{}_saved{}{}{}", recording.stem().string(), k > 1 ? fmt::format("_{}", k) : "",
+                     recording.extension().string(), journal ? ".journal" : "");
 }
 
 }  // namespace
@@ -155,11 +164,11 @@ std::string_view Ending::word() const {
 Result<Writer> Writer::create(const fs::path& file, const Header& header, std::uint64_t expected) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0 && errno == EEXIST) {
-    return fail(ErrorKind::usage, "there is a journal already",
-                "'mbk recover' makes a recording of it; then move it away", file.string());
+    return tl::unexpected(already_there(file).error());
   }
   Writer writer(file, descriptor);
   if (descriptor < 0) return tl::unexpected(writer.failure("cannot be made"));
+  writer.lock();
   writer.trial_ = drawn_by_lot();
   writer.header_ = text_of(header);
   writer.readers_ = header.readers;
@@ -184,6 +193,32 @@ Result<Writer> Writer::create(const fs::path& file, const Header& header, std::u
     return tl::unexpected(begun.error());
   }
   return writer;
+}
+
+Result<void> Writer::already_there(const fs::path& file) {
+  if (const int process = recorded_by(file); process != 0) {
+    return fail(ErrorKind::usage, fmt::format("is being recorded by process {}", process), "choose another name",
+                file.string());
+  }
+  return fail(ErrorKind::usage, "there is a journal already",
+              "'mbk recover' makes a recording of it; then move it away", file.string());
+}
+
+/// Held by the process until it closes the file; file systems that know no locks have none.
+void Writer::lock() const {
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  fcntl(descriptor_, F_SETLK, &whole);
+}
+
+int recorded_by(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return 0;
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  const bool held = fcntl(descriptor, F_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
+  close(descriptor);
+  return held ? static_cast<int>(whole.l_pid) : 0;
 }
 
 Result<void> Writer::write_block(std::uint32_t kind, std::span<const std::byte> payload) {
@@ -249,10 +284,13 @@ Result<void> Writer::save_elsewhere() {
   constexpr int kMaxTries = 1000;
   fs::path name;
   int saved = -1;
-  for (int k = 1; k <= kMaxTries && saved < 0; ++k) {
-    name = saved_name(file_, k);
-    saved = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (saved < 0 && errno != EEXIST) break;
+  for (const fs::path& folder : refuges(file_)) {
+    for (int k = 1; k <= kMaxTries && saved < 0; ++k) {
+      name = folder / saved_name(file_, k);
+      saved = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+      if (saved < 0 && errno != EEXIST) break;
+    }
+    if (saved >= 0) break;
   }
   if (saved < 0) return tl::unexpected(failure("cannot be saved under another name"));
   const bool fine = fchmod(saved, permissions(readers_)) == 0 && copy(descriptor_, saved, end_) &&
@@ -264,6 +302,7 @@ Result<void> Writer::save_elsewhere() {
     return tl::unexpected(error);
   }
   file_ = name;
+  lock();
   return sync_folder(name);
 }
 

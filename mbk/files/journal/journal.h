@@ -78,6 +78,9 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
   ~Writer();
 
+  /// What is said of a journal that is there before a trial.   @fails  always: usage
+  [[nodiscard]] static Result<void> already_there(const std::filesystem::path& file);
+
   /// One block of at most `kLongest` ticks, whose numbers rise from one to the next. What is not written whole is
   /// written over by what comes next.   @fails  data: the disk does not take it.
   [[nodiscard]] Result<void> append(std::span<const Tick> ticks);
@@ -100,7 +103,8 @@ class Writer {
   };
   [[nodiscard]] Place place() const;
 
-  /// Copies what is in the open file, and goes on there: trial_saved.h5.journal beside the old name, or _saved_2 …
+  /// Copies what is in the open file, and goes on there: trial_saved.h5.journal beside the old name, or _saved_2 …;
+  /// where that folder is gone too, in the nearest one above it that can be written, or among temporary files.
   /// @fails  data: the disk does not take it; everything is then as before.
   [[nodiscard]] Result<void> save_elsewhere();
 
@@ -110,6 +114,7 @@ class Writer {
   Writer(std::filesystem::path file, int descriptor) : file_(std::move(file)), descriptor_(descriptor) {}
   [[nodiscard]] Result<void> write_block(std::uint32_t kind, std::span<const std::byte> payload);
   [[nodiscard]] Error failure(const char* what) const;
+  void lock() const;
 
   std::filesystem::path file_;
   int descriptor_ = -1;
@@ -166,6 +171,9 @@ struct Journal {
   /// Takes the ending from somebody who knows it, and what is missing before it for lost.
   void end_with(const Ending& known);
 };
+
+/// The process that is recording into a journal right now; 0: none that can be seen.
+[[nodiscard]] int recorded_by(const std::filesystem::path& file);
 
 /// Every whole block of a journal, wherever it stands. What is damaged is left out and said: nothing that comes back
 /// differs by a bit from what was written, as far as a CRC-32, the trial's number in each block (format 2) and the

@@ -59,29 +59,54 @@ struct Temporary {
   ~Temporary() { ::unlink(path.c_str()); }
 };
 
-}  // namespace
+Result<void> cannot_write(const fs::path& file, int code) {
+  if (code == EEXIST) {
+    return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
+  }
+  return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
+                  "check the folder, its permissions and the space on the disk", file.string());
+}
 
-Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text, std::optional<Readers> readers) {
-  const auto cannot = [&](int code) -> Result<void> {
-    if (code == EEXIST) {
-      return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
-    }
-    return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                    "check the folder, its permissions and the space on the disk", file.string());
-  };
+/// Nothing is under the name, or a file that may be replaced.
+Result<void> check_name(const fs::path& file, bool overwrite) {
   std::error_code code;
   const fs::file_type name = fs::symlink_status(file, code).type(), type = fs::status(file, code).type();
-  if (name == fs::file_type::none || type == fs::file_type::none) return cannot(code ? code.value() : EIO);
-  if (!overwrite && name != fs::file_type::not_found) return cannot(EEXIST);
+  if (name == fs::file_type::none || type == fs::file_type::none) {
+    return cannot_write(file, code ? code.value() : EIO);
+  }
+  if (!overwrite && name != fs::file_type::not_found) return cannot_write(file, EEXIST);
   if (type != fs::file_type::not_found && type != fs::file_type::regular) {
     return fail(ErrorKind::usage, "is no file that could be replaced", "choose another name", file.string());
   }
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const Temporary temporary{folder / fmt::format(".{}.{}.part", file.filename().string(), ::getpid())};
-  ::unlink(temporary.path.c_str());  // of a process of that number that went down
-  if (const int error = write_new(temporary.path, text, readers); error != 0) return cannot(error);
-  if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot(error);
-  if (const int error = flush_names(folder); error != 0) return cannot(error);
+  return {};
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// The name under which a file is written before it gets its own; nothing stands there.
+fs::path temporary_name(const fs::path& file) {
+  fs::path name = folder_of(file) / fmt::format(".{}.{}.part", file.filename().string(), ::getpid());
+  ::unlink(name.c_str());  // of a process of that number that went down
+  return name;
+}
+
+}  // namespace
+
+Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text, std::optional<Readers> readers) {
+  if (auto ok = check_name(file, overwrite); !ok) return ok;
+  const Temporary temporary{temporary_name(file)};
+  if (const int error = write_new(temporary.path, text, readers); error != 0) return cannot_write(file, error);
+  if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot_write(file, error);
+  if (const int error = flush_names(folder_of(file)); error != 0) return cannot_write(file, error);
+  return {};
+}
+
+Result<void> can_write_file(const fs::path& file, bool overwrite) {
+  if (auto ok = check_name(file, overwrite); !ok) return ok;
+  const Temporary temporary{temporary_name(file)};
+  if (const int error = write_new(temporary.path, {}, Readers::owner); error != 0) return cannot_write(file, error);
   return {};
 }
 

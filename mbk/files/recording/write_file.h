@@ -16,6 +16,10 @@ namespace mbk::recording {
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& file, bool overwrite, std::string_view text,
                                       std::optional<Readers> readers = std::nullopt);
 
+/// Asks of a name what write_file would: opens what would be renamed, and removes it again.
+/// @fails  as write_file, but for a disk that is full
+[[nodiscard]] Result<void> can_write_file(const std::filesystem::path& file, bool overwrite);
+
 /// Who may read a file that is there; its owner alone where nobody can say.
 [[nodiscard]] Readers readers_of(const std::filesystem::path& file);
 
