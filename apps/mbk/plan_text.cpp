@@ -34,6 +34,7 @@ std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehea
   if (limits.excursion > 0.0) {
     text += limit_line("way from the test location", 1e3 * rehearsal.excursion, 1e3 * limits.excursion, "mm");
   }
+  for (const std::string& one : safety::weakened(limits)) text += fmt::format("  ! {}\n", one);
   if (rehearsal.trip.reason != safety::Reason::none) {
     text += fmt::format("  the rehearsal ended in a safety stop: {}\n", safety::sentence(rehearsal.trip));
   }

@@ -138,6 +138,18 @@ int dry_run(const conduct::Experiment& experiment, const std::string& file) {
   return kFine;
 }
 
+/// What the gate does not watch as closely as it would by default, of a real robot: each once.
+std::vector<std::string> weak_limits(const conduct::Experiment& experiment) {
+  std::vector<std::string> all;
+  for (const session::Plan& plan : experiment.plans) {
+    if (plan.trial.device.simulated()) continue;
+    for (std::string& one : safety::weakened(plan.limits)) {
+      if (std::ranges::count(all, one) == 0) all.push_back(std::move(one));
+    }
+  }
+  return all;
+}
+
 /// At a terminal. What was typed before the question is no answer to it.
 bool ask(const char* question, const session::LoopFlags& flags) {
   tcflush(STDIN_FILENO, TCIFLUSH);
@@ -317,6 +329,7 @@ int run(const RunArguments& arguments) {
   const auto experiment = conduct::plan_experiment(*trials, arguments.out, arguments.experiment);
   if (!experiment) return report_error(experiment.error());
   if (arguments.dry_run) return dry_run(*experiment, arguments.experiment);
+  for (const std::string& warning : weak_limits(*experiment)) say("mbk: warning: {}\n", warning);
   Session session(pace);
   int code = kFine, ended_by = 0;
   {

@@ -48,6 +48,11 @@ bool PageOperator::may_begin(session::Session& session, const conduct::Experimen
 std::unique_ptr<conduct::Watcher> PageOperator::begin(const conduct::Attempt& attempt) {
   console_.begin(attempt.index, session::header_of(attempt.plan, attempt.robot.facts()), attempt.target,
                  attempt.plan.sequence.duration(0.0));
+  if (!attempt.plan.trial.device.simulated()) {
+    std::string weak;
+    for (const std::string& one : safety::weakened(attempt.plan.limits)) weak += (weak.empty() ? "" : "; ") + one;
+    if (!weak.empty()) console_.say("weak limits: " + weak);
+  }
   return std::make_unique<PageWatcher>(console_);
 }
 

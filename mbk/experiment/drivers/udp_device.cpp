@@ -70,7 +70,8 @@ Result<void> UdpDevice::start() {
   off.sequence = kLastSequence;
   last_words_ = encode(off);
   has_last_words_ = true;
-  for (const std::int64_t until = after(options_.answer_within); !heard_ && monotonic_ns() < until;) {
+  std::uint64_t asked = 0;
+  for (const std::int64_t until = after(options_.answer_within); !heard_ && monotonic_ns() < until; ++asked) {
     if (!send_last()) break;
     if (socket_->wait(kAskAgain)) take_all();
   }
@@ -80,6 +81,10 @@ Result<void> UdpDevice::start() {
     return bad_data(fmt::format("{}: the robot says that its motors are on, before any command", facts_.name),
                     "switch them off at the robot: its program must answer a greeting with its motors off");
   }
+  if (options_.lock_step && sends_unasked(asked)) {
+    return bad_data(fmt::format("{}: its states come unasked: it keeps its own time", facts_.name),
+                    "take lock_step out of [device]: it would switch off what watches the robot's time");
+  }
   const auto differs = [&](const char* what, const char* key, bool sent, bool expected) -> Result<void> {
     if (sent == expected) return {};
     return bad_data(fmt::format("{}: of {} the robot has {}, and the experiment expects {}", facts_.name, what,
@@ -88,6 +93,17 @@ Result<void> UdpDevice::start() {
   };
   if (auto ok = differs("force sensors", "has_force", newest_.has_force, facts_.has_force); !ok) return ok;
   return differs("accelerometers", "has_acceleration", newest_.has_acceleration, facts_.has_acceleration);
+}
+
+/// Whether more states come than were asked for, within a time in which a robot sends dozens.
+bool UdpDevice::sends_unasked(std::uint64_t asked) noexcept {
+  constexpr double kListen = 0.05;  // [s]
+  constexpr std::uint64_t kMore = 2;
+  const std::uint64_t before = counts_.believed;
+  for (const std::int64_t until = after(kListen); monotonic_ns() < until;) {
+    if (socket_->wait(kListen)) take_all();
+  }
+  return counts_.believed > before + asked + kMore;
 }
 
 Error UdpDevice::no_answer() const {

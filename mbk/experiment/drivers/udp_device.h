@@ -50,7 +50,7 @@ class UdpDevice : public device::Device {
   [[nodiscard]] const device::Facts& facts() const override { return facts_; }
 
   /// @fails  data: the address is not known; the port is taken; no answer, with what came instead; the robot's motors
-  ///         are on; it has other sensors than `fittings` says.
+  ///         are on; it keeps its own time in spite of lock_step; it has other sensors than `fittings` says.
   [[nodiscard]] Result<void> start() override;
   bool read(device::State& state) noexcept override;
   bool write(const device::Command& command) noexcept override;
@@ -71,6 +71,7 @@ class UdpDevice : public device::Device {
   UdpDevice(UdpOptions options, const Fittings& fittings);
   void take_all() noexcept;
   bool send_last() noexcept;
+  bool sends_unasked(std::uint64_t asked) noexcept;
   void await_answer() noexcept;
   [[nodiscard]] Error no_answer() const;
 

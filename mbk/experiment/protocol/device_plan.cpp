@@ -69,7 +69,7 @@ DevicePlan read_device(const Section& s, const std::filesystem::path& folder) {
     udp.port = s.integer("port", udp.port, 1, 65'535);
     udp.local_port = s.integer("local_port", udp.local_port, 0, 65'535);
     udp.watchdog = read_watchdog(udp.watchdog);
-    udp.answer_within = s.number("answer_within_s", udp.answer_within, above(0));
+    udp.answer_within = s.number("answer_within_s", udp.answer_within, between(0.001, 10));
     udp.lock_step = s.flag("lock_step", udp.lock_step);
     plan.kind = udp;
   } else {

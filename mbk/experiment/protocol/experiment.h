@@ -69,6 +69,7 @@ struct Trial : TrialPlan {
   LimitsFromPlan from_plan;
   DevicePlan device;
   Person person;
+  std::string file_sha256;                       ///< of the experiment file, in hexadecimal digits
   std::shared_ptr<const Simulation> simulation;  ///< null: nobody told what could be simulated
 };
 

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <span>
+
 #include "mbk/base/config/trials.h"
 #include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/protocol/trial_sections.h"
+#include "mbk/files/contents/sha256.h"
 #include "mbk/model/robot_file/planar_keys.h"
 
 namespace mbk::protocol {
@@ -32,31 +35,20 @@ safety::Limits read_limits(Section s) {
   s.rename("frozen_ms", "frozen_sensor_ms");
   s.rename("frozen_torque_Nm", "frozen_sensor_torque_Nm");
   safety::Limits l;
-  l.handle_force = s.number("handle_force_N", l.handle_force, above(0));
-  l.joint_torque = s.vector2("joint_torque_Nm", l.joint_torque, above(0));
-  l.torque_rate = s.number("torque_rate_Nm_per_s", l.torque_rate, above(0));
-  l.max_saturation_time = s.number("max_saturation_time_ms", l.max_saturation_time, above(0));
-  l.measured_force = s.number("measured_force_N", l.measured_force, above(0));
-  l.force_jump = s.number("force_jump_N", l.force_jump, above(0));
-  l.speed = s.number("speed_mm_per_s", l.speed, above(0));
-  l.acceleration = s.number("acceleration_m_per_s2", l.acceleration, above(0));
+  for (const safety::LimitKey& one : safety::limit_keys()) {
+    const config::Range range = one.may_be_off ? at_least(0) : above(0);
+    if (const auto* member = std::get_if<double safety::Limits::*>(&one.member)) {
+      l.*(*member) = s.number(one.key, l.*(*member), range);
+    } else {
+      Eigen::Vector2d& both = l.*std::get<Eigen::Vector2d safety::Limits::*>(one.member);
+      both = s.vector2(one.key, both, range);
+    }
+    if (one.of(l) > one.most) {
+      s.reject(one.key, fmt::format("is above {:g}: {}", one.most, one.why), "choose a limit that limits");
+    }
+  }
   l.workspace_low = s.vector2("workspace_low_mm", l.workspace_low);
   l.workspace_high = s.vector2("workspace_high_mm", l.workspace_high);
-  l.joint_margin = s.number("joint_margin_deg", l.joint_margin, at_least(0));
-  l.excursion = s.number("excursion_mm", l.excursion, at_least(0));
-  l.tracking = s.number("tracking_deg", l.tracking, above(0));
-  l.encoder_jump = s.number("encoder_jump_deg", l.encoder_jump, above(0));
-  l.frozen_sensor = s.number("frozen_sensor_ms", l.frozen_sensor, at_least(0));
-  l.frozen_sensor_torque = s.number("frozen_sensor_torque_Nm", l.frozen_sensor_torque, above(0));
-  l.accelerometer = s.number("accelerometer_m_per_s2", l.accelerometer, at_least(0));
-  l.link_silence = s.number("link_silence_ms", l.link_silence, above(0));
-  l.lateness = s.number("lateness_ms", l.lateness, at_least(0));
-  l.answer_lag = s.number("answer_lag_ms", l.answer_lag, at_least(0));
-  l.state_age = s.number("state_age_ms", l.state_age, at_least(0));
-  l.motors_reply = s.number("motors_reply_ms", l.motors_reply, above(0));
-  l.motors_off = s.number("motors_off_ms", l.motors_off, above(0));
-  l.torque_error = s.number("torque_error_Nm", l.torque_error, at_least(0));
-  l.off_torque = s.number("off_torque_Nm", l.off_torque, above(0));
   return l;
 }
 
@@ -90,6 +82,7 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     static_cast<TrialPlan&>(trial) = read_recording(root.section("recording"));
     trial.name = name;
     trial.protocol = file.stem().string();
+    trial.file_sha256 = recording::sha256(std::as_bytes(std::span(text)));
     const Section robot = root.section("robot");
     if (read_machine(robot) != Machine::planar) {
       return tl::unexpected(robot.error("kind", "a one-axis machine cannot be run as an experiment yet",

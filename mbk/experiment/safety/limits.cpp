@@ -1,39 +1,99 @@
 #include "mbk/experiment/safety/limits.h"
 
-#include "mbk/base/core/option_limits.h"
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "mbk/base/core/units.h"
 
 namespace mbk::safety {
+namespace {
+
+constexpr double kMilli = 1e3, kPerDegree = 1.0 / kDegree;  // from SI to the unit of a key
+
+constexpr bool kMayBeOff = true;
+
+constexpr auto kKeys = std::to_array<LimitKey>({
+    {"handle_force_N", &Limits::handle_force, 1.0, 500.0, "the motors push the hand with it"},
+    {"joint_torque_Nm", &Limits::joint_torque, 1.0, 500.0, "the motors turn the joints with it"},
+    {"torque_rate_Nm_per_s", &Limits::torque_rate, 1.0, 1e5, "the torque jumps by it"},
+    {"max_saturation_time_ms", &Limits::max_saturation_time, kMilli, 10'000.0, "a controller may run away"},
+    {"measured_force_N", &Limits::measured_force, 1.0, 1000.0, "the hand is held or squeezed with it"},
+    {"force_jump_N", &Limits::force_jump, 1.0, 1000.0, "a knock or a torn wire passes"},
+    {"speed_mm_per_s", &Limits::speed, kMilli, 10'000.0, "the hand is moved so fast"},
+    {"acceleration_m_per_s2", &Limits::acceleration, 1.0, 1000.0, "the hand is jerked"},
+    {"joint_margin_deg", &Limits::joint_margin, kPerDegree, 90.0, "a joint comes so close to its stop", kMayBeOff,
+     true},
+    {"excursion_mm", &Limits::excursion, kMilli, 2000.0, "the hand is taken so far from home", kMayBeOff},
+    {"tracking_deg", &Limits::tracking, kPerDegree, 180.0, "a joint is so far from its reference"},
+    {"encoder_jump_deg", &Limits::encoder_jump, kPerDegree, 90.0, "a wrong angle passes"},
+    {"frozen_sensor_ms", &Limits::frozen_sensor, kMilli, 10'000.0, "a dead sensor is believed", kMayBeOff},
+    {"frozen_sensor_torque_Nm", &Limits::frozen_sensor_torque, 1.0, 50.0, "a dead encoder is believed"},
+    {"accelerometer_m_per_s2", &Limits::accelerometer, 1.0, 100.0, "encoders that are wrong are believed", kMayBeOff},
+    {"link_silence_ms", &Limits::link_silence, kMilli, 1000.0, "the robot is driven without being seen"},
+    {"lateness_ms", &Limits::lateness, kMilli, 1000.0, "the robot holds an old command", kMayBeOff},
+    {"answer_lag_ms", &Limits::answer_lag, kMilli, 1000.0, "the robot obeys an old command", kMayBeOff},
+    {"state_age_ms", &Limits::state_age, kMilli, 1000.0, "the gate looks at an old state", kMayBeOff},
+    {"motors_reply_ms", &Limits::motors_reply, kMilli, 5000.0, "motors that are off are not noticed"},
+    {"motors_off_ms", &Limits::motors_off, kMilli, 5000.0, "the alarm that the motors are not off waits"},
+    {"torque_error_Nm", &Limits::torque_error, 1.0, 100.0, "drives that do not obey are not noticed", kMayBeOff},
+    {"off_torque_Nm", &Limits::off_torque, 1.0, 10.0, "motors that drive count as off"},
+});
+
+}  // namespace
+
+double LimitKey::of(const Limits& limits) const {
+  if (const auto* one = std::get_if<double Limits::*>(&member)) return scale * (limits.*(*one));
+  return scale * (limits.*std::get<Vector2d Limits::*>(member)).maxCoeff();
+}
+
+std::span<const LimitKey> limit_keys() {
+  return kKeys;
+}
+
+std::vector<std::string> weakened(const Limits& limits) {
+  std::vector<std::string> said;
+  for (const LimitKey& one : kKeys) {
+    const double value = one.of(limits), usual = one.of(Limits());
+    constexpr double kRounding = 1e-9;
+    const bool off = one.may_be_off && value == 0.0;
+    const bool weaker = one.less_is_weaker ? value < usual * (1.0 - kRounding) : value > usual * (1.0 + kRounding);
+    if (!off && !weaker) continue;
+    said.push_back(fmt::format("{} {}, by default {:.4g}: {}", one.key, off ? "is off" : fmt::format("= {:.4g}", value),
+                               usual, one.why));
+  }
+  return said;
+}
+
+std::string text_of(const Limits& limits) {
+  std::string text;
+  for (const LimitKey& one : kKeys) {
+    text += fmt::format("{}{}=", text.empty() ? "" : " ", one.key);
+    if (const auto* two = std::get_if<Vector2d Limits::*>(&one.member)) {
+      const Vector2d& both = limits.*(*two);
+      text += fmt::format("{:.6g},{:.6g}", one.scale * both[0], one.scale * both[1]);
+    } else {
+      text += fmt::format("{:.6g}", one.of(limits));
+    }
+  }
+  return text + fmt::format(" workspace_low_mm={:.6g},{:.6g} workspace_high_mm={:.6g},{:.6g}",
+                            kMilli * limits.workspace_low[0], kMilli * limits.workspace_low[1],
+                            kMilli * limits.workspace_high[0], kMilli * limits.workspace_high[1]);
+}
 
 Result<void> check(const Limits& limits) {
-  if (auto ok = above_zero({{"safety: handle force", limits.handle_force, "N"},
-                            {"safety: torque of joint 1", limits.joint_torque[0], "N·m"},
-                            {"safety: torque of joint 2", limits.joint_torque[1], "N·m"},
-                            {"safety: torque rate", limits.torque_rate, "N·m/s"},
-                            {"safety: longest time of cutting", limits.max_saturation_time, "s"},
-                            {"safety: measured force", limits.measured_force, "N"},
-                            {"safety: jump of the force", limits.force_jump, "N"},
-                            {"safety: speed", limits.speed, "m/s"},
-                            {"safety: acceleration", limits.acceleration, "m/s²"},
-                            {"safety: tracking error", limits.tracking, "rad"},
-                            {"safety: jump of an encoder", limits.encoder_jump, "rad"},
-                            {"safety: torque at a resting encoder", limits.frozen_sensor_torque, "N·m"},
-                            {"safety: silence of the link", limits.link_silence, "s"},
-                            {"safety: reply of the motors", limits.motors_reply, "s"},
-                            {"safety: time for the motors to go off", limits.motors_off, "s"},
-                            {"safety: torque of motors that are off", limits.off_torque, "N·m"}});
-      !ok) {
-    return ok;
-  }
-  if (auto ok = not_negative({{"safety: joint margin", limits.joint_margin, "rad"},
-                              {"safety: excursion", limits.excursion, "m"},
-                              {"safety: time of a frozen reading", limits.frozen_sensor, "s"},
-                              {"safety: accelerometer against encoders", limits.accelerometer, "m/s²"},
-                              {"safety: lateness", limits.lateness, "s"},
-                              {"safety: lag of the answer", limits.answer_lag, "s"},
-                              {"safety: age of a state", limits.state_age, "s"},
-                              {"safety: torque of the motors against the command", limits.torque_error, "N·m"}});
-      !ok) {
-    return ok;
+  for (const LimitKey& one : kKeys) {
+    const double value = one.of(limits);
+    const auto* two = std::get_if<Vector2d Limits::*>(&one.member);
+    const double least = two != nullptr ? one.scale * (limits.*(*two)).minCoeff() : value;
+    if (!(one.may_be_off ? least >= 0.0 : least > 0.0)) {
+      return bad_usage(fmt::format("safety.{} = {:g} is {}", one.key, least,
+                                   one.may_be_off ? "below zero or not finite" : "not above zero"));
+    }
+    if (value <= one.most) continue;
+    return bad_usage(fmt::format("safety.{} = {:g} is above {:g}", one.key, value, one.most),
+                     fmt::format("below the limit {}", one.why));
   }
   if (!(limits.workspace_low.array() < limits.workspace_high.array()).all()) {
     return bad_usage("safety: the workspace's low corner is not below its high corner");

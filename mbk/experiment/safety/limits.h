@@ -1,5 +1,11 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
 #include "mbk/base/core/result.h"
 #include "mbk/model/robot/kinematics.h"
 
@@ -39,7 +45,31 @@ struct Limits {
   double off_torque = 0.1;     ///< that drives may still measure of motors that are off [N·m] > 0
 };
 
-/// @fails  usage: a limit is out of its range, with its name and unit; the rectangle is empty.
+/// What a file may say of a limit, in the unit of its key.
+struct LimitKey {
+  std::string_view key;  ///< "link_silence_ms"
+  std::variant<double Limits::*, Vector2d Limits::*> member;
+  double scale;          ///< from SI to the unit of the key
+  double most;           ///< beyond it the limit would be none
+  std::string_view why;  ///< what happens while it is not reached: "the robot is driven without being seen"
+  bool may_be_off = false;
+  bool less_is_weaker = false;
+
+  /// In the unit of the key; of two joints the larger.
+  [[nodiscard]] double of(const Limits& limits) const;
+};
+
+/// Every limit but the workspace, in the order of Limits.
+[[nodiscard]] std::span<const LimitKey> limit_keys();
+
+/// Limits that are off, or weaker than those by default: "link_silence_ms = 500, by default 10: the robot is driven
+/// without being seen".
+[[nodiscard]] std::vector<std::string> weakened(const Limits& limits);
+
+/// All of them as one line: "handle_force_N=20 joint_torque_Nm=6,6 …".
+[[nodiscard]] std::string text_of(const Limits& limits);
+
+/// @fails  usage: a limit is out of its range, with its key and why; the rectangle is empty.
 [[nodiscard]] Result<void> check(const Limits& limits);
 
 }  // namespace mbk::safety

@@ -235,6 +235,7 @@ std::vector<Finding> check_setup(const RobotSetup& setup) {
   check_force(setup, findings);
   check_motors(setup, *theta, findings);
   check_times(setup, findings);
+  for (const std::string& one : safety::weakened(setup.trial.limits)) findings.add(Verdict::doubtful, one);
   return findings.take();
 }
 

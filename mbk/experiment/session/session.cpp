@@ -158,6 +158,8 @@ Header header_of(const Plan& plan, const device::Facts& facts) {
   header.metadata["handle_mass_kg"] = fmt::format("{:.12g}", trial.handle_mass);
   header.metadata["software"] = fmt::format("mbk {}", version());
   header.metadata["began"] = now_text();
+  header.metadata["experiment_sha256"] = trial.file_sha256;
+  header.metadata["safety_limits"] = safety::text_of(plan.limits);
   header.geometry = trial.robot.geometry;
   header.rate = trial.rate.value;
   header.readers = trial.readers;
