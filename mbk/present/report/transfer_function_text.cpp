@@ -158,7 +158,7 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
                {"method", method_text(found.method)}};
   rows.push_back(
       {"samples",
-       fmt::format("{} in {} segment{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "es",
+       fmt::format("{} in {} segment{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "s",
                    found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
                               : fmt::format("unevenly spaced, about every {:.6g} ms", 1e3 * found.sample_time))});
   if (found.recorded_rate_hz > 0.0) {
