@@ -4,6 +4,7 @@
 #include "apps/mbk/signal_names.h"
 #include "apps/mbk/word_options.h"
 #include "mbk/base/core/units.h"
+#include "mbk/files/recording/channel_table.h"
 
 namespace mbk::app {
 namespace {
@@ -25,22 +26,28 @@ Result<measurement::ExploreOptions> options_of(const ExploringArguments& a) {
   options.reaches.from_s = options.plateau.from_s;
   options.reaches.to_s = options.plateau.to_s;
   if (!a.trigger.empty()) options.reaches.trigger = a.trigger;
-  options.schedule = a.schedule;
   if (!a.align.empty()) options.align = a.align;
   if (a.after_onset_ms) options.after_onset_s = *a.after_onset_ms / kMilliseconds;
   return options;
 }
 
-/// Other signals than motion and force, where they are named.
+/// The schedule, and other signals than motion and force, where they are named.
 Result<void> name_signals(ExploringArguments& a, measurement::ExploreOptions& options) {
-  if (a.input.empty() && a.output_signal.empty() && a.reference.empty()) return {};
+  const SignalName schedule{a.schedule, "schedule", options.schedule, nullptr};
+  if (a.input.empty() && a.output_signal.empty() && a.reference.empty()) {
+    const bool is_channel = a.reading.channels.empty() && !recording::kinds_called(a.schedule).empty();
+    if (!is_channel) return place_signals(a.reading, {&schedule, 1});
+    options.schedule = a.schedule;  // and all other channels by their names
+    return {};
+  }
   if (a.input.empty() || a.output_signal.empty()) {
     return bad_usage("a response needs --input and --output", "name both, or neither for that of force to motion");
   }
   measurement::ExploredSignals& signals = options.signals.emplace();
   const SignalName names[] = {{a.input, "input", signals.input, &signals.input_sign},
                               {a.output_signal, "output", signals.output, &signals.output_sign},
-                              {a.reference, "drive", signals.reference, nullptr}};
+                              {a.reference, "drive", signals.reference, nullptr},
+                              schedule};
   signals.input_name = shown_name(a.input);
   signals.output_name = shown_name(a.output_signal);
   return place_signals(a.reading, names);
@@ -52,6 +59,7 @@ Result<measurement::ExploreOptions> exploring_options(ExploringArguments& argume
   auto options = options_of(arguments);
   if (!options) return options;
   if (auto ok = name_signals(arguments, *options); !ok) return tl::unexpected(ok.error());
+  if (options->schedule == "schedule") options->schedule_name = shown_name(arguments.schedule);
   return options;
 }
 
@@ -139,8 +147,10 @@ void add_exploring_options(Command command, ExploringArguments& arguments) {
       .group(in_time);
   const Option schedule =
       command
-          .add_option("--schedule", arguments.schedule,
-                      "follow M, B and K over this channel, such as an angle or a co-contraction, not over time")
+          .add_option(
+              "--schedule", arguments.schedule,
+              "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction, "
+              "not over time")
           .type_name("NAME")
           .check(not_empty())
           .group(in_time);

@@ -44,7 +44,7 @@ struct TfArguments {
   std::filesystem::path charts;
   std::optional<long> poles, zeros;
   std::vector<double> start_poles_hz;
-  double max_delay_s = 0.1;
+  std::optional<double> max_delay_s;
   long noise_order = 8;
   bool from_rest = false;
 };
@@ -141,7 +141,7 @@ Result<measurement::TransferFunctionMeasurement> options_of(const TfArguments& a
           fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'", quoted(a.sample_rate)));
     }
   }
-  fit.max_delay = a.max_delay_s;
+  options.max_delay = a.max_delay_s;
   fit.hold = a.hold;
   fit.max_noise_order = a.noise_order;
   fit.hac_lag_s = a.hac_lag_s;
@@ -307,7 +307,9 @@ Action add_tf(Command app, const std::string& typed) {
       .check(not_empty())
       .group(model);
   const Option max_delay =
-      command.add_option("--max-delay", arguments->max_delay_s, "how far --delay auto looks, s (0.1)")
+      command
+          .add_option("--max-delay", arguments->max_delay_s,
+                      "how far --delay auto looks, s (0.5, and no more than a tenth of the shortest recording)")
           .type_name("S")
           .check(positive())
           .group(model);

@@ -759,6 +759,16 @@ def _(test):  # excite the system there
     test.goes("pole-outside-band", raised, tf(test, "--poles", "3", "--zeros", "0", rows=behind_a_lag(0.02, 0.0002)))
 
 
+@advice_of("delay-at-limit")
+def _(test):  # look further
+    rows = oscillator()
+    late = [(time, u, y) for (time, _, y), (_, u, _) in zip(rows, rows[30:])]  # u is known 0.3 s early
+    signals = ("--poles", "2", "--zeros", "0", "--delay", "auto")
+    raised = tf(test, *signals, "--max-delay", "0.2", rows=late)
+    further = re.search(r"--max-delay ([\d.]+)", hint_of(raised, "delay-at-limit"))[1]
+    test.goes("delay-at-limit", raised, tf(test, *signals, "--max-delay", further, rows=late))
+
+
 @advice_of("uneven-clock")
 def _(test):  # it is taken into account; an even clock has no such word
     rows = [row for k, row in enumerate(oscillator()) if k % 5 in (0, 2)]

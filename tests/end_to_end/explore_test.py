@@ -310,11 +310,40 @@ class ChangeOverTime(Case):
         for words in ("change over time", "changes: BIC prefers", "K_xx [N/m]"):
             self.assertIn(words, text)
 
-    def test_is_followed_over_a_channel_or_since_an_event(self):
+    def test_is_followed_over_a_channel(self):
         log = make_log().path
         found = self.fine("explore", log, "--schedule", "hand_x", "--json").json["time_course"]
         self.assertEqual((found["variable"], found["unit"]), ("hand_x", "m"))
         self.refused(BAD_DATA, "explore", log, "--schedule", "nothing", says="nothing")
+
+    def test_is_followed_over_a_column_of_any_name(self):
+        rows = ["time_s,position_m,reaction_N,cocontraction"]
+        for i in range(8000):
+            t = i / 200
+            waves = [(2 * math.pi * f, 2 * math.pi * f * t + f * f) for f in (0.3, 0.7, 1.1, 1.7, 2.3, 2.9)]
+            x, v, a = (0.004 * sum(part(w, p) for w, p in waves)
+                       for part in (lambda w, p: math.sin(p), lambda w, p: w * math.cos(p), lambda w, p: -w * w * math.sin(p)))
+            level = 0.5 + 0.4 * math.sin(2 * math.pi * t / 17)
+            noise = 0.05 * math.sin(1000 * i * i)
+            rows.append(f"{t},{x:.9g},{-(1.5 * a + 10 * v + (80 + 100 * level) * x) + noise:.9g},{level:.9g}")
+        path = self.file("levels.csv", "\n".join(rows))
+        plain = ("explore", path, "--only", "time-course", "--json")
+        for how in (("--schedule", "cocontraction"), ("--schedule", "4"),
+                    ("--schedule", "4", "--channels", "x=2,F=3"), ("--schedule", "cocontraction", "--channels", "time=1:s"),
+                    ("--schedule", "schedule", "--channels", "x=2,F=3,schedule=4"),
+                    ("--schedule", "4", "--input", "2", "--output=-3")):
+            with self.subTest(how):
+                found = self.fine(*plain, *how).json
+                course = found["time_course"]
+                self.assertEqual(course["variable"], how[1])
+                self.assertEqual(course["varying"], "K")
+                for level, stiffness in zip(course["at"], course["K"]["value"][0]):
+                    self.assertAlmostEqual(stiffness, 80 + 100 * level, delta=4)
+                self.assertNotIn("cocontraction", " ".join(found["notes"]))
+        self.refused(BAD_DATA, *plain, "--schedule", "nothing", says="nothing")
+
+    def test_is_followed_since_an_event(self):
+        log = make_log().path
         self.refused(BAD_DATA, "explore", log, "--align", "nothing", says="nothing")
         self.refused(WRONG_USAGE, "explore", log, "--align", "reference", "--schedule", "hand_x", says="--schedule")
 

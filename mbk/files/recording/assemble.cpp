@@ -201,13 +201,14 @@ class Assembler {
           fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
           "name its columns with --channels");
     }
-    if (options_.channels.empty() || !options_.requested.empty() || maps_time_alone()) {
+    if (leaves_names(options_)) {
       if (auto ok = recognise(); !ok) return tl::unexpected(ok.error());
-      if (maps_time_alone()) std::erase_if(signals_, [](const Signal& signal) { return is_time(signal.kind); });
+      if (maps_time()) std::erase_if(signals_, [](const Signal& signal) { return is_time(signal.kind); });
     }
     if (!options_.channels.empty()) {
       if (auto ok = follow_map(); !ok) return tl::unexpected(ok.error());
     }
+    note_aside();
     if (auto ok = choose_clock(); !ok) return tl::unexpected(ok.error());
     if (auto ok = check(); !ok) return tl::unexpected(ok.error());
     if (auto ok = name_joints(); !ok) return tl::unexpected(ok.error());
@@ -236,9 +237,6 @@ class Assembler {
       return !kinds.empty() && is_time(kinds.front());
     });
   }
-
-  /// A map of the time alone, as to say its unit, leaves all else to its name.
-  [[nodiscard]] bool maps_time_alone() const { return options_.channels.size() == 1 && maps_time(); }
 
   // ---- which signals ----
 
@@ -386,7 +384,6 @@ class Assembler {
     };
     std::vector<Candidate> candidates;
     std::vector<std::vector<const ChannelKind*>> meanings;
-    std::vector<std::string> aside;
     for (const Array& array : contents_.arrays) {
       ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means).substr(turned(array))
                                           : contents_.table    ? std::string_view(array.name)
@@ -399,7 +396,7 @@ class Assembler {
         if (const std::string unknown = unknown_unit_of(array); !unknown.empty()) {
           recording_.notes.push_back(unknown);
         } else {
-          aside.push_back(array.name);
+          aside_.push_back(array.name);
         }
         continue;
       }
@@ -411,7 +408,7 @@ class Assembler {
     for (const Candidate& candidate : candidates) {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
       if (kind == nullptr) {
-        aside.push_back(candidate.array->name);
+        aside_.push_back(candidate.array->name);
       } else if (is_requested(*kind)) {
         const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
         if (!unit) return tl::unexpected(unit.error());
@@ -421,11 +418,16 @@ class Assembler {
       }
     }
     drop_second_names();
-    std::erase(aside, "");
-    if (!aside.empty()) {
-      recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside)));
-    }
     return {};
+  }
+
+  /// What neither its name nor the map makes a channel.
+  void note_aside() {
+    std::erase_if(aside_, [&](const std::string& name) {
+      return name.empty() || std::ranges::any_of(signals_, [&](const Signal& s) { return s.line.array->name == name; });
+    });
+    if (aside_.empty()) return;
+    recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside_)));
   }
 
   /// A note on "reaction (dyn)": a channel with a unit in brackets that it cannot have; "" of any other.
@@ -1351,6 +1353,7 @@ class Assembler {
   std::vector<Signal> signals_;
   const Clock* clock_ = nullptr;                  ///< of the recording, where the file has clocks
   bool states_time_ = false;                      ///< the map states the unit of time
+  std::vector<std::string> aside_;                ///< names of no channel
   std::vector<std::string> possible_times_ = {};  ///< by their names, where none is recognised
   Index trials_ = 0;                              ///< that the slices of the map leave over; 0: none
   Recording recording_;
@@ -1373,6 +1376,14 @@ std::vector<TrialName> trials_of_map(const Contents& contents, const std::vector
   std::vector<TrialName> trials;
   for (Index k = 1; count > 1 && k <= count; ++k) trials.push_back({std::to_string(k), ""});
   return trials;
+}
+
+bool leaves_names(const ReadOptions& options) {
+  const auto is_no_measurement = [](const ChannelSource& entry) {
+    const auto kinds = kinds_called(entry.channel);
+    return !kinds.empty() && (kinds.front()->name == "time" || kinds.front()->name == "schedule");
+  };
+  return !options.requested.empty() || std::ranges::all_of(options.channels, is_no_measurement);
 }
 
 Result<Recording> assemble(Contents contents, const ReadOptions& options) {

@@ -70,6 +70,7 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"input", "input", kAnything, "", 0, 0, false, true},
     {"output", "output", kAnything, "", 0, 0, false, true},
     {"drive", "drive", kAnything, "", 0, 0, false, true},
+    {"schedule", "schedule", kAnything, "", 0, 0, false, true},
 });
 static_assert(std::ranges::count(kKinds, std::string_view("joint"), &ChannelKind::frame) == 3 * kMaxJoints);
 

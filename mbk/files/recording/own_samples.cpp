@@ -23,7 +23,7 @@ bool begins_with_any(std::string_view name, std::span<const std::string_view> be
 
 /// A channel that a controller may have set.
 bool may_be_command(std::string_view name, std::span<const std::string> commands) {
-  constexpr auto kCommands = std::to_array<std::string_view>({"torque_", "input", "drive"});
+  constexpr auto kCommands = std::to_array<std::string_view>({"torque_", "input", "drive", "schedule"});
   const auto is_called = [&](const std::string& command) {
     return std::ranges::any_of(kinds_called(command), [&](const ChannelKind* kind) { return kind->name == name; });
   };

@@ -192,8 +192,7 @@ Result<Recording> read(const RecordingFile& file, const ReadOptions& options) {
   const std::string place =
       options.trial.empty() ? file.path().string() : fmt::format("{}, trial {}", file.path().string(), options.trial);
   return with_file(place, [&]() -> Result<Recording> {
-    const bool by_name = options.channels.empty() || !options.requested.empty();
-    auto decoded = file.decode(options, by_name);
+    auto decoded = file.decode(options, leaves_names(options));
     if (!decoded) return tl::unexpected(decoded.error());
     return assemble_file(std::move(*decoded), options);
   });

@@ -238,11 +238,21 @@ Matrix greatest_noise(const std::vector<Averages>& averages, const Sizes& sizes)
   return noise;
 }
 
+/// What is at a line: nothing that stands out, too little power to say anything there, or a perturbation.
+enum class Line { empty, weak, excited };
+
+void raise(std::vector<Line>& lines, Index k, Line to) {
+  Line& line = lines[static_cast<std::size_t>(k)];
+  line = std::max(line, to);
+}
+
 /// Lines that a commanded signal holds: it is exact, so that the others are empty but for rounding.
-void add_commanded(const Vector& power, std::vector<bool>& excited) {
+void add_commanded(const Vector& power, std::vector<Line>& lines) {
   constexpr double kLeast = 2e-4;  // of the greatest power: bent axes make lines of 1 % of the amplitude of theirs
+  constexpr double kRounding = 1e-8;
   for (Index k = 0; k < power.size(); ++k) {
-    if (power[k] > kLeast * power.maxCoeff()) excited[static_cast<std::size_t>(k)] = true;
+    if (!(power[k] > kRounding * power.maxCoeff())) continue;
+    raise(lines, k, power[k] > kLeast * power.maxCoeff() ? Line::excited : Line::weak);
   }
 }
 
@@ -250,9 +260,10 @@ void add_commanded(const Vector& power, std::vector<bool>& excited) {
 /// (the last hundredth only where the lines stand above their noise and go on from those before), of odd lines alone
 /// where the even ones hold less than 5 %, those above a twentieth of the amplitude that one in ten of their sixteen
 /// neighbours exceeds: of every fourth line excited, the median would be that of an empty one. A resonance of what is
-/// measured may take most of a line away; noise and distortion fill the empty ones.
+/// measured may take most of a line away; noise and distortion fill the empty ones. Lines beyond the band that stand
+/// above their noise are weak.
 /// @param noise  of the power, at each line
-void add_measured(const Vector& power, const Vector& noise, std::vector<bool>& excited) {
+void add_measured(const Vector& power, const Vector& noise, std::vector<Line>& found) {
   constexpr double kBelow = 1e-3, kAbove = 1e-2, kFarAbove = 1e-3, kEven = 0.05, kLeast = 0.05, kClear = 30.0,
                    kStep = 0.3;
   constexpr Index kNeighbours = 8;
@@ -271,9 +282,13 @@ void add_measured(const Vector& power, const Vector& noise, std::vector<bool>& e
     for (std::size_t i = band.size() - std::min<std::size_t>(band.size(), kNeighbours); i < band.size(); ++i) {
       largest = std::max(largest, power[band[i]]);
     }
-    const bool clear =
-        power[k] > std::max(kClear * noise[k], kStep * kStep * largest) && before < (1.0 - kFarAbove) * total;
-    if (sum > kBelow * total && (clear || before < (1.0 - kAbove) * total)) band.push_back(k);
+    const bool stands_out = power[k] > kClear * noise[k];
+    const bool clear = stands_out && power[k] > kStep * kStep * largest && before < (1.0 - kFarAbove) * total;
+    if (sum > kBelow * total && (clear || before < (1.0 - kAbove) * total)) {
+      band.push_back(k);
+    } else if (stands_out) {
+      raise(found, k, Line::weak);
+    }
   }
   for (std::size_t i = 0; i < band.size(); ++i) {
     std::vector<double> near;
@@ -281,22 +296,23 @@ void add_measured(const Vector& power, const Vector& noise, std::vector<bool>& e
     for (std::size_t l = first; l < std::min(band.size(), i + kNeighbours + 1); ++l) near.push_back(power[band[l]]);
     const auto high = near.begin() + static_cast<std::ptrdiff_t>(9 * near.size() / 10);
     std::ranges::nth_element(near, high);
-    if (power[band[i]] > kLeast * kLeast * *high) {
-      excited[static_cast<std::size_t>(band[i])] = true;
-    }
+    if (power[band[i]] > kLeast * kLeast * *high) raise(found, band[i], Line::excited);
   }
 }
 
 /// Lines at which some realisation is excited along some input.
-std::vector<Index> excited_lines(const std::vector<Averages>& averages, const Sizes& sizes, bool by_reference) {
+/// @param weak  how many others are weak
+std::vector<Index> excited_lines(const std::vector<Averages>& averages, const Sizes& sizes, bool by_reference,
+                                 Index& weak) {
   const Matrix power = greatest_power(averages, sizes), noise = greatest_noise(averages, sizes);
-  std::vector<bool> excited(static_cast<std::size_t>(sizes.lines), false);
+  std::vector<Line> found(static_cast<std::size_t>(sizes.lines), Line::empty);
   for (Index j = 0; j < sizes.inputs; ++j) {
-    by_reference ? add_commanded(power.row(j), excited) : add_measured(power.row(j), noise.row(j), excited);
+    by_reference ? add_commanded(power.row(j), found) : add_measured(power.row(j), noise.row(j), found);
   }
+  weak = std::ranges::count(found, Line::weak);
   std::vector<Index> lines;
   for (Index k = 0; k < sizes.lines; ++k) {
-    if (excited[static_cast<std::size_t>(k)]) lines.push_back(k);
+    if (found[static_cast<std::size_t>(k)] == Line::excited) lines.push_back(k);
   }
   return lines;
 }
@@ -483,7 +499,8 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
     }
   };
   average_all();
-  const std::vector<Index> excited = excited_lines(averages, sizes, by_reference);
+  const std::vector<Index> excited = excited_lines(averages, sizes, by_reference, facts.weak_lines);
+  facts.skipped_lines = facts.weak_lines;
   for (Realisation& one : realisations) {
     if (!first_differs(one.periods, excited, sizes)) continue;
     one.periods.erase(one.periods.begin());

@@ -88,6 +88,27 @@ TEST(PeriodicResponse, LeavesNoLineOutWhosePowerFallsWithFrequency) {
   }
 }
 
+TEST(PeriodicResponse, CountsTheLinesWhosePowerIsTooLittle) {
+  for (const bool with_reference : {true, false}) {
+    Vector u = Vector::Zero(9 * kPeriod);
+    for (int line = 1; line <= 30; ++line) {
+      const double amplitude = line <= 20 ? 1.0 : 3e-3;
+      for (Index i = 0; i < u.size(); ++i) {
+        u[i] += amplitude *
+                std::cos(2.0 * M_PI * line * static_cast<double>(i) / static_cast<double>(kPeriod) + line * line);
+      }
+    }
+    const Vector y = two_taps(u, kA, kB) + 1e-5 * white_noise(u.size(), 4);
+    const auto trial = with_reference ? trial_of(settled(u), settled(y), kStep, settled(u))
+                                      : trial_of(settled(u) + 1e-5 * white_noise(8 * kPeriod, 5), settled(y), kStep);
+    const auto found = periodic_response({&trial, 1}, {.period_s = 2.0});
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_EQ(found->size(), 20) << with_reference;
+    EXPECT_EQ(found->periodic->weak_lines, 10) << with_reference;
+    EXPECT_EQ(found->periodic->skipped_lines, 10) << with_reference;
+  }
+}
+
 TEST(PeriodicResponse, OfALinearSystemHasNoMoreVarianceOverRealisationsThanOverPeriods) {
   double total = 0.0, noise = 0.0;
   int alarms = 0;

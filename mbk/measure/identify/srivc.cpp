@@ -723,7 +723,9 @@ Vector solved(const Sums& sums) {
 }
 
 /// Roots on the right half plane are reflected, to no less than a damping ratio; false where there was one.
-bool stabilise(Vector& a, double min_damping) {
+/// @param growth  the largest real part of one, 0 without
+bool stabilise(Vector& a, double min_damping, double& growth) {
+  growth = 0.0;
   if (!a.allFinite()) return false;
   Vector monic(a.size() + 1);
   monic << a, 1.0;
@@ -732,6 +734,7 @@ bool stabilise(Vector& a, double min_damping) {
   for (auto& root : roots) {
     if (root.real() < 0.0) continue;
     stable = false;
+    growth = std::max(growth, root.real());
     root.real(-std::max(root.real(), min_damping * std::abs(root)));
   }
   if (!stable) a = numeric::monic_from_roots(roots);
@@ -756,7 +759,8 @@ bool Fitter::step(Search& found, double& change, For use) const {
   constexpr int kPatience = 8;
   constexpr double kReflected = 1e-7, kMovedAway = 0.1;
   const bool stuck = found.unstable_in_a_row > 0 && found.unstable_in_a_row % kPatience == 0;
-  found.start.stable = stabilise(found.at.a, stuck ? kMovedAway : kReflected);
+  found.start.stable = stabilise(found.at.a, stuck ? kMovedAway : kReflected, found.start.growth);
+  found.start.growth *= found.at.scale;
   found.unstable_in_a_row = found.start.stable ? 0 : found.unstable_in_a_row + 1;
   if (!found.at.a.allFinite() || !found.at.b.allFinite()) return false;
   // A coefficient that noise leaves undecided is not asked to stand still beyond its own error.

@@ -89,6 +89,30 @@ double chi_squared_beyond(double q, double degrees_of_freedom) {
   return numeric::normal_probability(-(std::cbrt(q / degrees_of_freedom) - (1.0 - spread)) / std::sqrt(spread));
 }
 
+/// Below which that share of a signal's power lies, in all experiments together; 0 where they are too short.
+Hertz power_below(const std::vector<SignalPair>& pairs, Vector SignalPair::*signal, Hertz rate, double share) {
+  Index longest = 0, total = 0;
+  for (const SignalPair& pair : pairs) {
+    longest = std::max(longest, pair.samples());
+    total += pair.samples();
+  }
+  constexpr double kSegments = 8.0, kOfOne = 2.0;
+  const Hertz resolution(rate.value * std::max(kSegments / static_cast<double>(total),
+                                               pairs.size() > 1 ? kOfOne / static_cast<double>(longest) : 0.0));
+  dsp::Spectrum sum;
+  for (const SignalPair& pair : pairs) {
+    if (2 * pair.samples() < longest) continue;
+    const auto one = dsp::welch((pair.*signal).tail(pair.samples()), rate, resolution);
+    if (!one) continue;
+    if (sum.density.size() == 0) {
+      sum = {one->frequency, Vector::Zero(one->density.size())};
+    }
+    if (one->density.size() == sum.density.size()) sum.density += static_cast<double>(pair.samples()) * one->density;
+  }
+  if (!(sum.density.size() > 0 && sum.density.sum() > 0.0)) return Hertz(0.0);
+  return dsp::power_quantile(sum, share, Hertz(0.5 * rate.value));
+}
+
 /// What every method gives.
 struct Fit {
   Vector denominator, numerator;  ///< as in TransferFunction, without the 1
@@ -163,6 +187,8 @@ class Identifier {
   Result<Fit> sharpened(Index poles, Index zeros, double delay);
   [[nodiscard]] OrderChoice criteria(const Fit& fit, Index poles, Index zeros) const;
   Result<Fit> choose_order();
+  [[nodiscard]] tl::unexpected<Error> nothing_settled(const std::vector<SearchStart>& starts,
+                                                      const std::string& model) const;
   void describe(const Fit& fit);
   void describe_roots(const Fit& fit);
   void test(const Fit& fit);
@@ -172,6 +198,8 @@ class Identifier {
   void simulate(const Fit& fit);
   void warn();
   [[nodiscard]] double median_step() const;
+  [[nodiscard]] Index delay_grid(Index samples) const;
+  [[nodiscard]] bool delay_at_limit() const;
 
   const std::vector<SignalPair>& experiments_;
   const std::vector<SignalPair>& held_out_;
@@ -187,6 +215,14 @@ double Identifier::median_step() const {
     for (Index i = 1; i < pair.time.size(); ++i) steps.push_back(pair.time[i] - pair.time[i - 1]);
   }
   return numeric::upper_median(std::move(steps));
+}
+
+/// Whether the search would have gone on to longer delays.
+bool Identifier::delay_at_limit() const {
+  constexpr double kNear = 0.05;  // of a sample
+  const double step = median_step();
+  const double longest = discrete() ? step * std::floor(options_.max_delay / step + 1e-9) : options_.max_delay;
+  return options_.find_delay && delay_ >= longest - kNear * step;
 }
 
 ContinuousFitOptions Identifier::continuous_options(Index poles, Index zeros) const {
@@ -226,15 +262,26 @@ Result<Fit> Identifier::fit(Index poles, Index zeros, double delay) const {
   return made(fit_continuous(moved, continuous_options(poles, zeros)));
 }
 
+/// By how many samples the delays are apart that are tried first: the output tells those from each other that are a
+/// part of the period of its fastest motion apart.
+Index Identifier::delay_grid(Index samples) const {
+  constexpr Index kMin = 25, kMax = 125;  // delays that are tried
+  constexpr double kShare = 0.95, kParts = 8.0;
+  const auto within = [&](Index count) { return std::max<Index>(1, (samples + count - 1) / count); };
+  const Hertz rate(1.0 / median_step());
+  const Hertz top = power_below(experiments_, &SignalPair::output, rate, kShare);
+  if (!(top.value > 0.0)) return within(kMax);
+  return std::clamp(static_cast<Index>(rate.value / (kParts * top.value)), within(kMax), within(kMin));
+}
+
 Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
   const double step = median_step();
   if (!options_.find_delay) return fit(poles, zeros, delay_);
   const auto left = [](const Result<Fit>& made) {
     return made->converged ? made->variance : std::numeric_limits<double>::infinity();
   };
-  constexpr Index kMax = 25;
   const auto samples = static_cast<Index>(std::floor(options_.max_delay / step + 1e-9));
-  const Index every = discrete() ? 1 : std::max<Index>(1, (samples + kMax - 1) / kMax);
+  const Index every = discrete() ? 1 : delay_grid(samples);
   double best = 0.0, least = std::numeric_limits<double>::infinity();
   const auto look = [&](double delay) -> Result<double> {
     const auto made = fit(poles, zeros, delay);
@@ -249,7 +296,6 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
   for (Index k = 0; k <= samples; k += every) {
     if (auto ok = look(static_cast<double>(k) * step); !ok) return tl::unexpected(ok.error());
   }
-  found_.delay_found = true;
   if (discrete()) {
     delay_ = best;
     return fit(poles, zeros, delay_);
@@ -309,6 +355,34 @@ OrderChoice Identifier::criteria(const Fit& fit, Index poles, Index zeros) const
   return choice;
 }
 
+/// Where most starts end on unstable models, the system itself may be one, held by a loop. That loop is stable.
+tl::unexpected<Error> Identifier::nothing_settled(const std::vector<SearchStart>& starts,
+                                                  const std::string& model) const {
+  std::vector<double> growth;
+  for (const SearchStart& start : starts) {
+    if (!start.stable && start.growth > 0.0) growth.push_back(start.growth);
+  }
+  const auto unstable = std::ranges::count(starts, false, &SearchStart::stable);
+  std::string text =
+      fmt::format("no stable model of {} was found: of {} starts, {} ended on an unstable one and {} did not settle",
+                  model, starts.size(), unstable, std::ssize(starts) - unstable);
+  const char* const otherwise =
+      "exchange input and output if the cause was taken for the effect, take fewer poles, or name a start near the "
+      "slowest pole by --start-pole";
+  if (2 * unstable < std::ssize(starts)) return fail(ErrorKind::not_usable, text, otherwise);
+  constexpr double kAgree = 1.5;
+  if (!growth.empty() && std::ranges::max(growth) <= kAgree * std::ranges::min(growth)) {
+    text += fmt::format(", with a motion that grows by e in {:.2g} s", 1.0 / numeric::upper_median(std::move(growth)));
+  }
+  const bool loop = options_.method == TransferFunctionMethod::closed_loop;
+  return fail(ErrorKind::not_usable, text,
+              fmt::format("if a loop holds a system that is unstable by itself, identify the loop, which is stable: "
+                          "--input {0} --output OUTPUT, and --input {0} --output INPUT; the first over the second is "
+                          "the system. If it is stable by itself, {1}{2}",
+                          loop ? "REFERENCE" : "WHAT-DRIVES-THE-LOOP", loop ? "" : "take --method clsrivc in a loop, ",
+                          otherwise));
+}
+
 Result<Fit> Identifier::choose_order() {
   std::vector<std::pair<Index, Index>> orders = options_.orders;
   const bool several = !orders.empty();
@@ -334,15 +408,9 @@ Result<Fit> Identifier::choose_order() {
     if (chosen == fits.size() || one.yic < found_.orders[chosen].yic) chosen = k;
   }
   if (chosen == fits.size()) {
-    const auto& starts = fits.back().starts;
-    const auto unstable = std::ranges::count(starts, false, &SearchStart::stable);
-    return fail(ErrorKind::not_usable,
-                fmt::format("no model of {} was found: of {} starts, {} ended on an unstable one and {} did not settle",
-                            several ? "these orders"
-                                    : fmt::format("{} poles and {} zeros", orders.front().first, orders.front().second),
-                            starts.size(), unstable, std::ssize(starts) - unstable),
-                "take fewer poles, exchange input and output if the cause was taken for the effect, or name a start "
-                "near the slowest pole by --start-pole");
+    return nothing_settled(
+        fits.back().starts,
+        several ? "these orders" : fmt::format("{} poles and {} zeros", orders.front().first, orders.front().second));
   }
   found_.orders[chosen].chosen = true;
   delay_ = delays[chosen];
@@ -360,7 +428,10 @@ void Identifier::describe(const Fit& fit) {
     found_.model.denominator << fit.denominator, 1.0;
   }
   found_.model.delay = delay_;
-  if (fit.delay_variance) found_.delay_standard_error = std::sqrt(std::max(*fit.delay_variance, 0.0));
+  if (options_.find_delay) found_.max_delay = options_.max_delay;
+  found_.delay_found = options_.find_delay && !delay_at_limit();
+  if (fit.delay_variance && found_.delay_found)
+    found_.delay_standard_error = std::sqrt(std::max(*fit.delay_variance, 0.0));
   if (!discrete()) found_.hold = hold_;
   found_.hold_found = !discrete() && !options_.hold;
   found_.covariance = fit.covariance;
@@ -382,14 +453,11 @@ void Identifier::describe(const Fit& fit) {
   describe_roots(fit);
   if (!found_.even) return;
   // Where 96 % of the input's power lies: beyond it, what is said rests on the form of the model.
-  const SignalPair& longest = *std::ranges::max_element(experiments_, {}, &SignalPair::samples);
-  const Hertz rate(1.0 / *longest.step);
-  const auto spectrum = dsp::welch(longest.input.tail(longest.samples()), rate,
-                                   Hertz(8.0 * rate.value / static_cast<double>(longest.samples())));
-  if (!spectrum) return;
   constexpr double kBelow = 0.02;
-  found_.band_low = dsp::power_quantile(*spectrum, kBelow, Hertz(0.5 * rate.value)).value;
-  found_.band_high = dsp::power_quantile(*spectrum, 1.0 - kBelow, Hertz(0.5 * rate.value)).value;
+  const Hertz rate(1.0 / found_.sample_time);
+  found_.band_low = power_below(experiments_, &SignalPair::input, rate, kBelow).value;
+  found_.band_high = power_below(experiments_, &SignalPair::input, rate, 1.0 - kBelow).value;
+  if (!(found_.band_high > 0.0)) return;
   for (auto* roots : {&found_.poles, &found_.zeros}) {
     for (Root& root : *roots) root.outside_band = root.frequency > found_.band_high;
   }
@@ -468,15 +536,25 @@ void Identifier::simulate(const Fit& fit) {
 
 void Identifier::warn() {
   auto& warnings = found_.warnings;
+  const std::string delay = options_.find_delay ? "a longer delay (--max-delay)" : "a delay (--delay auto)";
+  const bool in_loop = options_.method == TransferFunctionMethod::closed_loop;
+  const std::string hold =
+      discrete()
+          ? ""
+          : fmt::format(", or --hold {}", word_of(hold_ == InputHold::zero ? InputHold::first : InputHold::zero));
+  const bool some_unstable = !std::ranges::all_of(found_.starts, &SearchStart::stable);
+  const std::string loop = some_unstable ? "; where a loop holds a system that is unstable by itself, take what drives "
+                                           "the loop for --input: the loop is stable"
+                                         : "";
   constexpr double kPoor = 0.8;
   if (found_.held_out_fit && *found_.held_out_fit < kPoor) {
     warnings.push_back({WarningCode::held_out_fit_poor,
                         fmt::format("only {:.1f} % of the held-out output is explained", 100.0 * *found_.held_out_fit),
-                        "try more poles (--orders), a delay (--delay auto), or look whether the system changes"});
+                        fmt::format("more poles (--orders), {}, or look whether the system changes{}", delay, loop)});
   } else if (found_.fit < kPoor) {
     warnings.push_back({WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
-                        "try more poles (--orders) and a delay (--delay auto); noise may be the rest"});
+                        fmt::format("more poles (--orders) and {}; noise may be the rest{}", delay, loop)});
   }
   if (held_out_.empty()) {
     warnings.push_back({WarningCode::no_held_out_data, "no data were held out: the fit is in sample",
@@ -490,18 +568,35 @@ void Identifier::warn() {
   if (!found_.residuals.independent()) {
     warnings.push_back({WarningCode::input_explains_residual,
                         "the input still explains something of what is left: the model misses a part",
-                        "try more poles or zeros (--orders), or a delay (--delay auto); in a loop --method clsrivc"});
+                        fmt::format("more poles or zeros (--orders), {}{}{}", delay, hold,
+                                    in_loop ? "" : "; in a loop --method clsrivc")});
+  }
+  if (options_.find_delay && !found_.delay_found) {
+    warnings.push_back(
+        {WarningCode::delay_at_limit,
+         fmt::format("of all delays that were tried the longest, {:.4g} s, leaves least: the true one may "
+                     "be longer",
+                     delay_),
+         fmt::format("look further by --max-delay {:.2g}, or set it by --delay", 2.0 * options_.max_delay)});
   }
   std::string outside;
+  double highest = 0.0;
   for (const Root& pole : found_.poles) {
-    if (pole.outside_band) outside += fmt::format("{}{:.4g} Hz", outside.empty() ? "" : ", ", pole.frequency);
+    if (!pole.outside_band) continue;
+    outside += fmt::format("{}{:.4g} Hz", outside.empty() ? "" : ", ", pole.frequency);
+    highest = std::max(highest, pole.frequency);
   }
+  constexpr double kMost = 0.98;
+  const bool held_out_excites_them =
+      !held_out_.empty() && !outside.empty() &&
+      power_below(held_out_, &SignalPair::input, Hertz(1.0 / found_.sample_time), kMost).value > highest;
   if (!outside.empty()) {
     warnings.push_back({WarningCode::pole_outside_band,
                         fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 98 % of the input's power is: they "
                                     "rest on the form of the model",
                                     outside, found_.band_high),
-                        "excite the system there, or do not use them"});
+                        held_out_excites_them ? "leave --split out: the data that are held out excite the system there"
+                                              : "excite the system there, or do not use them"});
   }
   if (!found_.even) {
     warnings.push_back({WarningCode::uneven_clock, "the samples are unevenly spaced, which is taken into account",

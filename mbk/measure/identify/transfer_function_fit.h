@@ -16,7 +16,7 @@ struct TransferFunctionOptions {
   std::vector<double> start_poles;              ///< [rad/s], tried beside those that the method takes by itself
   double delay = 0.0;                           ///< τ [s] ≥ 0
   bool find_delay = false;                      ///< instead of the one above, up to max_delay
-  double max_delay = 0.1;                       ///< [s]
+  double max_delay = 0.5;                       ///< [s]
   std::optional<InputHold> hold;                ///< of the input; absent: as its steps show (input_hold)
   bool free_start = true;                       ///< an initial state and an offset of the output for each experiment
   Index max_noise_order = 8;                    ///< of the noise model, where the method has one
@@ -27,10 +27,11 @@ struct TransferFunctionOptions {
 /// One transfer function behind all experiments, with intervals of its coefficients, poles, zeros and gain, the table
 /// of orders, and tests of what is left.
 ///   Order: of the models that settled, those that leave at most 2 % more variance than the one that leaves least; of
-/// these the one of least YIC (Young 1989). Delay: the one that leaves least, by whole samples first and then by
-/// golden section to a hundredth of a sample. Its uncertainty is part of the covariance, except with as many zeros as
-/// poles. In discrete time (output error, Box–Jenkins; prediction_error.h) the delay is a whole number of samples, of
-/// one even clock, taken as known, and the hold is part of the model.
+/// these the one of least YIC (Young 1989). Delay: the one that leaves least, by whole samples first (an
+/// eighth of the period apart below which 95 % of the output's power lies) and then by golden section to a hundredth of
+/// a sample. At the longest that is tried it has no interval, and is warned of. Its uncertainty is part of the
+/// covariance, except with as many zeros as poles. In discrete time (output error, Box–Jenkins; prediction_error.h) the
+/// delay is a whole number of samples, of one even clock, taken as known, and the hold is part of the model.
 /// @param held_out  judged by simulation alone, with an initial state and an offset of their own
 /// @fails  not usable: no start settled on a stable model. As fit_continuous or fit_prediction_error
 /// otherwise; delay < 0 or not finite, or in discrete time no whole number of samples; a delayed input that is held on

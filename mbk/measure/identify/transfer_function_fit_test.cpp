@@ -193,6 +193,56 @@ TEST(TransferFunctionFit, RefusesWhatDidNotSettle) {
   }
 }
 
+/// x″ = a x − b x′ + u, unstable, held by u = r − 40 x − 8 x′.
+SignalPair held_by_a_loop(double a, double b) {
+  constexpr Index kSamples = 4000;
+  constexpr int kParts = 10;
+  constexpr double kStep = 0.01;
+  SignalPair pair;
+  pair.step = kStep;
+  pair.time = Vector::LinSpaced(kSamples, 0.0, static_cast<double>(kSamples - 1)) * kStep;
+  pair.input = pair.output = pair.reference = Vector::Zero(kSamples);
+  numeric::Random random(3);
+  double x = 0.0, v = 0.0, r = 0.0;
+  for (Index i = 0; i < kSamples; ++i) {
+    pair.reference[i] = r = 0.9 * r + random.normal();
+    pair.input[i] = r - 40.0 * x - 8.0 * v;
+    pair.output[i] = x + 0.001 * random.normal();
+    for (int k = 0; k < kParts; ++k) {
+      v += kStep / kParts * (a * x - b * v + pair.input[i]);
+      x += kStep / kParts * v;
+    }
+  }
+  return pair;
+}
+
+TEST(TransferFunctionFit, OfAnUnstableSystemInALoopSaysToIdentifyTheLoop) {
+  for (const auto& [a, b] : {std::pair{9.0, 0.5}, {-20.0, -1.0}}) {
+    SignalPair pair = held_by_a_loop(a, b);
+    TransferFunctionOptions options = two_poles();
+    options.hold = InputHold::zero;
+    for (const auto method : {TransferFunctionMethod::closed_loop, TransferFunctionMethod::srivc}) {
+      options.method = method;
+      const auto found = identify_transfer_function({pair}, {}, options);
+      ASSERT_FALSE(found.has_value());
+      EXPECT_EQ(found.error().kind, ErrorKind::not_usable);
+      const std::string& remedy = found.error().remedy;
+      EXPECT_EQ(remedy.find("if a loop holds a system that is unstable"), 0U) << found.error().line();
+      EXPECT_LT(remedy.find("--output INPUT"), remedy.find("fewer poles")) << remedy;
+    }
+    options.method = TransferFunctionMethod::closed_loop;
+    const auto found = identify_transfer_function({pair}, {}, options);
+    const std::string line = found.error().line(), words = "grows by e in ";
+    ASSERT_NE(line.find(words), std::string::npos) << line;
+    const double root = 0.5 * (std::sqrt(std::max(b * b + 4.0 * a, 0.0)) - b);
+    EXPECT_NEAR(std::stod(line.substr(line.find(words) + words.size())), 1.0 / root, 0.1 / root);
+    pair.input = pair.reference;
+    const auto loop = identify_transfer_function({pair}, {}, two_poles());
+    ASSERT_TRUE(loop.has_value()) << loop.error().line();
+    EXPECT_NEAR(loop->model.denominator[0], 40.0 - a, 1.5);
+  }
+}
+
 TransferFunctionOptions discrete(TransferFunctionMethod method) {
   TransferFunctionOptions options;
   options.method = method;

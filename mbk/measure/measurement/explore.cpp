@@ -107,7 +107,7 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
       return bad_data(fmt::format("'{}' is not finite everywhere in the analysed interval", channel->name),
                       "choose the interval with --from and --to");
     }
-    trial->scheduling_label = {channel->name, channel->unit};
+    trial->scheduling_label = {options.schedule_name.empty() ? channel->name : options.schedule_name, channel->unit};
   }
   return trial;
 }

@@ -37,6 +37,7 @@ struct ExploreOptions {
   explore::PlateauOptions plateau;      ///< of a reference of ramps and holds
   explore::ReachOptions reaches;        ///< of recordings of reaches
   std::string schedule;                 ///< channel that M, B and K are followed over; empty: time
+  std::string schedule_name;            ///< what it is called in the result; empty: as the channel
   std::optional<std::string> align;     ///< event, or "reference", since which time counts; absent: the first sample
   std::optional<double> after_onset_s;  ///< M, B and K from so long after each onset of the reference; absent: not
 };

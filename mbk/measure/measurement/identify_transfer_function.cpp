@@ -9,6 +9,7 @@
 
 #include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/dsp/decimate.h"
+#include "mbk/base/dsp/fourier.h"
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/channel_table.h"
@@ -23,6 +24,35 @@ constexpr double kUneven = 0.05;  // of an interval, by which a sample of an eve
 struct Piece {
   Index begin = 0, end = 0;
 };
+
+/// Part of a recording, from its first sample [s].
+struct Block {
+  double from = 0.0, to = 0.0;
+  bool held_out = false;
+};
+
+/// How much of the power of two signals, each of power 1, lies in the same third octaves: 0 to 1. Constant ones are
+/// alike.
+double common_power(const Vector& a, const Vector& b) {
+  constexpr int kBands = 48;
+  constexpr double kLines = 2.0, kInOctave = 3.0;
+  const double lowest = kLines / static_cast<double>(std::min(a.size(), b.size()));  // of the sample rate
+  const auto in_bands = [&](const Vector& signal) -> Vector {
+    const Index n = dsp::fast_length_below(signal.size());
+    Vector x = signal.head(n).array() - signal.head(n).mean();
+    x.array() *= dsp::hann_window(n).array();
+    const Eigen::VectorXcd X = dsp::fourier_transform(x);
+    Vector power = Vector::Zero(kBands);
+    for (Index k = 1; k < X.size(); ++k) {
+      const double octaves = std::log2(static_cast<double>(k) / static_cast<double>(n) / lowest);
+      power[std::clamp(static_cast<int>(std::floor(kInOctave * octaves)) + 1, 0, kBands - 1)] += std::norm(X[k]);
+    }
+    return power;
+  };
+  const Vector of_a = in_bands(a), of_b = in_bands(b);
+  if (!(of_a.sum() > 0.0 && of_b.sum() > 0.0)) return 1.0;
+  return (of_a / of_a.sum()).cwiseMin(of_b / of_b.sum()).sum();
+}
 
 /// Whether every sample of the piece is where an even clock has it.
 bool is_even(const Vector& time, Piece piece) {
@@ -67,10 +97,16 @@ class Preparer {
  public:
   explicit Preparer(const TransferFunctionMeasurement& options) : options_(options) {}
 
+  /// The delay up to which is looked.
+  void take_max_delay(std::span<const Recording> recordings);
+  void note_left_out();
+
   /// @param whole  held out altogether
   Result<void> add(const Recording& recording, bool whole, bool hold_back);
   /// To one rate for all, when all have been added.
   Result<void> decimate();
+
+  [[nodiscard]] const identify::TransferFunctionOptions& fit() const { return options_.fit; }
 
   std::vector<SignalPair> experiments, held_out;
   std::string input_unit, output_unit;
@@ -78,13 +114,17 @@ class Preparer {
   std::vector<std::string> notes;
 
  private:
+  [[nodiscard]] double reach() const { return fit().find_delay ? fit().max_delay : fit().delay; }
+  [[nodiscard]] bool is_alike_behind(const Recording& recording, double from, double split, double to) const;
+  [[nodiscard]] std::vector<Block> blocks(const Recording& recording, double from, double split, double to, bool asked);
   void take_rate_of_model();
   [[nodiscard]] Result<Index> every(const SignalPair& pair) const;
   Result<void> thin_out(SignalPair& pair);
   Result<void> cut(const Recording& recording, Piece piece, bool even, double from, double to,
                    std::vector<SignalPair>& into);
 
-  const TransferFunctionMeasurement& options_;
+  TransferFunctionMeasurement options_;
+  bool left_out_ = false;  ///< the first samples of a segment
   Hertz rate_of_model_ = kMaxDiscreteRate;
 };
 
@@ -114,6 +154,12 @@ Hertz top_of_response(const SignalPair& pair) {
   }
   if (!(response.density.sum() > 0.0)) return Hertz(0.0);
   return dsp::power_quantile(response, kShare, Hertz(0.5 * rate.value));
+}
+
+void Preparer::note_left_out() {
+  if (!left_out_) return;
+  notes.push_back(fmt::format(
+      "the first {:.4g} s were left out: what the input was so long before them was not recorded", reach()));
 }
 
 /// Fast enough that the low-pass leaves the output's response as it is.
@@ -195,9 +241,19 @@ Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, d
   while (end > begin && recording.time[end - 1] - start >= to - kRounding) --end;
   constexpr Index kMin = 8;
   if (end - begin < kMin) return {};
-  const double reach = options_.fit.find_delay ? options_.fit.max_delay : options_.fit.delay;
+  constexpr double kShort = 1e-6;  // of an interval
+  const auto is_late = [&](Index at) {
+    const double step = recording.time[piece.begin + 1] - recording.time[piece.begin];
+    return recording.time[at] - recording.time[piece.begin] < reach() - kShort * step;
+  };
+  if (fit().free_start) {
+    const Index first = begin;
+    while (begin < end && is_late(begin)) ++begin;
+    left_out_ = left_out_ || begin > first;
+    if (end - begin < kMin) return {};
+  }
   Index past = begin;
-  while (past > piece.begin && recording.time[past] > recording.time[begin] - reach) --past;
+  while (past > piece.begin && recording.time[past] > recording.time[begin] - reach()) --past;
   for (const std::string& name : {options_.input, options_.output, options_.reference}) {
     if (name.empty()) continue;
     const Channel& channel = *channel_of(recording, name).value();
@@ -219,6 +275,61 @@ Result<void> Preparer::cut(const Recording& recording, Piece piece, bool even, d
   if (even) pair.step = (pair.time[pair.time.size() - 1] - pair.time[0]) / static_cast<double>(pair.time.size() - 1);
   into.push_back(std::move(pair));
   return {};
+}
+
+void Preparer::take_max_delay(std::span<const Recording> recordings) {
+  if (options_.max_delay) {
+    options_.fit.max_delay = *options_.max_delay;
+    return;
+  }
+  constexpr double kShare = 0.1;
+  for (const Recording& recording : recordings) {
+    if (recording.samples() < 2) continue;
+    const double last = recording.time[recording.samples() - 1] - recording.time[0];
+    const double lasts = std::min(last, options_.window.to_s.value_or(last)) - options_.window.from_s.value_or(0.0);
+    options_.fit.max_delay = std::min(options_.fit.max_delay, std::max(kShare * lasts, 0.0));
+  }
+}
+
+/// Whether the input has the same spectrum behind the split as before it. An uneven clock is taken for an even one.
+bool Preparer::is_alike_behind(const Recording& recording, double from, double split, double to) const {
+  const Vector& input = channel_of(recording, options_.input).value()->values;
+  const auto at = [&](double s) {
+    const double* const first = recording.time.data();
+    return static_cast<Index>(std::lower_bound(first, first + recording.samples(), recording.time[0] + s) - first);
+  };
+  const Index begin = at(from), middle = at(split), end = at(to);
+  constexpr Index kMin = 16;
+  constexpr double kAlike = 0.5;
+  if (middle - begin < kMin || end - middle < kMin || !input.segment(begin, end - begin).allFinite()) return true;
+  return common_power(input.segment(begin, middle - begin), input.segment(middle, end - middle)) > kAlike;
+}
+
+/// What makes the model and what is held out, in turns. Behind a split only where somebody asked for that one, or where
+/// the input is alike on both sides; otherwise the model would be asked for frequencies at which it was not made.
+std::vector<Block> Preparer::blocks(const Recording& recording, double from, double split, double to, bool asked) {
+  std::vector<Block> all;
+  if (asked || is_alike_behind(recording, from, split, to)) {
+    if (split > from) all.push_back({from, split, false});
+    if (split < to) all.push_back({split, to, true});
+    return all;
+  }
+  constexpr int kTimes = 3;
+  constexpr double kBefore = 0.4, kHeldOut = 0.2;
+  const double each = (to - from) / kTimes;
+  double begin = from;
+  for (int k = 0; k < kTimes; ++k) {
+    const double first = from + each * (k + kBefore), last = first + each * kHeldOut;
+    all.push_back({begin, first, false});
+    all.push_back({first, last, true});
+    begin = last;
+  }
+  all.push_back({begin, to, false});
+  notes.push_back(
+      fmt::format("held out: {} blocks of {:.3g} s each, as the input's frequencies at the end are not those "
+                  "before",
+                  kTimes, each * kHeldOut));
+  return all;
 }
 
 Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_back) {
@@ -251,12 +362,11 @@ Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_bac
                                 from, to, split),
                     "choose --from, --split and --to within it");
   }
-  for (const Piece piece : pieces) {
-    if (split > from) {
-      if (auto ok = cut(recording, piece, even, from, split, experiments); !ok) return ok;
-    }
-    if (split < to) {
-      if (auto ok = cut(recording, piece, even, split, to, held_out); !ok) return ok;
+  const bool asked = whole || !hold_back || options_.window.split_s.has_value();
+  for (const Block block : blocks(recording, from, split, to, asked)) {
+    for (const Piece piece : pieces) {
+      auto& into = block.held_out ? held_out : experiments;
+      if (auto ok = cut(recording, piece, even, block.from, block.to, into); !ok) return ok;
     }
   }
   return {};
@@ -268,6 +378,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
                                                                   std::span<const Recording> held_out,
                                                                   const TransferFunctionMeasurement& options) {
   Preparer prepared(options);
+  prepared.take_max_delay(recordings);
   const auto add = [&](const Recording& recording, bool whole) -> Result<void> {
     auto added = prepared.add(recording, whole, held_out.empty());
     if (!added && !recording.sources.empty()) return tl::unexpected(added.error().in(recording.sources[0].label()));
@@ -280,10 +391,14 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
     if (auto ok = add(recording, true); !ok) return tl::unexpected(ok.error());
   }
   if (prepared.experiments.empty()) {
-    return bad_data("no segment of at least 8 samples without a gap is left to identify", "choose a longer window");
+    return bad_data(options.fit.find_delay || options.fit.delay > 0.0
+                        ? "behind the delay no segment of at least 8 samples without a gap is left to identify"
+                        : "no segment of at least 8 samples without a gap is left to identify",
+                    "choose a longer window");
   }
+  prepared.note_left_out();
   if (auto ok = prepared.decimate(); !ok) return tl::unexpected(ok.error());
-  auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_out, options.fit);
+  auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_out, prepared.fit());
   if (!found) return found;
   found->input = options.input;
   found->output = options.output;

@@ -239,6 +239,144 @@ TEST(TransferFunction, KeepsTheSamplesOfADelayWhenItLeavesSomeOut) {
   EXPECT_GT(found->held_out_fit.value(), 0.99999);
 }
 
+/// A pair of poles of ζ = 0.1 behind this input, `delay` samples late, at 100 Hz; its first `skip` samples are cut off.
+Recording resonance(const Vector& input, double hertz, Index delay, double noise, Index skip = 0) {
+  const double w = 2.0 * std::numbers::pi * hertz;
+  SignalPair pair;
+  pair.step = 0.01;
+  pair.time = Vector::LinSpaced(input.size(), 0.0, 0.01 * static_cast<double>(input.size() - 1));
+  pair.input = Vector::Constant(input.size(), input[0]);
+  pair.input.tail(input.size() - delay) = input.head(input.size() - delay);
+  pair.output = identify::simulate_continuous(Vector{{w * w, 0.2 * w}}, Vector{{w * w}}, pair);
+  const double scale = std::sqrt(pair.output.squaredNorm() / static_cast<double>(input.size()));
+  numeric::Random random(8);
+  for (double& y : pair.output) y += noise * scale * random.normal();
+  Recording recording;
+  recording.time = pair.time;
+  recording.channels = {{"input", "N", "", input}, {"output", "m", "", pair.output}};
+  return skip > 0 ? part(recording, skip, input.size() - skip) : recording;
+}
+
+/// cos of a phase whose frequency [Hz] at each sample is given, at 100 Hz.
+template <class Frequency>
+Vector sweep(Index samples, Frequency&& frequency) {
+  Vector u(samples);
+  double turns = 0.0;
+  for (Index i = 0; i < samples; ++i) {
+    u[i] = std::sin(2.0 * std::numbers::pi * turns);
+    turns += 0.01 * frequency(static_cast<double>(i) / static_cast<double>(samples));
+  }
+  return u;
+}
+
+Vector coloured(Index samples, std::uint64_t seed) {
+  Vector u(samples);
+  numeric::Random random(seed);
+  double last = 0.0;
+  for (double& value : u) value = last = 0.8 * last + random.normal();
+  return u;
+}
+
+TransferFunctionMeasurement two_poles() {
+  TransferFunctionMeasurement options;
+  options.fit.poles = 2;
+  options.fit.zeros = 0;
+  return options;
+}
+
+TEST(TransferFunction, HoldsOutBlocksWhereTheInputIsAnotherAtTheEnd) {
+  constexpr Index kSamples = 6000;
+  constexpr double kSteps[] = {4.0, 1.0, 8.0, 0.5, 2.0};
+  const auto rising = [](double share) { return 0.1 + 19.9 * share; };
+  const auto by_octaves = [](double share) { return 0.1 * std::pow(200.0, share); };
+  const auto falling = [&](double share) { return by_octaves(1.0 - share); };
+  const auto steps = [&](double share) { return kSteps[static_cast<int>(5.0 * share)]; };
+  for (const auto& [input, top] : {std::pair{sweep(kSamples, rising), 18.0},
+                                   {sweep(kSamples, by_octaves), 15.0},
+                                   {sweep(kSamples, falling), 15.0},
+                                   {sweep(kSamples, steps), 7.5}}) {
+    const Recording recording = resonance(input, 6.0, 0, 0.01);
+    const auto found = identify_transfer_function({&recording, 1}, {}, two_poles());
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_GT(found->band_high, top);
+    EXPECT_LT(found->band_low, 2.0);
+    EXPECT_EQ(found->simulated.size(), 3U);
+    EXPECT_EQ(found->notes.size(), 1U);
+    EXPECT_NEAR(found->poles[0].frequency, 6.0, 0.05);
+    EXPECT_GT(found->held_out_fit.value(), 0.9);
+    EXPECT_FALSE(found->poles[0].outside_band);
+  }
+}
+
+TEST(TransferFunction, HoldsOutTheLastFifthWhereTheInputGoesOnAsBefore) {
+  constexpr Index kSamples = 3000;
+  const auto up_and_down = [](double share) { return 0.1 + 10.0 * std::abs(std::remainder(8.0 * share, 2.0)); };
+  Vector lines = Vector::Zero(kSamples), binary = lines, pulses = lines;
+  numeric::Random random(2);
+  for (Index i = 0; i < kSamples; ++i) {
+    for (const double f : {0.25, 0.75, 1.75, 3.25, 5.25})
+      lines[i] += std::sin(0.02 * std::numbers::pi * f * static_cast<double>(i) + f * f);
+    binary[i] = i % 40 == 0 ? (random.uniform() < 0.5 ? -1.0 : 1.0) : binary[i - 1];
+    pulses[i] = i % 500 < 30 ? 1.0 : 0.0;
+  }
+  for (const Vector& input : {sweep(kSamples, up_and_down), sweep(kSamples, [](double) { return 1.3; }), lines, binary,
+                              pulses, coloured(kSamples, 4)}) {
+    const Recording recording = resonance(input, 2.0, 0, 0.01);
+    const auto found = identify_transfer_function({&recording, 1}, {}, two_poles());
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    ASSERT_EQ(found->simulated.size(), 1U);
+    EXPECT_NEAR(found->simulated[0].time[0], 24.0, 0.011);
+    EXPECT_TRUE(found->notes.empty());
+  }
+}
+
+TEST(TransferFunction, FindsTheDelayOfAPersonOrSaysThatItMayBeLonger) {
+  TransferFunctionMeasurement options = two_poles();
+  options.fit.find_delay = true;
+  for (const Index late : {5, 15, 30, 45}) {
+    const Recording recording = resonance(coloured(6000, 3), 2.0, late, 0.02);
+    const auto found = identify_transfer_function({&recording, 1}, {}, options);
+    ASSERT_TRUE(found.has_value()) << found.error().line();
+    EXPECT_TRUE(found->delay_found);
+    EXPECT_NEAR(found->model.delay, 0.01 * static_cast<double>(late), 0.001);
+    EXPECT_TRUE(found->residuals.independent());
+  }
+  const Recording recording = resonance(coloured(6000, 3), 2.0, 60, 0.02);
+  const auto short_of_it = identify_transfer_function({&recording, 1}, {}, options);
+  ASSERT_TRUE(short_of_it.has_value()) << short_of_it.error().line();
+  EXPECT_FALSE(short_of_it->delay_found);
+  EXPECT_FALSE(short_of_it->delay_standard_error.has_value());
+  const auto said = std::ranges::find(short_of_it->warnings, WarningCode::delay_at_limit, &Warning::code);
+  ASSERT_NE(said, short_of_it->warnings.end());
+  EXPECT_NE(said->remedy.find("--max-delay 1"), std::string::npos) << said->remedy;
+  options.max_delay = 1.0;
+  const auto found = identify_transfer_function({&recording, 1}, {}, options);
+  ASSERT_TRUE(found.has_value()) << found.error().line();
+  EXPECT_TRUE(found->delay_found);
+  EXPECT_NEAR(found->model.delay, 0.6, 0.001);
+}
+
+TEST(TransferFunction, LosesNoPrecisionWhereADelayedRecordingBeginsInMotion) {
+  constexpr double kNoise = 1e-3;
+  const Recording recording = resonance(coloured(4000, 3), 2.0, 15, kNoise, 1000);
+  for (const bool find : {false, true}) {
+    for (const auto method : {TransferFunctionMethod::srivc, TransferFunctionMethod::output_error}) {
+      TransferFunctionMeasurement options = two_poles();
+      options.fit.method = method;
+      options.fit.delay = 0.15;
+      options.fit.find_delay = find;
+      if (method == TransferFunctionMethod::output_error) options.fit.zeros = 2;
+      const auto found = identify_transfer_function({&recording, 1}, {}, options);
+      ASSERT_TRUE(found.has_value()) << found.error().line();
+      const Vector& y = recording.channels[1].values;
+      const double scale = std::sqrt(y.squaredNorm() / static_cast<double>(y.size()));
+      EXPECT_NEAR(found->noise_standard_deviation, kNoise * scale, 0.2 * kNoise * scale) << word_of(method) << find;
+      ASSERT_EQ(found->notes.size(), 1U);
+      EXPECT_NE(found->notes[0].find("left out"), std::string::npos);
+    }
+  }
+}
+
 TEST(TransferFunction, SaysWhichChannelIsMissing) {
   const Recording recording = ramp(100);
   TransferFunctionMeasurement options;

@@ -52,7 +52,8 @@ struct PeriodicFacts {
   Index periods = 0;                       ///< of the realisation that has fewest
   Index dropped_periods = 0;               ///< at the beginnings, where they differ from the others: transients
   bool orthogonal = false;                 ///< experiments belong together in groups of n_u with orthogonal references
-  Index skipped_lines = 0;                 ///< excited, but not along every input
+  Index skipped_lines = 0;                 ///< excited, but not along every input, or weakly
+  Index weak_lines = 0;                    ///< of these the ones of too little power
   bool odd = false;                        ///< all excited lines are odd multiples of 1/period
   std::optional<double> total_over_noise;  ///< variance over realisations over that over periods, ratio of sums
   double total_over_noise_p = 1;           ///< probability of so much where the limb is linear

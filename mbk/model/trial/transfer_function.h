@@ -75,6 +75,7 @@ struct SearchStart {
   double pole = 0;           ///< [rad/s] of the first filter; of several the geometric mean
   bool converged = false;
   bool stable = true;  ///< the solution itself, not what became of it by reflection
+  double growth = 0;   ///< [1/s] of the fastest pole of that solution where it is unstable, as far as it is known
   int iterations = 0;
   double fit = 0;  ///< R_T² there
 };
@@ -116,7 +117,8 @@ struct TransferFunctionIdentification {
   std::vector<SimulatedOutput> simulated;  ///< of what was held out; where nothing was, of what the model is made of
   Vector noise_denominator;                ///< C: 1, c₁ … of the noise model e = ε/C(q⁻¹); empty without one
   Vector noise_numerator;                  ///< D: 1, d₁ … with e = D/C ε; empty without one
-  bool delay_found = false;
+  double max_delay = 0;                    ///< [s] up to which a delay was looked for; 0: it was given
+  bool delay_found = false;                ///< below that one; the longest that was tried is none that was found
   std::optional<double> delay_standard_error;  ///< [s] of a delay that was found, where it is in the covariance
   std::optional<InputHold> hold;               ///< absent for a model in discrete time, which needs none
   bool hold_found = false;                     ///< by the steps of the input

@@ -47,8 +47,14 @@ std::vector<std::vector<std::string>> periodic_rows(const FrequencyResponseEstim
                                               facts.dropped_periods, facts.dropped_periods == 1 ? "" : "s")});
   }
   if (facts.skipped_lines > 0) {
-    rows.push_back({"skipped", fmt::format("{} line{} at which the inputs are not excited in all directions",
-                                           facts.skipped_lines, facts.skipped_lines == 1 ? "" : "s")});
+    const auto lines = [](Index count) { return fmt::format("{} line{}", count, count == 1 ? "" : "s"); };
+    const Index singular = facts.skipped_lines - facts.weak_lines;
+    std::string text;
+    if (singular > 0) text = lines(singular) + " at which the inputs are not excited in all directions";
+    if (facts.weak_lines > 0) {
+      text += (text.empty() ? "" : ", ") + lines(facts.weak_lines) + " with too little of the perturbation's power";
+    }
+    rows.push_back({"skipped", text});
   }
   if (facts.total_over_noise) {
     rows.push_back({"nonlinear", fmt::format("variance over realisations is {:.3g} times that of noise (p = {:.2g}): "

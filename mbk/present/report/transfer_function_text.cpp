@@ -40,11 +40,13 @@ std::string hold_text(InputHold hold, bool found) {
 }
 
 std::string delay_text(const TransferFunctionIdentification& found) {
+  const std::string where = fmt::format("found between 0 and {:.4g} s", found.max_delay);
+  if (!found.delay_found) return fmt::format("{:.6g} s, the longest of those tried", found.model.delay);
   if (!found.delay_standard_error) {
-    return fmt::format("{:.6g} s, found; the intervals take it as known", found.model.delay);
+    return fmt::format("{:.6g} s, {}; the intervals take it as known", found.model.delay, where);
   }
-  return with_interval(found.model.delay, numeric::kNormal95 * *found.delay_standard_error) +
-         " s, found; its uncertainty is in the intervals";
+  return fmt::format("{} s, {}; its uncertainty is in the intervals",
+                     with_interval(found.model.delay, numeric::kNormal95 * *found.delay_standard_error), where);
 }
 
 std::string name_of(const std::string& channel, const std::string& unit) {
@@ -156,7 +158,7 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
                {"method", method_text(found.method)}};
   rows.push_back(
       {"samples",
-       fmt::format("{} in {} segment{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "es",
+       fmt::format("{} in {} segment{}, {}", found.samples, found.experiments, found.experiments == 1 ? "" : "s",
                    found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
                               : fmt::format("unevenly spaced, about every {:.6g} ms", 1e3 * found.sample_time))});
   if (found.recorded_rate_hz > 0.0) {
@@ -169,7 +171,7 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   }
   rows.push_back({"starts", starts_text(found)});
   if (found.hold) rows.push_back({"input", hold_text(*found.hold, found.hold_found)});
-  if (found.delay_found) rows.push_back({"delay", delay_text(found)});
+  if (found.max_delay > 0.0) rows.push_back({"delay", delay_text(found)});
   text += table(rows) + "\n";
   if (!found.orders.empty()) text += orders_text(found.orders) + "\n";
   text += fraction_text(found.model) + "\n" + coefficients_text(found) + "\n";
@@ -192,6 +194,7 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
     rows.push_back({"noise model", fmt::format("autoregressive, order {}", found.noise_denominator.size() - 1)});
   }
   text += table(rows) + left_text(found.residuals);
+  for (const std::string& note : found.notes) text += paragraph("  ", note);
   if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
   return text;
 }

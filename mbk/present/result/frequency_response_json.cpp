@@ -25,10 +25,15 @@ Json distortion_json(const Distortion& distortion) {
 }
 
 Json periodic_json(const PeriodicFacts& facts) {
-  Json json = {{"period_s", number(facts.period_s)},       {"period_found", facts.period_found},
-               {"realisations", facts.realisations},       {"periods", facts.periods},
-               {"dropped_periods", facts.dropped_periods}, {"orthogonal", facts.orthogonal},
-               {"skipped_lines", facts.skipped_lines},     {"odd_lines_only", facts.odd}};
+  Json json = {{"period_s", number(facts.period_s)},
+               {"period_found", facts.period_found},
+               {"realisations", facts.realisations},
+               {"periods", facts.periods},
+               {"dropped_periods", facts.dropped_periods},
+               {"orthogonal", facts.orthogonal},
+               {"skipped_lines", facts.skipped_lines},
+               {"weak_lines", facts.weak_lines},
+               {"odd_lines_only", facts.odd}};
   if (facts.total_over_noise) {
     json["total_over_noise"] = {{"ratio", number(*facts.total_over_noise)}, {"p", number(facts.total_over_noise_p)}};
   }

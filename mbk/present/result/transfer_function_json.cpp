@@ -79,6 +79,7 @@ Json document(const TransferFunctionIdentification& found, const TransferFunctio
   json["sample_time"] = found.model.sample_time;
   json["delay_s"] = found.model.delay;
   json["delay_found"] = found.delay_found;
+  if (found.max_delay > 0.0) json["max_delay_s"] = number(found.max_delay);
   if (found.delay_standard_error) json["delay_standard_error_s"] = number(*found.delay_standard_error);
   if (found.hold) {
     json["hold"] = word_of(*found.hold);

@@ -244,6 +244,13 @@ function distortionTable({ even_distortion: even, odd_distortion: odd }: Periodi
     ["distortion", "", "share", "noise", "lines", "by chance"], rows, "numbers");
 }
 
+function skippedWords({ skipped_lines: skipped, weak_lines: weak }: PeriodicFacts): string {
+  const lines = (n: number): string => `${n} line${n === 1 ? "" : "s"}`;
+  const why = [...(skipped > weak ? [`${lines(skipped - weak)} at which the inputs are not excited in all directions`] : []),
+    ...(weak > 0 ? [`${lines(weak)} with too little of its power`] : [])];
+  return why.length ? ` Left out: ${why.join(", ")}.` : "";
+}
+
 function responseSection(report: ExplorationReport): HTMLElement | undefined {
   const found = report.result.frequency_response;
   if (!found) return undefined;
@@ -251,7 +258,7 @@ function responseSection(report: ExplorationReport): HTMLElement | undefined {
   const periodic = found.periodic;
   return h("section", { id: "frequency-response" }, heading(2, "Frequency response"),
     periodic
-      ? h("p", {}, `The perturbation repeats itself every ${plain(periodic.period_s, 5)} s; ${periodic.realisations} realisation${periodic.realisations === 1 ? "" : "s"} of ${periodic.periods} periods or more were used.`)
+      ? h("p", {}, `The perturbation repeats itself every ${plain(periodic.period_s, 5)} s; ${periodic.realisations} realisation${periodic.realisations === 1 ? "" : "s"} of ${periodic.periods} periods or more were used.${skippedWords(periodic)}`)
       : "",
     ...responseFigures(report, found),
     coherence ? figure(coherence) : "",

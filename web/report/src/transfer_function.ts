@@ -216,7 +216,7 @@ function residualSection(result: TransferFunction): HTMLElement {
 function provenance(result: TransferFunction): HTMLElement {
   return h("section", { id: "provenance" }, heading(2, "Methods and provenance"),
     table("Files", ["file", "format", "SHA-256"], result.inputs.map((input) => [h("span", { class: "path" }, input.file), input.format, h("code", { class: "hash" }, input.sha256)]), "files"),
-    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
+    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
 }
 
 export function transferFunctionSections(report: TransferFunctionReport): HTMLElement[] {

@@ -190,8 +190,12 @@ export const plainWarnings: PlainWarnings = {
     meaning: "Something of the output follows the input and is not in the model: a faster or slower part, or a delay.",
   },
   "pole-outside-band": {
-    title: "The model says something about frequencies that were not tried",
+    title: "The model says something about frequencies to which it was not fitted",
     meaning: "The input hardly moved the system there, so that this part is a guess by the form of the model.",
+  },
+  "delay-at-limit": {
+    title: "The delay may be longer",
+    meaning: "Of all delays that were tried the longest fits best, so that neither it nor the model is found.",
   },
   "uneven-clock": {
     title: "The samples are unevenly spaced",
