@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include "apps/mbk/messages.h"
 #include "apps/mbk/new_commands.h"
@@ -46,10 +48,27 @@ Result<std::string> robot_section(const Questions& questions) {
   if (!address) return address;
   const auto port = questions.ask("Its port", "25000", whole_number(1, 65535).wrong);
   if (!port) return port;
+  std::string lengths;
+  for (const auto& [question, key, usual] :
+       {std::tuple("Length of its first link, shoulder side, mm", "d1_mm", "254"),
+        std::tuple("Length of its last link, to the handle, mm", "d2_mm", "266.7")}) {
+    const auto length = questions.ask(question, usual, positive_number());
+    if (!length) return length;
+    lengths += fmt::format("{} = {}\n", key, *length);
+  }
+  const auto place = [](const std::string& given) {
+    double x = 0.0, y = 0.0;
+    char more = 0;
+    return std::sscanf(given.c_str(), "%lf , %lf %c", &x, &y, &more) == 2 ? "" : quoted(given) + " is no 'x, y' in mm";
+  };
+  const auto home = questions.ask("Where the hand is measured, x, y in mm from the base", "300, -50", place);
+  if (!home) return home;
+  lengths += fmt::format("home_mm = [{}]\n", *home);
   return fmt::format(
+      "[robot]                        # angles, inertia and friction: docs/guide/devices.md\n{}\n"
       "# Check it before anyone sits down: mbk robot check FILE --live 5\n"
       "[device]\nkind = \"udp\"\naddress = \"{}\"\nport = {}\n",
-      *address, *port);
+      lengths, *address, *port);
 }
 
 Result<std::string> trial_sections(const Questions& questions) {
@@ -122,7 +141,8 @@ Action add_new_experiment(Command group) {
       "  mbk new experiment --out mine.toml\n"
       "      asks for robot, perturbation, condition and trials\n"
       "  mbk new experiment --yes && mbk run experiment.toml --dry-run\n"
-      "  printf 'udp\\n192.168.1.10\\n25000\\npulses\\n10\\nrigid\\n5\\n' | mbk new experiment --out rigid.toml\n\n"
+      "  printf 'udp\\n192.168.1.10\\n25000\\n300\\n280\\n300,-50\\npulses\\n10\\nrigid\\n5\\n' | mbk new experiment "
+      "--out rigid.toml\n\n"
       "The file is written only after it was read as 'mbk run' reads it, and has comments.");
   add_new_file_options(command, *arguments);
   return [arguments] { return run(*arguments); };

@@ -138,12 +138,14 @@ int dry_run(const conduct::Experiment& experiment, const std::string& file) {
   return kFine;
 }
 
-/// What the gate does not watch as closely as it would by default, of a real robot: each once.
-std::vector<std::string> weak_limits(const conduct::Experiment& experiment) {
+/// Of a real robot, what the gate does not watch as closely as by default, and what of it is not known: each once.
+std::vector<std::string> robot_warnings(const conduct::Experiment& experiment) {
   std::vector<std::string> all;
   for (const session::Plan& plan : experiment.plans) {
     if (plan.trial.device.simulated()) continue;
-    for (std::string& one : safety::weakened(plan.limits)) {
+    std::vector<std::string> here = safety::weakened(plan.limits);
+    if (std::string assumed = protocol::assumptions_text(plan.trial); !assumed.empty()) here.push_back(assumed);
+    for (std::string& one : here) {
       if (std::ranges::count(all, one) == 0) all.push_back(std::move(one));
     }
   }
@@ -329,7 +331,7 @@ int run(const RunArguments& arguments) {
   const auto experiment = conduct::plan_experiment(*trials, arguments.out, arguments.experiment);
   if (!experiment) return report_error(experiment.error());
   if (arguments.dry_run) return dry_run(*experiment, arguments.experiment);
-  for (const std::string& warning : weak_limits(*experiment)) say("mbk: warning: {}\n", warning);
+  for (const std::string& warning : robot_warnings(*experiment)) say("mbk: warning: {}\n", warning);
   Session session(pace);
   int code = kFine, ended_by = 0;
   {

@@ -15,8 +15,8 @@ constexpr std::array kHeldSignals = {SIGTTIN, SIGTTOU};
 
 std::atomic<session::LoopFlags*> told{nullptr};
 std::atomic<bool> in_trial{false};
-std::atomic<int> ended{0};              // by this signal
-std::atomic<bool> came_outside{false};  // of a trial
+std::atomic<int> ended{0};                // by this signal
+std::atomic<bool> came_outside{false};    // of a trial
 std::atomic<bool> stopped_silent{false};  // in a trial whose loop does not come back
 static_assert(std::atomic<session::LoopFlags*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
@@ -42,6 +42,7 @@ extern "C" void on_stop_signal(int signal) {
       LastWords::say();
       std::_Exit(kMotorsNotOff);
     }
+    if (signal != SIGINT && !flags->operator_stop) flags->stop_signal = signal;
     flags->operator_stop = true;
   } else if (came_outside.exchange(true) && signal != SIGHUP) {
     act(signal, SIG_DFL, nullptr);  // asked twice; a terminal that is closed asks twice by itself

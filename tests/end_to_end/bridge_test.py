@@ -48,6 +48,9 @@ lock_step = true
 WHEELS = """
 [recording]
 condition = "two wheels"
+[robot]
+d1_mm = 254
+d2_mm = 266.7
 [device]
 kind = "udp"
 port = {port}

@@ -85,11 +85,12 @@ class Experiments(Asked):
         self.assertIn("rigid grasp", text)
         self.assertRegex(text, r"force rate +[\d.]+ N/s at most")
         self.assertNotIn("acceleration  ", text)
-        self.answer("new", "experiment", "--out", "udp.toml", answers="udp\n192.168.1.10\n25001\npulses\n10\n\n2\n")
+        self.answer("new", "experiment", "--out", "udp.toml", answers="udp\n192.168.1.10\n25001\n300\n280\n\npulses\n10\n\n2\n")
         text = (self.folder / "udp.toml").read_text(encoding="utf-8")
         self.assertIn('address = "192.168.1.10"\nport = 25001\n', text)
+        self.assertIn("d1_mm = 300\nd2_mm = 280\nhome_mm = [300, -50]\n", text)
         self.assertIn("amplitude_mm = 10", text)
-        self.fine("robot", "check", self.folder / "udp.toml")
+        self.assertIn("links of 300 and 280 mm", self.fine("robot", "check", self.folder / "udp.toml").out)
 
     def test_nothing_is_written_where_an_answer_is_wrong_or_missing(self):
         for answers, says in (("simulated\nwaves\n", "waves"), ("simulated\nsines\n-2\n", "-2"), ("simulated\n", "end")):

@@ -154,10 +154,10 @@ class Session(Case):
         self.assertEqual(len(at), 2, lines[0])
         return [[float(row[k]) for k in at] for row in lines[1:]]
 
-    def assert_ramped_down(self):
+    def assert_ramped_down(self, by="the (operator|signal SIG[A-Z0-9]+)"):
         metadata = self.info()
         self.assertEqual(metadata["ended"], "safety stop", metadata)
-        self.assertIn("operator", metadata["ended_detail"])
+        self.assertRegex(metadata["ended_detail"], f"^{by} stopped it")
         self.assertFalse(pathlib.Path(f"{self.target}.journal").exists())
         torques = self.torques()
         self.assertGreater(len(torques), 400)
@@ -174,7 +174,7 @@ class InATrial(Session):
                 self.journal_grows()
                 self.process.send_signal(getattr(signal, "SIG" + name))
                 self.ended(SAFETY_STOP)
-                self.assert_ramped_down()
+                self.assert_ramped_down("the operator" if name == "INT" else f"the signal SIG{name}")
                 self.target.unlink()
 
     def test_signals_of_the_background_suspend_nothing(self):

@@ -1,5 +1,5 @@
-/* The two wheels of examples/device_plugin, whose driver goes wrong at its 1500th sample, as its settings say: "forever"
- * and "exit" stand there, "briefly" for 0.3 s. */
+/* The two wheels of examples/device_plugin, whose driver goes wrong at its 1500th sample, as its settings say:
+ * "forever" and "exit" stand there, "briefly" for 0.3 s. */
 #include <string.h>
 #include <unistd.h>
 

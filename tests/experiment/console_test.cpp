@@ -585,6 +585,22 @@ TEST_F(ConsoleOfASession, TheRobotsStateIsShownAtOnceFromAnyThread) {
   EXPECT_TRUE(page->read_until([](Page& one) { return one.state.at("robot").at("confirmed_off") == true; }));
 }
 
+TEST_F(ConsoleOfASession, ATrialForgetsWhatTheRobotSaidBefore) {
+  RobotStatus off;
+  off.motors = RobotStatus::Motors::off;
+  off.confirmed_off = true;
+  console_->show_robot(off);
+  console_->begin(0, {}, "trial.h5", 10.0);
+  const auto robot = [&] { return Json::parse(console_->state()).at("robot"); };
+  EXPECT_EQ(robot().at("motors"), "unknown");
+  EXPECT_TRUE(robot().at("confirmed_off").is_null());
+  journal::Tick tick;
+  tick.enabled = 1;
+  console_->watch({&tick, 1});
+  EXPECT_TRUE(Json::parse(console_->state()).at("safety").at("enabled"));
+  EXPECT_EQ(robot().at("motors"), "unknown");
+}
+
 TEST_F(ConsoleOfASession, ANoteNeverTakesThePlaceOfAnAnswer) {
   auto page = open(token_);
   const auto asks = [](const char* question) {

@@ -40,6 +40,9 @@ duration_s = 0.6
 moving_in_s = 0.2
 [recording]
 condition = "two wheels"
+[robot]
+d1_mm = 254
+d2_mm = 266.7
 """
 DEVICE = """
 [device]

@@ -82,6 +82,8 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await page.getByRole("button", { name: "Begin: relaxed" }).focus();
   await page.keyboard.press("Enter");
   await banner("Running");
+  const words = (text) => page.waitForFunction((wanted) => document.querySelector(".robot")?.textContent === wanted, text, { timeout: 60_000 });
+  await words("The motors are commanded on."); // and nothing of how they were before
   await page.getByLabel("Note for the recording").fill("talked to the nurse");
   await click("Add the note");
   await page.waitForSelector(".cells", { timeout: 60_000 });
@@ -90,6 +92,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await screenshot(page, "console-running");
 
   await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
+  assert.match(await page.textContent(".robot"), /reports its motors off, confirmed after the stop/);
   await page.locator(".estimate h2", { hasText: /whole perturbation, 14 s/ }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".verdict"), /Completed and good.*The model explains [\d.]+ % in x, [\d.]+ % in y/);
   assert.match(await page.getByRole("button", { name: "Begin the next: rigid" }).getAttribute("class"), /main/);

@@ -178,6 +178,7 @@ void Console::begin(std::size_t index, const journal::Header& header, const std:
   target_ = target;
   pending_.clear();
   last_ = {};
+  robot_ = {};  // what it said before the trial holds no longer
   ticks_ = dropped_ticks_ = skipped_samples_ = next_number_ = 0;
   times_ = {};
   times_apart_ = {};
@@ -226,7 +227,7 @@ void Console::watch_throwing(std::span<const Tick> ticks) {
         trip_ = {reason, tick.time, tick.number, 0.0, 0.0};
         tripped = true;
       }
-      changed_ = changed_ || tick.phase != last_.phase || tick.reason != last_.reason;
+      changed_ = changed_ || tick.phase != last_.phase || tick.reason != last_.reason || tick.enabled != last_.enabled;
       last_ = tick;
       ++ticks_;
     }

@@ -1,7 +1,11 @@
 #include "mbk/experiment/drivers/udp_device.h"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <ctime>
 #include <random>
@@ -47,9 +51,33 @@ Result<std::unique_ptr<UdpDevice>> UdpDevice::create(const UdpOptions& options, 
   return std::unique_ptr<UdpDevice>(new UdpDevice(options, fittings));
 }
 
+UdpDevice::Claim::~Claim() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+/// A name that only one socket of this machine can have, and that goes with its process.
+bool UdpDevice::Claim::take(const UdpAddress& robot) noexcept {
+  if (descriptor_ >= 0) return true;
+  descriptor_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor_ < 0) return true;  // nobody can say
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  const auto end =
+      fmt::format_to_n(name.sun_path + 1, sizeof(name.sun_path) - 1, "mbk robot {:08x} {}", robot.host, robot.port);
+  const auto length = static_cast<socklen_t>(end.out - reinterpret_cast<const char*>(&name));
+  if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&name), length) == 0 || errno != EADDRINUSE) return true;
+  close(descriptor_);
+  descriptor_ = -1;
+  return false;
+}
+
 Result<void> UdpDevice::start() {
   const auto robot = UdpAddress::find(options_.address, options_.port);
   if (!robot) return tl::unexpected(robot.error());
+  if (!claim_.take(*robot)) {
+    return bad_data(fmt::format("{}: another mbk on this machine talks to this robot", facts_.name),
+                    "end that one first, or wait until its trial is over");
+  }
   auto socket = UdpSocket::open({0, options_.local_port});
   if (!socket) return tl::unexpected(socket.error());
   has_last_words_ = false;
@@ -115,7 +143,8 @@ Error UdpDevice::no_answer() const {
   add(counts_.foreign, "from another address");
   add(counts_.old, "of another session");
   return fail(ErrorKind::data, fmt::format("{}: no answer within {:g} s{}", facts_.name, options_.answer_within, came),
-              "start the robot's program, and check address, port, cable and firewall")
+              "start the robot's program, and check address, port, cable and firewall, and whether another mbk talks "
+              "to it")
       .value();
 }
 

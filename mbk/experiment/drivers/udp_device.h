@@ -50,7 +50,8 @@ class UdpDevice : public device::Device {
   [[nodiscard]] const device::Facts& facts() const override { return facts_; }
 
   /// @fails  data: the address is not known; the port is taken; no answer, with what came instead; the robot's motors
-  ///         are on; it keeps its own time in spite of lock_step; it has other sensors than `fittings` says.
+  ///         are on; it keeps its own time in spite of lock_step; another mbk
+  ///         on this machine talks to it; it has other sensors than `fittings` says.
   [[nodiscard]] Result<void> start() override;
   bool read(device::State& state) noexcept override;
   bool write(const device::Command& command) noexcept override;
@@ -75,6 +76,20 @@ class UdpDevice : public device::Device {
   void await_answer() noexcept;
   [[nodiscard]] Error no_answer() const;
 
+  /// That this machine talks to the robot; nobody else here does while it lives.
+  class Claim {
+   public:
+    Claim() = default;
+    Claim(const Claim&) = delete;
+    Claim& operator=(const Claim&) = delete;
+    ~Claim();
+    [[nodiscard]] bool take(const UdpAddress& robot) noexcept;
+
+   private:
+    int descriptor_ = -1;
+  };
+
+  Claim claim_;
   UdpOptions options_;
   Fittings fittings_;
   device::Facts facts_;

@@ -10,8 +10,9 @@ namespace {
 constexpr double kPi = 3.141592653589793;
 
 Result<std::vector<Trial>> read(const std::string& device) {
-  return read_experiment("[control]\nkind = \"position\"\n[perturbation]\nkind = \"none\"\n[device]\n" + device,
-                         "/lab/mine.toml");
+  return read_experiment(
+      "[control]\nkind = \"position\"\n[perturbation]\nkind = \"none\"\n[robot]\nd1_mm = 254\n[device]\n" + device,
+      "/lab/mine.toml");
 }
 
 DevicePlan plan(const std::string& device) {

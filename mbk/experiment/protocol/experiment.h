@@ -69,6 +69,8 @@ struct Trial : TrialPlan {
   LimitsFromPlan from_plan;
   DevicePlan device;
   Person person;
+  /// Keys of [robot] that the file does not give though its robot is a real one: they are those of the thesis's robot.
+  std::vector<std::string> assumed;
   std::string file_sha256;                       ///< of the experiment file, in hexadecimal digits
   std::shared_ptr<const Simulation> simulation;  ///< null: nobody told what could be simulated
 };
@@ -86,9 +88,13 @@ using ReadSimulation =
 /// Every one of them may be left out, so that each planar scenario is an experiment too.
 /// @param file  how messages call it
 /// @param simulation  without it the sections that describe a simulation are not looked at
-/// @fails  data: with file, line, key, value and what is allowed; a one-axis machine; a person's name.
+/// @fails  data: with file, line, key, value and what is allowed; a one-axis machine; a person's name; a real robot that
+///         no [robot] describes.
 [[nodiscard]] Result<std::vector<Trial>> read_experiment(std::string_view text, const std::filesystem::path& file,
                                                          const ReadSimulation& simulation = {});
+
+/// "[robot] does not give d1_mm, d2_mm: those of the robot of Dyck (2013) are assumed"; "" where nothing is.
+[[nodiscard]] std::string assumptions_text(const Trial& trial);
 
 /// The robot that a trial runs on.
 /// @fails  usage: a simulated one, and nobody told how. As Simulation::robot, UdpDevice::create, PluginDevice::create.

@@ -107,8 +107,25 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.from_plan = {!safety.has("speed_mm_per_s"), !safety.has("excursion_mm"), !safety.has("tracking_deg")};
     trial.person = read_person(root.section("person"));
     trial.device = read_device(root.section("device"), file.parent_path());
+    if (!trial.device.simulated()) {
+      if (!root.has("robot")) {
+        return tl::unexpected(root.error("device", "names a robot that no [robot] describes",
+                                         "write [robot] with d1_mm, d2_mm, home_mm, alpha_kg_m2 and friction of yours; "
+                                         "docs/guide/devices.md draws them"));
+      }
+      for (const char* key : {"d1_mm", "d2_mm", "home_mm", "theta1_deg", "theta2_deg", "alpha_kg_m2", "coulomb_Nm",
+                              "viscous_Nms_per_rad"}) {
+        if (!robot.has(key)) trial.assumed.emplace_back(key);
+      }
+    }
     return trial;
   });
+}
+
+std::string assumptions_text(const Trial& trial) {
+  if (trial.assumed.empty()) return {};
+  return fmt::format("[robot] does not give {}: mbk assumes {} of the robot of Dyck (2013)",
+                     fmt::join(trial.assumed, ", "), trial.assumed.size() == 1 ? "that" : "those");
 }
 
 Result<std::unique_ptr<device::Device>> make_device(const Trial& trial) {

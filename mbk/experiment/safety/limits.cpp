@@ -31,7 +31,7 @@ constexpr auto kKeys = std::to_array<LimitKey>({
     {"frozen_sensor_ms", &Limits::frozen_sensor, kMilli, 10'000.0, "a dead sensor is believed", kMayBeOff},
     {"frozen_sensor_torque_Nm", &Limits::frozen_sensor_torque, 1.0, 50.0, "a dead encoder is believed"},
     {"accelerometer_m_per_s2", &Limits::accelerometer, 1.0, 100.0, "encoders that are wrong are believed", kMayBeOff},
-    {"link_silence_ms", &Limits::link_silence, kMilli, 1000.0, "the robot is driven without being seen"},
+    {"link_silence_ms", &Limits::link_silence, kMilli, 5000.0, "the robot is driven without being seen"},
     {"lateness_ms", &Limits::lateness, kMilli, 1000.0, "the robot holds an old command", kMayBeOff},
     {"answer_lag_ms", &Limits::answer_lag, kMilli, 1000.0, "the robot obeys an old command", kMayBeOff},
     {"state_age_ms", &Limits::state_age, kMilli, 1000.0, "the gate looks at an old state", kMayBeOff},

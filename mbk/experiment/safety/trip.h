@@ -12,7 +12,7 @@ namespace mbk::safety {
 enum class Reason : std::uint8_t {
   none,
   stop_button,    ///< of the robot
-  operator_stop,  ///< key or console
+  operator_stop,  ///< key, console, or a signal (Trip::value is its number)
   link_lost,
   late,
   recording_failed,

@@ -34,6 +34,7 @@ struct LiveRecord {
   std::uint64_t ticks = 0;        ///< of mbk
   std::uint64_t fresh = 0;        ///< ticks with a new state
   std::uint64_t lost = 0;         ///< states that never came, by their sequence
+  std::uint64_t missed = 0;       ///< ticks at which this machine was late by more than one
   std::uint64_t backward = 0;     ///< ticks whose time on the robot's clock was not after the last
   std::uint64_t longest_gap = 0;  ///< ticks without a new state, the longest run
   bool link = true;

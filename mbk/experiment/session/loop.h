@@ -16,6 +16,7 @@ namespace mbk::session {
 /// What other threads tell the loop, and it them.
 struct LoopFlags {
   std::atomic<bool> operator_stop{false};  ///< safety stop by key or console
+  std::atomic<int> stop_signal{0};         ///< the signal that asked for it; 0: a person did
   std::atomic<bool> end_trial{false};      ///< end the perturbation early, and go back
   std::atomic<bool> end_session{false};    ///< the program is asked to end: no question is asked, no trial begun
   std::atomic<bool> recording{true};       ///< what is recorded reaches its file
@@ -46,8 +47,9 @@ struct LoopTimes {
 /// Runs a trial from the first tick to the last: wait, read the robot, decide, pass the gate, write the robot, hand the
 /// tick over. Where the sequence is done, or a trip's ramp is over, it goes on with motors off until the robot has
 /// confirmed that, or has not within Limits::motors_off (Gate::motors). Nothing in it allocates, locks, prints or
-/// touches a file. Where LoopFlags::beat says that it was given up, it stops the robot and ends. A robot that waits for its commands (Facts::keeps_time) is made to wait for a recorder that lags,
-/// up to two seconds; any other is not, and a lagging recorder trips the gate.
+/// touches a file. Where LoopFlags::beat says that it was given up, it stops the robot and ends. A robot that waits for
+/// its commands (Facts::keeps_time) is made to wait for a recorder that lags, up to two seconds; any other is not, and
+/// a lagging recorder trips the gate.
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
               realtime::BoundedRing<journal::Tick>& ticks, LoopFlags& flags, LoopTimes& times) noexcept;
 

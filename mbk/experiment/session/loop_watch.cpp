@@ -29,7 +29,7 @@ LoopWatch::~LoopWatch() {
 void LoopWatch::watch() noexcept {
   const realtime::SignalStack stack;
   std::uint64_t last = 0;  // beats
-  int looks = 0;  // since the last tick
+  int looks = 0;           // since the last tick
   while (!realtime::rest(kLook, [&] { return over_.load(); })) {
     const std::uint64_t beats = flags_.beats.load(std::memory_order_acquire);
     if (beats == 0) continue;  // it has not begun

@@ -235,6 +235,9 @@ std::vector<Finding> check_setup(const RobotSetup& setup) {
   check_force(setup, findings);
   check_motors(setup, *theta, findings);
   check_times(setup, findings);
+  if (const std::string assumed = protocol::assumptions_text(setup.trial); !assumed.empty()) {
+    findings.judge(Verdict::doubtful, assumed, "write yours");
+  }
   for (const std::string& one : safety::weakened(setup.trial.limits)) findings.add(Verdict::doubtful, one);
   return findings.take();
 }
@@ -246,6 +249,13 @@ std::string setup_text(const RobotSetup& setup) {
   text += fmt::format("joints     θ₁ {:.1f} to {:.1f}°, θ₂ {:.1f} to {:.1f}°, smallest opening {:.1f}°\n",
                       l.theta1_low / kDegree, l.theta1_high / kDegree, l.theta2_low / kDegree, l.theta2_high / kDegree,
                       l.smallest_opening / kDegree);
+  text +=
+      "angles     y\n"
+      "           |    o hand          x = d₁ cos θ₁ + d₂ sin θ₂\n"
+      "           |   /  d₂, θ₂ from −y   y = d₁ sin θ₁ − d₂ cos θ₂\n"
+      "           |  o elbow\n"
+      "           | /  d₁, θ₁ from +x\n"
+      "           base ---- x\n";
   text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.trial.device) : "none is named");
   if (!setup.has_device || setup.trial.device.simulated()) return text;
   const drivers::Fittings& f = setup.trial.device.fittings;

@@ -19,6 +19,10 @@ using testing::HasSubstr;
 constexpr const char* kExperiment =
     "[control]\nkind = \"position\"\n[perturbation]\nkind = \"none\"\n[device]\nkind = \"udp\"\n";
 
+constexpr const char* kRobot =
+    "[robot]\nd1_mm = 254\nd2_mm = 266.7\nhome_mm = [300, -50]\ntheta1_deg = [-55, 90]\ntheta2_deg = [0, 145]\n"
+    "alpha_kg_m2 = [0.06929, 0.04217, 0.04416]\nviscous_Nms_per_rad = [0.0651, 0.07389]\ncoulomb_Nm = [0.114, 0.114]\n";
+
 RobotSetup setup(const std::string& text) {
   auto read = read_robot_setup(text, "mine.toml");
   EXPECT_TRUE(read) << read.error().line();
@@ -39,15 +43,28 @@ Verdict verdict(const std::string& text, const std::string& words) {
 }
 
 TEST(RobotCheck, TheThesissRobotIsFine) {
-  EXPECT_EQ(worst(check_setup(setup(kExperiment))), Verdict::fine);
+  EXPECT_EQ(worst(check_setup(setup(std::string(kRobot) + kExperiment))), Verdict::fine);
   EXPECT_EQ(worst(check_setup(setup("[robot]\nkind = \"planar\"\n"))), Verdict::fine);
 }
 
+TEST(RobotCheck, ARobotThatIsNotDescribedIsRefusedAndWhatIsAssumedIsListed) {
+  const auto nothing = read_robot_setup(kExperiment, "mine.toml");
+  ASSERT_FALSE(nothing);
+  EXPECT_THAT(nothing.error().line(), HasSubstr("no [robot] describes"));
+  const std::string some = std::string("[robot]\nd1_mm = 300\nd2_mm = 280\n") + kExperiment;
+  EXPECT_EQ(verdict(some, "[robot] does not give home_mm, theta1_deg"), Verdict::doubtful);
+  EXPECT_EQ(verdict(std::string(kRobot) + kExperiment + "[safety]\nlink_silence_ms = 400\n", "link_silence_ms = 400"),
+            Verdict::doubtful);
+  EXPECT_EQ(verdict(std::string(kRobot) + kExperiment + "[safety]\nlateness_ms = 0\n", "lateness_ms is off"),
+            Verdict::doubtful);
+}
+
 TEST(RobotCheck, UnitsThatCannotBeMeantAreDoubted) {
-  const std::string e = kExperiment, wires = e + "[device.wiring]\n";
+  const std::string e = std::string(kRobot) + kExperiment, wires = e + "[device.wiring]\n";
   EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nd1_mm = 0.254\nd2_mm = 0.267\n", "links of"), Verdict::doubtful);
   EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nalpha_kg_m2 = [69, 42, 44]\n", "the hand feels"), Verdict::doubtful);
-  EXPECT_EQ(verdict(e + "[robot]\nalpha_kg_m2 = [0.07, 0.4, 0.04]\n", "the hand feels"), Verdict::wrong);
+  EXPECT_EQ(verdict(std::string(kExperiment) + "[robot]\nalpha_kg_m2 = [0.07, 0.4, 0.04]\n", "the hand feels"),
+            Verdict::wrong);
   EXPECT_EQ(verdict(wires + "torque_per_command_Nm = [100000, 1]\n", "units of command"), Verdict::doubtful);
   EXPECT_EQ(verdict(wires + "force_gain_N_per_unit = [[1, 0], [0, 20]]\n", "N per unit"), Verdict::doubtful);
   EXPECT_EQ(verdict(wires + "force_step = 0.1\n", "smallest step"), Verdict::doubtful);

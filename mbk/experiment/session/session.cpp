@@ -205,6 +205,7 @@ Result<void> Session::reset() {
     if (auto ok = gate_->reset(); !ok) return ok;
   }
   flags_->operator_stop = false;
+  flags_->stop_signal = 0;
   flags_->recording = true;
   return {};
 }
@@ -263,7 +264,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   {
     std::optional<LoopWatch> loop_watch;
     if (in_real_time && !trial.device.simulated()) {
-      loop_watch.emplace(*flags_, robot.facts().keeps_time, watched_loop(robot, recorder, stalled, sample_time, outcome));
+      loop_watch.emplace(*flags_, robot.facts().keeps_time,
+                         watched_loop(robot, recorder, stalled, sample_time, outcome));
     }
     loop.join();
   }
@@ -273,6 +275,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
 
 void Session::conclude(Recorder& recorder, TrialOutcome& outcome) const {
   if (outcome.trip.reason == safety::Reason::none) outcome.trip = gate_->trip();
+  if (outcome.trip.reason == safety::Reason::operator_stop) outcome.trip.value = flags_->stop_signal;
   if (outcome.motors.state == safety::MotorsOff::State::not_asked) outcome.motors = gate_->motors();
   outcome.ending = ending_of(outcome, *flags_);
   make_recording(recorder, outcome);

@@ -5,6 +5,7 @@
 
 #include "mbk/experiment/safety/gate.h"
 #include "mbk/experiment/safety/limits.h"
+#include "mbk/experiment/session/loop_watch.h"
 #include "mbk/study/validation/fault_kinds.h"
 #include "mbk/study/validation/udp_fault_kinds.h"
 #include "mbk/study/validation/udp_faults.h"
@@ -50,6 +51,21 @@ constexpr std::string_view kFunction = R"(
 ## A robot behind a function call
 The same gate on a virtual clock, in which every tick is exact. Ticks from the fault to zero torque, with the ramp of {ramp}. The robot confirms the safe state, as its link and its drives are sound.
 
+)";
+
+constexpr std::string_view kBeside = R"(
+## What fails beside the robot
+These need a real clock, a plug-in or a disk; `tests/end_to_end` (`run`, `udp`, `recover`) brings each of them about through `mbk run`.
+
+| Fault | On the screen | Exit code | In the recording |
+|---|---|---|---|
+| the driver does not return from a read or write for {stall:g} ms | **MOTORS NOT CONFIRMED OFF**, on terminal and page, from a second thread; where it returns, that is reported, and the gate judges the delay | – | ticks missed |
+| it still has not returned when somebody stops the trial, or after 1 s with a robot that keeps its own time | the same, with the reason; mbk waits until a signal ends it | 7 | what came until then, `loop-stalled` |
+| the driver calls `exit()` | MOTORS NOT CONFIRMED OFF | 7 | the journal, for `mbk recover` |
+| a sleep returns early | "the clock woke the loop too early", with the count | as the trial | nothing: the loop waits until the time has come |
+| the recording cannot be written after a stop (its name was taken, the disk is full) | the stop, its cause, the motors and the journal first, then the error | 5, or 7 | the journal, for `mbk recover` |
+| the folder of the recording is removed | safety stop `recording-failed`, and where the recording is now | 5 | all of it, in the nearest folder above that is left, or among temporary files |
+| somebody recovers, or records over, a journal that is being recorded | "is being recorded by process N", to them alone | 2 | nothing: the trial goes on |
 )";
 
 constexpr std::string_view kEnd = R"(
@@ -151,7 +167,8 @@ std::string safety_page() {
                      fmt::arg("drives", kDrivesFound), fmt::arg("error", safety::Limits{}.torque_error)) +
          fmt::format(fmt::runtime(kUdp), ramp, fmt::arg("link", kLinkTicks),
                      fmt::arg("motion", codes(motion_reasons(), [](std::string_view one) { return one; }))) +
-         udp_table() + fmt::format(fmt::runtime(kFunction), ramp) + function_table() + std::string(kEnd);
+         udp_table() + fmt::format(fmt::runtime(kFunction), ramp) + function_table() +
+         fmt::format(fmt::runtime(kBeside), fmt::arg("stall", 1e3 * session::LoopWatch::kLongest)) + std::string(kEnd);
 }
 
 }  // namespace mbk::validation

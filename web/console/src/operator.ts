@@ -15,8 +15,12 @@ const signs = { waiting: "○", running: "▶", done: "✓", stopped: "■" };
 const writes = (target: EventTarget | null): target is HTMLElement =>
   target instanceof HTMLTextAreaElement || (target instanceof HTMLInputElement && (target.type === "text" || target.type === "number"));
 
-/** What the robot says of itself, in one line. */
-function robotWords({ motors, confirmed_off, stop_button, link, fault, sentence }: RobotState): string {
+/** What is known of the robot's motors, in one line: in a trial what is commanded, else what the robot says of itself. */
+function robotWords({ running, ticks, safety, robot: { motors, confirmed_off, stop_button, link, fault, sentence } }: State): string {
+  if (running && confirmed_off !== false) {
+    if (safety.enabled) return "The motors are commanded on.";
+    return ticks === 0 ? "The trial begins." : "The motors are commanded off; the robot has not confirmed it yet.";
+  }
   const reported = { off: "reports its motors off", on: "reports its motors on", unknown: "has not reported whether its motors are on" }[motors];
   return [
     link ? `The robot ${reported}${confirmed_off ? ", confirmed after the stop" : ""}` : "No states come from the robot: what it does is not known",
@@ -192,7 +196,7 @@ class OperatorPage {
     if (!this.banner.classList.contains(kind)) this.banner.className = `banner ${kind}`;
     text(this.bannerTitle, title);
     text(this.bannerWords, words);
-    text(this.robot, state && this.connected ? robotWords(state.robot) : "");
+    text(this.robot, state && this.connected ? robotWords(state) : "");
     if (state) this.drawAlarm(state.robot);
   }
 
@@ -216,7 +220,8 @@ class OperatorPage {
     if (this.pressed) return ["tripped", "■ Stopping …", ""];
     if (state.over) return ["rest", "○ The session is over", "The reports can still be opened. Closing this page ends mbk."];
     if (!state.running) return this.atRest(state);
-    if (state.phase === "done") return [...this.motorsAtRest(state.robot), "The recording is written."];
+    if (state.robot.confirmed_off === false) return ["tripped", "■ The robot does not answer", state.robot.sentence];
+    if (state.phase === "done") return ["care", "▲ The motors are commanded off", "The robot has not confirmed it yet."];
     if (state.safety.cut) return ["care", "▲ Running, torque limited", "The controller asks for more than the gate lets pass."];
     return ["running", "▶ Running", "Within all limits."];
   }
