@@ -317,6 +317,41 @@ TEST(RobotFit, IsNotUsableWhereTheInertiaIsNone) {
   EXPECT_THAT(codes(found), Contains(WarningCode::damping_not_positive));
 }
 
+TEST(RobotFit, IsNotUsableWhereHeldOutDataContradictIt) {
+  const robot::DynamicModel model = planar({});
+  robot::DynamicModel loaded = model;
+  loaded.parameters.head(3) *= 4.0;  // another load at the hand
+  const auto judged_by = [&](const PreparedDynamics& other) {
+    return fitted({trial(model)}, model, {}, {other}).identification;
+  };
+  PreparedDynamics noisy = trial(model, motion_of(2, 0.0, 1.9));
+  EXPECT_TRUE(judged_by(noisy).usable);
+  const RobotIdentification found = judged_by(trial(loaded, motion_of(2, 0.0, 1.9)));
+  EXPECT_FALSE(found.usable);
+  EXPECT_THAT(codes(found), Contains(WarningCode::held_out_fit_poor));
+  EXPECT_THAT(found.warnings.back().message, HasSubstr("where the model was fitted"));
+  noisy.torque *= -1.0;
+  EXPECT_LT(judged_by(noisy).fit[0].vaf, 0.0);
+  EXPECT_FALSE(judged_by(noisy).usable);
+}
+
+TEST(RobotFit, IsUsableWhereAJointOnlyHardlyMovesWhileHeldOut) {
+  const robot::DynamicModel model = planar({});
+  numeric::Random random(3);
+  robot::JointMotion rest = motion_of(2, 0.0, 1.9);
+  rest.position.rowwise() = rest.position.row(0).eval();
+  rest.velocity *= 1e-3;
+  rest.acceleration *= 1e-3;
+  PreparedDynamics moving = trial(model), still = trial(model, rest);
+  for (PreparedDynamics* one : {&moving, &still}) {
+    for (Index joint = 0; joint < 2; ++joint) one->torque.col(joint) += coloured(random, 0.01);
+  }
+  const RobotIdentification found = fitted({moving}, model, {}, {still}).identification;
+  EXPECT_LT(found.fit[1].vaf, 50.0);
+  EXPECT_TRUE(found.usable);
+  EXPECT_THAT(codes(found), Contains(WarningCode::held_out_fit_poor));
+}
+
 TEST(RobotFit, RefusesWhatCannotBeFittedTogether) {
   const robot::DynamicModel model = planar({});
   const PreparedDynamics one = trial(model);
