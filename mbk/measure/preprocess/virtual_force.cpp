@@ -108,7 +108,8 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   if (auto ok = check_clock(clock, inspection, *plan, warnings); !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan); !ok) return tl::unexpected(ok.error());
+  std::vector<std::string> notes;
+  if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan, notes); !ok) return tl::unexpected(ok.error());
   const Cut cut = plan->cuts.front();
   FilterPlan filters = reference_filters(options);
   if (!published) {
@@ -205,6 +206,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   if (auto assumed = assumed_of_hand(mechanism, joints->motion.position.row(0).transpose()); !assumed.empty()) {
     made.recording.notes.push_back(std::move(assumed));
   }
+  made.recording.notes.insert(made.recording.notes.end(), notes.begin(), notes.end());
   return made;
 }
 
