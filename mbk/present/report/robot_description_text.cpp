@@ -99,6 +99,11 @@ std::string robot_description_text(const robot::RobotDescription& description,
                                                      "the others act only in those that stand behind them, or not at "
                                                      "all.",
                                                      apart, all));
+  for (const std::string& one : description.impossible) {
+    text += paragraph("  ! ", printable(one) +
+                                  ": each principal moment is at most the sum of the other two. 'robot identify' does "
+                                  "not use it; 'robot force' needs it corrected or identified.");
+  }
   return text;
 }
 
