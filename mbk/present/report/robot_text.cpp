@@ -63,6 +63,7 @@ std::string how_found(const RobotIdentification& found) {
       {"motor delay", found.delay_standard_error
                           ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) + " ms, found"
                           : fmt::format("{:.4g} ms, given", delay)});
+  for (const std::string& note : found.notes) rows.push_back({"note", note});
   return text + table(rows);
 }
 
@@ -146,7 +147,6 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
     text += paragraph("  at the edge of what can exist, strongest first: ",
                       fmt::format("{}", fmt::join(consistent.pressing, ", ")));
   }
-  for (const std::string& note : found.notes) text += paragraph("  ", note);
   return text;
 }
 
