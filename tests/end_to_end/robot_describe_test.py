@@ -84,6 +84,15 @@ class Describe(Case):
                              says="no body has the inertia")
         self.assertEqual(self.fine(*self.describe(urdf, pendulum), "--json").json["impossible"], [])
 
+    def test_the_hand_of_one_joint_is_a_place_or_an_angle(self):
+        """A drive that turns measures an angle; the hand at the end of a link that turns is somewhere, in mm."""
+        self.assertIn("0.00 mm", self.fine(*self.describe("[robot]\nkind = 'one_axis'\nslides = true\n")).out)
+        self.assertIn("·10⁻³ rad", self.fine(*self.describe("[robot]\nkind = 'one_axis'\nslides = false\n")).out)
+        urdf = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\ntip_link = 'upper'\n"
+        urdf += "tool_mm = [0, 0, -200]\nhand_axes = ['x', 'z']\n"
+        text = self.fine(*self.describe(urdf, (ROBOTS / "double_pendulum.urdf").read_text())).out
+        self.assertIn("0.00, -200.00 mm", text)
+
     def test_drives_and_planar_links_that_cannot_exist(self):
         axis = "[robot]\nkind = 'one_axis'\nslides = true\nmass_kg = 1\n[drive]\nterms = ['viscous', 'coulomb']\n"
         self.refused(BAD_DATA, *self.describe(axis + "viscous_Ns_per_m = [-1]\n"), says="viscous_Ns_per_m")

@@ -214,7 +214,7 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
     for (Index axis = 0; axis < kinds; ++axis) names.emplace_back(quantity.name(kinds, axis));
     return names;
   };
-  const bool slides = plane || mechanism.slides(0);
+  const bool slides = !mechanism.hand_turns();
   signals.hand_reference = gather(recording, at_hand(kReferenceChannels), slides ? "m" : "rad");
   if (hand_acceleration) {
     signals.hand_acceleration = gather(recording, at_hand(kAccelerationChannels), slides ? "m/s2" : "rad/s2");

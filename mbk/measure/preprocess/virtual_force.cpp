@@ -181,7 +181,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
       made.sensor_force.col(axis) = recorded[static_cast<std::size_t>(axis)]->values;
     }
   }
-  const bool turns = axes == 1 && !mechanism.slides(0);
+  const bool turns = mechanism.hand_turns();
   Matrix place;
   for (Index axis = 0; axis < axes; ++axis) {
     put(made.recording, kForceChannels.name(kinds, axis), turns ? "N.m" : "N", whole.col(axis));

@@ -29,7 +29,7 @@ std::string hand_text(const robot::Mechanism& mechanism) {
     numbers.push_back(fmt::format("{:.2f}", std::round(1e2 * kMillimetres * metres) / 1e2 + 0.0));
   }
   return fmt::format("{} {}, with every joint at 0", fmt::join(numbers, ", "),
-                     mechanism.joints() == 1 && !mechanism.slides(0) ? "·10⁻³ rad" : "mm");
+                     mechanism.hand_turns() ? "·10⁻³ rad" : "mm");
 }
 
 std::string drives_text(const robot::DynamicModel& model) {

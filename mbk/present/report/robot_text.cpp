@@ -196,14 +196,16 @@ std::string force_text(const ForceSummary& force) {
   std::vector<std::vector<std::string>> rows = {{"", "RMS", "peak"}};
   if (sure) rows.front().emplace_back("± of the robot's dynamics");
   for (Index axis = 0; axis < force.rms.size(); ++axis) {
-    rows.push_back({force.rms.size() == 1 ? "F" : (axis == 0 ? "Fx" : "Fy"), fmt::format("{:.3g} N", force.rms[axis]),
-                    fmt::format("{:.3g} N", force.peak[axis])});
-    if (sure) rows.back().push_back(fmt::format("{:.2g} N", numeric::kNormal95 * force.standard_error[axis]));
+    rows.push_back({force.rms.size() == 1 ? "F" : "F" + force.axes[static_cast<std::size_t>(axis)],
+                    fmt::format("{:.3g} {}", force.rms[axis], force.unit),
+                    fmt::format("{:.3g} {}", force.peak[axis], force.unit)});
+    if (sure)
+      rows.back().push_back(fmt::format("{:.2g} {}", numeric::kNormal95 * force.standard_error[axis], force.unit));
   }
   text += "\n" + table(rows);
   if (force.comparison) {
-    text += "\n" +
-            force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor", "force sensor");
+    text += "\n" + force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor",
+                                         "force sensor", force.unit);
   }
   return text;
 }

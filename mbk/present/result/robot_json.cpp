@@ -181,6 +181,8 @@ std::string to_json(const ForceSummary& force) {
   json["inputs"] = inputs_json(force.sources);
   json["force_source"] = word_of(force.source);
   json["lag_s"] = number(force.lag);
+  json["axes"] = force.axes;
+  json["unit"] = force.unit;
   json["RMS"] = list(force.rms);
   json["peak"] = list(force.peak);
   if (force.standard_error.size() > 0) json["standard_error_RMS"] = list(force.standard_error);
