@@ -168,6 +168,18 @@ std::string fit_text(const RobotIdentification& found) {
   return "\n" + table(rows);
 }
 
+/// The torque beside that of the URDF.
+std::string stated_text(const RobotIdentification& found) {
+  std::vector<std::vector<std::string>> rows = {{"torque over that of the URDF", "ratio"}};
+  for (std::size_t joint = 0; joint < found.stated.size(); ++joint) {
+    const StatedRatio& one = found.stated[joint];
+    rows.push_back(
+        {fmt::format("joint {}", joint + 1),
+         std::isfinite(one.ratio) ? with_interval(one.ratio, numeric::kNormal95 * one.standard_error) : "–"});
+  }
+  return "\n" + table(rows) + "  (of inertia and weight, friction left free)\n";
+}
+
 }  // namespace
 
 std::string robot_text(const RobotIdentification& found) {
@@ -178,6 +190,7 @@ std::string robot_text(const RobotIdentification& found) {
     text += free_text(found);
   }
   text += fit_text(found);
+  if (!found.stated.empty()) text += stated_text(found);
   if (found.inertia.smallest > 0.0) {
     text += fmt::format("  inertia matrix positive definite in every posture: smallest eigenvalue {:.3g}\n",
                         found.inertia.smallest);

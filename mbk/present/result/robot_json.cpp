@@ -157,6 +157,9 @@ std::string to_json(const RobotIdentification& found) {
   for (const auto& [name, share] : found.weakest) {
     json["excitation"]["weakest"].push_back({{"name", name}, {"share", number(share)}});
   }
+  for (const StatedRatio& one : found.stated) {
+    json["stated"].push_back({{"ratio", number(one.ratio)}, {"standard_error", number(one.standard_error)}});
+  }
   json["inertia"] = {{"smallest_eigenvalue", number(found.inertia.smallest)}, {"at", found.inertia.where}};
   if (found.consistent) json["consistent"] = consistent_json(*found.consistent);
   json["samples"] = found.samples;
