@@ -13,6 +13,7 @@
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/inspect.h"
+#include "mbk/measure/identify/coupled_drives.h"
 #include "mbk/measure/identify/stated_inertia.h"
 #include "mbk/measure/identify/transmission_checks.h"
 #include "mbk/measure/preprocess/resample.h"
@@ -227,6 +228,7 @@ void check_drives(std::span<const Recording> recordings, std::span<const Recordi
   const auto both = prepare_both(recordings, held_out, found.model, options.preprocess);
   if (!both) return;
   identify::compare_with_stated(both->trials, stated, found);
+  identify::warn_of_coupled_drives(both->trials, found);
   identify::test_transmission(both->trials, found);
   const robot::DriveTerms& drive = found.model.drive;
   if (drive.coulomb && drive.viscous && !drive.stribeck) {
