@@ -61,6 +61,7 @@ enum class WarningCode {
   nonlinear_distortion,
   elastic_drive,
   backlash,
+  robot_changed,
   excluded_trial,
   excluded_window,
 };
@@ -121,6 +122,7 @@ enum class WarningCode {
       {nonlinear_distortion, "nonlinear-distortion"},
       {elastic_drive, "elastic-drive"},
       {backlash, "backlash"},
+      {robot_changed, "robot-changed"},
       {excluded_trial, "excluded-trial"},
       {excluded_window, "excluded-window"},
   });
