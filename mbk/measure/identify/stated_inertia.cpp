@@ -25,6 +25,7 @@ bool states_all_bodies(const robot::DynamicModel& stated) {
 
 /// Sum of squares of what a joint's torque leaves beyond columns Z.
 double left_beyond(const Matrix& Z, const Vector& torque) {
+  if (Z.cols() == 0) return torque.squaredNorm();
   const auto fit = numeric::fit_least_squares(Z, torque);
   return fit ? (torque - Z * fit->free).squaredNorm() : torque.squaredNorm();
 }

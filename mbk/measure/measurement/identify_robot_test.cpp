@@ -292,6 +292,17 @@ TEST(IdentifyRobot, NamesTheFactorByWhichATorqueIsNotThatOfTheUrdf) {
   }
 }
 
+TEST(IdentifyRobot, ComparesARobotWithoutDriveTermsWithItsUrdf) {
+  const Axis axis = as_stated();
+  const Recording recording = recorded(axis, 7);
+  robot::DynamicModel model = model_of(axis);
+  model.drive = {.viscous = false, .coulomb = false, .offset = false};
+  model.parameters = Vector::Zero(std::ssize(model.coefficients()));
+  const auto found = identify_robot({&recording, 1}, {}, model, {});
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_EQ(found->stated.size(), 1U);
+}
+
 TEST(IdentifyRobot, NamesNoFactorWhereTheUrdfIsWrongInAnotherWay) {
   Axis heavier = as_stated();
   heavier.link = 0.04;  // its weight is as stated
