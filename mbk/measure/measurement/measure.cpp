@@ -396,7 +396,7 @@ std::string contradicted_by_sensor(const Identification& computed, const Identif
 
 /// A computed force is not used where the recording shows that the robot is not the one that was identified: by a force
 /// sensor, or by friction or a damping that feeds in energy, which the robot's own friction leaves in the force where
-/// it has changed.
+/// it has changed. A momentum observer's force comes late, which a sensor contradicts whatever the robot is.
 void warn_of_changed_robot(Measurement& measured) {
   Identification& id = measured.identification;
   std::string message;
@@ -477,7 +477,7 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     measured.bootstrap = std::move(*bootstrap);
   }
   if (auto ok = compare_with_sensor(sources, trials, options, measured); !ok) return tl::unexpected(ok.error());
-  if (sources.front().computed) warn_of_changed_robot(measured);
+  if (options.preprocess.force_source == ForceSource::virtual_sensor) warn_of_changed_robot(measured);
   if (options.joint_domain) {
     auto joints = at_joints(sources, trials, measured.identification);
     if (!joints) return tl::unexpected(joints.error());
