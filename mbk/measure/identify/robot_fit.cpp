@@ -492,13 +492,13 @@ void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
   found.usable = false;
 }
 
-/// Whether a model that explains a joint's torque poorly must not be used: it explains less than half of it, or its
-/// residual grows where it was not fitted. A joint that hardly moves while it is held out shows neither.
+/// Whether a model that explains a joint's torque poorly must not be used: the mean of the torque would explain more,
+/// or its residual grows where it was not fitted. A joint that hardly moves while it is held out, or whose torque is
+/// mostly noise, shows neither.
 bool does_not_hold(const TorqueFit& fit) {
-  constexpr double kHalf = 50.0;                 // [%]
   constexpr double kAlike = 1.1, kLarger = 1.5;  // residual held out over that in sample
   const double growth = fit.rmse / std::max(fit.rmse_in_sample, 1e-300);
-  return growth > kLarger || (fit.vaf < kHalf && (growth > kAlike || fit.vaf_in_sample < kHalf));
+  return growth > kLarger || (fit.vaf < 0.0 && (growth > kAlike || fit.vaf_in_sample < 0.0));
 }
 
 void warn(RobotIdentification& found, double loss_by_chance) {
