@@ -33,6 +33,7 @@ Result<robot::RobotDescription> from_result(const std::filesystem::path& file) {
   model.delay = stored->delay;
   description->source = file.string();
   description->unstated.clear();
+  description->impossible.clear();
   description->usable = stored->usable;
   description->warnings = stored->warnings;
   return description;
@@ -55,6 +56,10 @@ Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>&
   if (!description->unstated.empty()) {
     return bad_data(fmt::format("it does not say {}", fmt::join(description->unstated, ", ")),
                     "find them with 'mbk robot identify FILE... --robot ROBOT --json', or state them", file->string());
+  }
+  if (!description->impossible.empty()) {
+    return bad_data(fmt::format("{}", fmt::join(description->impossible, "; ")),
+                    "correct it, or find it with 'mbk robot identify FILE... --robot ROBOT --json'", file->string());
   }
   if (!description->usable) {
     return fail(ErrorKind::not_usable,

@@ -10,7 +10,7 @@ import re
 import tempfile
 import unittest
 
-from command import Case, flat, main, run, write_csv
+from command import NOT_USABLE, Case, flat, main, run, write_csv
 from help_tree import every_command
 from mistakes import as_option, first_options, right_map
 from explore_test import trial
@@ -428,6 +428,22 @@ def _(test):  # take the play out of the drive, or move more slowly
     raised = on_a_drive(test, stiff + "backlash_deg = [0.2, 0.2]")
     test.assertIn("take the play out", hint_of(raised, "backlash"))
     test.goes("backlash", raised, on_a_drive(test, stiff))
+
+
+@advice_of("robot-changed")
+def _(test):  # identify the robot anew, in the condition of the measurement
+    def identified(*changes):
+        path = test.simulated("free_motion", *changes)
+        out = path.with_suffix(".robot.json")
+        run("robot", "identify", "--json", "--quiet", "--overwrite", "--out", out, path)
+        return "--force-source", "virtual", "--robot", out
+    arm = test.simulated("relaxed_virtual_sensor"), "--handle-mass", "0.135"
+    cold = identified((r"^coulomb_Nm = .*$", "coulomb_Nm = [0.03, 0.03]\nviscous_Nms_per_rad = [0.13, 0.15]"))
+    raised = test.measured(*arm, *cold)
+    test.assertEqual(raised.code, NOT_USABLE)
+    followed = test.measured(*arm, *identified())
+    test.assertEqual(followed.code, 0)
+    test.goes("robot-changed", raised, followed)
 
 
 def changes_half_way(test, code, change):

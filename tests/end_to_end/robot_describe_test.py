@@ -2,6 +2,7 @@
 """mbk robot describe: what was understood of a robot's description, and in one line what was not."""
 
 import pathlib
+import re
 
 from command import BAD_DATA, WRONG_USAGE, Case, main
 
@@ -64,6 +65,41 @@ class Describe(Case):
         """Where the even grid of postures has one point, at the corner."""
         text = self.fine(*self.describe("[robot]\nkind = 'planar'\nsmallest_opening_deg = 179.9999\n")).out
         self.assertIn("coefficients", text)
+
+    def test_links_that_cannot_exist(self):
+        urdf = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\n"
+        pendulum = (ROBOTS / "double_pendulum.urdf").read_text()
+        self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('mass value="', 'mass value="-', 1)),
+                     says=["link 'upper' has a mass of -0.5", "kg"])
+        self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('damping="', 'damping="-', 1)),
+                     says=["<dynamics> of joint 'shoulder'", "negative"])
+        for wrong in ('ixx="-0.01"', 'ixx="9"', 'ixy="0.5"'):
+            with self.subTest(wrong):
+                before = wrong.split('"')[0] + '"'
+                text = re.sub(f'{before}[^"]*"', wrong, pendulum, count=1)
+                robot = self.describe(urdf + "[drive]\nterms = ['viscous', 'coulomb']\n", text)
+                self.assertIn("no body has the inertia of link 'upper'", self.fine(*robot).out)
+                self.assertEqual(len(self.fine(*robot, "--json").json["impossible"]), 1)
+                self.refused(BAD_DATA, "robot", "force", self.folder / "robot.toml", "--robot", robot[-1],
+                             says="no body has the inertia")
+        self.assertEqual(self.fine(*self.describe(urdf, pendulum), "--json").json["impossible"], [])
+
+    def test_the_hand_of_one_joint_is_a_place_or_an_angle(self):
+        """A drive that turns measures an angle; the hand at the end of a link that turns is somewhere, in mm."""
+        self.assertIn("0.00 mm", self.fine(*self.describe("[robot]\nkind = 'one_axis'\nslides = true\n")).out)
+        self.assertIn("·10⁻³ rad", self.fine(*self.describe("[robot]\nkind = 'one_axis'\nslides = false\n")).out)
+        urdf = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\ntip_link = 'upper'\n"
+        urdf += "tool_mm = [0, 0, -200]\nhand_axes = ['x', 'z']\n"
+        text = self.fine(*self.describe(urdf, (ROBOTS / "double_pendulum.urdf").read_text())).out
+        self.assertIn("0.00, -200.00 mm", text)
+
+    def test_drives_and_planar_links_that_cannot_exist(self):
+        axis = "[robot]\nkind = 'one_axis'\nslides = true\nmass_kg = 1\n[drive]\nterms = ['viscous', 'coulomb']\n"
+        self.refused(BAD_DATA, *self.describe(axis + "viscous_Ns_per_m = [-1]\n"), says="viscous_Ns_per_m")
+        self.refused(BAD_DATA, *self.describe(axis + "coulomb_N = [-1]\n"), says="coulomb_N")
+        for alpha in ("[-0.07, 0.04, 0.04]", "[0.07, 0.5, 0.04]", "[0.07, 0.04, -0.04]"):
+            self.refused(BAD_DATA, *self.describe(f"[robot]\nkind = 'planar'\nalpha_kg_m2 = {alpha}\n"),
+                         says=["alpha_kg_m2", "no two links"])
 
     def test_what_is_no_robot(self):
         self.refused(WRONG_USAGE, "robot", "describe", says="FILE")

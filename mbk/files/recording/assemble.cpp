@@ -546,6 +546,8 @@ class Assembler {
         signal.unit = name.unit;
         recording_.notes.push_back(
             fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+      } else if (signal.is_plain() && is_load(*kind) && names_a_current(line->array->name)) {
+        return a_current(*kind, line->array->name);
       } else if (is_named(*line) && signal.is_plain() && !kind->measures.empty() &&
                  ends_in_brackets(line->array->name)) {
         recording_.notes.push_back(fmt::format("the name of '{}' says {}, which {} cannot be in: it was taken in {}",
@@ -560,6 +562,21 @@ class Assembler {
       signals_.push_back(std::move(signal));
     }
     return find_time();
+  }
+
+  /// A force or a torque.
+  static bool is_load(const ChannelKind& kind) {
+    return std::ranges::any_of(kind.measures,
+                               [](Dimension one) { return one == Dimension::force || one == Dimension::torque; });
+  }
+  static tl::unexpected<Error> a_current(const ChannelKind& kind, const std::string& name) {
+    const std::string_view unit = si_unit(kind.measures.front());
+    return bad_data(
+        fmt::format("channel '{}' cannot be a current, and '{}' is one by its name", kind.name, name),
+        fmt::format(
+            "give the torque constant behind the gear [{unit}/A], as in --channels \"{alias}={name}*0.12:{unit}\", "
+            "or say that it is in {unit}: \"{alias}={name}:{unit}\"",
+            fmt::arg("unit", unit), fmt::arg("alias", kind.alias), fmt::arg("name", name)));
   }
 
   /// "V" of "cell [V]".

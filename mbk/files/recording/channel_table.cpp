@@ -151,6 +151,27 @@ const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int 
   return nullptr;
 }
 
+bool names_a_current(std::string_view name) {
+  const std::string small = in_lower_case(name);
+  const auto has = [&small](std::string_view word) { return small.find(word) != small.npos; };
+  std::vector<std::string_view> words;  // of the name as it is spelled
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of(" _-./,:[](){}", begin), name.size());
+    if (end > begin) words.push_back(name.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (words.empty()) return false;
+  const std::string_view last = words.back();
+  const bool brackets = name.ends_with(']') || name.ends_with(')');
+  if (last == "mA" || last == "uA" || last == "µA" || last == "Arms" || (last == "A" && brackets)) return true;
+  if (has("torque") || has("force") || has("tau") || has("moment")) return false;  // "current_torque" is that of now
+  return has("current") || std::ranges::any_of(words, [](std::string_view word) {
+           constexpr std::array kWords = {"curr", "amp", "amps", "ampere", "amperes", "i", "iq", "im", "imot"};
+           while (!word.empty() && word.back() >= '0' && word.back() <= '9') word.remove_suffix(1);
+           return std::ranges::find(kWords, in_lower_case(word)) != kWords.end();
+         });
+}
+
 ColumnName parse_column_name(std::string_view name) {
   name = trimmed(name);
   ColumnName column{kinds_called(name), nullptr};

@@ -52,6 +52,10 @@ inline constexpr int kMaxJoints = 8;
 /// The one of `kinds` that belongs to so many axes, or nullptr.
 [[nodiscard]] const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes);
 
+/// Whether a column's name says that it holds a current: "i1 [A]", "motor_mA", "current_1", "Iq". A "current_torque"
+/// does not.
+[[nodiscard]] bool names_a_current(std::string_view name);
+
 /// A column name taken apart: "hand_x_mm", "hand_x [mm]", "hand_x (mm)", "hand_x in mm", "hand_x mm" and "hand_x/mm"
 /// are hand_x in mm.
 struct ColumnName {

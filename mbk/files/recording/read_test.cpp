@@ -373,6 +373,25 @@ TEST_F(Read, NamesAUnitInTheNameThatTheChannelCannotHave) {
   EXPECT_THAT(good(text, with_channels("x=x,Fx=3:N")).notes, testing::Each(testing::Not(HasSubstr("cannot be in"))));
 }
 
+TEST_F(Read, TakesNoCurrentForATorque) {
+  for (const char* name :
+       {"i1 [A]", "motor (mA)", "motor_mA", "current_1", "MotorCurrent", "Iq_1", "i_motor", "curr 1"}) {
+    const std::string text = "t,q1," + std::string(name) + "\n0,1,2\n1,2,3\n";
+    for (const std::string& source : {std::string(name), std::string("3")}) {
+      EXPECT_THAT(bad(text, with_channels("q1=2,tau1=" + source)).line(),
+                  AllOf(HasSubstr("is one by its name"), HasSubstr("torque constant"), HasSubstr("*0.12:N.m")))
+          << name;
+      EXPECT_EQ(good(text, with_channels("q1=2,tau1=" + source + "*0.5:N.m")).find("torque_1")->values[0], 1.0) << name;
+      EXPECT_EQ(good(text, with_channels("q1=2,tau1=" + source + ":N.m")).find("torque_1")->values[0], 2.0) << name;
+    }
+  }
+  for (const char* name :
+       {"current_torque", "actual_current_force", "motor_A", "torque", "index", "column 3", "amplitude"}) {
+    const std::string text = "t,q1," + std::string(name) + "\n0,1,2\n1,2,3\n";
+    EXPECT_EQ(good(text, with_channels("q1=2,tau1=3")).find("torque_1")->values[0], 2.0) << name;
+  }
+}
+
 TEST_F(Read, ListsTheColumnsWhereNothingIsRecognised) {
   EXPECT_THAT(bad("u,v\n0,1\n").line(),
               HasSubstr("no channel is recognised; it has 2 columns: u, v; say which is which, as in --channels"));

@@ -492,6 +492,15 @@ void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
   found.usable = false;
 }
 
+/// Whether a model that explains a joint's torque poorly must not be used: the mean of the torque would explain more,
+/// or its residual grows where it was not fitted. A joint that hardly moves while it is held out, or whose torque is
+/// mostly noise, shows neither.
+bool does_not_hold(const TorqueFit& fit) {
+  constexpr double kAlike = 1.1, kLarger = 1.5;  // residual held out over that in sample
+  const double growth = fit.rmse / std::max(fit.rmse_in_sample, 1e-300);
+  return growth > kLarger || (fit.vaf < 0.0 && (growth > kAlike || fit.vaf_in_sample < 0.0));
+}
+
 void warn(RobotIdentification& found, double loss_by_chance) {
   std::vector<Warning>& warnings = found.warnings;
   if (!(found.inertia.smallest > 0.0)) {
@@ -541,12 +550,22 @@ void warn(RobotIdentification& found, double loss_by_chance) {
   }
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     constexpr double kPoor = 80.0;
-    if (!(found.fit[joint].vaf < kPoor)) continue;  // nor where there was no torque to explain
-    warnings.push_back({found.held_out ? WarningCode::held_out_fit_poor : WarningCode::fit_poor,
-                        fmt::format("only {:.1f} % of the torque of joint {} is explained{}", found.fit[joint].vaf,
-                                    joint + 1, found.held_out ? " on held-out data" : ""),
-                        "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
-                        "noise of the motion (--method iv)"});
+    const TorqueFit& fit = found.fit[joint];
+    if (!(fit.vaf < kPoor)) continue;  // nor where there was no torque to explain
+    std::string message = fmt::format("only {:.1f} % of the torque of joint {} is explained{}", fit.vaf, joint + 1,
+                                      found.held_out ? " on held-out data" : "");
+    std::string remedy =
+        "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
+        "noise of the motion (--method iv)";
+    if (found.held_out && fit.vaf_in_sample >= kPoor) {
+      message += fmt::format("; {:.1f} % of it is explained where the model was fitted", fit.vaf_in_sample);
+      remedy =
+          "the model fits one recording and not another: use fewer --terms, record longer and more varied motion, and "
+          "keep load, temperature and gains of the robot the same";
+    }
+    warnings.push_back({found.held_out ? WarningCode::held_out_fit_poor : WarningCode::fit_poor, std::move(message),
+                        std::move(remedy)});
+    if (does_not_hold(fit)) found.usable = false;
   }
   if (found.consistent) warn_of_loss(found, loss_by_chance);
   for (const RobotCoefficient& one : found.coefficients) {

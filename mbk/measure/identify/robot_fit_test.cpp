@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "mbk/base/numeric/random.h"
+#include "mbk/measure/identify/coupled_drives.h"
 #include "mbk/model/robot/planar_mechanism.h"
 #include "mbk/model/robot/serial_chain.h"
 
@@ -315,6 +316,68 @@ TEST(RobotFit, IsNotUsableWhereTheInertiaIsNone) {
   EXPECT_LT(found.inertia.smallest, 0.0);
   EXPECT_THAT(codes(found), Contains(WarningCode::inertia_not_positive));
   EXPECT_THAT(codes(found), Contains(WarningCode::damping_not_positive));
+}
+
+TEST(RobotFit, IsNotUsableWhereHeldOutDataContradictIt) {
+  const robot::DynamicModel model = planar({});
+  robot::DynamicModel loaded = model;
+  loaded.parameters.head(3) *= 4.0;  // another load at the hand
+  const auto judged_by = [&](const PreparedDynamics& other) {
+    return fitted({trial(model)}, model, {}, {other}).identification;
+  };
+  PreparedDynamics noisy = trial(model, motion_of(2, 0.0, 1.9));
+  EXPECT_TRUE(judged_by(noisy).usable);
+  const RobotIdentification found = judged_by(trial(loaded, motion_of(2, 0.0, 1.9)));
+  EXPECT_FALSE(found.usable);
+  EXPECT_THAT(codes(found), Contains(WarningCode::held_out_fit_poor));
+  EXPECT_THAT(found.warnings.back().message, HasSubstr("where the model was fitted"));
+  noisy.torque *= -1.0;
+  EXPECT_LT(judged_by(noisy).fit[0].vaf, 0.0);
+  EXPECT_FALSE(judged_by(noisy).usable);
+}
+
+TEST(RobotFit, IsUsableWhereAJointOnlyHardlyMovesWhileHeldOut) {
+  const robot::DynamicModel model = planar({});
+  numeric::Random random(3);
+  robot::JointMotion rest = motion_of(2, 0.0, 1.9);
+  rest.position.rowwise() = rest.position.row(0).eval();
+  rest.velocity *= 1e-3;
+  rest.acceleration *= 1e-3;
+  PreparedDynamics moving = trial(model), still = trial(model, rest);
+  for (PreparedDynamics* one : {&moving, &still}) {
+    for (Index joint = 0; joint < 2; ++joint) one->torque.col(joint) += coloured(random, 0.01);
+  }
+  const RobotIdentification found = fitted({moving}, model, {}, {still}).identification;
+  EXPECT_LT(found.fit[1].vaf, 50.0);
+  EXPECT_TRUE(found.usable);
+  EXPECT_THAT(codes(found), Contains(WarningCode::held_out_fit_poor));
+}
+
+TEST(CoupledDrives, AreNamedWhereTheFrictionOfAJointGoesWithTheSpeedOfAnother) {
+  const robot::DynamicModel model = planar({});
+  const robot::JointMotion motion = motion_of(2);
+  const auto warned = [&](double viscous, double dry, std::uint64_t seed) {
+    numeric::Random random(seed);
+    PreparedDynamics coupled = trial(model, motion);
+    const Vector speed = motion.velocity.col(0) + motion.velocity.col(1);
+    coupled.torque.col(1) += viscous * motion.velocity.col(0) + dry * (speed / 0.02).array().tanh().matrix();
+    for (Index joint = 0; joint < 2; ++joint) coupled.torque.col(joint) += coloured(random, 0.01);
+    RobotIdentification found = fitted({coupled}, model).identification;
+    found.warnings.clear();
+    warn_of_coupled_drives({coupled}, found);
+    return found.warnings;
+  };
+  for (const auto& [viscous, dry] : {std::pair(0.1, 0.0), std::pair(-0.1, 0.0), std::pair(0.0, 0.1)}) {
+    const std::vector<Warning> warnings = warned(viscous, dry, 5);
+    ASSERT_EQ(warnings.size(), 1U) << viscous << ", " << dry;
+    EXPECT_EQ(warnings[0].code, WarningCode::missing_dynamics);
+    EXPECT_THAT(warnings[0].message, HasSubstr("joint 2 go with the speed of joint 1"));
+  }
+  int false_alarms = 0;
+  constexpr int kRuns = 200;
+  for (int run = 0; run < kRuns; ++run)
+    false_alarms += warned(0.0, 0.0, 100U + static_cast<unsigned>(run)).empty() ? 0 : 1;
+  EXPECT_EQ(false_alarms, 0);
 }
 
 TEST(RobotFit, RefusesWhatCannotBeFittedTogether) {

@@ -408,23 +408,28 @@ void test_transmission(const std::vector<PreparedDynamics>& trials, RobotIdentif
 }
 
 void warn_of_transmission(RobotIdentification& found) {
-  constexpr double kEnough = 0.5;  // of what counts, so that it surely does not
+  constexpr double kEnough = 0.5;    // of what counts, so that it surely does not
+  constexpr double kSlowest = 0.1;   // [Hz] at which a robot can be identified
+  constexpr double kExplained = 80;  // [%] of the torque, for its residual to be that of a drive
   double top = 0.0;
   for (const Preparation& how : found.preparations) top = std::max(top, how.band_high.value);
   for (std::size_t joint = 0; joint < found.transmission.size(); ++joint) {
     const TransmissionTest& test = found.transmission[joint];
     const TransmissionColumn &bends = test.elastic, &gap = test.backlash;
     const bool slides = found.model.mechanism->slides(static_cast<int>(joint));
-    if (bends.found) {
-      const double resonance = 0.5 / (std::numbers::pi * std::sqrt(std::abs(bends.coefficient)));
+    if (joint < found.fit.size() && found.fit[joint].vaf < kExplained) continue;
+    const double resonance = 0.5 / (std::numbers::pi * std::sqrt(std::abs(bends.coefficient)));
+    // The column is the first term of a series in (f/f_r)².
+    if (bends.found && resonance > top) {
+      const double slower = top * std::sqrt(std::min(kEnough * kNegligible / bends.of_torque, 1.0));
       found.warnings.push_back(
           {WarningCode::elastic_drive,
            fmt::format("the torque of joint {} goes with its own second derivative, as where motor and link turn "
                        "against each other: an elastic drive with a resonance at about {:.2g} Hz, the encoder {}; "
                        "inertia and friction are biased by that",
                        joint + 1, resonance, side_of(bends.coefficient)),
-           fmt::format("move more slowly, below {:.2g} Hz, or stiffen the drive",
-                       top * std::sqrt(std::min(kEnough * kNegligible / bends.of_torque, 1.0)))});
+           slower > kSlowest ? fmt::format("move more slowly, below {:.2g} Hz, or stiffen the drive", slower)
+                             : "stiffen the drive, or record the angle of the link; slower motion would not help"});
     }
     if (gap.found) {
       std::string size;

@@ -63,6 +63,11 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
   ComputedForce computed;
   computed.summary.source = options.preprocess.force_source;
   computed.summary.lag = made->lag;
+  computed.summary.axes.clear();
+  for (int axis = 0; axis < axes; ++axis) {
+    computed.summary.axes.push_back(options.preprocess.robot->mechanism->hand_axis_name(axis));
+  }
+  if (options.preprocess.robot->mechanism->hand_turns()) computed.summary.unit = "N·m";
   computed.summary.rms = rms(filtered->leftCols(axes));
   computed.summary.peak = filtered->leftCols(axes).cwiseAbs().colwise().maxCoeff().transpose();
   if (!sure) computed.summary.standard_error = rms(made->standard_error.middleRows(first, rows));

@@ -13,6 +13,8 @@
 
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/inspect.h"
+#include "mbk/measure/identify/coupled_drives.h"
+#include "mbk/measure/identify/stated_inertia.h"
 #include "mbk/measure/identify/transmission_checks.h"
 #include "mbk/measure/preprocess/resample.h"
 
@@ -220,11 +222,13 @@ void check_friction(std::span<const Recording> recordings, std::span<const Recor
   }
 }
 
-/// What the residual says of friction and of the drives, at the delay that was found.
+/// What the data say of the inertia that is stated, of friction and of the drives, at the delay that was found.
 void check_drives(std::span<const Recording> recordings, std::span<const Recording> held_out,
-                  const RobotOptions& options, RobotIdentification& found) {
+                  const robot::DynamicModel& stated, const RobotOptions& options, RobotIdentification& found) {
   const auto both = prepare_both(recordings, held_out, found.model, options.preprocess);
   if (!both) return;
+  identify::compare_with_stated(both->trials, stated, found);
+  identify::warn_of_coupled_drives(both->trials, found);
   identify::test_transmission(both->trials, found);
   const robot::DriveTerms& drive = found.model.drive;
   if (drive.coulomb && drive.viscous && !drive.stribeck) {
@@ -255,7 +259,7 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   }
   if (!options.stribeck_velocity || !model.drive.stribeck) {
     auto found = fit_delay(recordings, held_out, model, all);
-    if (found) check_drives(recordings, held_out, all, *found);
+    if (found) check_drives(recordings, held_out, model, all, *found);
     return found;
   }
 
@@ -290,7 +294,7 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   constexpr int kBits = 8;  // of the logarithm's range: 2 % of the velocity
   boost::math::tools::brent_find_minima(left, std::max(low, nearest - step), std::min(high, nearest + step), kBits);
   if (failure) return tl::unexpected(*failure);
-  if (best) check_drives(recordings, held_out, all, *best);
+  if (best) check_drives(recordings, held_out, model, all, *best);
   return best;
 }
 

@@ -263,6 +263,54 @@ TEST(IdentifyRobot, SaysHowMuchADriveBendsAndWhereTheEncoderSits) {
   }
 }
 
+/// The axis that the URDF of `model_of` describes, with a torque that was multiplied.
+Result<RobotIdentification> with_torque_times(double factor, Axis axis, std::uint64_t seed = 7) {
+  Recording recording = recorded(axis, seed);
+  recording.channels[1].values *= factor;
+  RobotOptions options;
+  options.fit.delay = true;
+  return identify_robot({&recording, 1}, {}, model_of(axis), options);
+}
+
+Axis as_stated() {
+  Axis axis;
+  axis.motor = 0.0;
+  axis.link = 0.02;
+  axis.weight = 1.0 * 9.81 * 0.1;
+  return axis;
+}
+
+TEST(IdentifyRobot, NamesTheFactorByWhichATorqueIsNotThatOfTheUrdf) {
+  for (const double factor : {1.0, 1.15, 0.85, 1.03}) {
+    const auto found = with_torque_times(factor, as_stated());
+    ASSERT_TRUE(found) << found.error().line();
+    ASSERT_EQ(found->stated.size(), 1U);
+    const StatedRatio& one = found->stated[0];
+    EXPECT_NEAR(one.ratio, factor, 4.0 * one.standard_error);
+    EXPECT_LT(one.standard_error, 0.005);
+    EXPECT_EQ(warned(*found, torque_unit), std::abs(factor - 1.0) > 0.05) << factor;
+  }
+}
+
+TEST(IdentifyRobot, ComparesARobotWithoutDriveTermsWithItsUrdf) {
+  const Axis axis = as_stated();
+  const Recording recording = recorded(axis, 7);
+  robot::DynamicModel model = model_of(axis);
+  model.drive = {.viscous = false, .coulomb = false, .offset = false};
+  model.parameters = Vector::Zero(std::ssize(model.coefficients()));
+  const auto found = identify_robot({&recording, 1}, {}, model, {});
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_EQ(found->stated.size(), 1U);
+}
+
+TEST(IdentifyRobot, NamesNoFactorWhereTheUrdfIsWrongInAnotherWay) {
+  Axis heavier = as_stated();
+  heavier.link = 0.04;  // its weight is as stated
+  const auto found = with_torque_times(1.0, heavier);
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_FALSE(warned(*found, torque_unit));
+}
+
 TEST(IdentifyRobot, SeesNothingOfADriveThatIsStiffForItsBand) {
   Axis axis;
   axis.stiffness = 50'000.0;  // 160 Hz, moved up to 1.9 Hz

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/analyse/absorbed_energy.h"
@@ -366,10 +367,56 @@ Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::
   measured.force_comparison = std::move(*comparison);
   identify::Options how = options.identify;
   how.bootstrap = 0;
+  how.method = measured.identification.method;
   auto identified = identify::identify_impedance(by_sensor, how);
   if (!identified) return tl::unexpected(identified.error());
   measured.by_sensor = std::move(*identified);
   return {};
+}
+
+/// A parameter of M, B or K that the sensor's force puts outside the interval of the computed force; "" where none is.
+std::string contradicted_by_sensor(const Identification& computed, const Identification& sensed) {
+  const Vector of_computed = stacked(computed.model), of_sensed = stacked(sensed.model);
+  const Vector error = stacked(computed.standard_error), sensed_error = stacked(sensed.standard_error);
+  const Index count = 3 * computed.axes * computed.axes;
+  double most = 1.0;
+  std::string which;
+  for (Index k = 0; k < count; ++k) {
+    const double half = numeric::kNormal95 * std::hypot(error[k], sensed_error[k]);
+    const double apart = std::abs(of_computed[k] - of_sensed[k]) / half;
+    if (!(apart > most)) continue;
+    most = apart;
+    const std::string& name = computed.parameters[static_cast<std::size_t>(k)];
+    which = fmt::format("{} is {:.3g} ± {:.2g} {unit} by the computed force and {:.3g} by the force sensor", name,
+                        of_computed[k], numeric::kNormal95 * error[k], of_sensed[k],
+                        fmt::arg("unit", unit_of_parameter(name, computed.motion)));
+  }
+  return which;
+}
+
+/// A computed force is not used where the recording shows that the robot is not the one that was identified: by a force
+/// sensor, or by friction or a damping that feeds in energy, which the robot's own friction leaves in the force where
+/// it has changed. A momentum observer's force comes late, which a sensor contradicts whatever the robot is.
+void warn_of_changed_robot(Measurement& measured) {
+  Identification& id = measured.identification;
+  std::string message;
+  if (measured.by_sensor) {
+    message = contradicted_by_sensor(id, *measured.by_sensor);
+  } else {
+    for (const auto& [code, what] :
+         {std::pair(WarningCode::dry_friction, "the computed force holds dry friction, which a limb has not"),
+          std::pair(WarningCode::damping_not_positive, "the damping by the computed force is negative")}) {
+      if (std::ranges::find(id.warnings, code, &Warning::code) != id.warnings.end()) message = what;
+    }
+  }
+  if (message.empty()) return;
+  id.usable = false;
+  if (measured.alternative) measured.alternative->usable = false;
+  id.warnings.insert(
+      id.warnings.begin(),
+      {WarningCode::robot_changed, message + ": the robot is not as it was identified, as where it was cold",
+       "identify the robot anew, at the temperature and with the load and gains of the measurement, or "
+       "take the force of a sensor"});
 }
 
 /// The result at the joints of the posture in which it was measured.
@@ -430,6 +477,7 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     measured.bootstrap = std::move(*bootstrap);
   }
   if (auto ok = compare_with_sensor(sources, trials, options, measured); !ok) return tl::unexpected(ok.error());
+  if (options.preprocess.force_source == ForceSource::virtual_sensor) warn_of_changed_robot(measured);
   if (options.joint_domain) {
     auto joints = at_joints(sources, trials, measured.identification);
     if (!joints) return tl::unexpected(joints.error());

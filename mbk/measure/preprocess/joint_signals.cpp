@@ -141,6 +141,30 @@ void shift(Matrix& values, const Matrix& slopes, double sample_time, double dela
   }
 }
 
+/// Whether the robot could stand near there: no joint has to move by more than 1 % of its range, or 0.01 rad.
+bool nearly_within_limits(const robot::Mechanism& mechanism, robot::JointVector q) {
+  constexpr double kShare = 0.01, kLargestAngle = 0.01;  // of the range; [rad]
+  robot::JointVector reach = robot::JointVector::Zero(q.size());
+  for (int joint = 0; joint < mechanism.joints(); ++joint) {
+    const robot::JointRange range = mechanism.joint_range(joint);
+    if (!std::isfinite(range.high - range.low)) continue;
+    const double share = kShare * (range.high - range.low);
+    reach[joint] = mechanism.slides(joint) ? share : std::min(share, kLargestAngle);
+    const double inside = std::clamp(q[joint], range.low, range.high);
+    if (!(std::abs(q[joint] - inside) <= reach[joint])) return false;
+    q[joint] = inside;
+  }
+  if (mechanism.check_joints(q)) return true;
+  for (Index joint = 0; joint < q.size(); ++joint) {  // joints that limit each other
+    for (const double sign : {-1.0, 1.0}) {
+      robot::JointVector moved = q;
+      moved[joint] += sign * reach[joint];
+      if (mechanism.check_joints(moved)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<JointSignals> select_joint_signals(const Recording& recording, const robot::Mechanism& mechanism,
@@ -190,7 +214,7 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
     for (Index axis = 0; axis < kinds; ++axis) names.emplace_back(quantity.name(kinds, axis));
     return names;
   };
-  const bool slides = plane || mechanism.slides(0);
+  const bool slides = !mechanism.hand_turns();
   signals.hand_reference = gather(recording, at_hand(kReferenceChannels), slides ? "m" : "rad");
   if (hand_acceleration) {
     signals.hand_acceleration = gather(recording, at_hand(kAccelerationChannels), slides ? "m/s2" : "rad/s2");
@@ -204,12 +228,14 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
 }
 
 Result<void> check_joint_signals(const JointSignals& signals, const robot::Mechanism& mechanism, const Clock& clock,
-                                 const WindowPlan& plan) {
+                                 const WindowPlan& plan, std::vector<std::string>& notes) {
   const auto at = [&](Index sample) { return fmt::format("sample {} ({:.6f} s)", sample + 1, clock.seconds(sample)); };
   const std::vector<std::string> names = mechanism.joint_names();
   const auto named = [&](Index joint) {
     return names.empty() ? std::string() : fmt::format(" ('{}')", names[static_cast<std::size_t>(joint)]);
   };
+  Index beyond = 0;
+  std::string first_beyond;
   for (const Cut& cut : plan.cuts) {
     const Index length = cut.end - cut.begin;
     for (Index joint = 0; joint < signals.position.cols(); ++joint) {
@@ -224,8 +250,13 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
       if (auto ok = bad(signals.torque, "torque"); !ok) return ok;
     }
     for (Index i = cut.begin; i < cut.end; ++i) {
-      if (auto ok = mechanism.check_joints(signals.position.row(i).transpose()); !ok) {
+      const robot::JointVector q = signals.position.row(i).transpose();
+      if (auto ok = mechanism.check_joints(q); !ok) {
         Error error = ok.error();
+        if (nearly_within_limits(mechanism, q)) {
+          if (beyond++ == 0) first_beyond = fmt::format("{} at {}", error.message, at(i));
+          continue;
+        }
         error.kind = ErrorKind::data;
         error.message = fmt::format("at {}: {}", at(i), error.message);
         error.remedy =
@@ -234,6 +265,10 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
         return tl::unexpected(std::move(error));
       }
     }
+  }
+  if (beyond > 0) {
+    notes.push_back(fmt::format("{}: {} {} beyond a limit by less than 1 % of the range, which is accepted",
+                                first_beyond, beyond, beyond == 1 ? "sample is" : "samples are"));
   }
   for (Index joint = 0; joint < signals.torque.cols(); ++joint) {
     const auto torque = signals.torque.col(joint);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
@@ -25,10 +28,13 @@ struct JointSignals {
 [[nodiscard]] Result<JointSignals> select_joint_signals(const Recording& recording, const robot::Mechanism& mechanism,
                                                         bool hand_acceleration);
 
-/// Finite inside the cuts, within the limits of the joints, and torques that change.
+/// Finite inside the cuts, within the limits of the joints, and torques that change. A joint may be beyond its limits
+/// by 1 % of its range, at most 0.01 rad: encoders have noise, and stops yield.
+/// @param notes  says where a joint was beyond its limits by less than that
 /// @fails  data: with channel, sample and time.
 [[nodiscard]] Result<void> check_joint_signals(const JointSignals& signals, const robot::Mechanism& mechanism,
-                                               const Clock& clock, const WindowPlan& plan);
+                                               const Clock& clock, const WindowPlan& plan,
+                                               std::vector<std::string>& notes);
 
 /// Standard deviation of the white noise of each joint's position: by sixth differences, to which a motion of a few
 /// hertz gives nothing.

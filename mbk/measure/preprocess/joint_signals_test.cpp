@@ -160,10 +160,12 @@ TEST(SelectJointSignals, ANamedJointHasTheUnitThatTheRobotSays) {
 }
 
 /// Checked over all of it.
-Result<void> checked(const Recording& recording) {
+Result<void> checked(const Recording& recording, std::vector<std::string>* notes = nullptr) {
+  std::vector<std::string> unused;
   const auto signals = select_joint_signals(recording, kPlanar, false).value();
   const Clock clock(recording.time, Hertz(kRate));
-  return check_joint_signals(signals, kPlanar, clock, WindowPlan{{Cut{100, recording.samples(), {}}}, "", {}, 0});
+  return check_joint_signals(signals, kPlanar, clock, WindowPlan{{Cut{100, recording.samples(), {}}}, "", {}, 0},
+                             notes != nullptr ? *notes : unused);
 }
 
 TEST(CheckJointSignals, NamesTheTimeAtWhichAJointIsBeyondItsLimits) {
@@ -175,6 +177,27 @@ TEST(CheckJointSignals, NamesTheTimeAtWhichAJointIsBeyondItsLimits) {
   EXPECT_EQ(refused.error().kind, ErrorKind::data);
   EXPECT_THAT(refused.error().line(), HasSubstr("at sample 1235 (1.234000 s): θ₁ is 91.6"));
   EXPECT_THAT(refused.error().line(), HasSubstr("--channels"));
+}
+
+TEST(CheckJointSignals, AcceptsAndNotesWhatIsBeyondALimitByTheNoiseOfAnEncoder) {
+  const robot::JointRange range = kPlanar.joint_range(0);
+  Recording recording = swing();
+  channel(recording, "joint_1").values[1234] = range.high + 7e-5;
+  channel(recording, "joint_1").values[1240] = range.high + 0.009;
+  std::vector<std::string> notes;
+  const auto accepted = checked(recording, &notes);
+  ASSERT_TRUE(accepted) << accepted.error().line();
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("at sample 1235 (1.234000 s): 2 samples are beyond a limit")));
+  channel(recording, "joint_1").values[1234] = range.high + 0.011;
+  EXPECT_FALSE(checked(recording));
+  // Both angles, each within its limits, may not close the links on each other either.
+  recording = swing();
+  const double opening = robot::JointLimits().smallest_opening;
+  channel(recording, "joint_1").values[1300] = 0.2;
+  channel(recording, "joint_2").values[1300] = 0.2 + 0.5 * std::numbers::pi - opening + 0.005;
+  EXPECT_TRUE(checked(recording));
+  channel(recording, "joint_2").values[1300] += 0.02;
+  EXPECT_FALSE(checked(recording));
 }
 
 TEST(CheckJointSignals, LooksOnlyAtWhatCounts) {

@@ -172,7 +172,9 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   if (auto ok = check_clock(clock, inspection, *plan, made.warnings); !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = check_joint_signals(*signals, *model.mechanism, clock, *plan); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_joint_signals(*signals, *model.mechanism, clock, *plan, made.notes); !ok) {
+    return tl::unexpected(ok.error());
+  }
   made.stands = standing_joints(*signals, *plan);
   const auto band = excited_band(signals->position, plan->cuts, rate);
   if (!band) return tl::unexpected(band.error());

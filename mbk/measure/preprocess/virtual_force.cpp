@@ -79,6 +79,29 @@ std::string assumed_of_hand(const robot::Mechanism& mechanism, const robot::Join
                                     : "; the joints do not show a push across them, so none is assumed");
 }
 
+/// Damping at the hand that a tenth of the robot's friction would be, the largest of the axes: friction that changes as
+/// the robot warms passes into the computed force, and nothing in the recording shows it.
+double damping_of_tenth(const robot::DynamicModel& model, const robot::JointMotion& motion,
+                        const std::vector<Matrix>& W) {
+  const std::vector<robot::Coefficient> names = model.coefficients();
+  const Index n = model.mechanism->joints(), middle = motion.samples() / 2;
+  Vector damping = Vector::Zero(n);
+  for (Index joint = 0; joint < n; ++joint) {
+    const Vector v = motion.velocity.col(joint);
+    double power = 0.0;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const std::string& name = names[k].name;
+      if (!name.starts_with("viscous") && !name.starts_with("coulomb") && !name.starts_with("stribeck")) continue;
+      const auto column = static_cast<Index>(k);
+      power += model.parameters[column] * W[static_cast<std::size_t>(joint)].col(column).dot(v);
+    }
+    if (v.squaredNorm() > 0.0) damping[joint] = 0.1 * power / v.squaredNorm();
+  }
+  const auto hand = robot::hand_from_joints(*model.mechanism, motion.position.row(middle).transpose());
+  if (!hand) return 0.0;
+  return (Matrix(*hand) * damping.asDiagonal() * Matrix(*hand).transpose()).diagonal().maxCoeff();
+}
+
 }  // namespace
 
 Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
@@ -108,7 +131,8 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   if (auto ok = check_clock(clock, inspection, *plan, warnings); !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan); !ok) return tl::unexpected(ok.error());
+  std::vector<std::string> notes;
+  if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan, notes); !ok) return tl::unexpected(ok.error());
   const Cut cut = plan->cuts.front();
   FilterPlan filters = reference_filters(options);
   if (!published) {
@@ -180,7 +204,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
       made.sensor_force.col(axis) = recorded[static_cast<std::size_t>(axis)]->values;
     }
   }
-  const bool turns = axes == 1 && !mechanism.slides(0);
+  const bool turns = mechanism.hand_turns();
   Matrix place;
   for (Index axis = 0; axis < axes; ++axis) {
     put(made.recording, kForceChannels.name(kinds, axis), turns ? "N.m" : "N", whole.col(axis));
@@ -202,9 +226,16 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
           : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
                         "(virtual sensor), q̈ {}",
                         accelerometer ? "from the accelerometer" : "from the joints"));
+  if (const double damping = damping_of_tenth(model, joints->motion, W); damping > 0.0) {
+    made.recording.notes.push_back(
+        fmt::format("friction of the robot that is 10 % less than when it was identified, as where it is warmer, makes "
+                    "the damping up to {:.2g} {} too small, and nothing shows it",
+                    damping, turns ? "N·m·s/rad" : "N·s/m"));
+  }
   if (auto assumed = assumed_of_hand(mechanism, joints->motion.position.row(0).transpose()); !assumed.empty()) {
     made.recording.notes.push_back(std::move(assumed));
   }
+  made.recording.notes.insert(made.recording.notes.end(), notes.begin(), notes.end());
   return made;
 }
 

@@ -179,7 +179,22 @@ Result<std::vector<JointOfTree>> way(const Link& base, const Link& tip) {
 struct Gathered {
   KDL::RigidBodyInertia inertia;
   bool stated = false;  ///< some link of it has an <inertial>
+  std::vector<std::string> impossible;
 };
+
+/// Whether some distribution of mass has this inertia about its centre: Σ = ½ tr(I) 1 − I = ∫ r rᵀ dm has no negative
+/// eigenvalue, by which each principal moment is at most the sum of the other two. CAD programs round.
+bool can_exist(const urdf::Inertial& one) {
+  constexpr double kRounded = 1e-3;  // of the largest
+  const double sum = one.ixx + one.iyy + one.izz,
+               largest = std::max({std::abs(one.ixx), std::abs(one.iyy), std::abs(one.izz)});
+  const double half = 0.5 * sum + kRounded * largest;
+  const double a = half - one.ixx, b = half - one.iyy, c = half - one.izz;
+  if (a == 0.0 && b == 0.0 && c == 0.0) return one.ixy == 0.0 && one.ixz == 0.0 && one.iyz == 0.0;
+  const double det = a * (b * c - one.iyz * one.iyz) + one.ixy * (-one.ixy * c - one.iyz * one.ixz) -
+                     one.ixz * (one.ixy * one.iyz + b * one.ixz);
+  return a > 0.0 && a * b > one.ixy * one.ixy && det > 0.0;
+}
 
 Result<void> gather(const Link& link, const KDL::Frame& from_body, const std::string& beyond, Gathered& body) {
   if (link->inertial) {
@@ -190,6 +205,15 @@ Result<void> gather(const Link& link, const KDL::Frame& from_body, const std::st
     if (!std::isfinite(sum) || !finite(centre)) {
       return bad_data(fmt::format("<inertial> of link '{}' holds a number that is not finite", link->name),
                       "correct it");
+    }
+    if (one.mass < 0.0) {
+      return bad_data(fmt::format("link '{}' has a mass of {:g} kg", link->name, one.mass),
+                      "correct it; where it is going to be identified, 0 will do");
+    }
+    if (!can_exist(one)) {
+      body.impossible.push_back(
+          fmt::format("no body has the inertia of link '{}' (ixx {:.4g}, iyy {:.4g}, izz {:.4g} kg·m²)", link->name,
+                      one.ixx, one.iyy, one.izz));
     }
     body.inertia = body.inertia + centre * KDL::RigidBodyInertia(one.mass, KDL::Vector::Zero(), about_centre);
     body.stated = true;
@@ -234,6 +258,10 @@ Result<SerialChain::Joint> description(const urdf::Joint& joint, double zero, in
     if (!std::isfinite(d.damping + d.friction)) {
       return bad_data(fmt::format("<dynamics> of joint '{}' holds a number that is not finite", joint.name),
                       "correct it");
+    }
+    if (d.damping < 0.0 || d.friction < 0.0) {
+      return bad_data(fmt::format("<dynamics> of joint '{}' is negative: friction would drive it", joint.name),
+                      "correct it; where it is going to be identified, 0 will do");
     }
   }
   if (joint.type == urdf::Joint::CONTINUOUS) {
@@ -361,6 +389,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
                       "give it one; where its numbers are going to be identified, any will do, also 0");
     }
     append_coefficients(told->link, body.inertia, parts);
+    parts.impossible.insert(parts.impossible.end(), body.impossible.begin(), body.impossible.end());
     parts.descriptions.push_back(*std::move(told));
     from_body = KDL::Frame();
   }

@@ -37,6 +37,7 @@ struct ChainParts {
   std::vector<SerialChain::Joint> descriptions;
   std::vector<Coefficient> coefficients;
   Vector stated;
+  std::vector<std::string> impossible;
   std::string base_link, tip_link;
 };
 

@@ -99,6 +99,8 @@ class Mechanism {
   [[nodiscard]] virtual HandJacobian jacobian_across(const JointVector& /*position*/) const {
     return HandJacobian(0, joints());
   }
+  /// The hand's one coordinate is an angle [rad] and its force a torque [N·m].
+  [[nodiscard]] virtual bool hand_turns() const { return false; }
   /// Of the base: "x", "y" or "z".
   [[nodiscard]] virtual std::string hand_axis_name(int axis) const { return axis == 0 ? "x" : "y"; }
   /// dJ/dt.

@@ -132,6 +132,10 @@ std::vector<PhysicalCondition> SerialChain::physical_conditions() const {
   }
   return all;
 }
+const std::vector<std::string>& SerialChain::impossible() const {
+  return parts_->impossible;
+}
+
 const mbk::Vector& SerialChain::stated_coefficients() const {
   return parts_->stated;
 }

@@ -54,6 +54,8 @@ class SerialChain : public Mechanism {
   ~SerialChain() override;
 
   [[nodiscard]] const std::vector<Joint>& joint_descriptions() const;
+  /// Links whose inertia no body can have, a sentence for each.
+  [[nodiscard]] const std::vector<std::string>& impossible() const;
   /// Links at both ends, after defaults.
   [[nodiscard]] const std::string& base_link() const;
   [[nodiscard]] const std::string& tip_link() const;

@@ -21,6 +21,7 @@ class SingleJoint : public Mechanism {
   [[nodiscard]] JointRange joint_range(int /*joint*/) const override { return {options_.low, options_.high}; }
   [[nodiscard]] bool slides(int /*joint*/) const override { return options_.slides; }
   [[nodiscard]] int hand_axes() const override { return 1; }
+  [[nodiscard]] bool hand_turns() const override { return !options_.slides; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
   [[nodiscard]] std::vector<PhysicalCondition> physical_conditions() const override {
     return {{coefficients_.front().name, Matrix::Ones(1, 1)}};

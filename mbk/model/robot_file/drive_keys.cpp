@@ -76,8 +76,10 @@ void read_values(const config::Section& drive, const robot::Mechanism& mechanism
                      fmt::format("add it to terms in [drive], or take {} out", key));
         continue;
       }
-      const std::vector<double> values =
-          drive.numbers(key, std::vector<double>(joints.size()), config::any(), joints.size());
+      const bool resists = term.wanted == &DriveTerms::motor_inertia || term.wanted == &DriveTerms::viscous ||
+                           term.wanted == &DriveTerms::coulomb;
+      const std::vector<double> values = drive.numbers(key, std::vector<double>(joints.size()),
+                                                       resists ? config::at_least(0) : config::any(), joints.size());
       for (std::size_t k = 0; k < joints.size(); ++k) into.set(term.wanted, joints[k], values[k]);
     }
   }

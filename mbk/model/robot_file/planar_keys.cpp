@@ -15,6 +15,11 @@ robot::PlanarRobot read_planar_robot(const config::Section& s) {
   const std::vector<double> alpha =
       s.numbers("alpha_kg_m2", {robot.inertia.alpha1, robot.inertia.alpha2, robot.inertia.alpha3}, config::any(), 3);
   robot.inertia = {alpha[0], alpha[1], alpha[2]};
+  constexpr double kRounding = 1e-9;
+  if (alpha[0] < 0.0 || alpha[2] < 0.0 || alpha[1] * alpha[1] > (4.0 + kRounding) * alpha[0] * alpha[2]) {
+    s.reject("alpha_kg_m2", "no two links have this inertia",
+             "the first and the third are not negative, the second is at most twice the root of their product");
+  }
 
   robot::JointLimits& limits = robot.geometry.limits;
   const auto range = [&](const char* key, double& low, double& high) {

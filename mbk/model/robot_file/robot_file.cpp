@@ -57,6 +57,7 @@ struct Bodies {
   std::shared_ptr<const robot::Mechanism> mechanism;
   Vector phi;
   std::vector<bool> stated;
+  std::vector<std::string> impossible;
   std::vector<std::string> drives_elsewhere;  ///< words of drive terms whose values [drive] does not hold
   std::function<void(DriveValues&)> add_drives = [](DriveValues& /*drives*/) {};
 
@@ -179,6 +180,7 @@ Result<Bodies> read_urdf(const Section& s, const Urdf& urdf) {
   const auto chain = read();
   if (!chain) return tl::unexpected(chain.error());
   Bodies bodies(*chain, (*chain)->stated_coefficients());
+  bodies.impossible = (*chain)->impossible();
   bodies.add_drives = [chain = *chain](DriveValues& drives) {
     for (int joint = 0; joint < chain->joints(); ++joint) {
       const SerialChain::Joint& one = chain->joint_descriptions()[static_cast<std::size_t>(joint)];
@@ -216,6 +218,7 @@ Result<RobotDescription> described(const config::Document& document, const FindU
   const double delay = drive.number("motor_delay_ms", 0.0, config::at_least(0));
   if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
 
+  description.impossible = bodies->impossible;
   robot::DynamicModel& model = description.model;
   model.mechanism = bodies->mechanism;
   model.drive = terms;

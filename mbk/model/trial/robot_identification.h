@@ -67,6 +67,12 @@ struct TransmissionTest {
   int reversals = 0;              ///< of the torque that is transmitted
 };
 
+/// The torque of one joint over what the masses and inertias of the URDF take; NaN where they take too little of it.
+struct StatedRatio {
+  double ratio = kNaN, standard_error = kNaN;
+  double missed = kNaN, missed_scaled = kNaN;  ///< beyond the fit, by the URDF and by its multiple [N·m or N], rms
+};
+
 /// The dynamics of a robot, how sure they are and how well they hold.
 struct RobotIdentification {
   robot::DynamicModel model;  ///< with covariance and delay
@@ -86,6 +92,7 @@ struct RobotIdentification {
   InertiaCheck inertia;
   std::optional<ConsistentRobot> consistent;   ///< where a robot that can exist was asked for: `model` is then that one
   std::vector<TransmissionTest> transmission;  ///< of each joint; empty where it was not tested
+  std::vector<StatedRatio> stated;             ///< of each joint; empty where no URDF states the masses
   double hac_lag_s = 0;
   Index samples = 0;
   std::string description, urdf;  ///< the files that say what robot it is, as they were; empty for the thesis's

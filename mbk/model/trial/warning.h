@@ -62,6 +62,7 @@ enum class WarningCode {
   nonlinear_distortion,
   elastic_drive,
   backlash,
+  robot_changed,
   excluded_trial,
   excluded_window,
 };
@@ -123,6 +124,7 @@ enum class WarningCode {
       {nonlinear_distortion, "nonlinear-distortion"},
       {elastic_drive, "elastic-drive"},
       {backlash, "backlash"},
+      {robot_changed, "robot-changed"},
       {excluded_trial, "excluded-trial"},
       {excluded_window, "excluded-window"},
   });

@@ -28,11 +28,12 @@ std::string axis_name(Index axis, Index axes) {
 }  // namespace
 
 std::string force_comparison_text(const ForceComparison& comparison, std::string_view estimated,
-                                  std::string_view measured) {
+                                  std::string_view measured, std::string_view unit) {
   const Index axes = comparison.vaf.size();
   std::string text = fmt::format("{} against {}, {:.1f} s\n", estimated, measured, comparison.duration);
 
-  Rows together = {{"", "RMS in N", "RMSE in N", "VAF in %", "gain", "correlation", "late by ms"}};
+  Rows together = {{"", fmt::format("RMS in {}", unit), fmt::format("RMSE in {}", unit), "VAF in %", "gain",
+                    "correlation", "late by ms"}};
   for (Index axis = 0; axis < axes; ++axis) {
     together.push_back({axis_name(axis, axes), cell(comparison.measured_rms[axis], 2),
                         cell(comparison.all.rmse[axis], 3), cell(comparison.vaf[axis], 2),
@@ -42,8 +43,10 @@ std::string force_comparison_text(const ForceComparison& comparison, std::string
   text += table(together);
 
   Rows apart = {{"", "share in %"}};
-  for (Index axis = 0; axis < axes; ++axis) apart[0].push_back("bias " + axis_name(axis, axes) + " in N");
-  for (Index axis = 0; axis < axes; ++axis) apart[0].push_back("RMSE " + axis_name(axis, axes) + " in N");
+  for (Index axis = 0; axis < axes; ++axis)
+    apart[0].push_back(fmt::format("bias {} in {}", axis_name(axis, axes), unit));
+  for (Index axis = 0; axis < axes; ++axis)
+    apart[0].push_back(fmt::format("RMSE {} in {}", axis_name(axis, axes), unit));
   const auto add = [&](const char* name, const ForceAgreement& part) {
     const double share = 100.0 * static_cast<double>(part.rows) / static_cast<double>(comparison.all.rows);
     std::vector<std::string> row = {name, cell(share, 0)};

@@ -11,6 +11,6 @@ namespace mbk::report {
 /// motion.
 /// @param estimated, measured  what the forces are called: "virtual sensor", "force sensor"
 [[nodiscard]] std::string force_comparison_text(const ForceComparison& comparison, std::string_view estimated,
-                                                std::string_view measured);
+                                                std::string_view measured, std::string_view unit = "N");
 
 }  // namespace mbk::report

@@ -29,7 +29,7 @@ std::string hand_text(const robot::Mechanism& mechanism) {
     numbers.push_back(fmt::format("{:.2f}", std::round(1e2 * kMillimetres * metres) / 1e2 + 0.0));
   }
   return fmt::format("{} {}, with every joint at 0", fmt::join(numbers, ", "),
-                     mechanism.joints() == 1 && !mechanism.slides(0) ? "·10⁻³ rad" : "mm");
+                     mechanism.hand_turns() ? "·10⁻³ rad" : "mm");
 }
 
 std::string drives_text(const robot::DynamicModel& model) {
@@ -99,6 +99,11 @@ std::string robot_description_text(const robot::RobotDescription& description,
                                                      "the others act only in those that stand behind them, or not at "
                                                      "all.",
                                                      apart, all));
+  for (const std::string& one : description.impossible) {
+    text += paragraph("  ! ", printable(one) +
+                                  ": each principal moment is at most the sum of the other two. 'robot identify' does "
+                                  "not use it; 'robot force' needs it corrected or identified.");
+  }
   return text;
 }
 

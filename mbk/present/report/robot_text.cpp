@@ -63,6 +63,7 @@ std::string how_found(const RobotIdentification& found) {
       {"motor delay", found.delay_standard_error
                           ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) + " ms, found"
                           : fmt::format("{:.4g} ms, given", delay)});
+  for (const std::string& note : found.notes) rows.push_back({"note", note});
   return text + table(rows);
 }
 
@@ -146,7 +147,6 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
     text += paragraph("  at the edge of what can exist, strongest first: ",
                       fmt::format("{}", fmt::join(consistent.pressing, ", ")));
   }
-  for (const std::string& note : found.notes) text += paragraph("  ", note);
   return text;
 }
 
@@ -168,6 +168,18 @@ std::string fit_text(const RobotIdentification& found) {
   return "\n" + table(rows);
 }
 
+/// The torque beside that of the URDF.
+std::string stated_text(const RobotIdentification& found) {
+  std::vector<std::vector<std::string>> rows = {{"torque over that of the URDF", "ratio"}};
+  for (std::size_t joint = 0; joint < found.stated.size(); ++joint) {
+    const StatedRatio& one = found.stated[joint];
+    rows.push_back(
+        {fmt::format("joint {}", joint + 1),
+         std::isfinite(one.ratio) ? with_interval(one.ratio, numeric::kNormal95 * one.standard_error) : "–"});
+  }
+  return "\n" + table(rows) + "  (of inertia and weight, friction left free)\n";
+}
+
 }  // namespace
 
 std::string robot_text(const RobotIdentification& found) {
@@ -178,6 +190,7 @@ std::string robot_text(const RobotIdentification& found) {
     text += free_text(found);
   }
   text += fit_text(found);
+  if (!found.stated.empty()) text += stated_text(found);
   if (found.inertia.smallest > 0.0) {
     text += fmt::format("  inertia matrix positive definite in every posture: smallest eigenvalue {:.3g}\n",
                         found.inertia.smallest);
@@ -196,14 +209,16 @@ std::string force_text(const ForceSummary& force) {
   std::vector<std::vector<std::string>> rows = {{"", "RMS", "peak"}};
   if (sure) rows.front().emplace_back("± of the robot's dynamics");
   for (Index axis = 0; axis < force.rms.size(); ++axis) {
-    rows.push_back({force.rms.size() == 1 ? "F" : (axis == 0 ? "Fx" : "Fy"), fmt::format("{:.3g} N", force.rms[axis]),
-                    fmt::format("{:.3g} N", force.peak[axis])});
-    if (sure) rows.back().push_back(fmt::format("{:.2g} N", numeric::kNormal95 * force.standard_error[axis]));
+    rows.push_back({force.rms.size() == 1 ? "F" : "F" + force.axes[static_cast<std::size_t>(axis)],
+                    fmt::format("{:.3g} {}", force.rms[axis], force.unit),
+                    fmt::format("{:.3g} {}", force.peak[axis], force.unit)});
+    if (sure)
+      rows.back().push_back(fmt::format("{:.2g} {}", numeric::kNormal95 * force.standard_error[axis], force.unit));
   }
   text += "\n" + table(rows);
   if (force.comparison) {
-    text += "\n" +
-            force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor", "force sensor");
+    text += "\n" + force_comparison_text(*force.comparison, observed ? "momentum observer" : "virtual sensor",
+                                         "force sensor", force.unit);
   }
   return text;
 }

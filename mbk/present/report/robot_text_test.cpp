@@ -150,6 +150,15 @@ TEST(ForceText, HasSizeAndHowSureItIs) {
   EXPECT_THAT(force_text(one), ::testing::ContainsRegex("Fy +1.74 N +4.71 N +0.39 N\n"));  // 95 %
 }
 
+TEST(ForceText, NamesTheAxesAndTheUnitOfTheHand) {
+  ForceSummary one = force();
+  one.axes = {"x", "z"};
+  EXPECT_THAT(force_text(one), HasSubstr("Fz  1.74 N"));
+  one.rms = one.peak = Vector::Constant(1, 0.5);
+  one.unit = "N·m";
+  EXPECT_THAT(force_text(one), HasSubstr("F  0.5 N·m"));
+}
+
 TEST(ForceText, NamesTheMethodBesideTheSensor) {
   ForceSummary one = force();
   EXPECT_THAT(force_text(one), Not(HasSubstr("force sensor")));

@@ -65,6 +65,7 @@ std::string to_json(const robot::RobotDescription& description, const numeric::I
     }
     json["coefficients"].push_back(std::move(one));
   }
+  json["impossible"] = description.impossible;
   return dumped(json);
 }
 

@@ -157,6 +157,9 @@ std::string to_json(const RobotIdentification& found) {
   for (const auto& [name, share] : found.weakest) {
     json["excitation"]["weakest"].push_back({{"name", name}, {"share", number(share)}});
   }
+  for (const StatedRatio& one : found.stated) {
+    json["stated"].push_back({{"ratio", number(one.ratio)}, {"standard_error", number(one.standard_error)}});
+  }
   json["inertia"] = {{"smallest_eigenvalue", number(found.inertia.smallest)}, {"at", found.inertia.where}};
   if (found.consistent) json["consistent"] = consistent_json(*found.consistent);
   json["samples"] = found.samples;
@@ -181,6 +184,8 @@ std::string to_json(const ForceSummary& force) {
   json["inputs"] = inputs_json(force.sources);
   json["force_source"] = word_of(force.source);
   json["lag_s"] = number(force.lag);
+  json["axes"] = force.axes;
+  json["unit"] = force.unit;
   json["RMS"] = list(force.rms);
   json["peak"] = list(force.peak);
   if (force.standard_error.size() > 0) json["standard_error_RMS"] = list(force.standard_error);

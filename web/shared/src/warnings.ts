@@ -53,6 +53,10 @@ export const plainWarnings: PlainWarnings = {
     title: "The drive of a joint bends",
     meaning: "Motor and link of the robot turn against each other as on a spring. Its inertia and friction are biased by that.",
   },
+  "robot-changed": {
+    title: "The robot is not as it was identified",
+    meaning: "The force was computed from a model of the robot, and the recording contradicts that model: its friction, load or torque has changed since. What changed is part of the damping, inertia and stiffness shown.",
+  },
   "backlash": {
     title: "The drive of a joint has play",
     meaning: "Wherever the torque of the joint turns round, the motor moves for a moment without the link. Inertia and friction of the robot are biased by that.",
