@@ -146,6 +146,16 @@ class Udp(Case):
         peer.process.send_signal(signal.SIGUSR1)
         self.assert_stopped(process, recording, "stop button")
 
+    def test_a_second_mbk_at_the_same_robot_is_refused(self):
+        peer = self.peer(seconds=60)
+        experiment = self.experiment("udp.toml", peer.port, seconds=60)
+        first = self.started(experiment, self.folder / "first.h5")
+        self.refused(BAD_DATA, "run", experiment, "--quiet", "--out", self.folder / "second.h5",
+                     says="another mbk on this machine talks to this robot")
+        self.assertIsNone(first.poll())
+        first.send_signal(signal.SIGINT)
+        self.assert_stopped(first, self.folder / "first.h5", "the operator stopped it")
+
     def test_no_robot_there(self):
         peer = self.peer()
         experiment = self.experiment("udp.toml", peer.port, "answer_within_s = 0.2")

@@ -7,7 +7,10 @@
 
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
 #include <ctime>
+#include <map>
+#include <mutex>
 #include <random>
 
 #include "mbk/base/core/option_limits.h"
@@ -27,6 +30,28 @@ std::int64_t after(double seconds) noexcept {
 
 const char* yes_or_no(bool fitted) {
   return fitted ? "one" : "none";
+}
+
+/// A name that only one socket of this machine can have, and that goes with its process. All devices of a process share
+/// it.   @returns  null where another process has it
+std::shared_ptr<const int> claim_of(const UdpAddress& robot) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<const int>> claims;
+  const std::scoped_lock lock(mutex);
+  const std::string name = "mbk robot " + robot.text();
+  if (auto claim = claims[name].lock()) return claim;
+  const std::shared_ptr<const int> claim(new int(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)), [](const int* one) {
+    if (*one >= 0) close(*one);
+    delete one;
+  });
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  name.copy(address.sun_path + 1, sizeof(address.sun_path) - 1);  // the first zero makes it no file
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  const bool taken = bind(*claim, reinterpret_cast<const sockaddr*>(&address), length) != 0 && errno == EADDRINUSE;
+  if (taken) return nullptr;
+  claims[name] = claim;
+  return claim;
 }
 
 }  // namespace
@@ -51,30 +76,10 @@ Result<std::unique_ptr<UdpDevice>> UdpDevice::create(const UdpOptions& options, 
   return std::unique_ptr<UdpDevice>(new UdpDevice(options, fittings));
 }
 
-UdpDevice::Claim::~Claim() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
-/// A name that only one socket of this machine can have, and that goes with its process.
-bool UdpDevice::Claim::take(const UdpAddress& robot) noexcept {
-  if (descriptor_ >= 0) return true;
-  descriptor_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (descriptor_ < 0) return true;  // nobody can say
-  sockaddr_un name{};
-  name.sun_family = AF_UNIX;
-  const auto end =
-      fmt::format_to_n(name.sun_path + 1, sizeof(name.sun_path) - 1, "mbk robot {:08x} {}", robot.host, robot.port);
-  const auto length = static_cast<socklen_t>(end.out - reinterpret_cast<const char*>(&name));
-  if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&name), length) == 0 || errno != EADDRINUSE) return true;
-  close(descriptor_);
-  descriptor_ = -1;
-  return false;
-}
-
 Result<void> UdpDevice::start() {
   const auto robot = UdpAddress::find(options_.address, options_.port);
   if (!robot) return tl::unexpected(robot.error());
-  if (!claim_.take(*robot)) {
+  if (claim_ = claim_of(*robot); !claim_) {
     return bad_data(fmt::format("{}: another mbk on this machine talks to this robot", facts_.name),
                     "end that one first, or wait until its trial is over");
   }

@@ -76,20 +76,7 @@ class UdpDevice : public device::Device {
   void await_answer() noexcept;
   [[nodiscard]] Error no_answer() const;
 
-  /// That this machine talks to the robot; nobody else here does while it lives.
-  class Claim {
-   public:
-    Claim() = default;
-    Claim(const Claim&) = delete;
-    Claim& operator=(const Claim&) = delete;
-    ~Claim();
-    [[nodiscard]] bool take(const UdpAddress& robot) noexcept;
-
-   private:
-    int descriptor_ = -1;
-  };
-
-  Claim claim_;
+  std::shared_ptr<const int> claim_;  ///< that this process talks to the robot, and no other of this machine
   UdpOptions options_;
   Fittings fittings_;
   device::Facts facts_;

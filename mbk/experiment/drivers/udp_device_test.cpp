@@ -297,6 +297,27 @@ TEST(UdpDevice, GivesUpInLockStepOnce) {
   EXPECT_EQ(device->counts().repeated, repeated);
 }
 
+TEST(UdpDevice, RefusesLockStepOfARobotThatSendsByItself) {
+  Peer peer;
+  UdpOptions options = peer.options();
+  options.lock_step = true;
+  auto device = UdpDevice::create(options, {}).value();
+  std::atomic<bool> over{false};
+  std::thread sending;
+  const auto started = peer.welcome(*device, [&](StateDatagram&) {
+    sending = std::thread([&] {
+      for (std::uint64_t number = 11; !over; ++number) {
+        peer.say(number);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    });
+  });
+  over = true;
+  sending.join();
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().message.find("come unasked"), std::string::npos) << started.error().line();
+}
+
 TEST(UdpDevice, NamesWhatCameInsteadOfAnAnswer) {
   Peer peer;
   UdpOptions options = peer.options();

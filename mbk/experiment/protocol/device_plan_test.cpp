@@ -1,5 +1,6 @@
 #include "mbk/experiment/protocol/device_plan.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "mbk/experiment/protocol/experiment.h"
@@ -25,6 +26,19 @@ std::string refusal(const std::string& device) {
   const auto trials = read(device);
   EXPECT_FALSE(trials) << device;
   return trials ? "" : trials.error().line();
+}
+
+TEST(DevicePlan, EveryLimitHasABound) {
+  for (const safety::LimitKey& one : safety::limit_keys()) {
+    const std::string section = fmt::format("[safety]\n{} = ", one.key);
+    const bool both = one.key == "joint_torque_Nm";
+    const std::string beyond = both ? "[1, 1e9]" : "1e9",
+                      at = both ? fmt::format("[1, {}]", one.most) : fmt::format("{}", one.most);
+    EXPECT_NE(refusal(section + beyond).find(one.why), std::string::npos) << one.key;
+    EXPECT_TRUE(read(section + at)) << one.key;
+    if (one.may_be_off) continue;
+    EXPECT_FALSE(read(section + (both ? "[0, 1]" : "0"))) << one.key;
+  }
 }
 
 TEST(DevicePlan, IsSimulatedWhereNothingIsSaid) {

@@ -219,9 +219,8 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
       "seconds "
       "anyway, so that there is one truth; the force noise stays.");
   table.notes.emplace_back(
-      "x0 and y0 are reported only: the arm's stiffness changes with its posture, which shifts the place where it "
-      "would "
-      "rest by a fraction of a millimetre.");
+      "x0 and y0 are reported only: the arm's stiffness changes with its posture, and their intervals include the "
+      "shift that this causes as far as the data show it.");
   table.notes.emplace_back("Theorem 3.2 as it was applied: estimates without intervals, antisymmetric parts left out.");
   table.notes.emplace_back(
       "Under 2 N pulses the participant answers each pulse itself: no instrument is valid, no model explains the "
