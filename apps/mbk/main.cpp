@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
       mbk::app::say_text(one_line(why));
       return mbk::app::kWrongUsage;
     }
-    if (auto ok = mbk::app::Output().show(*why.answer); !ok) return mbk::app::report_error(ok.error());
+    if (auto ok = mbk::app::Output().show(*why.answer, {}); !ok) return mbk::app::report_error(ok.error());
     return mbk::app::kFine;
   }
   return mbk::app::run_chosen(app, commands);

@@ -62,12 +62,12 @@ Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) con
   return file ? check_new_file(*file, "--out", overwrite, inputs) : Result<void>{};
 }
 
-Result<void> Output::write(const std::string& text) const {
+Result<void> Output::write(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
   if (Caller* const caller = Caller::current(); caller != nullptr) {
     caller->write(text);
     if (!file) return {};
   }
-  if (file) return recording::write_file(*file, overwrite, text);
+  if (file) return recording::write_derived(*file, overwrite, text, sources);
   flush_messages();  // at a terminal both stand below one another, in the order in which they came
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     const int error = errno;
@@ -79,9 +79,13 @@ Result<void> Output::write(const std::string& text) const {
   return {};
 }
 
-Result<void> Output::show(const std::string& text) const {
+Result<void> print_text(const std::string& text) {
+  return Output().write(text, {});
+}
+
+Result<void> Output::show(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
   const bool printed = !file && Caller::current() == nullptr;
-  return write(printed ? for_people(text, terminal_at(STDOUT_FILENO)) : text);
+  return write(printed ? for_people(text, terminal_at(STDOUT_FILENO)) : text, sources);
 }
 
 Result<std::string> read_text(const std::filesystem::path& file) {

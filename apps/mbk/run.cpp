@@ -130,7 +130,7 @@ int dry_run(const std::vector<Trial>& trials, const std::string& experiment) {
     if (!plan) return report_error(plan.error().in(experiment));
     const auto rehearsal = session::rehearse(*plan);
     if (!rehearsal) return report_error(rehearsal.error().in(experiment));
-    if (auto ok = Output().write(plan_text(*plan, *rehearsal)); !ok) return report_error(ok.error());
+    if (auto ok = print_text(plan_text(*plan, *rehearsal)); !ok) return report_error(ok.error());
     if (rehearsal->trip.reason != safety::Reason::none) return kSafetyStop;
   }
   return kFine;
@@ -233,7 +233,7 @@ class TerminalOperator : public conduct::Operator {
       text_ +=
           fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
     }
-    const auto written = Output().write(text_);
+    const auto written = print_text(text_);
     if (!notes_.empty()) {
       if (auto ok = session::annotate(performed.outcome.recording, notes_); !ok) return ok;
     }

@@ -136,7 +136,7 @@ int run_check(const CheckArguments& arguments) {
     if (auto ok = repeater.repeat_all(); !ok) return report_error(ok.error());
   }
   const std::string text = arguments.output.json ? store::to_json(*report) : check_text(*report, arguments.quick);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
   return report->problems.empty() ? kFine : kBadData;
 }
 
@@ -172,7 +172,7 @@ int run_log(const CheckArguments& arguments) {
     for (const store::LogLine& line : *lines) text += line_text(line);
     text += fmt::format("head {}\n", lines->empty() ? "" : lines->back().hash);
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
   return verdict && !verdict->problems.empty() ? kBadData : kFine;
 }
 
@@ -184,7 +184,7 @@ int run_exclude(const CheckArguments& arguments) {
   if (!done) return report_error(done.error());
   const std::string text =
       fmt::format("recording {} {}\n", arguments.number, arguments.undo ? "counts again" : "excluded");
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -201,7 +201,7 @@ int run_forget(const CheckArguments& arguments) {
   if (!forgotten->log_of_changes_emptied) {
     text += "another process is reading: erased rows stand in study.sqlite-wal until it ends and a command follows\n";
   }
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -213,7 +213,7 @@ int run_backup(const CheckArguments& arguments) {
   const std::string text = fmt::format("{}: {}, {}, checked\nhead {}\n", arguments.to.string(),
                                        counted(report->recordings, "recording", "recordings"),
                                        counted(report->results, "result", "results"), report->head);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
