@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <atomic>
 #include <memory>
@@ -198,6 +199,12 @@ int run_forget(const CheckArguments& arguments) {
                   counted(forgotten->recordings, "recording", "recordings"),
                   counted(forgotten->results, "result", "results"), counted(forgotten->files, "file", "files"));
   text += "backups, exported tables and the files that were added are elsewhere: erase them too\n";
+  if (!forgotten->lines_with_reasons.empty()) {
+    text += fmt::format("the log keeps the reasons that were given for these recordings, in {} {}: {}\n",
+                        forgotten->lines_with_reasons.size() == 1 ? "line" : "lines",
+                        fmt::join(forgotten->lines_with_reasons, ", "),
+                        "'mbk study log' shows them; if one names a person, only a new study leaves it out");
+  }
   if (!forgotten->log_of_changes_emptied) {
     text += "another process is reading: erased rows stand in study.sqlite-wal until it ends and a command follows\n";
   }
