@@ -119,7 +119,7 @@ Result<void> make_folder(const fs::path& folder) {
 }
 
 Result<void> read_pieces(const fs::path& file, const std::function<Result<void>(std::span<const std::byte>)>& take) {
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // a pipe's writer might never come
   if (in.value < 0) return cannot("cannot be read", file, errno);
   struct stat status {};
   if (::fstat(in.value, &status) != 0) return cannot("cannot be read", file, errno);
