@@ -41,12 +41,14 @@ Result<void> ChartFiles::check(const std::filesystem::path& folder, bool overwri
   return {};
 }
 
-Result<ChartFiles> ChartFiles::in(const std::filesystem::path& folder, bool overwrite) {
+Result<ChartFiles> ChartFiles::in(const std::filesystem::path& folder, bool overwrite,
+                                  std::vector<std::filesystem::path> sources) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be made", folder.string());
   ChartFiles files;
   files.folder_ = folder;
+  files.sources_ = std::move(sources);
   files.overwrite_ = overwrite;
   return files;
 }
@@ -63,7 +65,7 @@ Result<void> ChartFiles::write(const SourceFile& source, const std::vector<repor
 }
 
 Result<void> ChartFiles::write(const std::string& name, const Chart& chart) const {
-  return recording::write_file(folder_ / (name + ".svg"), overwrite_, report::chart_svg(chart));
+  return recording::write_derived(folder_ / (name + ".svg"), overwrite_, report::chart_svg(chart), sources_);
 }
 
 }  // namespace mbk::app

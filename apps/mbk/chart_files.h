@@ -20,9 +20,10 @@ class ChartFiles {
                                           const std::vector<std::filesystem::path>& inputs,
                                           std::initializer_list<const char*> names);
 
-  /// Makes the folder.
+  /// Makes the folder.    @param sources  as Output::write
   /// @fails  usage: it cannot be made.
-  [[nodiscard]] static Result<ChartFiles> in(const std::filesystem::path& folder, bool overwrite);
+  [[nodiscard]] static Result<ChartFiles> in(const std::filesystem::path& folder, bool overwrite,
+                                             std::vector<std::filesystem::path> sources);
 
   /// "trial_3-force.svg" of a result of "data/trial_3.mat"; where an earlier result has that name,
   /// "trial_3-2-force.svg".
@@ -34,6 +35,7 @@ class ChartFiles {
 
  private:
   std::filesystem::path folder_;
+  std::vector<std::filesystem::path> sources_;
   bool overwrite_ = false;
   std::vector<std::string> begun_;
 };

@@ -198,10 +198,12 @@ int run(const CompareArguments& arguments, const std::string& typed) {
       report.names.push_back(std::move(one.name));
       report.compared.results.push_back(std::move(one.found));
     }
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, result::to_json(report)); !ok)
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, result::to_json(report),
+                             arguments.reading.files);
+        !ok)
       return report_error(ok.error());
   }
-  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(shown, arguments.reading.files); !ok) return report_error(ok.error());
   return good ? kFine : kNotUsable;
 }
 

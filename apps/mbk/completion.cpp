@@ -27,7 +27,7 @@ int run(const CompletionArguments& arguments, Command root) {
                              : arguments.shell == Shell::zsh ? zsh_completion(text)
                                                              : fish_completion(text);
   if (auto ok = arguments.output.check({}); !ok) return report_error(ok.error());
-  if (auto ok = arguments.output.write(script); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(script, {}); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -76,7 +76,7 @@ int report(const ConvertArguments& arguments, const Recording& recording, const 
   for (const std::string& one : lost) say("mbk: {}: not written: {}\n", file.string(), one);
   if (arguments.quiet) return kFine;
   for (const std::string& note : recording.notes) say_note(note);
-  if (auto ok = Output().write(summary_line(recording, file, format)); !ok) return report_error(ok.error());
+  if (auto ok = print_text(summary_line(recording, file, format)); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -110,7 +110,7 @@ int copy_arrays(const Conversion& job, int k, const std::filesystem::path& file,
   const std::size_t count = contents->arrays.size();
   const std::string line = fmt::format("{}: {}, {} {} as they stand\n", file.string(), recording::text(job.format),
                                        count, count == 1 ? "array" : "arrays");
-  if (auto ok = Output().write(line); !ok) return report_error(ok.error());
+  if (auto ok = print_text(line); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -41,7 +41,7 @@ int run(const EllipseArguments& arguments) {
     }
   }
   if (arguments.json) shown = result::to_json(*identifications, all);
-  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(shown, {arguments.file}); !ok) return report_error(ok.error());
   return code;
 }
 

@@ -62,7 +62,7 @@ int run_each(Command command, const ExploreArguments& arguments) {
   if (texts.empty()) return worst;
   const std::string text =
       arguments.output.json ? result::to_json(texts, failed) : fmt::format("{}", fmt::join(texts, "\n"));
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.to.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return worst != kFine ? worst : all_usable ? kFine : kNotUsable;
 }
 
@@ -75,7 +75,7 @@ Result<void> check(const ExploreArguments& a) {
 
 Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
   if (!arguments.beside.charts) return {};
-  auto files = ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite);
+  auto files = ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files);
   if (!files) return tl::unexpected(files.error());
   return files->write(found.recordings.front().source, report::exploration_charts(found));
 }
@@ -91,13 +91,13 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (!found) return report_error(found.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report); !ok) {
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report, arguments.reading.files); !ok) {
       return report_error(ok.error());
     }
   }
   if (auto ok = write_charts(arguments, *found); !ok) return report_error(ok.error());
   const std::string text = arguments.output.json ? result::to_json(*found) : report::exploration_text(*found);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 

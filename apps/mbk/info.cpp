@@ -43,7 +43,7 @@ int list_unrecognised(const InfoArguments& arguments, const RecordingReader& rea
   if (!contents) return report_error(error);
   const std::string text =
       arguments.output.json ? result::to_json(*contents, error) : before + report::contents_text(*contents, error);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return recording::time_is_unbelievable(error) ? kBadData : kFine;
 }
 
@@ -78,14 +78,14 @@ int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
   if (!first) return list_unrecognised(arguments, reader, first.error(), list);
   const Inspection inspection = inspected(*first);
   const std::string text = list + report::info_text(*first, inspection);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return kFine;
 }
 
 int run(const InfoArguments& arguments) {
   const ReadingArguments& reading = arguments.reading;
   if (arguments.formats) {
-    if (auto ok = arguments.output.write(formats_text()); !ok) return report_error(ok.error());
+    if (auto ok = arguments.output.write(formats_text(), {}); !ok) return report_error(ok.error());
     return kFine;
   }
   if (reading.files.empty()) {
@@ -132,7 +132,7 @@ int run(const InfoArguments& arguments) {
       text += (i > 0 ? "\n" : "") + report::info_text(recordings[i], inspections[i]);
     }
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return code;
 }
 

@@ -21,6 +21,7 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/process.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/core/words.h"
@@ -70,8 +71,8 @@ int run(int argc, char** argv) {
   mbk::app::prefer_large_pages();
   const char* const simd = std::getenv("MBK_SIMD");
   if (simd != nullptr && !mbk::value_of<mbk::Simd>(simd)) {
-    mbk::app::say_text(fmt::format("mbk: MBK_SIMD is '{}', which is none of {}; unset it for what this processor has\n",
-                                   simd, fmt::join(mbk::kWordList<mbk::Simd>, ", ")));
+    mbk::app::say("mbk: MBK_SIMD is '{}', which is none of {}; unset it for what this processor has\n", simd,
+                  fmt::format("{}", fmt::join(mbk::kWordList<mbk::Simd>, ", ")));
     return mbk::app::kWrongUsage;
   }
   const mbk::app::Parser parser(
@@ -94,10 +95,10 @@ int run(int argc, char** argv) {
   if (const auto taken = parser.parse({argv + std::min(argc, 1), argv + argc}); !taken) {
     const mbk::app::NotTaken& why = taken.error();
     if (!why.answer) {
-      mbk::app::say_text(one_line(why));
+      mbk::app::say_text(mbk::printable_lines(one_line(why)));
       return mbk::app::kWrongUsage;
     }
-    if (auto ok = mbk::app::Output().show(*why.answer); !ok) return mbk::app::report_error(ok.error());
+    if (auto ok = mbk::app::Output().show(*why.answer, {}); !ok) return mbk::app::report_error(ok.error());
     return mbk::app::kFine;
   }
   return mbk::app::run_chosen(app, commands);

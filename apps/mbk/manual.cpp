@@ -53,7 +53,7 @@ int write_pages(const CommandText& root, const std::filesystem::path& folder, bo
 int run(const ManualArguments& arguments, Command app) {
   const CommandText root = describe(app);
   if (arguments.json) {
-    if (auto ok = Output().write(commands_json(root, std::string(version()))); !ok) return report_error(ok.error());
+    if (auto ok = print_text(commands_json(root, std::string(version()))); !ok) return report_error(ok.error());
     return kFine;
   }
   if (arguments.pages) {
@@ -67,8 +67,7 @@ int run(const ManualArguments& arguments, Command app) {
          fmt::format("unknown command {}", quoted(fmt::format("{}", fmt::join(arguments.command, " ")))),
          "'mbk --help' names them", ""});
   }
-  if (auto ok = Output().write(manual_page(*command, root, std::string(version()))); !ok)
-    return report_error(ok.error());
+  if (auto ok = print_text(manual_page(*command, root, std::string(version()))); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -136,10 +136,10 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
   if (const auto& file = arguments.beside.summary) {
     const std::string table = file->extension() == ".tex" ? report::trials_latex(found.measured, found.together)
                                                           : report::trials_csv(found.measured, found.together);
-    if (auto ok = recording::write_file(*file, overwrite, table); !ok) return ok;
+    if (auto ok = recording::write_derived(*file, overwrite, table, arguments.reading.files); !ok) return ok;
   }
   if (!arguments.beside.charts) return {};
-  auto files = ChartFiles::in(*arguments.beside.charts, overwrite);
+  auto files = ChartFiles::in(*arguments.beside.charts, overwrite, arguments.reading.files);
   if (!files) return tl::unexpected(files.error());
   for (std::size_t k = 0; k < found.measured.size(); ++k) {
     const auto charts = report::measurement_charts(found.measured[k], found.diagnostics[k]);
@@ -188,11 +188,11 @@ int run(const MeasureCommandArguments& given, const std::string& typed, bool wit
   if (arguments.report.file) {
     const std::string document = report_json(typed, arguments.report.note, found->facts, found->measured,
                                              found->diagnostics, found->several ? &found->together : nullptr);
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document); !ok)
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document, arguments.reading.files); !ok)
       return report_error(ok.error());
   }
   if (auto ok = write_beside(arguments, *found); !ok) return report_error(ok.error());
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return code;
 }
 

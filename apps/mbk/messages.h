@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <type_traits>
+
+#include "mbk/base/core/printable.h"
 
 namespace mbk::app {
 
@@ -17,11 +19,25 @@ void say_text(std::string_view text) noexcept;
 /// One that could not even be put together: there is no memory for it.
 void count_lost_message() noexcept;
 
-/// As fmt::print(stderr, …).
+/// Text as `printable_lines` shows it, anything else as it is.
+template <class Arg>
+[[nodiscard]] auto shown_argument(const Arg& arg) {
+  if constexpr (std::is_convertible_v<const Arg&, std::string_view>) {
+    return printable_lines(arg);
+  } else {
+    return arg;
+  }
+}
+
+/// As fmt::print(stderr, …). Text among `args`, such as the name of a file, cannot drive a terminal: what the program
+/// itself says to one stands in `format`.
 template <class... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) noexcept {
   try {
-    say_text(fmt::format(format, std::forward<Args>(args)...));
+    const auto print = [&](const auto&... shown) {
+      say_text(fmt::vformat(fmt::string_view(format), fmt::make_format_args(shown...)));
+    };
+    print(shown_argument(args)...);
   } catch (...) {
     count_lost_message();
   }

@@ -50,7 +50,7 @@ int run_movement(const MovementArguments& arguments) {
   } else {
     for (const MovementQuality& one : all) text += (text.empty() ? "" : "\n") + report::movement_text(one);
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -94,7 +94,7 @@ int run(const NewChannelsArguments& arguments) {
   const std::string rate = arguments.rate_hz ? fmt::format(" --rate {:g}", *arguments.rate_hz) : "";
   const std::string line = fmt::format("--channels {}{}", shell_word(*map), rate);
   tell(fmt::format("next: mbk measure {} {}\n", shell_word(arguments.file.string()), line));
-  if (auto ok = arguments.output.write(line + "\n"); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(line + "\n", {arguments.file}); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -14,6 +14,7 @@
 #include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/terminal.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
@@ -23,8 +24,11 @@ int report_error(const Error& error) {
     caller->fail(error);
   } else {
     std::fflush(stdout);
-    const bool colour = terminal_at(STDERR_FILENO).colour;
-    say("{}mbk:{} {}\n", colour ? "\x1b[1;31m" : "", colour ? "\x1b[0m" : "", error.line());
+    if (terminal_at(STDERR_FILENO).colour) {
+      say("\x1b[1;31mmbk:\x1b[0m {}\n", error.line());
+    } else {
+      say("mbk: {}\n", error.line());
+    }
   }
   switch (error.kind) {
     case ErrorKind::usage:
@@ -58,30 +62,40 @@ Result<void> check_new_file(const std::filesystem::path& file, const char* optio
   return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
 }
 
+namespace {
+
+Result<void> write_to_stdout(const std::string& text) {
+  flush_messages();  // at a terminal both stand below one another, in the order in which they came
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
+  const int error = errno;
+  return bad_data(fmt::format("standard output could not be written: {}", std::strerror(error)),
+                  error == ENOSPC  ? "free space on the disk"
+                  : error == EPIPE ? "what it was piped into has ended before it had read everything"
+                                   : "see where it goes");
+}
+
+}  // namespace
+
 Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) const {
   return file ? check_new_file(*file, "--out", overwrite, inputs) : Result<void>{};
 }
 
-Result<void> Output::write(const std::string& text) const {
+Result<void> Output::write(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
   if (Caller* const caller = Caller::current(); caller != nullptr) {
     caller->write(text);
     if (!file) return {};
   }
-  if (file) return recording::write_file(*file, overwrite, text);
-  flush_messages();  // at a terminal both stand below one another, in the order in which they came
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    const int error = errno;
-    return bad_data(fmt::format("standard output could not be written: {}", std::strerror(error)),
-                    error == ENOSPC  ? "free space on the disk"
-                    : error == EPIPE ? "what it was piped into has ended before it had read everything"
-                                     : "see where it goes");
-  }
-  return {};
+  if (file) return recording::write_derived(*file, overwrite, text, sources);
+  return write_to_stdout(printable_lines(text));
 }
 
-Result<void> Output::show(const std::string& text) const {
+Result<void> print_text(const std::string& text) {
+  return Output().write(text, {});
+}
+
+Result<void> Output::show(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
   const bool printed = !file && Caller::current() == nullptr;
-  return write(printed ? for_people(text, terminal_at(STDOUT_FILENO)) : text);
+  return printed ? write_to_stdout(for_people(text, terminal_at(STDOUT_FILENO))) : write(text, sources);
 }
 
 Result<std::string> read_text(const std::filesystem::path& file) {

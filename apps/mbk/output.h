@@ -30,11 +30,15 @@ struct Output {
   /// What can be said before the work begins, as `check_new_file`.
   [[nodiscard]] Result<void> check(const std::vector<std::filesystem::path>& inputs) const;
 
-  [[nodiscard]] Result<void> write(const std::string& text) const;
+  /// @param sources  the files that the text was computed from; who may not read them may not read it
+  [[nodiscard]] Result<void> write(const std::string& text, const std::vector<std::filesystem::path>& sources) const;
 
   /// The same of a text for people, which a terminal gets as wide as it is, with colour.
-  [[nodiscard]] Result<void> show(const std::string& text) const;
+  [[nodiscard]] Result<void> show(const std::string& text, const std::vector<std::filesystem::path>& sources) const;
 };
+
+/// To standard output.
+[[nodiscard]] Result<void> print_text(const std::string& text);
 
 /// What can be said of a file that an option names, before the work begins.
 /// @fails  usage: the file is there and may not be overwritten, or is one of `inputs`.

@@ -16,7 +16,10 @@ struct OutputArguments {
   Output to;
 
   /// A document, or a text for people.
-  [[nodiscard]] Result<void> write(const std::string& text) const { return json ? to.write(text) : to.show(text); }
+  /// @param sources  as Output::write
+  [[nodiscard]] Result<void> write(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
+    return json ? to.write(text, sources) : to.show(text, sources);
+  }
 };
 
 /// The HTML report beside it.

@@ -159,7 +159,7 @@ int run(const PassivityArguments& arguments) {
   } else {
     for (const LimbAnswer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }
-  if (auto ok = arguments.output.write(shown); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(shown, arguments.reading.files); !ok) return report_error(ok.error());
   return code;
 }
 

@@ -51,7 +51,7 @@ int run(const RecoverArguments& arguments) {
   }
   const auto recovered = session::recover(arguments.journal, out, arguments.options);
   if (!recovered) return report_error(recovered.error());
-  if (auto ok = Output().write(outcome_text(*recovered, arguments, out)); !ok) return report_error(ok.error());
+  if (auto ok = print_text(outcome_text(*recovered, arguments, out)); !ok) return report_error(ok.error());
   if (!recovered->incomplete) return kFine;
   return report_error({ErrorKind::data, recovered->recording.metadata.at("ended"),
                        "'mbk info' of the recording shows where; keep the journal", out.string()});

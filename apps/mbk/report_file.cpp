@@ -43,10 +43,11 @@ std::string report_json(const std::string& typed, const std::string& note,
   return result::to_json(report);
 }
 
-Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json) {
+Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
+                        const std::vector<std::filesystem::path>& sources) {
   const auto page = report::page(report_json);
   if (!page) return tl::unexpected(page.error());
-  return recording::write_file(*arguments.file, overwrite, *page);
+  return recording::write_derived(*arguments.file, overwrite, *page, sources);
 }
 
 }  // namespace mbk::app

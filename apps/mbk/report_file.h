@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,7 +35,8 @@ namespace mbk::app {
                                       const std::vector<std::optional<Diagnostics>>& diagnostics,
                                       const SeveralTrials* together);
 
-/// Writes --report: the page with that document.
-[[nodiscard]] Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json);
+/// Writes --report: the page with that document.    @param sources  as Output::write
+[[nodiscard]] Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
+                                      const std::vector<std::filesystem::path>& sources);
 
 }  // namespace mbk::app

@@ -112,7 +112,7 @@ std::string summary_text(const Reproduction& made, const fs::path& folder) {
 
 int run(const ReproduceArguments& arguments) {
   if (arguments.list) {
-    const auto ok = Output().write(list_of_exhibits());
+    const auto ok = print_text(list_of_exhibits());
     return ok ? kFine : report_error(ok.error());
   }
   const fs::path page = arguments.folder / "index.html";
@@ -131,7 +131,7 @@ int run(const ReproduceArguments& arguments) {
   const std::string document = result::to_json(*made);
   if (auto ok = write_all(*made, arguments, document); !ok) return report_error(ok.error());
   const std::string text = arguments.json ? document : summary_text(*made, arguments.folder);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return made->count(Agreement::differs) == 0 ? kFine : kFallsShort;
 }
 

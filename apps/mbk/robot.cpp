@@ -70,7 +70,7 @@ int run_workspace(const RobotArguments& arguments) {
   } else {
     text = arguments.json ? result::to_json(*workspace, posture) : report::workspace_text(*workspace, posture);
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {}); !ok) return report_error(ok.error());
   return kFine;
 }
 

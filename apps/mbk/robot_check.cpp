@@ -112,7 +112,7 @@ int run(const RobotCheckArguments& arguments) {
   }
   const auto report = check_all(arguments);
   if (!report) return report_error(report.error());
-  if (auto ok = arguments.output.to.write(arguments.output.json ? json_of(*report) : text_of(*report)); !ok) {
+  if (auto ok = arguments.output.to.write(arguments.output.json ? json_of(*report) : text_of(*report), {}); !ok) {
     return report_error(ok.error());
   }
   return report->wrong() ? kNotUsable : report->incomplete() ? kNotAllTested : kFine;

@@ -24,7 +24,7 @@ int run(const RobotDescribeArguments& arguments) {
   const auto base = identify::structural_columns(description->model);
   const std::string text =
       arguments.json ? result::to_json(*description, base) : report::robot_description_text(*description, base);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {arguments.file}); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -60,7 +60,7 @@ int run(const RobotForceArguments& arguments) {
     }
   }
   const std::string text = arguments.output.json ? result::to_json(made->summary) : report::force_text(made->summary);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

@@ -163,7 +163,7 @@ int run(const RobotIdentifyArguments& arguments) {
   found->description = robot->toml;
   found->urdf = robot->urdf;
   const std::string text = arguments.output.json ? result::to_json(*found) : report::robot_text(*found);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 

@@ -132,7 +132,7 @@ int dry_run(const conduct::Experiment& experiment, const std::string& file) {
   for (const session::Plan& plan : experiment.plans) {
     const auto rehearsal = session::rehearse(plan);
     if (!rehearsal) return report_error(rehearsal.error().in(file));
-    if (auto ok = Output().write(plan_text(plan, *rehearsal)); !ok) return report_error(ok.error());
+    if (auto ok = print_text(plan_text(plan, *rehearsal)); !ok) return report_error(ok.error());
     if (rehearsal->trip.reason != safety::Reason::none) return kSafetyStop;
   }
   return kFine;
@@ -238,7 +238,7 @@ class TerminalOperator : public conduct::Operator {
   void given_up(const session::TrialOutcome& outcome) override {
     motors(outcome.motors);
     if (page_ != nullptr) page_->recorded(outcome);
-    const auto written = Output().write(outcome_text(outcome, pace_));
+    const auto written = print_text(outcome_text(outcome, pace_));
     if (!written) report_error(written.error());
     if (outcome.unrecorded) report_error(*outcome.unrecorded);
     say("mbk: the robot's driver still does not return. Press Ctrl-C, or send SIGTERM, to end mbk with exit code {}.\n",
@@ -261,7 +261,7 @@ class TerminalOperator : public conduct::Operator {
       text_ +=
           fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
     }
-    const auto written = Output().write(text_);
+    const auto written = print_text(text_);
     if (!notes_.empty() && !performed.outcome.unrecorded) {
       if (auto ok = session::annotate(performed.outcome.recording, notes_); !ok) return ok;
     }

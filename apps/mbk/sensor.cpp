@@ -60,7 +60,7 @@ int run_calibrate(const SensorCalibrateArguments& arguments) {
   const auto calibration = calibrate(arguments);
   if (!calibration) return report_error(calibration.error());
   const std::string text = arguments.output.json ? result::to_json(*calibration) : report::sensor_text(*calibration);
-  if (auto ok = output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -137,7 +137,7 @@ int run_delay(const SensorDelayArguments& arguments) {
   const auto found = find_delay(arguments);
   if (!found) return report_error(found.error());
   const std::string text = arguments.output.json ? result::to_json(*found) : report::sensor_delay_text(*found);
-  if (auto ok = output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return found->usable() ? kFine : kNotUsable;
 }
 

@@ -111,7 +111,7 @@ int list() {
     const std::string trials = scenarios->size() > 1 ? fmt::format(" ({} trials)", scenarios->size()) : "";
     text += fmt::format("  {:<26}{}{}\n", one.name, scenarios->front().condition, trials);
   }
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -121,7 +121,7 @@ int show_scenario(const std::string& name) {
     return report_error({ErrorKind::usage, fmt::format("there is no ready scenario '{}'", name),
                          "'mbk simulate --list' names them", ""});
   }
-  if (auto ok = Output().write(std::string(ready->text)); !ok) return report_error(ok.error());
+  if (auto ok = print_text(std::string(ready->text)); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -137,7 +137,7 @@ int show_facts(const SimulateArguments& arguments) {
                         job.scenario.name, job.scenario.seed) +
             report::schedule_text(*schedule);
   }
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -215,7 +215,7 @@ int simulate_elsewhere(const SimulateArguments& arguments, const std::vector<Job
   if (!arguments.quiet) {
     std::string text;
     for (const std::string& line : *lines) text += line;
-    if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+    if (auto ok = print_text(text); !ok) return report_error(ok.error());
   }
   if (auto ok = remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
   return kFine;
@@ -246,7 +246,7 @@ int run(const SimulateArguments& arguments, recording::Format format) {
   std::string text;
   for (const std::string& line : lines) text += line;
   if (!arguments.quiet) {
-    if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+    if (auto ok = print_text(text); !ok) return report_error(ok.error());
   }
   return kFine;
 }

@@ -100,7 +100,7 @@ int run_field(const FieldArguments& arguments) {
   const auto field = field_of(arguments);
   if (!field) return report_error(field.error());
   const std::string text = arguments.json ? result::to_json(*field) : report::spring_field_text(*field);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {}); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -147,7 +147,7 @@ int run_find(const FindArguments& arguments) {
   const auto design = calibration::design_springs(*request);
   if (!design) return report_error(design.error());
   const std::string text = arguments.json ? result::to_json(*design) : report::spring_design_text(*design);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {}); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -191,7 +191,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   }
   const std::string text =
       arguments.output.json ? result::to_json(constants) : report::spring_constants_text(constants);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return kFine;
 }
 

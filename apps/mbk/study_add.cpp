@@ -253,7 +253,7 @@ int add_all(const AddArguments& arguments, const std::vector<store::SheetRow>& r
       continue;
     }
     for (const AddedRecording& one : *added) {
-      if (auto ok = Output().write(added_line(one)); !ok) return report_error(ok.error());
+      if (auto ok = print_text(added_line(one)); !ok) return report_error(ok.error());
     }
   }
   return code;

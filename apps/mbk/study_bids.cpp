@@ -146,7 +146,7 @@ int export_bids(const store::Store& study, const store::StudyList& list, const f
   }
   const std::string line =
       fmt::format("{}: BIDS motion, {}\n", folder.string(), counted(written, "recording", "recordings"));
-  if (auto ok = Output().write(line); !ok) return report_error(ok.error());
+  if (auto ok = print_text(line); !ok) return report_error(ok.error());
   return code;
 }
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <atomic>
 #include <memory>
@@ -136,7 +137,7 @@ int run_check(const CheckArguments& arguments) {
     if (auto ok = repeater.repeat_all(); !ok) return report_error(ok.error());
   }
   const std::string text = arguments.output.json ? store::to_json(*report) : check_text(*report, arguments.quick);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
   return report->problems.empty() ? kFine : kBadData;
 }
 
@@ -172,7 +173,7 @@ int run_log(const CheckArguments& arguments) {
     for (const store::LogLine& line : *lines) text += line_text(line);
     text += fmt::format("head {}\n", lines->empty() ? "" : lines->back().hash);
   }
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
   return verdict && !verdict->problems.empty() ? kBadData : kFine;
 }
 
@@ -184,7 +185,7 @@ int run_exclude(const CheckArguments& arguments) {
   if (!done) return report_error(done.error());
   const std::string text =
       fmt::format("recording {} {}\n", arguments.number, arguments.undo ? "counts again" : "excluded");
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -198,10 +199,16 @@ int run_forget(const CheckArguments& arguments) {
                   counted(forgotten->recordings, "recording", "recordings"),
                   counted(forgotten->results, "result", "results"), counted(forgotten->files, "file", "files"));
   text += "backups, exported tables and the files that were added are elsewhere: erase them too\n";
+  if (!forgotten->lines_with_reasons.empty()) {
+    text += fmt::format("the log keeps the reasons that were given for these recordings, in {} {}: {}\n",
+                        forgotten->lines_with_reasons.size() == 1 ? "line" : "lines",
+                        fmt::join(forgotten->lines_with_reasons, ", "),
+                        "'mbk study log' shows them; if one names a person, only a new study leaves it out");
+  }
   if (!forgotten->log_of_changes_emptied) {
     text += "another process is reading: erased rows stand in study.sqlite-wal until it ends and a command follows\n";
   }
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -213,7 +220,7 @@ int run_backup(const CheckArguments& arguments) {
   const std::string text = fmt::format("{}: {}, {}, checked\nhead {}\n", arguments.to.string(),
                                        counted(report->recordings, "recording", "recordings"),
                                        counted(report->results, "result", "results"), report->head);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

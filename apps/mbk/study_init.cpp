@@ -35,7 +35,7 @@ int run_init(Command command, const InitArguments& arguments) {
   if (auto ok = store::Store::create(arguments.folder, facts, arguments.study.role); !ok) {
     return report_error(ok.error());
   }
-  if (auto ok = Output().write(fmt::format("{}: a new study\n", arguments.folder.string())); !ok) {
+  if (auto ok = print_text(fmt::format("{}: a new study\n", arguments.folder.string())); !ok) {
     return report_error(ok.error());
   }
   return kFine;
@@ -52,7 +52,7 @@ int run_defaults(Command command, const InitArguments& arguments) {
   const auto stored = default_options(*study);
   if (!stored) return report_error(stored.error());
   const std::string text = options_text(*stored);
-  if (auto ok = Output().write((text.empty() ? "none: as 'mbk measure' without options" : text) + "\n"); !ok) {
+  if (auto ok = print_text((text.empty() ? "none: as 'mbk measure' without options" : text) + "\n"); !ok) {
     return report_error(ok.error());
   }
   return kFine;

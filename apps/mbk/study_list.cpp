@@ -103,14 +103,14 @@ std::string show_text(const store::ShownRecording& shown) {
 }
 
 /// For people, or the document that --json asks for.
-int show(const ListArguments& arguments, const std::string& text) {
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+int show(const ListArguments& arguments, const store::Store& study, const std::string& text) {
+  if (auto ok = arguments.output.write(text, {study.folder()}); !ok) return report_error(ok.error());
   return kFine;
 }
 
 /// For programs.
-int write(const ListArguments& arguments, const std::string& text) {
-  if (auto ok = arguments.output.to.write(text); !ok) return report_error(ok.error());
+int write(const ListArguments& arguments, const store::Store& study, const std::string& text) {
+  if (auto ok = arguments.output.to.write(text, {study.folder()}); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -125,7 +125,7 @@ int run_list(const ListArguments& arguments) {
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
-  return show(arguments, arguments.output.json ? store::to_json(*list) : list_text(*list));
+  return show(arguments, *study, arguments.output.json ? store::to_json(*list) : list_text(*list));
 }
 
 int run_show(const ListArguments& arguments) {
@@ -134,14 +134,15 @@ int run_show(const ListArguments& arguments) {
   if (!study) return report_error(study.error());
   const auto shown = store::show_recording(*study, arguments.recording);
   if (!shown) return report_error(shown.error());
-  if (!arguments.document) return show(arguments, arguments.output.json ? store::to_json(*shown) : show_text(*shown));
+  if (!arguments.document)
+    return show(arguments, *study, arguments.output.json ? store::to_json(*shown) : show_text(*shown));
   const auto list = store::list_study(*study, arguments.analysis);
   if (!list) return report_error(list.error());
   for (const auto& one : shown->results) {
     if (!list->analysis || one.analysis.number != list->analysis->number || one.result.failed) continue;
     const auto document = study->document(one.result.number);
     if (!document) return report_error(document.error());
-    return write(arguments, *document + "\n");
+    return write(arguments, *study, *document + "\n");
   }
   return report_error({ErrorKind::data, fmt::format("recording {} has no result", arguments.recording),
                        "'mbk study measure' makes one; 'mbk study list' shows the state", ""});
@@ -161,7 +162,7 @@ int run_export(const ListArguments& arguments) {
     text = arguments.format == ExportFormat::csv ? store::export_csv(*study, *list) : store::export_json(*study, *list);
   }
   if (!text) return report_error(text.error());
-  return write(arguments, *text);
+  return write(arguments, *study, *text);
 }
 
 }  // namespace

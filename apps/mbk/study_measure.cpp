@@ -163,7 +163,7 @@ int said_of(const Tally& tally, std::size_t count, std::optional<int> code = {})
   const std::string text = count == 0 ? "nothing new to measure\n"
                                       : fmt::format("{} measured: {} usable, {} not usable, {} could not be measured\n",
                                                     count, tally.usable, tally.not_usable, tally.failed + tally.unread);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   if (code) return *code;
   if (tally.unread + tally.failed > 0) return kBadData;
   return tally.not_usable > 0 && tally.usable == 0 ? kNotUsable : kFine;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "apps/mbk/messages.h"
 #include "apps/mbk/option_checks.h"
 #include "apps/mbk/robot_file.h"
 #include "apps/mbk/word_options.h"
@@ -43,6 +44,10 @@ const std::vector<std::string>& measuring_names() {
     return names;
   }();
   return kNames;
+}
+
+void say_waiting() {
+  say("mbk: waiting for another process that is using the study, for half a minute at most\n");
 }
 
 /// What the file of an option says, as far as a result depends on it.
@@ -150,13 +155,13 @@ void add_study_and_role(Command command, StudyArguments& arguments) {
 }
 
 Result<store::Store> open_study(const StudyArguments& arguments) {
-  if (arguments.folder) return store::Store::open(*arguments.folder);
+  if (arguments.folder) return store::Store::open(*arguments.folder, say_waiting);
   const auto folder = store::find_study(".");
   if (!folder) {
     return bad_usage("there is no study in this folder, nor above it",
                      "name one with --study FOLDER; 'mbk study init FOLDER' makes one");
   }
-  return store::Store::open(*folder);
+  return store::Store::open(*folder, say_waiting);
 }
 
 void add_measuring_options(Command command, MeasuringArguments& arguments) {

@@ -75,7 +75,11 @@ int run_plan(const PlanArguments& arguments) {
   if (!plans) return report_error(plans.error());
   const std::string text =
       arguments.output.json ? statistics::to_json(*pilot, goal, *plans) : statistics::plan_text(*pilot, goal, *plans);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  std::vector<std::filesystem::path> from;
+  if (const auto study = stated ? std::nullopt : store::find_study(arguments.study.folder.value_or("."))) {
+    from.push_back(*study);
+  }
+  if (auto ok = arguments.output.write(text, from); !ok) return report_error(ok.error());
   return kFine;
 }
 

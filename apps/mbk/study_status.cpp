@@ -67,7 +67,7 @@ int run(const StatusArguments& arguments) {
                         batch::to_text(*efficiency));
   }
   if (arguments.json) text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

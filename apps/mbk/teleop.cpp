@@ -52,9 +52,14 @@ std::vector<Chart> charts_of(const TeleoperationFinding& finding) {
   return charts;
 }
 
-Result<void> check(const TeleopArguments& arguments) {
+std::vector<std::filesystem::path> inputs_of(const TeleopArguments& arguments) {
   std::vector<std::filesystem::path> inputs = {arguments.design};
   if (!arguments.operator_result.empty()) inputs.push_back(arguments.operator_result);
+  return inputs;
+}
+
+Result<void> check(const TeleopArguments& arguments) {
+  const std::vector<std::filesystem::path> inputs = inputs_of(arguments);
   if (arguments.output.overwrite && !arguments.output.file && arguments.charts.empty()) {
     return bad_usage("--overwrite requires --out or --charts", "name a file to write");
   }
@@ -114,9 +119,10 @@ int run(const TeleopArguments& arguments) {
   const std::vector<std::string> names = chart_names(arguments);
   for (std::size_t i = 0; i < charts.size() && !arguments.charts.empty(); ++i) {
     const Output file{chart_file(arguments, names[i]), arguments.output.overwrite};
-    if (auto ok = file.write(report::chart_svg(charts[i])); !ok) return report_error(ok.error());
+    if (auto ok = file.write(report::chart_svg(charts[i]), inputs_of(arguments)); !ok) return report_error(ok.error());
   }
-  const auto written = arguments.json ? arguments.output.write(shown) : arguments.output.show(shown);
+  const auto written = arguments.json ? arguments.output.write(shown, inputs_of(arguments))
+                                      : arguments.output.show(shown, inputs_of(arguments));
   return written ? kFine : report_error(written.error());
 }
 

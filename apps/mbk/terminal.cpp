@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/mbk/folded_table.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/present/report/picture.h"
 #include "mbk/present/report/text.h"
 
@@ -154,7 +155,8 @@ std::string coloured(std::string_view text) {
   return out;
 }
 
-std::string for_people(const std::string& text, const Terminal& terminal) {
+std::string for_people(const std::string& given, const Terminal& terminal) {
+  const std::string text = printable_lines(given);
   if (!terminal.there) return text;
   const std::string lines = terminal.columns < report::kLineColumns ? fitted(text, terminal.columns) : text;
   return terminal.colour ? coloured(lines) : lines;

@@ -27,7 +27,7 @@ struct Terminal {
 /// With headings, names of options, warnings and verdicts that nobody may miss in colour.
 [[nodiscard]] std::string coloured(std::string_view text);
 
-/// The text as this terminal shows it best; elsewhere as it is.
-[[nodiscard]] std::string for_people(const std::string& text, const Terminal& terminal);
+/// The text as this terminal shows it best; nothing in it can drive one (`printable_lines`).
+[[nodiscard]] std::string for_people(const std::string& given, const Terminal& terminal);
 
 }  // namespace mbk::app

@@ -172,6 +172,13 @@ std::filesystem::path chart_file(const TfArguments& arguments, std::size_t chart
   return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
 }
 
+/// Every recording that a result is computed from.
+std::vector<std::filesystem::path> files_of(const TfArguments& arguments) {
+  std::vector<std::filesystem::path> files = arguments.reading.files;
+  files.insert(files.end(), arguments.held_out.begin(), arguments.held_out.end());
+  return files;
+}
+
 /// What can be said of every file that is to be written before the work begins.
 Result<void> check_written(const TfArguments& arguments) {
   Output output = arguments.output.to;
@@ -192,7 +199,7 @@ Result<void> check_written(const TfArguments& arguments) {
 Result<void> write_charts(const TfArguments& arguments, const std::vector<Chart>& charts) {
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
     const Output file{chart_file(arguments, k), arguments.output.to.overwrite};
-    if (auto ok = file.write(report::chart_svg(charts[k])); !ok) return ok;
+    if (auto ok = file.write(report::chart_svg(charts[k]), files_of(arguments)); !ok) return ok;
   }
   return {};
 }
@@ -219,7 +226,7 @@ int run(const TfArguments& given, const std::string& typed) {
   if (!findings) return report_error(findings.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, *findings, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report); !ok)
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report, files_of(arguments)); !ok)
       return report_error(ok.error());
   }
   if (auto ok = write_charts(arguments, report::response_charts(*found, findings->response)); !ok) {
@@ -228,7 +235,7 @@ int run(const TfArguments& given, const std::string& typed) {
   std::string text =
       arguments.output.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
   if (!arguments.output.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
-  if (auto ok = arguments.output.write(text); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, files_of(arguments)); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 

@@ -98,7 +98,7 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
   if (table.charts.empty()) {
     return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "omit --charts");
   }
-  const auto files = ChartFiles::in(folder, overwrite);
+  const auto files = ChartFiles::in(folder, overwrite, {});
   if (!files) return tl::unexpected(files.error());
   for (std::size_t k = 0; k < table.charts.size(); ++k) {
     if (auto ok = files->write(fmt::format("{}-{}", table.study, k + 1), table.charts[k]); !ok) return ok;
@@ -187,7 +187,7 @@ int run_one(const ValidateArguments& arguments) {
   const validation::Study& study = *find_study(arguments.study);
   if (arguments.page) {
     if (study.name != "faults") return report_error({ErrorKind::usage, "--page belongs to 'faults'", "", ""});
-    const auto written = Output().write(validation::safety_page());
+    const auto written = print_text(validation::safety_page());
     return written ? kFine : report_error(written.error());
   }
   Progress progress(arguments.quiet, arguments.study + ": ");
@@ -212,7 +212,7 @@ int run_one(const ValidateArguments& arguments) {
   if (!table) return report_error(table.error());
   if (elsewhere) elsewhere->clear();
   const auto written =
-      arguments.json ? Output().write(result::to_json(*table)) : Output().show(report::validation_text(*table));
+      arguments.json ? print_text(result::to_json(*table)) : Output().show(report::validation_text(*table), {});
   if (!written) return report_error(written.error());
   if (arguments.charts && !(arguments.all && table->charts.empty())) {
     if (auto ok = write_charts(*table, *arguments.charts, arguments.overwrite); !ok) return report_error(ok.error());
@@ -243,7 +243,7 @@ int run_all(ValidateArguments arguments) {
     arguments.study = name;
     code = worse(code, run_one(arguments));
     if (code != kFine && code != kNotShown && code != kFallsShort) return code;
-    if (auto ok = Output().write("\n"); !ok) return report_error(ok.error());
+    if (auto ok = print_text("\n"); !ok) return report_error(ok.error());
   }
   return code;
 }
@@ -257,7 +257,7 @@ std::string list_of_studies() {
 
 int run(const ValidateArguments& arguments, bool bare) {
   if (bare) {
-    const auto shown = Output().show(list_of_studies());
+    const auto shown = Output().show(list_of_studies(), {});
     return shown ? kFine : report_error(shown.error());
   }
   return arguments.study == kAll ? run_all(arguments) : run_one(arguments);

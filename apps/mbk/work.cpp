@@ -27,7 +27,7 @@ int show_state(const batch::JobFolder& folder, bool json) {
   if (!state) return report_error(state.error());
   const std::string text =
       json ? batch::to_json(*state) + "\n" : fmt::format("{}\n{}\n", folder.job().title, batch::to_text(*state));
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -69,7 +69,7 @@ int run(const WorkArguments& arguments) {
   });
   if (!worked) return report_error(worked.error());
   const std::string text = fmt::format("chunk {}: {} units, {} failed\n", *arguments.chunk, done.units, done.failed);
-  if (auto ok = Output().write(text); !ok) return report_error(ok.error());
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 

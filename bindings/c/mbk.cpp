@@ -1,10 +1,13 @@
 #include "bindings/c/mbk.h"
 
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -82,14 +85,34 @@ int wrong_size(const std::string& what, const std::string& type, mbk_error** err
               error);
 }
 
+/// What a caller in C gets wrong without noticing: a list that is not there, a length that was negative.
+/// @param size  [bytes] of one
+Result<void> check_list(const std::string& name, const void* list, std::size_t count, std::size_t size) {
+  if (count > 0 && list == nullptr) return mbk::bad_usage("'" + name + "' is NULL, and its count is not 0");
+  if (count > static_cast<std::size_t>(PTRDIFF_MAX) / size) {
+    return mbk::bad_usage("'" + name + "' cannot have " + std::to_string(count) + " elements",
+                          "check its count: a negative number is a huge one here");
+  }
+  return {};
+}
+
+int null_argument(const char* name, mbk_error** error) {
+  return fail({ErrorKind::usage, std::string("'") + name + "' is NULL", "pass the address of a variable", ""}, error);
+}
+
 std::string text_of(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
 }
 
 Result<InMemory::Signal> signal_of(const mbk_signal& given, const std::shared_ptr<const void>& keeper) {
   InMemory::Signal signal{text_of(given.name), text_of(given.unit), {}, static_cast<Index>(given.rows)};
-  if (given.values == nullptr && given.count > 0) {
-    return mbk::bad_usage("'" + signal.name + "' has no numbers", "'values' is NULL");
+  const std::size_t step = given.stride == 0 ? 1 : static_cast<std::size_t>(std::abs(given.stride));
+  if (step > static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(double)) return mbk::bad_usage("a stride is too large");
+  if (auto ok = check_list(signal.name, given.values, given.count, step * sizeof(double)); !ok) {
+    return tl::unexpected(ok.error());
+  }
+  if (given.rows > static_cast<std::size_t>(PTRDIFF_MAX)) {
+    return mbk::bad_usage("'" + signal.name + "' cannot have " + std::to_string(given.rows) + " rows");
   }
   if (given.rows > 0 && given.count % given.rows != 0) {
     return mbk::bad_usage("'" + signal.name + "' is no matrix of " + std::to_string(given.rows) + " rows",
@@ -152,23 +175,23 @@ const char* mbk_version(void) {
 }
 
 const char* mbk_error_what(const mbk_error* error) {
-  return error->error.message.c_str();
+  return error == nullptr ? "" : error->error.message.c_str();
 }
 
 const char* mbk_error_where(const mbk_error* error) {
-  return error->error.where.c_str();
+  return error == nullptr ? "" : error->error.where.c_str();
 }
 
 const char* mbk_error_hint(const mbk_error* error) {
-  return error->error.remedy.c_str();
+  return error == nullptr ? "" : error->error.remedy.c_str();
 }
 
 const char* mbk_error_line(const mbk_error* error) {
-  return error->line.c_str();
+  return error == nullptr ? "" : error->line.c_str();
 }
 
 int mbk_error_exit_code(const mbk_error* error) {
-  return error->exit_code;
+  return error == nullptr ? MBK_FINE : error->exit_code;
 }
 
 void mbk_error_free(mbk_error* error) {
@@ -177,6 +200,7 @@ void mbk_error_free(mbk_error* error) {
 
 int mbk_recording_new(const mbk_signal* signals, size_t count, const mbk_facts* facts, mbk_recording** recording,
                       mbk_error** error) {
+  if (recording == nullptr) return guarded(error, [&] { return null_argument("recording", error); });
   *recording = nullptr;
   return guarded(error, [&] {
     constexpr mbk_facts kNone = {.size = sizeof(mbk_facts)};
@@ -186,6 +210,12 @@ int mbk_recording_new(const mbk_signal* signals, size_t count, const mbk_facts* 
     if (known.release != nullptr) {
       keeper = std::shared_ptr<const void>(
           signals, [release = known.release, owner = known.owner](const void*) { release(owner); });
+    }
+    for (const auto& [name, list, n, size] :
+         {std::tuple<const char*, const void*, std::size_t, std::size_t>("signals", signals, count, sizeof(mbk_signal)),
+          {"metadata", known.metadata, known.metadata_count, sizeof(mbk_option)},
+          {"events", known.events, known.event_count, sizeof(mbk_event)}}) {
+      if (auto ok = check_list(name, list, n, size); !ok) return fail(ok.error(), error);
     }
     std::vector<InMemory::Signal> made;
     for (std::size_t k = 0; k < count; ++k) {
@@ -209,8 +239,11 @@ int mbk_recording_new(const mbk_signal* signals, size_t count, const mbk_facts* 
 }
 
 int mbk_read(const char* file, const mbk_option* options, size_t count, mbk_recording** recording, mbk_error** error) {
+  if (recording == nullptr) return guarded(error, [&] { return null_argument("recording", error); });
   *recording = nullptr;
   return guarded(error, [&] {
+    if (file == nullptr) return null_argument("file", error);
+    if (auto ok = check_list("options", options, count, sizeof(mbk_option)); !ok) return fail(ok.error(), error);
     const mbk::app::Call call{.command = "read",
                               .options = options_of(options, count),
                               .words = {text_of(file)},
@@ -229,37 +262,41 @@ int mbk_read(const char* file, const mbk_option* options, size_t count, mbk_reco
 }
 
 size_t mbk_recording_signal_count(const mbk_recording* recording) {
-  return recording->signals->signals().size();
+  return recording == nullptr ? 0 : recording->signals->signals().size();
 }
 
 const char* mbk_recording_signal_name(const mbk_recording* recording, size_t k) {
-  return recording->signals->signals()[k].name.c_str();
+  return k < mbk_recording_signal_count(recording) ? recording->signals->signals()[k].name.c_str() : "";
 }
 
 const char* mbk_recording_signal_unit(const mbk_recording* recording, size_t k) {
-  return recording->signals->signals()[k].unit.c_str();
+  return k < mbk_recording_signal_count(recording) ? recording->signals->signals()[k].unit.c_str() : "";
 }
 
 const double* mbk_recording_signal_values(const mbk_recording* recording, size_t k, size_t* count) {
+  if (count != nullptr) *count = 0;
+  if (k >= mbk_recording_signal_count(recording)) return nullptr;
   const Samples& values = recording->signals->signals()[k].values;
   if (count != nullptr) *count = static_cast<size_t>(values.size());
   return values.data();
 }
 
 size_t mbk_recording_metadata_count(const mbk_recording* recording) {
-  return recording->signals->metadata().size();
+  return recording == nullptr ? 0 : recording->signals->metadata().size();
 }
 
 mbk_option mbk_recording_metadata(const mbk_recording* recording, size_t k) {
+  if (k >= mbk_recording_metadata_count(recording)) return {"", ""};
   const auto entry = std::next(recording->signals->metadata().begin(), static_cast<std::ptrdiff_t>(k));
   return {entry->first.c_str(), entry->second.c_str()};
 }
 
 size_t mbk_recording_event_count(const mbk_recording* recording) {
-  return recording->signals->events().size();
+  return recording == nullptr ? 0 : recording->signals->events().size();
 }
 
 mbk_event mbk_recording_event(const mbk_recording* recording, size_t k) {
+  if (k >= mbk_recording_event_count(recording)) return {0.0, "", 0.0};
   const mbk::Event& event = recording->signals->events()[k];
   return {event.time, event.name.c_str(), event.value};
 }
@@ -269,9 +306,22 @@ void mbk_recording_free(mbk_recording* recording) {
 }
 
 int mbk_call(const mbk_request* request, mbk_answer** answer, mbk_error** error) {
+  if (answer == nullptr) return guarded(error, [&] { return null_argument("answer", error); });
   *answer = nullptr;
   return guarded(error, [&] {
+    if (request == nullptr) return null_argument("request", error);
     if (request->size != sizeof(mbk_request)) return wrong_size("request", "mbk_request", error);
+    for (const auto& [name, list, n, size] :
+         {std::tuple<const char*, const void*, std::size_t, std::size_t>("options", request->options,
+                                                                         request->option_count, sizeof(mbk_option)),
+          {"words", request->words, request->word_count, sizeof(char*)},
+          {"recordings", request->recordings, request->recording_count, sizeof(void*)},
+          {"documents", request->documents, request->document_count, sizeof(char*)}}) {
+      if (auto ok = check_list(name, list, n, size); !ok) return fail(ok.error(), error);
+    }
+    for (std::size_t k = 0; k < request->recording_count; ++k) {
+      if (request->recordings[k] == nullptr) return null_argument("recordings[k]", error);
+    }
     auto found = mbk::app::call(call_of(*request));
     if (!found) return fail(found.error(), error);
     auto made = std::make_unique<mbk_answer>();
@@ -284,43 +334,43 @@ int mbk_call(const mbk_request* request, mbk_answer** answer, mbk_error** error)
 }
 
 const char* mbk_answer_text(const mbk_answer* answer) {
-  return answer->answer.text.c_str();
+  return answer == nullptr ? "" : answer->answer.text.c_str();
 }
 
 int mbk_answer_is_json(const mbk_answer* answer) {
-  return answer->answer.json ? 1 : 0;
+  return answer != nullptr && answer->answer.json ? 1 : 0;
 }
 
 int mbk_answer_exit_code(const mbk_answer* answer) {
-  return answer->answer.exit_code;
+  return answer == nullptr ? MBK_WRONG_USAGE : answer->answer.exit_code;
 }
 
 size_t mbk_answer_warning_count(const mbk_answer* answer) {
-  return answer->warnings.size();
+  return answer == nullptr ? 0 : answer->warnings.size();
 }
 
 const char* mbk_answer_warning_code(const mbk_answer* answer, size_t k) {
-  return answer->warnings[k].first.c_str();
+  return k < mbk_answer_warning_count(answer) ? answer->warnings[k].first.c_str() : "";
 }
 
 const char* mbk_answer_warning_text(const mbk_answer* answer, size_t k) {
-  return answer->warnings[k].second.c_str();
+  return k < mbk_answer_warning_count(answer) ? answer->warnings[k].second.c_str() : "";
 }
 
 size_t mbk_answer_message_count(const mbk_answer* answer) {
-  return answer->answer.messages.size();
+  return answer == nullptr ? 0 : answer->answer.messages.size();
 }
 
 const char* mbk_answer_message(const mbk_answer* answer, size_t k) {
-  return answer->answer.messages[k].c_str();
+  return k < mbk_answer_message_count(answer) ? answer->answer.messages[k].c_str() : "";
 }
 
 size_t mbk_answer_error_count(const mbk_answer* answer) {
-  return answer->errors.size();
+  return answer == nullptr ? 0 : answer->errors.size();
 }
 
 const mbk_error* mbk_answer_error(const mbk_answer* answer, size_t k) {
-  return &answer->errors[k];
+  return k < mbk_answer_error_count(answer) ? &answer->errors[k] : nullptr;
 }
 
 void mbk_answer_free(mbk_answer* answer) {

@@ -2,6 +2,7 @@
 #include "mbk.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,6 +180,44 @@ static int at_once(void* context) {
   return 1;
 }
 
+static void test_answers_null_and_impossible_sizes(void) {
+  mbk_recording* made = NULL;
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  double numbers_here[3] = {0, 1, 2};
+  mbk_signal signal = {"x", NULL, numbers_here, 3, 0, 1};
+  EXPECT(mbk_recording_new(NULL, 3, NULL, &made, NULL) == MBK_WRONG_USAGE);
+  EXPECT(mbk_recording_new(&signal, 1, NULL, NULL, &error) == MBK_WRONG_USAGE);
+  if (error != NULL) EXPECT(strstr(mbk_error_what(error), "NULL") != NULL);
+  mbk_error_free(error);
+  EXPECT(mbk_recording_new(&signal, SIZE_MAX, NULL, &made, NULL) == MBK_WRONG_USAGE);
+  signal.count = SIZE_MAX;
+  EXPECT(mbk_recording_new(&signal, 1, NULL, &made, NULL) == MBK_WRONG_USAGE);
+  signal.count = 3;
+  signal.rows = SIZE_MAX;
+  EXPECT(mbk_recording_new(&signal, 1, NULL, &made, NULL) == MBK_WRONG_USAGE);
+  const mbk_facts facts = {.size = sizeof facts, .metadata_count = 2};
+  signal.rows = 0;
+  EXPECT(mbk_recording_new(&signal, 1, &facts, &made, NULL) == MBK_WRONG_USAGE);
+  EXPECT(mbk_read(NULL, NULL, 0, &made, NULL) == MBK_WRONG_USAGE);
+  EXPECT(mbk_read("a.mat", NULL, 2, &made, NULL) == MBK_WRONG_USAGE);
+  EXPECT(mbk_read("a.mat", NULL, 0, NULL, NULL) == MBK_WRONG_USAGE);
+  EXPECT(made == NULL);
+  EXPECT(mbk_call(NULL, &answer, NULL) == MBK_WRONG_USAGE);
+  const mbk_recording* none[] = {NULL};
+  mbk_request request = {.size = sizeof request, .command = "measure", .recordings = none, .recording_count = 1};
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_WRONG_USAGE);
+  EXPECT(mbk_call(&request, NULL, NULL) == MBK_WRONG_USAGE);
+  request.recording_count = SIZE_MAX;
+  EXPECT(mbk_call(&request, &answer, NULL) == MBK_WRONG_USAGE);
+  EXPECT(answer == NULL);
+  size_t count = 7;
+  EXPECT(mbk_recording_signal_count(NULL) == 0 && mbk_recording_signal_values(NULL, 0, &count) == NULL && count == 0);
+  EXPECT(strcmp(mbk_recording_signal_name(NULL, SIZE_MAX), "") == 0 && mbk_recording_event(NULL, 1).time == 0.0);
+  EXPECT(strcmp(mbk_answer_text(NULL), "") == 0 && mbk_answer_error(NULL, 0) == NULL);
+  EXPECT(strcmp(mbk_error_line(NULL), "") == 0);
+}
+
 static void test_stops(void) {
   mbk_answer* answer = NULL;
   mbk_error* error = NULL;
@@ -210,6 +249,7 @@ int main(void) {
   test_measures_what_is_in_memory();
   test_copies_what_stands_apart();
   test_says_what_is_wrong();
+  test_answers_null_and_impossible_sizes();
   test_stops();
   test_frees_nothing();
   if (failures > 0) fprintf(stderr, "%d failures\n", failures);

@@ -69,10 +69,34 @@ Value value_or_raise(mbk::Result<Value> result) {
   return std::move(*result);
 }
 
+/// The thread that ends the interpreter, once it does; a daemon thread may then no longer take the GIL: Python would
+/// end it by an exception that no destructor lets through, and with it the process.
+std::atomic<std::thread::id> ending_thread{};
+
+bool others_are_ending() {
+  const std::thread::id ending = ending_thread;
+  return ending != std::thread::id() && ending != std::this_thread::get_id();
+}
+
+/// As py::gil_scoped_release; a daemon thread that comes back after the interpreter began to end waits for the end.
+class Released {
+ public:
+  Released() = default;
+  Released(const Released&) = delete;
+  Released& operator=(const Released&) = delete;
+  ~Released() noexcept(false) {
+    while (others_are_ending()) std::this_thread::sleep_for(std::chrono::hours(1));
+    PyEval_RestoreThread(state_);
+  }
+
+ private:
+  PyThreadState* state_ = PyEval_SaveThread();
+};
+
 /// A reference that may be dropped on any thread.
 std::shared_ptr<const void> keep(py::object object) {
   return {object.release().ptr(), [](const void* kept) {
-            if (Py_IsInitialized() == 0) return;
+            if (Py_IsInitialized() == 0 || others_are_ending()) return;
             const py::gil_scoped_acquire gil;
             Py_DECREF(static_cast<PyObject*>(const_cast<void*>(kept)));
           }};
@@ -232,7 +256,7 @@ std::optional<mbk::app::CallOption> option_of(std::string name, const py::handle
 class Interruption {
  public:
   bool operator()() {
-    if (wanted_) return true;
+    if (wanted_ || others_are_ending()) return true;
     if (std::this_thread::get_id() != caller_ || Clock::now() - last_ < kPause) return false;
     last_ = Clock::now();
     const py::gil_scoped_acquire gil;
@@ -277,6 +301,7 @@ auto run(mbk::app::Call& call, const py::object& progress, const Use& use) {
   call.stop = [&] { return interruption(); };
   if (!progress.is_none()) {
     call.progress = [&](std::string_view what, double fraction) {
+      if (others_are_ending()) return;
       const py::gil_scoped_acquire gil;
       try {
         progress(py::str(what.data(), what.size()), fraction);
@@ -287,7 +312,7 @@ auto run(mbk::app::Call& call, const py::object& progress, const Use& use) {
     };
   }
   try {
-    const py::gil_scoped_release released;
+    const Released released;
     return use(call);
   } catch (const mbk::Stopped&) {
   }
@@ -320,6 +345,7 @@ void keep_freed_memory() {
 
 PYBIND11_MODULE(_mbk, m) {
   keep_freed_memory();
+  py::module_::import("atexit").attr("register")(py::cpp_function([] { ending_thread = std::this_thread::get_id(); }));
   m.doc() = "Recordings and commands of mbk; 'import mbk' gives what people use.";
   m.attr("__version__") = std::string(mbk::version());
 

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -304,6 +305,34 @@ class Slurm(Engines, JobCase):
         self.assertEqual(ran.out, self.table)
         job = json.loads(next(self.folder.rglob("job.json")).read_text(encoding="utf-8"))
         self.assertLessEqual(job["chunks"], 18)
+
+    def test_paths_that_shells_and_slurm_take_apart(self):
+        owned = self.folder / "owned"
+        for name in ("with space", "100%", "50%A_%a", "it's $(touch owned) `touch owned` #;&", '"quoted"'):
+            with self.subTest(name=name):
+                job = self.folder / name / "job"
+                job.parent.mkdir()
+                ran = self.job(*VALIDATE, *SHORT, "--job-folder", job, "--keep-job", code=self.judged)
+                self.assertEqual(ran.out, self.table)
+                logs = [log for log in self.folder.rglob("*.txt") if re.fullmatch(r"\d+_\d+\.txt", log.name)]
+                self.assertEqual({log.is_relative_to(job) for log in logs}, {True}, "what tasks say stands in the job's folder")
+                shutil.rmtree(job)
+        self.assertFalse(owned.exists())
+
+    def test_paths_that_slurm_cannot_take_are_refused(self):
+        for name, what in (("a\ntouch owned\n", "control character"), ("tab\tb", "control character"), ("back\\slash", "backslash")):
+            with self.subTest(name=name):
+                job = self.folder / name / "job"
+                job.parent.mkdir()
+                ran = self.refused(WRONG_USAGE, *VALIDATE, *SHORT, *self.engine, "--job-folder", job, folder=self.folder,
+                                   environment=self.environment, says=[what, "--job-folder"])
+                self.assertNotIn("sinfo", ran.err)
+        self.assertFalse((self.folder / "owned").exists())
+
+    def test_what_slurm_refuses_is_named(self):
+        ran = self.job(*VALIDATE, *SHORT, "--partition", "nowhere", code=BAD_DATA)
+        self.assertIn("partition", ran.err)
+        self.assertIn("correct what it names", ran.err)
 
     def test_partition_and_limit_reach_the_controller(self):
         self.slurm.say("scontrol", "update", f"NodeName={self.slurm.host}", "State=DRAIN", "Reason=test")

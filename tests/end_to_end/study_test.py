@@ -7,6 +7,7 @@ MBK_STUDY_KILLS says how many times a command is killed in mid-work (20).
 import collections
 import contextlib
 import csv
+import fcntl
 import hashlib
 import io
 import json
@@ -17,6 +18,7 @@ import re
 import resource
 import shutil
 import signal
+import socket
 import sqlite3
 import subprocess
 import time
@@ -228,7 +230,7 @@ class AStudy(StudyCase):
         head = self.do("log", "--json").json["head"]
         self.do("log", "--verify", "--head", head)
         with sqlite3.connect(self.study / "study.sqlite") as database:
-            database.execute("DROP TRIGGER log_is_never_changed")
+            database.execute("DROP TRIGGER IF EXISTS log_is_never_changed")
             database.execute("UPDATE log SET why = 'nothing' WHERE number = 1")
         self.assertIn("line 1", self.do("log", "--verify", code=BAD_DATA).out)
         self.assertTrue(self.checked("--quick", code=BAD_DATA)["problems"])
@@ -426,6 +428,115 @@ class DataSets(StudyCase):
         self.refused(BAD_DATA, "study", "import", self.study, "--study", self.study, says="without a BIDS recording")
 
 
+class Reading(StudyCase):
+    """By those who may read a study and not write it."""
+
+    def setUp(self):
+        super().setUp()
+        self.do("add", *self.trials[:2], "--participant", 7)
+        self.do("measure", "--quiet")
+        self.folder.chmod(0o755)
+        self.allow(read_only=True)
+        self.addCleanup(self.allow, read_only=False)
+
+    def allow(self, read_only):
+        for path in (self.study, *self.study.rglob("*")):
+            path.chmod((0o555 if path.is_dir() else 0o444) if read_only else (0o700 if path.is_dir() else 0o600))
+
+    def as_reader(self, name, *arguments, code=FINE):
+        """Runs a command as someone to whom permissions apply."""
+        user = {"user": 65534, "group": 65534, "extra_groups": []} if command.is_root() else {}
+        ran = subprocess.run([command.program("MBK"), "study", name, *map(str, arguments), "--study", self.study],
+                             capture_output=True, text=True, check=False, cwd="/", **user)
+        self.assertEqual(ran.returncode, code, ran)
+        return ran
+
+    def test_a_study_without_permission_to_write(self):
+        self.assertIn("2 recordings of 1 participant: 2 usable", self.as_reader("list").stdout)
+        said = {words: self.as_reader(*words.split()).stdout for words in ("show 1", "summary", "export", "log --verify")}
+        self.allow(read_only=False)
+        self.assertEqual(said, {words: self.do(*words.split()).out for words in said})
+        self.allow(read_only=True)
+        check = json.loads(self.as_reader("check", "--json").stdout)
+        self.assertEqual((check["files"], check["repeated"], check["problems"]), (2, 2, []))
+        self.assertIn("may only be read", " ".join(check["notes"]))
+        before = {path: path.read_bytes() for path in self.study.rglob("*") if path.is_file()}
+        for words in (["exclude", 1, "--why", "x"], ["forget", "--participant", 7, "--why", "x"], ["defaults", "--cutoff", 4],
+                      ["add", self.trials[2], "--participant", 8], ["measure", "--cutoff", 4]):
+            self.assertIn("permission", self.as_reader(*words, code=BAD_DATA).stderr.lower(), words)
+        self.assertEqual({path: path.read_bytes() for path in self.study.rglob("*") if path.is_file()}, before)
+
+    def test_what_another_process_has_not_yet_written_is_never_missed(self):
+        self.allow(read_only=False)
+        with contextlib.closing(sqlite3.connect(self.study / "study.sqlite")) as writer:
+            writer.execute("UPDATE fact SET value = 'Another title' WHERE name = 'title'")
+            writer.commit()
+            self.allow(read_only=True)
+            ran = self.as_reader("list", code=BAD_DATA)
+            self.assertIn("another process is changing it", ran.stderr)
+            self.allow(read_only=False)
+        self.allow(read_only=True)
+        self.assertIn("Another title", self.as_reader("list").stdout)
+
+
+class Waiting(StudyCase):
+    def test_for_another_process_is_said_at_once(self):
+        holder = sqlite3.connect(self.study / "study.sqlite", isolation_level=None)
+        holder.execute("BEGIN IMMEDIATE")
+        with open(self.study / "lock", "w", encoding="utf-8") as lock:
+            for what, release in ((["defaults", "--cutoff", "4"], lambda: holder.execute("ROLLBACK")),
+                                  (["check", "--quick"], lambda: fcntl.flock(lock, fcntl.LOCK_UN))):
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                waits = subprocess.Popen([command.program("MBK"), "study", *what, "--study", self.study],
+                                         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                began = time.monotonic()
+                self.assertIn("waiting for another process", waits.stderr.readline())
+                self.assertLess(time.monotonic() - began, 5.0)
+                self.assertIsNone(waits.poll())
+                release()
+                self.assertEqual((waits.wait(timeout=20), waits.stderr.read()), (FINE, ""))
+                waits.stderr.close()
+        holder.close()
+
+
+class Log(StudyCase):
+    def write_anew(self, times):
+        """The log with other times and the hashes that belong to them, as one who knows how it is made could do."""
+        with contextlib.closing(sqlite3.connect(self.study / "study.sqlite")) as database:
+            database.execute("DROP TRIGGER IF EXISTS log_is_never_changed")
+            head = ""
+            rows = database.execute("SELECT number, role, action, recording, analysis, participant, digest, why FROM log "
+                                    "ORDER BY number").fetchall()
+            for (number, *rest), at in zip(rows, times):
+                line = json.dumps(["mbk.study.log/1", number, at, *rest, head], separators=(",", ":"), ensure_ascii=False)
+                head = hashlib.sha256(line.encode()).hexdigest()
+                database.execute("UPDATE log SET time = ?, hash = ? WHERE number = ?", (at, head, number))
+            database.commit()
+
+    def test_whose_times_run_back_is_seen(self):
+        self.do("defaults", "--cutoff", "4")
+        self.do("defaults", "--cutoff", "5")
+        self.write_anew(["2026-05-04T09:30:00Z", "2026-05-04T09:30:00Z", "2026-05-04T09:29:30Z"])
+        self.assertEqual(self.checked()["problems"], [], "clocks of two computers differ a little")
+        self.write_anew(["2026-05-04T09:30:00Z", "2026-05-04T09:31:00Z", "2026-05-03T09:31:00Z"])
+        problems = self.checked(code=BAD_DATA)["problems"]
+        self.assertEqual(len(problems), 1)
+        self.assertIn("86400 s before the line above it", problems[0])
+        self.assertIn("line 3", self.do("log", "--verify", code=BAD_DATA).out)
+        self.write_anew(["2026-05-04T09:30:00Z", "yesterday", "2026-05-04T09:31:00Z"])
+        self.assertIn("has no time", self.checked(code=BAD_DATA)["problems"][0])
+
+    def test_reasons_that_stay_after_forgetting_are_named(self):
+        self.do("add", *self.trials[:2], "--participant", 7)
+        self.do("add", self.trials[2], "--participant", 8)
+        self.do("exclude", 1, "--why", "Jane coughed")
+        self.do("exclude", 3, "--why", "hand slipped")
+        said = self.do("forget", "--participant", 7, "--why", "consent withdrawn").out
+        self.assertIn("the log keeps the reasons that were given for these recordings, in line 5:", said)
+        self.do("add", self.trials[3], "--participant", 9)
+        self.assertNotIn("reasons", self.do("forget", "--participant", 9, "--why", "consent withdrawn").out)
+
+
 class Pages(StudyCase):
     """What a page holds; how it looks is tested in a browser (tests/web/study_test.mjs)."""
 
@@ -461,6 +572,14 @@ class Pages(StudyCase):
         change = area["participants"][0]["changes"][0]
         self.assertEqual((change["verdict"], change["mdc95"]), ("unknown", None))
         self.assertIn("only 1 person has two sessions", area["why_unknown"])
+
+    def test_do_not_name_the_computers_of_the_laboratory(self):
+        self.do("add", *self.trials[:3], "--participant", 7)
+        self.do("measure", "--quiet", "--engine", "local", "--chunk-units", 1)
+        page = self.document()
+        self.assertEqual([one["host"] for one in page["jobs"][0]["hosts"]], ["machine 1"])
+        self.assertEqual({one["host"] for one in page["jobs"][0]["tasks"]}, {"machine 1"})
+        self.assertNotIn(socket.gethostname(), json.dumps(page["jobs"]))
 
     def test_of_nothing(self):
         document = self.document()

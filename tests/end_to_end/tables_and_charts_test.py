@@ -174,5 +174,28 @@ class Charts(Case):
         self.refused(WRONG_USAGE, "measure", log, "--charts", self.file("file", "x"), says="no folder")
 
 
+class Spreadsheets(Case):
+    def test_no_cell_is_a_formula_and_numbers_stay_numbers(self):
+        for name in ("=cmd|calc!A1.mat", "+1+1.mat", "@SUM(A1).mat", "-2+3.mat"):
+            copy(logs(1)[0], self.folder / name)
+        table = self.folder / "table.csv"
+        self.mbk("measure", "--quiet", "./=cmd|calc!A1.mat", "./+1+1.mat", "./@SUM(A1).mat", "./-2+3.mat", "--summary", table,
+                 folder=self.folder)
+        self.mbk("measure", "--quiet", "=cmd|calc!A1.mat", "--summary", table, "--overwrite", folder=self.folder)
+        head, row = list(csv.reader(table.read_text(encoding="utf-8").splitlines()))[:2]
+        self.assertEqual(row[0], "'=cmd|calc!A1.mat")
+        numbers = [cell for cell in row if re.fullmatch(r"-?[0-9.]+(e[+-][0-9]+)?", cell)]
+        self.assertTrue(any(cell.startswith("-") for cell in numbers), row)
+        self.assertEqual([cell for cell in head + row if cell[:1] in ("=", "+", "@")], [])
+
+    def test_names_of_channels_are_no_formulas_either(self):
+        rows = "".join(f"{k / 100},{k % 7},{k % 5}\n" for k in range(300))
+        file = self.file("log.csv", "time_s,=cmd|calc!A1,@b\n" + rows)
+        out = self.folder / "out.csv"
+        ran = self.mbk("convert", file, out)
+        self.assertIn("_cmd|calc!A1,_b", out.read_text(encoding="utf-8"))
+        self.assertIn("=cmd|calc!A1", ran.out + ran.err, "that a name was changed is said")
+
+
 if __name__ == "__main__":
     main()

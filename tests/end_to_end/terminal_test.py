@@ -11,7 +11,7 @@ import struct
 import subprocess
 import termios
 
-from command import WRONG_USAGE, Case, main, make_log, program, run
+from command import WRONG_USAGE, Case, copy, main, make_log, program, run
 from help_tree import every_command
 
 SCREEN = 40  # lines
@@ -156,6 +156,30 @@ class Studies(Case):
 
     def test_all_of_them_have_no_common_document(self):
         self.refused(WRONG_USAGE, "validate", "all", "--json", says="one study each")
+
+
+class NamesOfFiles(Case):
+    """A file may be called what a terminal takes for a command: clear the screen, set the title, type an answer."""
+
+    DRIVING = re.compile(r"\x1b(?!\[(?:0|1|1;31|33|36)m)|[\x00-\x08\x0b-\x1a\x1c-\x1f\x7f\x80-\x9f]")
+
+    def test_drive_no_terminal(self):
+        bad = "t\x1b]0;owned\x07\x1b[2J\x9b31m\r\b.mat"
+        good = copy(make_log("sinusoidal").path, self.folder / bad)
+        empty, text = self.file("\x1b[2Jempty.mat", b""), self.file("\x1b[2Jtext.csv", "time,\x1b[31mx\n0,1\n1,2\n2,3\n3,4\n")
+        result = self.folder / "\x1b[2Jresult.json"
+        self.mbk("measure", good, "--json", "--out", result)
+        for words in (["info", good], ["info", text], ["info", empty], ["info", self.folder / "\x1b[2Jnone"], ["measure", good],
+                      ["measure", good, good], ["measure", empty, good], ["explore", good, "--quiet"], ["explore", "--each", good, good],
+                      ["ellipse", result], ["passivity", good], ["movement", good], ["convert", good, self.folder / "\x1b[2Ja.h5"],
+                      ["compare", good, good], ["tf", good, "--input", "\x1b[2J", "--output", "x"], ["\x1b[2J"], ["measure", "--\x1b[2J"],
+                      ["study", "list", "--study", self.folder / "\x1b[2J"], ["simulate", "\x1b[2J", "--out", "x.h5"],
+                      ["robot", "describe", "\x1b[2J"], ["teleop", "\x1b[2J"], ["run", "\x1b[2J"], ["recover", "\x1b[2J"]):
+            with self.subTest(command=words):
+                _, shown = at_terminal(*words)
+                self.assertIsNone(self.DRIVING.search(shown), repr(shown))
+                ran = run(*words)
+                self.assertNotIn("\x1b", ran.out + ran.err)
 
 
 if __name__ == "__main__":

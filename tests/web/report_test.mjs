@@ -466,6 +466,22 @@ test("what stands in a recording or an option stays text", async () => {
   await done();
 });
 
+test("the page runs what stands in it and nothing that came into it later, and reaches no network", async () => {
+  const { page, outside, close: done } = await open(one.file);
+  const found = await page.evaluate(async () => {
+    const refused = new Promise((resolve) => document.addEventListener("securitypolicyviolation", ({ effectiveDirective }) => resolve(effectiveDirective), { once: true }));
+    const script = document.createElement("script");
+    script.textContent = "window.ran = true";
+    document.body.append(script);
+    const reached = await fetch("http://127.0.0.1:9/").then(() => "reached", () => "refused");
+    return { directive: await refused, ran: window.ran === true, reached };
+  });
+  assert.match(found.directive, /^script-src/);
+  assert.deepEqual([found.ran, found.reached], [false, "refused"]);
+  assert.deepEqual(outside(), []);
+  await done();
+});
+
 test("the same inputs and options give the same bytes", () => {
   const first = readFileSync(one.file);
   const again = mbk("measure", person, "--json", "--report", "one.html", "--overwrite");

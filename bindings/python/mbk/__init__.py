@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from mbk import _libraries
 
+_libraries.refuse_sub_interpreter()
 _libraries.load()
 
 from mbk import _mbk, robot, sensor, springs, study

@@ -96,6 +96,20 @@ class Recording:
             self._core: _mbk.Recording = _mbk.Recording(signals, self._rate_hz, _texts(known_units), known_metadata,
                                                         _events(events))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For pickle, and so for multiprocessing and joblib: the signals, what is known of them, and the events."""
+        given = self._given()
+        with _errors.translated():
+            known = dict(self._core.metadata), list(self._core.events)
+        return _rebuilt, ({name: self._core.channel(name) for name in given}, self._rate_hz,
+                          {name: unit for name, unit in given.items() if unit}, *known)
+
+    def __copy__(self) -> Recording:
+        return self  # it never changes
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Recording:
+        return self
+
     @classmethod
     def _of(cls, core: _mbk.Recording) -> Recording:
         made = cls.__new__(cls)
@@ -415,3 +429,13 @@ def _events(given: Iterable[tuple[Any, ...]]) -> list[tuple[float, str, float]]:
     except (TypeError, ValueError, LookupError):
         raise _errors.usage("an event is not (time in seconds, name) or (time, name, value)",
                             "give a list of such") from None
+
+
+def _rebuilt(signals: dict[str, Any], rate_hz: float, units: dict[str, str], metadata: dict[str, str],
+             events: list[tuple[float, str, float]]) -> Recording:
+    """What `Recording.__reduce__` took apart."""
+    made = Recording.__new__(Recording)
+    made._rate_hz = rate_hz
+    with _errors.translated():
+        made._core = _mbk.Recording(signals, rate_hz, units, metadata, events)
+    return made

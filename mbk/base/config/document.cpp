@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "mbk/base/config/key_unit.h"
+#include "mbk/base/config/text_file.h"
 #include "mbk/base/config/toml_tree.h"
 #include "mbk/base/core/edit_distance.h"
 
@@ -193,15 +193,9 @@ Result<Document> Document::parse(std::string_view text, std::string_view file) {
 }
 
 Result<Document> Document::read(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kLargestText + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in.is_open() || in.bad() || std::filesystem::is_directory(file, ignored)) {
-    return bad_data("cannot be read", "check its name and permissions", file.string());
-  }
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return parse(text, file.string());
+  const auto text = read_text_file(file, kLargestText);
+  if (!text) return tl::unexpected(text.error());
+  return parse(*text, file.string());
 }
 
 Section Document::root() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <utility>
 
 namespace mbk {
@@ -24,9 +25,18 @@ constexpr auto kLatex = std::to_array<std::pair<std::string_view, std::string_vi
 
 }  // namespace
 
+bool is_formula(std::string_view text) {
+  if (text.empty() || std::string_view("=+-@\t\r\n").find(text.front()) == std::string_view::npos) return false;
+  const std::string_view digits = text.substr(text.front() == '+' ? 1 : 0);
+  double number = 0.0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return code != std::errc() || end != digits.data() + digits.size();
+}
+
 std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
+  const char* const before = is_formula(text) ? "'" : "";
+  if (text.find_first_of(",;\t\"\r\n") == std::string_view::npos) return before + std::string(text);
+  std::string quoted = std::string("\"") + before;
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
 }

@@ -27,6 +27,13 @@ tl::unexpected<Error> gzip_damaged(std::string_view what) {
   return bad_data(fmt::format("the gzip file cannot be unpacked: {}", what), std::string(kCopyAgain));
 }
 
+tl::unexpected<Error> too_large(std::uint64_t limit) {
+  return bad_data(fmt::format("the gzip file unpacks to more than {} MB, which a recording of this length cannot: "
+                              "nearly all of it would be alike",
+                              limit >> 20U),
+                  "unpack it with gunzip, and see what is in it");
+}
+
 /// Bytes that come piece by piece.
 class GrowingBytes {
  public:
@@ -37,7 +44,7 @@ class GrowingBytes {
   void add(std::size_t count) { used_ += count; }
   /// Makes room for as much again.
   Result<void> grow() {
-    if (buffer_.size >= limit_) return gzip_damaged("it unpacks to more than a file of this length can");
+    if (buffer_.size >= limit_) return too_large(limit_);
     const std::uint64_t size = std::min<std::uint64_t>(2 * std::uint64_t{buffer_.size}, limit_);
     if (auto ok = check_memory(size); !ok) return ok;
     Buffer larger(static_cast<std::size_t>(size));

@@ -100,7 +100,9 @@ Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
     std::string name(text.c_str());
     const std::uint64_t size = about.uncompressed_size;
     if (size > room || total + size > room) {
-      return damaged(fmt::format("{} says that it unpacks to {} bytes, which it cannot", in_quotes(name), size));
+      return damaged(fmt::format(
+          "{} says that it unpacks to {} bytes, which it cannot: a recording of this length has at most {} MB",
+          in_quotes(name), size, room >> 20U));
     }
     total += size;
     if ((about.flag & kEncrypted) != 0) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -35,9 +36,11 @@ struct Buffer {
 /// Largest file that is read: 8 GiB.
 inline constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
 
-/// The most memory [bytes] that contents of so many bytes may claim. Deflate cannot expand by more than 1032.
+/// The most memory [bytes] that contents of so many bytes may claim. Deflate cannot expand by more than 1032, and what
+/// expands by more than 100 to more than 512 MiB is no recording: its samples would hardly ever change.
 [[nodiscard]] constexpr std::uint64_t largest_claim(std::uint64_t bytes) {
-  return 1100 * bytes + (1 << 20);
+  constexpr std::uint64_t kAnyway = std::uint64_t{512} << 20;
+  return std::min(1100 * bytes + (1 << 20), std::max(kAnyway, 100 * bytes));
 }
 
 /// A file that is read from its begin to its end, of which only the part that is worked on is in memory. The bytes

@@ -387,6 +387,8 @@ void Journal::end_with(const Ending& known) {
 }
 
 bool is_journal(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(file, code)) return false;  // the writer of a pipe might never come
   std::ifstream in(file, std::ios::binary);
   std::array<char, kMagic.size()> begin{};
   in.read(begin.data(), begin.size());

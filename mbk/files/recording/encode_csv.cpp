@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mbk/base/core/table_text.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/channel_table.h"
@@ -35,7 +36,7 @@ Result<void> append_header(std::string& text, const std::vector<const Channel*>&
   for (const Channel* const channel : channels) {
     std::string name = channel->name;
     if (!channel->unit.empty()) name += "_" + channel->unit;
-    if (name.find_first_of(",;\t\" #%\n\r") != name.npos) {
+    if (name.find_first_of(",;\t\" #%\n\r") != name.npos || is_formula(name)) {
       return bad_data(fmt::format("'{}' cannot be the name of a column", name), "use letters, digits and _");
     }
     text += ',' + name;

@@ -219,13 +219,12 @@ Result<const FileFormat*> format_of(OpenFile& file) {
   for (const FileFormat& format : kFormats) {
     if (format.looks_like != nullptr && format.looks_like(file)) return &format;
   }
-  if (const auto likely = likely_format(file.begin_bytes())) return tl::unexpected(not_read(*likely).value());
   if (ZipArchive::looks_like_zip(file.begin_bytes())) {
     auto bytes = file.bytes();
     if (!bytes) return tl::unexpected(bytes.error());
     if (auto archive = ZipArchive::open((*bytes)->bytes()); !archive) return tl::unexpected(archive.error());
-    return bad_data("the zip archive holds no recording", "unpack it, and name the files in it");
   }
+  if (const auto likely = likely_format(file.begin_bytes())) return tl::unexpected(not_read(*likely).value());
   constexpr std::size_t kShown = 8;
   std::string bytes;
   bool zeros = true;

@@ -31,6 +31,7 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
     }
   }
   const auto existing = [&](const std::string& path) -> std::optional<std::string> {
+    if (std::error_code unknown; !fs::is_regular_file(folder / path, unknown)) return std::nullopt;
     std::ifstream stream(folder / path, std::ios::binary);
     if (!stream) return std::nullopt;
     return std::string{std::istreambuf_iterator<char>(stream), {}};

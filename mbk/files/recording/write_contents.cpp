@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "mbk/base/core/table_text.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/hdf5/write_hdf5.h"
 #include "mbk/files/recording/annotations.h"
@@ -168,6 +169,7 @@ struct TableColumn {
 std::string cell(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return std::string_view(",;\t\"#%\r\n").find(c) != std::string_view::npos; }, '_');
+  if (is_formula(name)) name.front() = '_';
   return name;
 }
 

@@ -26,11 +26,24 @@ int write_whole(int descriptor, std::string_view text) {
   return 0;
 }
 
+/// With which permissions a file is made.
+struct Mode {
+  mode_t bits = 0666;
+  bool whatever_the_umask = false;
+  std::optional<gid_t> group;  ///< the group that may read the file; a file of another group is for its owner alone
+};
+
 /// A file that is made here, so that nothing that is there is followed or replaced, and on the disk when this ends.
-int write_new(const fs::path& file, std::string_view text, std::optional<Readers> readers) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, readers ? 0600 : 0666);
+int write_new(const fs::path& file, std::string_view text, const Mode& mode) {
+  const int descriptor =
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode.whatever_the_umask ? 0600 : mode.bits);
   if (descriptor < 0) return errno;
-  int code = readers && ::fchmod(descriptor, permissions(*readers)) != 0 ? errno : write_whole(descriptor, text);
+  int code = mode.whatever_the_umask && ::fchmod(descriptor, mode.bits) != 0 ? errno : 0;
+  if (struct stat made{}; code == 0 && mode.group) {
+    if (::fstat(descriptor, &made) != 0 || (made.st_gid != *mode.group && ::fchmod(descriptor, 0600) != 0))
+      code = errno;
+  }
+  if (code == 0) code = write_whole(descriptor, text);
   if (code == 0 && ::fsync(descriptor) != 0) code = errno;
   if (::close(descriptor) != 0 && code == 0) code = errno;
   return code;
@@ -92,30 +105,75 @@ fs::path temporary_name(const fs::path& file) {
   return name;
 }
 
-}  // namespace
-
-Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text, std::optional<Readers> readers) {
+Result<void> write_as(const fs::path& file, bool overwrite, std::string_view text, const Mode& mode) {
   if (auto ok = check_name(file, overwrite); !ok) return ok;
   const Temporary temporary{temporary_name(file)};
-  if (const int error = write_new(temporary.path, text, readers); error != 0) return cannot_write(file, error);
+  if (const int error = write_new(temporary.path, text, mode); error != 0) return cannot_write(file, error);
   if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot_write(file, error);
   if (const int error = flush_names(folder_of(file)); error != 0) return cannot_write(file, error);
   return {};
 }
 
+/// Who may read all of the files that were looked at.
+struct CommonReaders {
+  Readers readers = Readers::all;
+  std::optional<gid_t> group;  ///< where it is that group's members
+
+  void restrict_to(const fs::path& path) {
+    struct stat found {};
+    if (readers == Readers::owner) return;
+    if (::stat(path.c_str(), &found) != 0) {
+      readers = Readers::owner;
+    } else if ((found.st_mode & S_IROTH) == 0) {
+      const bool same = !group || *group == found.st_gid;
+      readers = same && (found.st_mode & S_IRGRP) != 0 ? Readers::group : Readers::owner;
+      group = found.st_gid;
+    }
+  }
+};
+
+/// Who may read a file, or a folder and all that is in it.
+CommonReaders common_readers(const std::vector<fs::path>& paths) {
+  CommonReaders common;
+  for (const fs::path& path : paths) {
+    common.restrict_to(path);
+    std::error_code code;
+    if (!fs::is_directory(path, code)) continue;
+    for (fs::recursive_directory_iterator at(path, code), end; !code && at != end; at.increment(code)) {
+      common.restrict_to(at->path());
+      if (common.readers == Readers::owner) break;
+    }
+    if (code) common.readers = Readers::owner;
+  }
+  return common;
+}
+
+}  // namespace
+
+Result<void> write_file(const fs::path& file, bool overwrite, std::string_view text, std::optional<Readers> readers) {
+  return write_as(file, overwrite, text, readers ? Mode{permissions(*readers), true, {}} : Mode{});
+}
+
 Result<void> can_write_file(const fs::path& file, bool overwrite) {
   if (auto ok = check_name(file, overwrite); !ok) return ok;
   const Temporary temporary{temporary_name(file)};
-  if (const int error = write_new(temporary.path, {}, Readers::owner); error != 0) return cannot_write(file, error);
+  if (const int error = write_new(temporary.path, {}, {0600}); error != 0) return cannot_write(file, error);
   return {};
 }
 
 Readers readers_of(const fs::path& file) {
+  return common_readers({file}).readers;
+}
+
+Result<void> write_derived(const fs::path& file, bool overwrite, std::string_view text,
+                           const std::vector<fs::path>& sources) {
+  std::vector<fs::path> all = sources;
   std::error_code code;
-  const fs::perms allowed = fs::status(file, code).permissions();
-  if (code || allowed == fs::perms::unknown) return Readers::owner;
-  if ((allowed & fs::perms::others_read) != fs::perms::none) return Readers::all;
-  return (allowed & fs::perms::group_read) != fs::perms::none ? Readers::group : Readers::owner;
+  if (fs::is_regular_file(file, code)) all.push_back(file);
+  const CommonReaders common = common_readers(all);
+  if (common.readers == Readers::all) return write_as(file, overwrite, text, {});
+  const bool of_group = common.readers == Readers::group;
+  return write_as(file, overwrite, text, {permissions(common.readers), false, of_group ? common.group : std::nullopt});
 }
 
 }  // namespace mbk::recording

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/readers.h"
@@ -20,7 +21,12 @@ namespace mbk::recording {
 /// @fails  as write_file, but for a disk that is full
 [[nodiscard]] Result<void> can_write_file(const std::filesystem::path& file, bool overwrite);
 
-/// Who may read a file that is there; its owner alone where nobody can say.
+/// Who may read a file that is there, or every file of a folder; the owner alone if the permissions are unknown.
 [[nodiscard]] Readers readers_of(const std::filesystem::path& file);
+
+/// Writes what was computed from `sources`, as `write_file` does: only those may read it who may read every source, and
+/// the file that it replaces. The umask may remove more.
+[[nodiscard]] Result<void> write_derived(const std::filesystem::path& file, bool overwrite, std::string_view text,
+                                         const std::vector<std::filesystem::path>& sources);
 
 }  // namespace mbk::recording

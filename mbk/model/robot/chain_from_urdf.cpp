@@ -60,6 +60,31 @@ int depth(std::string_view xml) {
   return most;
 }
 
+/// Attributes of the element that has most, at least: the parser looks through all before it for each.
+int most_attributes(std::string_view xml) {
+  int most = 0;
+  for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at + 1)) {
+    if (xml.substr(at).starts_with("<!--")) {
+      at = std::min(xml.find("-->", at), xml.size() - 1);
+      continue;
+    }
+    int count = 0;
+    char quote = 0;
+    for (; at + 1 < xml.size() && (quote != 0 || xml[at] != '>'); ++at) {
+      const char c = xml[at];
+      if (quote == 0 && (c == '"' || c == '\'')) {
+        quote = c;
+      } else if (c == quote) {
+        quote = 0;
+      } else if (quote == 0 && c == '=') {
+        ++count;
+      }
+    }
+    most = std::max(most, count);
+  }
+  return most;
+}
+
 KDL::Frame frame(const urdf::Pose& pose) {
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
   pose.rotation.getQuaternion(x, y, z, w);
@@ -113,9 +138,13 @@ void take_apart(const urdf::ModelInterface& model) {
 }
 
 Result<Model> parse(std::string_view urdf) {
-  constexpr int kDeepest = 1000;  // a URDF stands 4 deep
+  constexpr int kDeepest = 1000;         // a URDF stands 4 deep
+  constexpr int kMostAttributes = 1000;  // its elements have up to six
   constexpr const char* kRemedy = "check it, as by 'check_urdf FILE'";
   if (depth(urdf) > kDeepest) return bad_data("no URDF: elements stand too deep in one another", kRemedy);
+  if (most_attributes(urdf) > kMostAttributes) {
+    return bad_data(fmt::format("no URDF: an element has more than {} attributes", kMostAttributes), kRemedy);
+  }
   if (urdf.find("</robot") == std::string_view::npos) return bad_data("no URDF: there is no </robot>", kRemedy);
   const Overheard overheard;
   Model model;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "mbk/base/config/document.h"
+#include "mbk/base/config/text_file.h"
 #include "mbk/model/robot/planar_mechanism.h"
 #include "mbk/model/robot/serial_chain.h"
 #include "mbk/model/robot/single_joint.h"
@@ -34,15 +34,9 @@ using FindUrdf = std::function<Result<Urdf>(const std::string& name)>;
 constexpr std::size_t kLargestUrdf = 10'000'000;
 
 Result<std::string> text_of(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kLargestUrdf + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in.is_open() || in.bad() || std::filesystem::is_directory(file, ignored)) {
-    return bad_data("cannot be read", "check its name and permissions", file.string());
-  }
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > kLargestUrdf) return bad_data("larger than 10 MB", "this is no URDF of a robot", file.string());
+  auto text = config::read_text_file(file, kLargestUrdf);
+  if (!text) return text;
+  if (text->size() > kLargestUrdf) return bad_data("larger than 10 MB", "this is no URDF of a robot", file.string());
   return text;
 }
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "mbk/base/config/text_file.h"
 
 namespace mbk::laboratory {
 
@@ -12,12 +15,15 @@ Result<Scenario> find_scenario(const std::string& name_or_file, const std::strin
   if (const ReadyScenario* ready = find_ready_scenario(name_or_file)) {
     text = ready->text;
   } else {
-    std::ifstream in(name_or_file);
-    if (!in) {
+    constexpr std::size_t kLargest = 1'000'000;
+    auto read = config::read_text_file(name_or_file, kLargest);
+    std::error_code code;
+    if (!read && !std::filesystem::exists(name_or_file, code)) {
       return bad_data("no such file, and no ready scenario of that name", "'mbk simulate --list' names the ready ones",
                       name_or_file);
     }
-    text.assign(std::istreambuf_iterator<char>(in), {});
+    if (!read) return tl::unexpected(read.error());
+    text = std::move(*read);
   }
   auto scenarios = read_scenarios(text, name_or_file);
   if (!scenarios) return tl::unexpected(scenarios.error());

@@ -26,9 +26,23 @@ Result<std::string> ask(const std::vector<std::string>& command) {
   const auto said = command_output(command, kAnswer);
   if (!said) return tl::unexpected(said.error());
   if (said->code == 0) return said->out;
-  const auto line = said->error.substr(0, said->error.find('\n'));
-  return bad_data(fmt::format("{}: {}", command.front(), line.empty() ? fmt::format("exit code {}", said->code) : line),
-                  "ask 'sinfo' whether the controller answers");
+  const auto begin = said->error.find("error: ");  // warnings and news may stand before it
+  const auto line = said->error.substr(begin == std::string::npos ? 0 : begin);
+  const auto cause = line.substr(0, line.find('\n'));
+  const bool unreachable = cause.empty() || cause.find("ontact") != std::string::npos ||
+                           cause.find("onnection") != std::string::npos || cause.find("imed out") != std::string::npos;
+  return bad_data(
+      fmt::format("{}: {}", command.front(), cause.empty() ? fmt::format("exit code {}", said->code) : cause),
+      unreachable ? "ask 'sinfo' whether the controller answers"
+                  : "correct what it names: --partition, --account, --memory-mb, --engine-option or --job-folder");
+}
+
+/// Where Slurm is to write what the tasks say. In such a path it replaces what follows a '%', and nothing at all if it
+/// holds a backslash.
+std::string log_pattern(const JobFolder& folder) {
+  std::string pattern;
+  for (const char c : folder.logs().string()) pattern += c == '%' ? std::string("%%") : std::string(1, c);
+  return pattern + "/%A_%a.txt";
 }
 
 /// "0-3,7"
@@ -70,6 +84,7 @@ class SlurmEngine : public Engine {
     if (auto ok = write_script(); !ok) return ok;
     std::vector<std::string> command = {"sbatch", "--parsable"};
     const std::string limit = options_.tasks > 0 ? fmt::format("%{}", options_.tasks) : "";
+    command.push_back("--output=" + log_pattern(folder_));
     command.push_back("--array=" + as_ranges({chunks.begin(), chunks.end()}) + limit);
     if (!options_.partition.empty()) command.push_back("--partition=" + options_.partition);
     if (!options_.account.empty()) command.push_back("--account=" + options_.account);
@@ -153,15 +168,15 @@ class SlurmEngine : public Engine {
     const std::string text = fmt::format(
         "#!/bin/bash\n"
         "# {}: {} units in {} chunks.\n"
-        "# By hand: sbatch --array=0-{} {}\n"
+        "# By hand: sbatch --output={} --array=0-{} {}\n"
         "#SBATCH --job-name={}\n"
-        "#SBATCH --output={}/%A_%a.txt\n"
         "#SBATCH --open-mode=append\n"
         "#SBATCH --nodes=1 --ntasks=1 --cpus-per-task=1\n"
         "#SBATCH --mem={}M\n"
         "#SBATCH --time={}\n"
         "exec {} --chunk \"$SLURM_ARRAY_TASK_ID\"\n",
-        title, job.units, job.chunks, job.chunks - 1, shell_quoted(script().string()), name_, folder_.logs().string(),
+        title, job.units, job.chunks, shell_quoted(log_pattern(folder_)), job.chunks - 1,
+        shell_quoted(script().string()), name_,
         static_cast<std::int64_t>(std::ceil(static_cast<double>(options_.memory_mb) * larger_)), minutes,
         fmt::join(command, " "));
     std::ofstream stream(script(), std::ios::binary | std::ios::trunc);
@@ -191,6 +206,15 @@ Result<std::int64_t> max_array_size() {
 }
 
 Result<std::unique_ptr<Engine>> make_slurm_engine(const JobFolder& folder, const EngineOptions& options) {
+  // They stand in the comments of a script that a shell runs, which a line break would end.
+  for (const std::string& path : {folder.folder().string(), options.program.string()}) {
+    const bool control = std::ranges::any_of(path, [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; });
+    if (!control && path.find('\\') == std::string::npos) continue;
+    return fail(ErrorKind::usage,
+                fmt::format("Slurm cannot take this path: it holds a {}", control ? "control character" : "backslash"),
+                path == options.program.string() ? "install mbk elsewhere" : "name another folder with --job-folder",
+                path);
+  }
   return std::make_unique<SlurmEngine>(folder, options);
 }
 

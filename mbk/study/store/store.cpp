@@ -135,16 +135,25 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
   });
 }
 
-Result<Store> Store::open(const fs::path& folder) {
+Result<Store> Store::open(const fs::path& folder, std::function<void()> waiting) {
   std::error_code code;
   if (!fs::exists(folder / kDatabaseName, code)) {
     return fail(ErrorKind::usage, "there is no study", "'mbk study init FOLDER' makes one", folder.string());
   }
   return guarded(folder, [&]() -> Result<Store> {
-    auto database = std::make_unique<Database>(folder, SQLite::OPEN_READWRITE);
+    const bool writable = ::access((folder / kDatabaseName).c_str(), W_OK) == 0 && ::access(folder.c_str(), W_OK) == 0;
+    std::unique_ptr<Database> database;
+    if (writable) {
+      database = std::make_unique<Database>(folder, SQLite::OPEN_READWRITE, kDatabaseName, std::move(waiting));
+    } else {
+      auto copy = Database::snapshot(folder);
+      if (!copy) return tl::unexpected(copy.error());
+      database = std::move(*copy);
+      database->waiting = std::move(waiting);
+    }
     if (auto ok = migrate(database->connection, folder); !ok) return tl::unexpected(ok.error());
-    if (is_erasing(*database)) {  // a process was ended while it forgot someone
-      auto alone = FolderLock::take(folder, FolderLock::Kind::alone);
+    if (writable && is_erasing(*database)) {  // a process was ended while it forgot someone
+      auto alone = FolderLock::take(folder, FolderLock::Kind::alone, database->waiting);
       if (!alone) return tl::unexpected(alone.error());
       if (auto done = finish_erasing(*database); !done) return tl::unexpected(done.error());
     }
@@ -183,7 +192,7 @@ Result<IncomingFile> Store::bring_in(const fs::path& file) const {
 
 Result<IncomingFile> Store::bring_in(const fs::path& file, const std::string& extension) const {
   IncomingFile incoming;
-  auto lock = FolderLock::take(folder(), FolderLock::Kind::shared);
+  auto lock = FolderLock::take(folder(), FolderLock::Kind::shared, database_->waiting);
   if (!lock) return tl::unexpected(lock.error());
   incoming.lock_ = std::move(*lock);
   const fs::path to = folder() / kRecordingsName / temporary_name();

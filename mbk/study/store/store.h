@@ -46,6 +46,7 @@ struct AddedRecording {
 /// What `Store::forget` erased.
 struct Forgotten {
   std::int64_t recordings = 0, results = 0, files = 0;
+  std::vector<std::int64_t> lines_with_reasons;  ///< of the log: what was written of these recordings stays in it
   bool log_of_changes_emptied = true;  ///< false: another process was reading, so that erased pages stand in the
                                        ///< database's write-ahead log until the next command
 };
@@ -75,8 +76,10 @@ class Store {
   /// @fails  usage: there is something in the folder. data: it cannot be written.
   [[nodiscard]] static Result<void> create(const std::filesystem::path& folder, const StudyFacts& facts, Role role);
 
+  /// A study that may not be written is read as it is at this moment; what would change it then fails.
+  /// @param waiting  is called once if another process holds the study for longer than a moment
   /// @fails  usage: there is no study. data: it cannot be read, is damaged, or was made by a newer mbk.
-  [[nodiscard]] static Result<Store> open(const std::filesystem::path& folder);
+  [[nodiscard]] static Result<Store> open(const std::filesystem::path& folder, std::function<void()> waiting = {});
 
   Store(Store&&) noexcept;
   Store& operator=(Store&&) = delete;

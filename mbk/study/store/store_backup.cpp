@@ -25,7 +25,7 @@ struct TemporaryFolder {
   }
 };
 
-Result<void> copy_database(const Database& from, const fs::path& to) {
+Result<void> copy_database(Database& from, const fs::path& to) {
   const int descriptor = ::open((to / kDatabaseName).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0) {
     return bad_data("cannot be written: " + std::generic_category().message(errno), "check the folder", to.string());
@@ -33,8 +33,7 @@ Result<void> copy_database(const Database& from, const fs::path& to) {
   ::close(descriptor);
   SQLite::Database copy((to / kDatabaseName).string(), SQLite::OPEN_READWRITE);
   copy.exec("PRAGMA synchronous = FULL");
-  auto source = SQLite::Database((from.folder / kDatabaseName).string(), SQLite::OPEN_READONLY, 30000);
-  SQLite::Backup backup(copy, source);
+  SQLite::Backup backup(copy, from.connection);
   backup.executeStep(-1);
   return {};
 }
@@ -53,7 +52,8 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
   if (fs::exists(to, code)) {
     return fail(ErrorKind::usage, "is there already", "name a folder that is not there yet", to.string());
   }
-  auto lock = FolderLock::take(folder(), FolderLock::Kind::shared);  // nothing is forgotten meanwhile
+  auto lock =
+      FolderLock::take(folder(), FolderLock::Kind::shared, database_->waiting);  // nothing is forgotten meanwhile
   if (!lock) return tl::unexpected(lock.error());
   return guarded(folder(), [&]() -> Result<CheckReport> {
     const fs::path parent = to.has_parent_path() ? to.parent_path() : fs::path(".");

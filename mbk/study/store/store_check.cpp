@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <ctime>
 #include <map>
 #include <set>
 #include <system_error>
@@ -52,6 +54,14 @@ struct Told {
   }
 };
 
+/// Since 1970, of a time as the log has it.
+std::optional<std::chrono::seconds> seconds_of(const std::string& time) {
+  std::tm parts{};
+  const char* const end = ::strptime(time.c_str(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  if (end == nullptr || *end != '\0') return std::nullopt;
+  return std::chrono::seconds(::timegm(&parts));
+}
+
 /// The chain of the log, line by line.
 class ChainReader {
  public:
@@ -64,6 +74,7 @@ class ChainReader {
     } else if (line.hash != hash_of(line, verdict.head) && whole_) {
       say(fmt::format("line {} of the log is not as it was written, or one before it", line.number));
     }
+    take_time(line);
     verdict.head = line.hash;
     noted_found_ = noted_found_ || line.hash == noted_;
   }
@@ -80,11 +91,27 @@ class ChainReader {
   LogVerdict verdict;
 
  private:
+  /// The computers that share a study have clocks that differ a little; a log never goes back further.
+  void take_time(const LogLine& line) {
+    constexpr std::chrono::seconds kClocksDiffer(60);
+    const auto time = seconds_of(line.time);
+    if (!time) {
+      verdict.problems.push_back(fmt::format("line {} of the log has no time: '{}'", line.number, line.time));
+    } else if (latest_ && *time + kClocksDiffer < *latest_) {
+      verdict.problems.push_back(
+          fmt::format("line {} of the log is of {}, {} s before the line above it: a clock was set back, or the log "
+                      "was written anew",
+                      line.number, line.time, (*latest_ - *time).count()));
+    }
+    if (time) latest_ = time;
+  }
+
   void say(std::string problem) {
     verdict.problems.push_back(std::move(problem));
     whole_ = false;  // what follows the first broken line is broken as well
   }
   std::string noted_;
+  std::optional<std::chrono::seconds> latest_;
   bool noted_found_ = false, whole_ = true;
 };
 
@@ -195,8 +222,12 @@ class Checker {
 
   /// What no row speaks of.
   Result<void> tidy(bool remove_leftovers) {
+    if (database_.read_only) {
+      note("the study may only be read: what an interrupted process left was not looked for");
+      return {};
+    }
     // Nobody adds meanwhile: what is half-written now was left by a process that is gone.
-    auto alone = FolderLock::take(database_.folder, FolderLock::Kind::alone);
+    auto alone = FolderLock::take(database_.folder, FolderLock::Kind::alone, database_.waiting);
     if (!alone) return tl::unexpected(alone.error());
     std::set<std::string> known;
     auto rows = query(database_.connection, "SELECT sha256, extension FROM recording");
@@ -298,7 +329,7 @@ Result<std::int64_t> finish_erasing(Database& database) {
 
 Result<Forgotten> Store::forget(std::int64_t participant, const std::string& why, Role role) {
   if (why.empty()) return bad_usage("there is no reason", "say why; it stays in the log, so name nobody");
-  auto alone = FolderLock::take(folder(), FolderLock::Kind::alone);
+  auto alone = FolderLock::take(folder(), FolderLock::Kind::alone, database_->waiting);
   if (!alone) return tl::unexpected(alone.error());
   return guarded(folder(), [&]() -> Result<Forgotten> {
     SQLite::Database& connection = database_->connection;
@@ -321,6 +352,10 @@ Result<Forgotten> Store::forget(std::int64_t participant, const std::string& why
       forgotten.results = number_at(results, 0);
       results.reset();
       forgotten.recordings = std::ssize(numbers);
+      for_each_line(connection, [&](const LogLine& line) {
+        const bool theirs = line.recording && std::ranges::binary_search(numbers, *line.recording);
+        if (theirs && !line.why.empty()) forgotten.lines_with_reasons.push_back(line.number);
+      });
       LogLine line{.role = role, .action = LoggedAction::forget};
       line.participant = participant;
       line.why = why;

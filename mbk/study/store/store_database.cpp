@@ -4,24 +4,30 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/random.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <span>
+#include <thread>
+#include <tuple>
+#include <utility>
 
 #include "mbk/base/core/printable.h"
 #include "mbk/files/contents/sha256.h"
+#include "mbk/study/store/store_files.h"
 
 namespace mbk::store {
 namespace {
 
 using Json = nlohmann::json;
 
+constexpr const char* kInMemory = ":memory:";
 constexpr int kApplication = 0x6d626b73;  // "mbks"
-constexpr int kBusyMilliseconds = 30000;
 
 /// From the tables of version i to those of version i + 1; 0 is an empty database.
 constexpr std::array kMigrations = {
@@ -81,10 +87,49 @@ Json or_null(const std::optional<std::int64_t>& number) {
   return number ? Json(*number) : Json();
 }
 
+/// By which it shows whether a database was written; nothing while changes are in its log alone.
+std::optional<std::tuple<ino_t, off_t, time_t, long>> whole_state(const std::filesystem::path& file) {
+  struct stat at {
+  }, log{};
+  if (::stat((file.string() + "-wal").c_str(), &log) == 0 && log.st_size > 0) return std::nullopt;
+  if (::stat(file.c_str(), &at) != 0) return std::nullopt;
+  return std::tuple(at.st_ino, at.st_size, at.st_mtim.tv_sec, at.st_mtim.tv_nsec);
+}
+
+/// A database of these bytes that cannot be written.
+std::unique_ptr<Database> in_memory(const std::filesystem::path& folder, std::string bytes) {
+  constexpr std::size_t kWriteVersion = 18, kReadVersion = 19;  // 2: with a log of changes, which memory does not have
+  if (bytes.size() > kReadVersion) bytes[kWriteVersion] = bytes[kReadVersion] = 1;
+  auto database = std::make_unique<Database>(folder, SQLite::OPEN_READWRITE, kInMemory);
+  database->read_only = true;
+  sqlite3* const connection = database->connection.getHandle();
+  auto* const copy = static_cast<unsigned char*>(sqlite3_malloc64(bytes.size()));
+  if (copy == nullptr) throw SQLite::Exception("no memory for the database", SQLITE_NOMEM);
+  std::ranges::copy(bytes, copy);
+  const auto size = static_cast<sqlite3_int64>(bytes.size());
+  const int code = sqlite3_deserialize(connection, "main", copy, size, size,
+                                       SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY);
+  if (code != SQLITE_OK) throw SQLite::Exception(connection, code);
+  return database;
+}
+
 }  // namespace
 
-Database::Database(const std::filesystem::path& in, int flags, const char* name)
-    : folder(in), connection((in / name).string(), flags, kBusyMilliseconds) {
+int Database::wait(void* database, int count) {
+  Database& self = *static_cast<Database*>(database);
+  const auto now = std::chrono::steady_clock::now();
+  if (count == 0) self.wait_began_ = now;
+  const auto waited = now - self.wait_began_;
+  if (waited > kLongestWait) return 0;
+  if (waited > kUnnoticedWait && !std::exchange(self.told_, true) && self.waiting) self.waiting();
+  std::this_thread::sleep_for(std::chrono::milliseconds(count < 10 ? 1 : 10));
+  return 1;
+}
+
+Database::Database(const std::filesystem::path& in, int flags, const std::string& name,
+                   std::function<void()> on_waiting)
+    : folder(in), waiting(std::move(on_waiting)), connection(name == kInMemory ? name : (in / name).string(), flags) {
+  sqlite3_busy_handler(connection.getHandle(), &Database::wait, this);
   connection.exec(
       "PRAGMA trusted_schema = OFF;"
       "PRAGMA foreign_keys = ON;"
@@ -92,6 +137,25 @@ Database::Database(const std::filesystem::path& in, int flags, const char* name)
       "PRAGMA synchronous = FULL;"
       "PRAGMA secure_delete = ON;"
       "PRAGMA temp_store = MEMORY;");
+}
+
+Result<std::unique_ptr<Database>> Database::snapshot(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kDatabaseName;
+  constexpr int kAttempts = 20;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const auto before = whole_state(file);
+    std::string bytes;
+    auto read = read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
+      bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+      return {};
+    });
+    if (!read) return tl::unexpected(read.error());
+    if (before && before == whole_state(file)) return in_memory(folder, std::move(bytes));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return bad_data("may only be read, and another process is changing it or ended while it did",
+                  "try again when that is done, or have someone who may write the study run 'mbk study list'",
+                  file.string());
 }
 
 Error error_of(const SQLite::Exception& exception, const std::filesystem::path& folder) {
@@ -122,7 +186,12 @@ Result<void> migrate(SQLite::Database& connection, const std::filesystem::path& 
   const int latest = static_cast<int>(kMigrations.size());
   const auto version = [&] { return pragma_number(connection, "PRAGMA user_version"); };
   if (version() == latest && pragma_number(connection, "PRAGMA application_id") == kApplication) return {};
-  WriteTransaction alone(connection);
+  if (sqlite3_db_readonly(connection.getHandle(), "main") != 0 && version() < latest && version() > 0) {
+    return bad_data("was written by an older mbk, and may only be read",
+                    "have someone who may write the study run 'mbk study list'", file);
+  }
+  WriteTransaction alone(connection,
+                         sqlite3_db_readonly(connection.getHandle(), "main") != 0 ? "BEGIN" : "BEGIN IMMEDIATE");
   const int found = version();
   const int application = pragma_number(connection, "PRAGMA application_id");
   if (application != kApplication && (application != 0 || found != 0)) {

@@ -3,8 +3,11 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,13 +22,29 @@ namespace mbk::store {
 inline constexpr const char* kDatabaseName = "study.sqlite";
 inline constexpr const char* kRecordingsName = "recordings";
 
-/// The connection to a study's database.
+/// The connection to a study's database. It stays where it is: SQLite knows its address.
 struct Database {
   std::filesystem::path folder;
+  std::function<void()> waiting;  ///< as Store::open
+  bool read_only = false;         ///< the study may not be written
   SQLite::Database connection;
 
   /// The connection with everything set that this module takes for granted.   @throws SQLite::Exception
-  Database(const std::filesystem::path& in, int flags, const char* name = kDatabaseName);
+  Database(const std::filesystem::path& in, int flags, const std::string& name = kDatabaseName,
+           std::function<void()> on_waiting = {});
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+  ~Database() = default;
+
+  /// The database of a study that may not be written, as it is at this moment. SQLite cannot join others that use it
+  /// then, so that this is a copy in memory.
+  /// @fails  data: it cannot be read; another process has changes in its log; it changes all the time.
+  [[nodiscard]] static Result<std::unique_ptr<Database>> snapshot(const std::filesystem::path& folder);
+
+ private:
+  static int wait(void* database, int count);
+  std::chrono::steady_clock::time_point wait_began_;
+  bool told_ = false;
 };
 
 /// What went wrong, where, and what to do about it.

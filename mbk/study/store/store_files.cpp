@@ -57,15 +57,25 @@ int sync_file(int descriptor) {
 
 }  // namespace
 
-Result<std::unique_ptr<FolderLock>> FolderLock::take(const fs::path& folder, Kind kind) {
+Result<std::unique_ptr<FolderLock>> FolderLock::take(const fs::path& folder, Kind kind,
+                                                     const std::function<void()>& waiting) {
   const fs::path file = folder / "lock";
-  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (descriptor < 0 && (errno == EACCES || errno == EROFS)) {  // who may only read can lock it as well
+    descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  }
   if (descriptor < 0) return cannot("cannot be locked", file, errno);
   std::unique_ptr<FolderLock> lock(new FolderLock(descriptor));
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  const auto began = std::chrono::steady_clock::now();
+  bool told = !waiting;
   while (::flock(descriptor, (kind == Kind::shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK && errno != EINTR) return cannot("cannot be locked", file, errno);
-    if (std::chrono::steady_clock::now() > give_up) {
+    const auto waited = std::chrono::steady_clock::now() - began;
+    if (!told && waited > kUnnoticedWait) {
+      told = true;
+      waiting();
+    }
+    if (waited > kLongestWait) {
       return bad_data("another process is changing the files of the study", "wait until it is done, and try again",
                       folder.string());
     }
@@ -109,7 +119,7 @@ Result<void> make_folder(const fs::path& folder) {
 }
 
 Result<void> read_pieces(const fs::path& file, const std::function<Result<void>(std::span<const std::byte>)>& take) {
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // a pipe's writer might never come
   if (in.value < 0) return cannot("cannot be read", file, errno);
   struct stat status {};
   if (::fstat(in.value, &status) != 0) return cannot("cannot be read", file, errno);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -12,6 +13,9 @@
 /// The files of a study's folder.
 namespace mbk::store {
 
+/// How long others may hold a lock before whoever waits for it is told, and before it gives up.
+inline constexpr std::chrono::milliseconds kUnnoticedWait(200), kLongestWait(30000);
+
 /// A lock on a study's folder, which ends with the process however that ends. Those who add files share it; whoever
 /// removes some, or copies all, has it alone.
 class FolderLock {
@@ -19,7 +23,8 @@ class FolderLock {
   enum class Kind { shared, alone };
 
   /// Waits for others, half a minute at most.   @fails  data: it cannot be had.
-  [[nodiscard]] static Result<std::unique_ptr<FolderLock>> take(const std::filesystem::path& folder, Kind kind);
+  [[nodiscard]] static Result<std::unique_ptr<FolderLock>> take(const std::filesystem::path& folder, Kind kind,
+                                                                const std::function<void()>& waiting);
 
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
