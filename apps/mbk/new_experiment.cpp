@@ -141,8 +141,8 @@ Action add_new_experiment(Command group) {
       "  mbk new experiment --out mine.toml\n"
       "      asks for robot, perturbation, condition and trials\n"
       "  mbk new experiment --yes && mbk run experiment.toml --dry-run\n"
-      "  printf 'udp\\n192.168.1.10\\n25000\\n300\\n280\\n300,-50\\npulses\\n10\\nrigid\\n5\\n' | mbk new experiment "
-      "--out rigid.toml\n\n"
+      "  printf 'udp\\n192.168.1.10\\n25000\\n300\\n280\\n300,-50\\npulses\\n10\\nrigid\\n5\\n' |\n"
+      "      mbk new experiment --out rigid.toml\n\n"
       "The file is written only after it was read as 'mbk run' reads it, and has comments.");
   add_new_file_options(command, *arguments);
   return [arguments] { return run(*arguments); };

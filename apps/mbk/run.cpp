@@ -217,10 +217,18 @@ class TrialWatcher : public conduct::Watcher {
 /// The operator at the terminal, and at the page where there is one: it is asked where it decides.
 class TerminalOperator : public conduct::Operator {
  public:
-  TerminalOperator(const RunConsole& console, session::LoopFlags& flags, const session::Pace& pace, bool quiet)
-      : page_(console.page()), console_(console), flags_(flags), pace_(pace), quiet_(quiet) {}
+  /// @param warnings  said before the first trial
+  TerminalOperator(const RunConsole& console, session::LoopFlags& flags, const session::Pace& pace, bool quiet,
+                   std::vector<std::string> warnings)
+      : page_(console.page()),
+        console_(console),
+        flags_(flags),
+        pace_(pace),
+        quiet_(quiet),
+        warnings_(std::move(warnings)) {}
 
   std::unique_ptr<conduct::Watcher> begin(const conduct::Attempt& attempt) override {
+    for (const std::string& warning : std::exchange(warnings_, {})) say("mbk: warning: {}\n", warning);
     return std::make_unique<TrialWatcher>(page_ != nullptr ? page_->begin(attempt) : nullptr, attempt, flags_, quiet_);
   }
 
@@ -296,6 +304,7 @@ class TerminalOperator : public conduct::Operator {
   session::LoopFlags& flags_;
   session::Pace pace_;
   bool quiet_;
+  std::vector<std::string> warnings_;
   std::string text_;                // of the trial that is being judged
   std::vector<std::string> notes_;  // that belong into its recording
 };
@@ -306,7 +315,7 @@ int perform(Session& session, const conduct::Experiment& experiment, const sessi
   const auto console = RunConsole::open(arguments.console, experiment, session.flags());
   if (!console) return report_error(console.error());
   if (auto* const page = console->page(); page != nullptr && !page->may_begin(session, experiment)) return kFine;
-  TerminalOperator conductor(*console, session.flags(), pace, arguments.quiet);
+  TerminalOperator conductor(*console, session.flags(), pace, arguments.quiet, robot_warnings(experiment));
   conduct::Measure measure;
   if (arguments.measure) {
     measure = [&](const Recording& recording) { return console->measured(recording); };
@@ -331,7 +340,6 @@ int run(const RunArguments& arguments) {
   const auto experiment = conduct::plan_experiment(*trials, arguments.out, arguments.experiment);
   if (!experiment) return report_error(experiment.error());
   if (arguments.dry_run) return dry_run(*experiment, arguments.experiment);
-  for (const std::string& warning : robot_warnings(*experiment)) say("mbk: warning: {}\n", warning);
   Session session(pace);
   int code = kFine, ended_by = 0;
   {

@@ -42,5 +42,5 @@ printf '[sensors.motor_current]\nnoise_A = 0.2\n' >> "$out/free.toml"   # torque
 "$mbk" robot identify "$out/free.h5" --robot "$out/my_robot.toml" --json --overwrite --quiet --out "$out/robot.json"
 
 # 5. Nothing hung at the handle, so that the force which the model leaves [N] shows how good the model is.
-"$mbk" robot force "$out/free.h5" --robot "$out/robot.json" | sed -n '1,8p'
+"$mbk" robot force "$out/free.h5" --robot "$out/robot.json" | sed -n '1,10p'
 echo "description and result: $out"

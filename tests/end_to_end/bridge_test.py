@@ -219,7 +219,7 @@ class Experiments(Case):
                 relay = Robot(self, *relays[name], robot.port)
             with self.subTest(name):
                 experiment = self.file(f"{name}.toml", EXPERIMENT + DEVICE.format(port=relay.port))
-                self.fine("run", experiment, "--fast", "--quiet", "--no-measure", "--out", self.folder / f"{name}.h5")
+                self.mbk("run", experiment, "--fast", "--quiet", "--no-measure", "--out", self.folder / f"{name}.h5")
                 self.assertEqual(self.channels(self.folder / f"{name}.h5"), expected)
 
     def test_an_experiment_runs_on_the_examples(self):
@@ -227,7 +227,7 @@ class Experiments(Case):
             robot = Robot(self, *command, "0")
             with self.subTest(name):
                 experiment = self.file(f"{name}.toml", WHEELS.format(port=robot.port, seconds=2))
-                ran = self.fine("run", experiment, "--quiet", "--no-measure", "--out", self.folder / f"{name}.h5")
+                ran = self.mbk("run", experiment, "--quiet", "--no-measure", "--out", self.folder / f"{name}.h5")
                 self.assertIn("confirmed off by the robot", ran.out)
                 self.assertIn("completed", self.fine("info", self.folder / f"{name}.h5").out)
 

@@ -18,6 +18,8 @@ import time
 from command import BAD_DATA, Case, FINE, WRONG_USAGE, main, program, run
 from killing import AT_A_TIME, EXPERIMENT, KILLS, Killing, MOST_LOST, Run, SEED, Stalls, digest, times_of
 
+SAFETY_STOP = 5
+
 
 class Kill(Killing):
     def test_every_recording_opens_and_at_most_0_2_s_are_lost(self):
@@ -84,9 +86,10 @@ class FullDisk(Case):
         with Stalls() as stalls, concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
             results = list(pool.map(lambda s: self.limited(int(4000 + 1000 * s * self.TICK)), seconds))
         for second, (target, process) in zip(seconds, results):
-            self.assertEqual(process.returncode, BAD_DATA, process)
+            self.assertEqual(process.returncode, SAFETY_STOP, process)
             self.assertRegex(process.stderr, r"ticks were not written", process)
-            self.assertRegex(process.stderr, r"recording could not be kept up", process)
+            self.assertRegex(process.stdout, r"safety stop: the recording could not be kept up", process)
+            self.assertRegex(process.stdout, r"motors: confirmed off", process)
             self.assertFalse(target.exists())
             ran = run("recover", f"{target}.journal")
             times = times_of(target, self.folder)

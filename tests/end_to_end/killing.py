@@ -28,6 +28,9 @@ AT_A_TIME = 4
 AS_OTHERS = ("chrt", "--other", "0")  # a program begins as programs do, whatever this one goes before
 
 EXPERIMENT = """
+[robot]
+d1_mm = 254
+d2_mm = 266.7
 [session]
 soft_start_s = 0.3
 shortest_move_s = 0.3

@@ -19,6 +19,9 @@ from command import BAD_DATA, FINE, Case, main, program, run
 
 SAFETY_STOP = 5
 EXPERIMENT = """
+[robot]
+d1_mm = 254
+d2_mm = 266.7
 [session]
 soft_start_s = 0.3
 shortest_move_s = 0.3

@@ -89,7 +89,7 @@ class Udp(Case):
         peer = self.peer()
         udp = self.experiment("udp.toml", peer.port, "lock_step = true")
         one, other = self.folder / "udp.h5", self.folder / "simulated.h5"
-        self.fine("run", udp, "--fast", "--quiet", "--out", one)
+        self.mbk("run", udp, "--fast", "--quiet", "--out", one)
         self.fine("run", self.folder / "robot.toml", "--fast", "--quiet", "--out", other)
         self.assertEqual(self.channels(one), self.channels(other))
         self.assertNotIn("truth", self.metadata(one))  # mbk knows nothing of who is at that handle
@@ -101,7 +101,7 @@ class Udp(Case):
         results = []
         for experiment, options in ((udp, ()), (simulated, ("--fast",))):
             recording = self.folder / f"{experiment.stem}.h5"
-            self.fine("run", experiment, *options, "--quiet", "--no-measure", "--out", recording)
+            self.mbk("run", experiment, *options, "--quiet", "--no-measure", "--out", recording)
             # A busy machine misses ticks, which only an even clock bridges.
             results.append(self.fine("measure", recording, "--resample", "1000", "--json").json)
         for matrix in "MBK":
@@ -226,7 +226,7 @@ class Plugin(Case):
         return self.file("wheels.toml", text.replace("build/my_robot.so", program("MBK_MY_ROBOT")))
 
     def test_the_example_runs(self):
-        self.fine("run", self.experiment(), "--fast", "--quiet", "--no-measure", "--out", self.folder / "wheels.h5")
+        self.mbk("run", self.experiment(), "--fast", "--quiet", "--no-measure", "--out", self.folder / "wheels.h5")
         self.assertIn("completed", self.fine("info", self.folder / "wheels.h5").out)
 
     def test_the_example_is_checked_live(self):
@@ -240,6 +240,7 @@ class Plugin(Case):
         text = text.replace("build/my_robot.so", program("MBK_STALLING_ROBOT")).replace("0.2 0.9", how)
         process = subprocess.Popen([program("MBK"), "run", self.file("stalls.toml", text), "--no-measure", "--out",
                                     self.folder / "stalls.h5"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
 

@@ -219,7 +219,7 @@ TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
   EXPECT_NE(refusal(t).find("withdrawn"), std::string::npos);
   t = trial();
   t.limits.handle_force = 0.0;
-  EXPECT_NE(refusal(t).find("handle force"), std::string::npos);
+  EXPECT_NE(refusal(t).find("handle_force_N"), std::string::npos);
   t = trial();
   t.home = {2.0, 0.0};
   EXPECT_NE(refusal(t).find("home"), std::string::npos);

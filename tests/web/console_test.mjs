@@ -283,7 +283,9 @@ test("a wrong token and a foreign page get nothing, and that is logged", async (
   assert.match(await stranger.page.textContent("main"), /not right/);
   await running.until(/refused: a wrong token/);
   await stranger.close();
-  const own = await open(join(process.cwd(), "report", "dist", "index.html"));
+  const foreign = join(folder, "foreign.html"); // a page that its own policy holds back from nothing
+  writeFileSync(foreign, "<!doctype html><title>foreign</title>");
+  const own = await open(foreign);
   const opened = await own.page.evaluate((url) => new Promise((resolve) => {
     const socket = new WebSocket(url);
     socket.onopen = () => resolve(true);

@@ -97,7 +97,7 @@ TEST(DevicePlan, ReadsTheWiring) {
 
 TEST(DevicePlan, RefusalsNameFileLineAndKey) {
   EXPECT_NE(refusal("kind = \"udp\"\nprot = 5\n").find("port"), std::string::npos);
-  EXPECT_NE(refusal("kind = \"udp\"\nport = 70000\n").find("/lab/mine.toml, line 7"), std::string::npos)
+  EXPECT_NE(refusal("kind = \"udp\"\nport = 70000\n").find("/lab/mine.toml, line 9"), std::string::npos)
       << refusal("kind = \"udp\"\nport = 70000\n");
   EXPECT_NE(refusal("kind = \"can\"\n").find("udp"), std::string::npos);
   EXPECT_NE(refusal("kind = \"plugin\"\n").find("library"), std::string::npos);

@@ -195,7 +195,7 @@ TEST(Gate, NeverLetsMoreForceTorqueOrRatePassWhateverIsAsked) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   Limits limits;
-  limits.max_saturation_time = 1e9;  // so that it goes on
+  limits.max_saturation_time = 60.0;  // so that it goes on
   limits.handle_force = 12.0;
   limits.joint_torque = {3.0, 2.0};
   Gate g = gate(limits);

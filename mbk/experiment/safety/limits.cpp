@@ -18,7 +18,7 @@ constexpr auto kKeys = std::to_array<LimitKey>({
     {"handle_force_N", &Limits::handle_force, 1.0, 500.0, "the motors push the hand with it"},
     {"joint_torque_Nm", &Limits::joint_torque, 1.0, 500.0, "the motors turn the joints with it"},
     {"torque_rate_Nm_per_s", &Limits::torque_rate, 1.0, 1e5, "the torque jumps by it"},
-    {"max_saturation_time_ms", &Limits::max_saturation_time, kMilli, 10'000.0, "a controller may run away"},
+    {"max_saturation_time_ms", &Limits::max_saturation_time, kMilli, 60'000.0, "a controller may run away"},
     {"measured_force_N", &Limits::measured_force, 1.0, 1000.0, "the hand is held or squeezed with it"},
     {"force_jump_N", &Limits::force_jump, 1.0, 1000.0, "a knock or a torn wire passes"},
     {"speed_mm_per_s", &Limits::speed, kMilli, 10'000.0, "the hand is moved so fast"},
@@ -60,7 +60,7 @@ std::vector<std::string> weakened(const Limits& limits) {
     const bool off = one.may_be_off && value == 0.0;
     const bool weaker = one.less_is_weaker ? value < usual * (1.0 - kRounding) : value > usual * (1.0 + kRounding);
     if (!off && !weaker) continue;
-    said.push_back(fmt::format("{} {}, by default {:.4g}: {}", one.key, off ? "is off" : fmt::format("= {:.4g}", value),
+    said.push_back(fmt::format("{} {}, by default {:.4g}: {}", one.key, off ? "is off" : fmt::format("= {:.6g}", value),
                                usual, one.why));
   }
   return said;

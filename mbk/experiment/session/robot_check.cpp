@@ -250,11 +250,11 @@ std::string setup_text(const RobotSetup& setup) {
                       l.theta1_low / kDegree, l.theta1_high / kDegree, l.theta2_low / kDegree, l.theta2_high / kDegree,
                       l.smallest_opening / kDegree);
   text +=
-      "angles     y\n"
-      "           |    o hand          x = d₁ cos θ₁ + d₂ sin θ₂\n"
-      "           |   /  d₂, θ₂ from −y   y = d₁ sin θ₁ − d₂ cos θ₂\n"
-      "           |  o elbow\n"
-      "           | /  d₁, θ₁ from +x\n"
+      "angles     y                x = d₁ cos θ₁ + d₂ sin θ₂\n"
+      "           |     o hand     y = d₁ sin θ₁ − d₂ cos θ₂\n"
+      "           |    /  d₂: θ₂ from −y\n"
+      "           |   o elbow\n"
+      "           |  /  d₁: θ₁ from +x\n"
       "           base ---- x\n";
   text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.trial.device) : "none is named");
   if (!setup.has_device || setup.trial.device.simulated()) return text;

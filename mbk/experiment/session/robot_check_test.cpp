@@ -63,8 +63,10 @@ TEST(RobotCheck, UnitsThatCannotBeMeantAreDoubted) {
   const std::string e = std::string(kRobot) + kExperiment, wires = e + "[device.wiring]\n";
   EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nd1_mm = 0.254\nd2_mm = 0.267\n", "links of"), Verdict::doubtful);
   EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nalpha_kg_m2 = [69, 42, 44]\n", "the hand feels"), Verdict::doubtful);
-  EXPECT_EQ(verdict(std::string(kExperiment) + "[robot]\nalpha_kg_m2 = [0.07, 0.4, 0.04]\n", "the hand feels"),
-            Verdict::wrong);
+  const auto impossible =
+      read_robot_setup(std::string(kExperiment) + "[robot]\nalpha_kg_m2 = [0.07, 0.4, 0.04]\n", "mine.toml");
+  ASSERT_FALSE(impossible);
+  EXPECT_THAT(impossible.error().line(), HasSubstr("no two links have this inertia"));
   EXPECT_EQ(verdict(wires + "torque_per_command_Nm = [100000, 1]\n", "units of command"), Verdict::doubtful);
   EXPECT_EQ(verdict(wires + "force_gain_N_per_unit = [[1, 0], [0, 20]]\n", "N per unit"), Verdict::doubtful);
   EXPECT_EQ(verdict(wires + "force_step = 0.1\n", "smallest step"), Verdict::doubtful);
@@ -164,7 +166,7 @@ std::vector<Finding> watched(std::function<void(device::State&, std::uint64_t)> 
   EXPECT_TRUE(record);
   EXPECT_FALSE(robot.moved());
   EXPECT_TRUE(robot.stopped());
-  return check_live(setup(kExperiment), robot.facts(), *record);
+  return check_live(setup(std::string(kRobot) + kExperiment), robot.facts(), *record);
 }
 
 TEST(LiveCheck, ARobotThatStandsStillIsFine) {

@@ -92,7 +92,7 @@ Result<Buffer> gunzip(std::span<const std::byte> file) {
   if (inflateInit2(&stream, kGzip) != Z_OK) return bad_data("there is not enough memory to unpack the gzip file");
   const std::unique_ptr<z_stream, EndInflating> end(&stream);
   // The trailer says the size of the last member, modulo 2³². It is believed as far as such a file can hold it.
-  const std::uint64_t limit = largest_claim(file.size());
+  const std::uint64_t limit = largest_unpacked(file.size());
   const std::uint64_t said = std::min<std::uint64_t>(ByteView{file}.at<std::uint32_t>(file.size() - 4), limit);
   if (auto ok = check_memory(said); !ok) return tl::unexpected(ok.error());
   GrowingBytes bytes(said + 1, limit);

@@ -17,7 +17,7 @@ namespace mbk::recording {
 
 /// What gzip packed, in one member or in several, one behind the other. Checksums are checked.
 /// @fails  data: the file is damaged or cut short, something else follows a member, it unpacks to nothing or to more
-///         than a file of this length can (`largest_claim`) or than memory holds.
+///         than a file of this length can (`largest_unpacked`) or than memory holds.
 [[nodiscard]] Result<Buffer> gunzip(std::span<const std::byte> file);
 
 }  // namespace mbk::recording

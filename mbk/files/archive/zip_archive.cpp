@@ -85,7 +85,7 @@ Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
   if (!opened) return damaged("its directory is not there, as if it were cut short");
   ZipArchive archive;
   archive.file_ = file;
-  const std::uint64_t room = largest_claim(file.size());
+  const std::uint64_t room = largest_unpacked(file.size());
   std::uint64_t total = 0;
   std::vector<Place> places;
   std::string text(std::numeric_limits<std::uint16_t>::max() + 1, '\0');  // the longest name, and its end

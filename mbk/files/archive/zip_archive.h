@@ -27,7 +27,7 @@ class ZipArchive {
 
   /// @param file  must outlive the archive
   /// @fails  data: no archive, cut short, encrypted, or its members say that they are larger than a file of this length
-  ///         can unpack to (`largest_claim`) or than memory.
+  ///         can unpack to (`largest_unpacked`) or than memory.
   [[nodiscard]] static Result<ZipArchive> open(std::span<const std::byte> file);
 
   [[nodiscard]] const std::vector<ZipMember>& members() const { return members_; }

@@ -36,11 +36,16 @@ struct Buffer {
 /// Largest file that is read: 8 GiB.
 inline constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
 
-/// The most memory [bytes] that contents of so many bytes may claim. Deflate cannot expand by more than 1032, and what
-/// expands by more than 100 to more than 512 MiB is no recording: its samples would hardly ever change.
+/// The most memory [bytes] that contents of so many bytes may claim. Deflate cannot expand by more than 1032.
 [[nodiscard]] constexpr std::uint64_t largest_claim(std::uint64_t bytes) {
+  return 1100 * bytes + (1 << 20);
+}
+
+/// The same of an archive, which is unpacked whole before anything can be said of it: what expands by more than 50 to
+/// more than 512 MiB holds no recording, since its samples would hardly ever change.
+[[nodiscard]] constexpr std::uint64_t largest_unpacked(std::uint64_t bytes) {
   constexpr std::uint64_t kAnyway = std::uint64_t{512} << 20;
-  return std::min(1100 * bytes + (1 << 20), std::max(kAnyway, 100 * bytes));
+  return std::min(largest_claim(bytes), std::max(kAnyway, 50 * bytes));
 }
 
 /// A file that is read from its begin to its end, of which only the part that is worked on is in memory. The bytes

@@ -571,12 +571,18 @@ void Identifier::warn() {
                         fmt::format("more poles or zeros (--orders), {}{}{}", delay, hold,
                                     in_loop ? "" : "; in a loop --method clsrivc")});
   }
+  if (options_.find_delay && found_.delay_found && !found_.residuals.independent()) {
+    found_.delay_found = false;  // the best of those that were tried, and not good
+    found_.delay_standard_error.reset();
+  }
   if (options_.find_delay && !found_.delay_found) {
     warnings.push_back(
         {WarningCode::delay_at_limit,
-         fmt::format("of all delays that were tried the longest, {:.4g} s, leaves least: the true one may "
-                     "be longer",
-                     delay_),
+         delay_at_limit()
+             ? fmt::format("the longest delay that was tried, {:.4g} s, fits best: the true one may be longer", delay_)
+             : fmt::format("no delay up to {:.4g} s fits: with the best, {:.4g} s, the input still explains something "
+                           "of what is left, and the true one may be longer",
+                           options_.max_delay, delay_),
          fmt::format("look further by --max-delay {:.2g}, or set it by --delay", 2.0 * options_.max_delay)});
   }
   std::string outside;
