@@ -416,8 +416,8 @@ class Recover(Task):
 
     def prepare(self):
         # The journal stays where it cannot be removed: the call that does that is found by trying.
-        for call in range(5, 30):
-            ran = session(self.inputs, Fault("name", 1, call, True), None)
+        for call in range(1, 30):
+            ran = session(self.inputs, Fault("name", call, 5, True), None)
             made = (self.inputs / "x.h5").exists()
             for left in (self.inputs / "x.h5", *self.inputs.glob(".*.part")):
                 left.unlink(missing_ok=True)

@@ -284,7 +284,7 @@ test("a wrong token and a foreign page get nothing, and that is logged", async (
   await running.until(/refused: a wrong token/);
   await stranger.close();
   const foreign = join(folder, "foreign.html"); // a page that its own policy holds back from nothing
-  writeFileSync(foreign, "<!doctype html><title>foreign</title>");
+  writeFileSync(foreign, "<!doctype html><title>foreign</title><main>foreign</main>");
   const own = await open(foreign);
   const opened = await own.page.evaluate((url) => new Promise((resolve) => {
     const socket = new WebSocket(url);

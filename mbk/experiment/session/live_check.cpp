@@ -119,12 +119,12 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
   findings.add(record.link, Verdict::wrong,
                record.link ? "the link held" : fmt::format("the link broke after {:.2f} s", record.duration),
                "see the robot's program and its watchdog");
-  if (record.missed > 0) {
-    findings.add(false, Verdict::doubtful, fmt::format("this machine was late: it missed {} ticks", record.missed),
+  const std::uint64_t missed = facts.keeps_time ? record.missed : 0;
+  if (missed > 0) {
+    findings.add(false, Verdict::doubtful, fmt::format("this machine was late: it missed {} ticks", missed),
                  "that is not the robot's doing: fewer programs beside mbk, or a real-time kernel");
   }
-  const double share =
-      static_cast<double>(record.fresh + record.lost) / static_cast<double>(record.ticks + record.missed);
+  const double share = static_cast<double>(record.fresh + record.lost) / static_cast<double>(record.ticks + missed);
   findings.add(share >= kMinRate && share <= 2.0 - kMinRate, Verdict::wrong,
                fmt::format("{:.1f} states a second of the robot's, for {:g} ticks of mbk's",
                            share * setup.trial.rate.value, setup.trial.rate.value),
@@ -133,7 +133,7 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
   findings.add(silence <= setup.trial.limits.link_silence, Verdict::wrong,
                fmt::format("the longest silence was {:.0f} ms", 1e3 * silence),
                "the gate would switch off: see network, load and [safety] link_silence_ms");
-  findings.add((record.lost - std::min(record.lost, record.missed)) * 1000 <= record.fresh, Verdict::doubtful,
+  findings.add((record.lost - std::min(record.lost, missed)) * 1000 <= record.fresh, Verdict::doubtful,
                fmt::format("{} of {} states were lost or came two to a tick", record.lost, record.fresh + record.lost),
                "a cable of its own helps, and a real-time kernel");
   findings.add(record.backward == 0, Verdict::wrong,

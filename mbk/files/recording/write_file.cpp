@@ -105,10 +105,17 @@ fs::path temporary_name(const fs::path& file) {
   return name;
 }
 
+Result<void> not_begun(const fs::path& file, const Temporary& temporary, int code) {
+  if (code != EEXIST) return cannot_write(file, code);
+  return bad_data(
+      fmt::format("its temporary file {} is there and cannot be removed", temporary.path.filename().string()),
+      "remove that file, and check the folder's permissions and the disk", file.string());
+}
+
 Result<void> write_as(const fs::path& file, bool overwrite, std::string_view text, const Mode& mode) {
   if (auto ok = check_name(file, overwrite); !ok) return ok;
   const Temporary temporary{temporary_name(file)};
-  if (const int error = write_new(temporary.path, text, mode); error != 0) return cannot_write(file, error);
+  if (const int error = write_new(temporary.path, text, mode); error != 0) return not_begun(file, temporary, error);
   if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot_write(file, error);
   if (const int error = flush_names(folder_of(file)); error != 0) return cannot_write(file, error);
   return {};
@@ -157,7 +164,7 @@ Result<void> write_file(const fs::path& file, bool overwrite, std::string_view t
 Result<void> can_write_file(const fs::path& file, bool overwrite) {
   if (auto ok = check_name(file, overwrite); !ok) return ok;
   const Temporary temporary{temporary_name(file)};
-  if (const int error = write_new(temporary.path, {}, {0600}); error != 0) return cannot_write(file, error);
+  if (const int error = write_new(temporary.path, {}, {0600}); error != 0) return not_begun(file, temporary, error);
   return {};
 }
 

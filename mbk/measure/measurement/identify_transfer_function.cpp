@@ -42,12 +42,13 @@ double common_power(const Vector& a, const Vector& b) {
     Vector x = signal.head(n).array() - signal.head(n).mean();
     x.array() *= dsp::hann_window(n).array();
     const Eigen::VectorXcd X = dsp::fourier_transform(x);
-    Vector power = Vector::Zero(kBands);
+    Vector power = Vector::Zero(kBands + 2);
     for (Index k = 1; k < X.size(); ++k) {
       const double octaves = std::log2(static_cast<double>(k) / static_cast<double>(n) / lowest);
-      power[std::clamp(static_cast<int>(std::floor(kInOctave * octaves)) + 1, 0, kBands - 1)] += std::norm(X[k]);
+      power[std::clamp(static_cast<int>(std::floor(kInOctave * octaves)) + 2, 1, kBands)] += std::norm(X[k]);
     }
-    return power;
+    // A line at the edge of a band is in both beside it.
+    return power.segment(1, kBands) + 0.5 * (power.head(kBands) + power.tail(kBands));
   };
   const Vector of_a = in_bands(a), of_b = in_bands(b);
   if (!(of_a.sum() > 0.0 && of_b.sum() > 0.0)) return 1.0;
