@@ -16,7 +16,8 @@ inline constexpr int kMotorsNotOff = 7;  ///< exit code: the robot did not confi
 /// While it lives, a signal that means the end of the program (a wild pointer, a division by zero, abort, and with it
 /// an exception that nobody catches) first switches the robot's motors off, where the device can say so from there
 /// (Device::emergency_off), and gives the terminal its keys back. Then it acts as it does without: core dump and exit
-/// status stay. A driver that calls exit() does the same, and the program ends with kMotorsNotOff. Neither SIGKILL nor a machine that stands still leaves time for it; the robot's watchdog does.
+/// status stay. A driver that calls exit() does the same, and the program ends with kMotorsNotOff. Neither SIGKILL nor
+/// a machine that stands still leaves time for it; the robot's watchdog does.
 class LastWords {
  public:
   /// @param robot  outlives this

@@ -11,8 +11,8 @@ namespace mbk::app {
 /// While it lives, no signal that can be caught suspends the program or ends it by itself: Ctrl-C, Ctrl-\, Ctrl-Z, a
 /// request to end (SIGTERM), a terminal that is closed (SIGHUP, unless nohup has it ignored), and the others that end
 /// programs that do not expect them. Within a trial each is a stop by the operator. All but Ctrl-C within a trial also
-/// end the session (LoopFlags::end_session); a second one outside of a trial ends the program at once, as does a second one
-/// within a trial whose loop does not come back from the robot (LoopFlags::silent), with kMotorsNotOff.
+/// end the session (LoopFlags::end_session); a second one outside of a trial ends the program at once, as does a second
+/// one within a trial whose loop does not come back from the robot (LoopFlags::silent), with kMotorsNotOff.
 class StopSignals {
  public:
   /// @param flags  of the session; outlives this

@@ -58,13 +58,12 @@ class Run {
     const Attempt attempt{index, plan, next_free(experiment_.target(index)), **robot};
     auto watcher = operator_.begin(attempt);
     if (asked_to_end()) return Next::end;
-    auto outcome = session_.perform(
-        **robot, plan, attempt.target,
-        [&](std::span<const journal::Tick> ticks) {
-          if (watcher) watcher->watch(ticks);
-        },
-        {[&](const safety::MotorsOff& motors) { operator_.motors(motors); },
-         [&](const session::TrialOutcome& given_up) { operator_.given_up(given_up); }});
+    auto outcome = session_.perform(**robot, plan, attempt.target,
+                                    [&](std::span<const journal::Tick> ticks) {
+                                      if (watcher) watcher->watch(ticks);
+                                    },
+                                    {[&](const safety::MotorsOff& motors) { operator_.motors(motors); },
+                                     [&](const session::TrialOutcome& given_up) { operator_.given_up(given_up); }});
     watcher.reset();
     if (!outcome) return fail(outcome.error());
     conclusion_.trip = outcome->trip;

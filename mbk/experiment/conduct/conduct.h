@@ -84,14 +84,15 @@ class Operator {
   /// A trial begins.   @returns  what is to live as long as it runs; may be null
   [[nodiscard]] virtual std::unique_ptr<Watcher> begin(const Attempt& /*attempt*/) { return nullptr; }
 
-  /// The robot is at rest: first of all what it says of its motors. While a trial runs, from another thread: that no tick
-  /// comes from the robot's driver (`missing`), and that ticks come again (`waiting`).
+  /// The robot is at rest: first of all what it says of its motors. While a trial runs, from another thread: that no
+  /// tick comes from the robot's driver (`missing`), and that ticks come again (`waiting`).
   virtual void motors(const safety::MotorsOff& /*motors*/) {}
 
   /// What a robot that is not simulated says until the next trial, each time that it changes. From another thread.
   virtual void idle(const session::IdleState& /*seen*/) {}
 
-  /// The robot's driver does not return, and the trial was given up: nothing follows until it does. From another thread.
+  /// The robot's driver does not return, and the trial was given up: nothing follows until it does. From another
+  /// thread.
   virtual void given_up(const session::TrialOutcome& /*outcome*/) {}
 
   /// The trial is over. It is recorded, and will be measured next, unless the outcome says why not.

@@ -102,14 +102,14 @@ class Fitter {
   HandleMassSource handle_mass_from_ = HandleMassSource::none;
   bool all_ = false;
   std::optional<Instruments> instruments_;
-  std::array<std::optional<Estimate>, 2> estimates_;        ///< by method
-  std::array<std::optional<Estimate>, 2> judged_;           ///< from the identification data alone, where these differ
-  std::array<Matrix, 2> omegas_;                            ///< long-run covariances of their scores
-  Matrix omega_of_both_;                                    ///< of [instrumental variables | least squares]
-  std::array<Vector, 2> coherent_;                          ///< fractions of their residuals
-  std::optional<Spread> spread_;                            ///< of the rows behind the parameters
-  std::array<Vector, 2> errors_;                            ///< standard errors of their coefficients, stacked
-  std::optional<TestedAssumptions> assumptions_;  ///< of the data, by whichever method comes first
+  std::array<std::optional<Estimate>, 2> estimates_;  ///< by method
+  std::array<std::optional<Estimate>, 2> judged_;     ///< from the identification data alone, where these differ
+  std::array<Matrix, 2> omegas_;                      ///< long-run covariances of their scores
+  Matrix omega_of_both_;                              ///< of [instrumental variables | least squares]
+  std::array<Vector, 2> coherent_;                    ///< fractions of their residuals
+  std::optional<Spread> spread_;                      ///< of the rows behind the parameters
+  std::array<Vector, 2> errors_;                      ///< standard errors of their coefficients, stacked
+  std::optional<TestedAssumptions> assumptions_;      ///< of the data, by whichever method comes first
 };
 
 Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
