@@ -40,8 +40,8 @@ void on_exit_in_trial() {
 }
 
 LastWords::LastWords(device::Device& robot) {
-  static const int registered = std::atexit(on_exit_in_trial);
-  static_cast<void>(registered);
+  static const int kRegistered = std::atexit(on_exit_in_trial);
+  static_cast<void>(kRegistered);
   static_assert(kFatalSignals.size() == kFatal);
   robot_at_work = &robot;
   struct sigaction action {};

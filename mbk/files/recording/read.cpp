@@ -72,8 +72,8 @@ class RecordingFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::string_view begin() const { return begin_; }
   [[nodiscard]] const std::vector<TrialName>& trials() const {
-    static const std::vector<TrialName> none;
-    return trials_ ? trials_->trials() : none;
+    static const std::vector<TrialName> kNone;
+    return trials_ ? trials_->trials() : kNone;
   }
 
   void rest() const {

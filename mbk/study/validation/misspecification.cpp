@@ -93,7 +93,7 @@ std::vector<Misspecification> honest() {
   const auto shoulder = [](double x, double y) {
     return [x, y](Scenario& s) {
       auto& limb = std::get<participant::TwoLinkArm::Options>(arm(s).limb);
-      limb.geometry.shoulder = limb.equilibrium + Vector2d(x, y);
+      limb.geometry.shoulder = limb.equilibrium + Eigen::Vector2d(x, y);
     };
   };
   const auto pauses = [](double shortest, double longest) {
