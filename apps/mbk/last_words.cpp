@@ -4,7 +4,7 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <string_view>
+#include <string>
 
 namespace mbk::app {
 namespace {
@@ -28,18 +28,27 @@ extern "C" void on_fatal_signal(int signal) {
 
 }  // namespace
 
+/// Made before the handler that reads it is registered, so that it is there longer.
+std::string& journal_at_work() {
+  static std::string journal;
+  return journal;
+}
+
 /// Somebody calls exit() while a trial runs: a driver, since nothing of mbk does.
 void on_exit_in_trial() {
   if (robot_at_work == nullptr) return;
   LastWords::say();
-  constexpr std::string_view kWhat =
-      "\a\nmbk: MOTORS NOT CONFIRMED OFF: the robot's driver ended the program. Press the hardware stop button; the "
-      "journal is kept, and 'mbk recover' makes a recording of it.\n";
-  static_cast<void>(!::write(STDERR_FILENO, kWhat.data(), kWhat.size()));
+  const std::string what =
+      "\a\nmbk: MOTORS NOT CONFIRMED OFF: the robot's driver ended the program. Press the hardware stop button. What "
+      "was "
+      "recorded: mbk recover " +
+      journal_at_work() + "\n";
+  static_cast<void>(!::write(STDERR_FILENO, what.data(), what.size()));
   std::_Exit(kMotorsNotOff);
 }
 
-LastWords::LastWords(device::Device& robot) {
+LastWords::LastWords(device::Device& robot, const std::filesystem::path& journal) {
+  journal_at_work() = journal.string();
   static const int kRegistered = std::atexit(on_exit_in_trial);
   static_cast<void>(kRegistered);
   static_assert(kFatalSignals.size() == kFatal);

@@ -5,6 +5,7 @@
 #include <array>
 #include <csignal>
 #include <cstddef>
+#include <filesystem>
 
 #include "mbk/base/realtime/signal_stack.h"
 #include "mbk/experiment/device/device.h"
@@ -20,8 +21,8 @@ inline constexpr int kMotorsNotOff = 7;  ///< exit code: the robot did not confi
 /// a machine that stands still leaves time for it; the robot's watchdog does.
 class LastWords {
  public:
-  /// @param robot  outlives this
-  explicit LastWords(device::Device& robot);
+  /// @param robot  outlives this    @param journal  of the trial, for those who come to look
+  LastWords(device::Device& robot, const std::filesystem::path& journal);
   LastWords(const LastWords&) = delete;
   LastWords& operator=(const LastWords&) = delete;
   ~LastWords();

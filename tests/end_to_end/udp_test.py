@@ -234,12 +234,12 @@ class Plugin(Case):
         self.assertIn("two wheels", text)
         self.assertIn("joint 1             11.4592", text)
 
-    def stalling(self, how):
+    def stalling(self, how, *options):
         """`mbk run` of a robot whose driver goes wrong, begun."""
         text = (EXAMPLES / "device_plugin" / "experiment.toml").read_text()
         text = text.replace("build/my_robot.so", program("MBK_STALLING_ROBOT")).replace("0.2 0.9", how)
         process = subprocess.Popen([program("MBK"), "run", self.file("stalls.toml", text), "--no-measure", "--out",
-                                    self.folder / "stalls.h5"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                    self.folder / "stalls.h5", *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -264,6 +264,15 @@ class Plugin(Case):
         self.assertEqual(process.returncode, MOTORS_NOT_OFF)
         self.assertIn("safety stop: the robot's driver did not return", out)
 
+    def test_on_a_virtual_clock_too(self):
+        process = self.stalling("forever", "--fast", "--quiet")
+        self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
+        process.send_signal(signal.SIGTERM)
+        self.until(process.stderr, "still does not return")
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, MOTORS_NOT_OFF)
+
     def test_a_driver_that_returns_late_is_told_of(self):
         process = self.stalling("briefly")
         self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
@@ -274,6 +283,7 @@ class Plugin(Case):
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, MOTORS_NOT_OFF, err)
         self.assertIn("MOTORS NOT CONFIRMED OFF: the robot's driver ended the program", err)
+        self.assertIn(f"mbk recover {self.folder / 'stalls.h5.journal'}", err)
         self.fine("recover", self.folder / "stalls.h5.journal")
 
     def test_a_library_that_is_not_there(self):

@@ -41,6 +41,15 @@ TEST(DevicePlan, EveryLimitHasABound) {
   }
 }
 
+TEST(DevicePlan, TheWorkspaceHasABoundToo) {
+  safety::Limits limits;
+  limits.workspace_low = {-1000.0, -1.0};
+  EXPECT_FALSE(safety::check(limits));
+  limits.workspace_low = {-1.5, -1.0};
+  EXPECT_TRUE(safety::check(limits));
+  EXPECT_EQ(safety::weakened(limits).size(), 1U);
+}
+
 TEST(DevicePlan, IsSimulatedWhereNothingIsSaid) {
   EXPECT_TRUE(plan("").simulated());
   EXPECT_TRUE(plan("kind = \"simulated\"\n").simulated());

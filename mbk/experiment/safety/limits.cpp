@@ -63,6 +63,11 @@ std::vector<std::string> weakened(const Limits& limits) {
     said.push_back(fmt::format("{} {}, by default {:.4g}: {}", one.key, off ? "is off" : fmt::format("= {:.6g}", value),
                                usual, one.why));
   }
+  const Limits usual;
+  if ((limits.workspace_low.array() < usual.workspace_low.array()).any() ||
+      (limits.workspace_high.array() > usual.workspace_high.array()).any()) {
+    said.emplace_back("the workspace is larger than that by default, ±1000 mm: the hand may go there");
+  }
   return said;
 }
 
@@ -94,6 +99,12 @@ Result<void> check(const Limits& limits) {
     if (value <= one.most) continue;
     return bad_usage(fmt::format("safety.{} = {:g} is above {:g}", one.key, value, one.most),
                      fmt::format("below the limit {}", one.why));
+  }
+  if (!(limits.workspace_low.cwiseAbs().maxCoeff() <= kLargestWorkspace &&
+        limits.workspace_high.cwiseAbs().maxCoeff() <= kLargestWorkspace)) {
+    return bad_usage(
+        fmt::format("safety: a corner of the workspace is more than {:g} mm from the base", kMilli * kLargestWorkspace),
+        "give workspace_low_mm and workspace_high_mm in millimetres");
   }
   if (!(limits.workspace_low.array() < limits.workspace_high.array()).all()) {
     return bad_usage("safety: the workspace's low corner is not below its high corner");

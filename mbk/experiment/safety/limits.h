@@ -45,6 +45,9 @@ struct Limits {
   double off_torque = 0.1;     ///< that drives may still measure of motors that are off [N·m] > 0
 };
 
+/// How far from the base a corner of the workspace may be [m]: no robot for an arm reaches farther.
+inline constexpr double kLargestWorkspace = 4.0;
+
 /// What a file may say of a limit, in the unit of its key.
 struct LimitKey {
   std::string_view key;  ///< "link_silence_ms"

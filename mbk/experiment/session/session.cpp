@@ -173,15 +173,16 @@ Header header_of(const Plan& plan, const device::Facts& facts) {
 
 Result<void> check_target(const Plan& plan, const fs::path& target) {
   if (const auto format = recording::format_of(target); !format) return tl::unexpected(format.error());
-  if (auto ok = recording::can_write_file(target, false); !ok) {
-    Error error = ok.error();
-    if (error.kind == ErrorKind::usage) error.remedy = "choose another name, or move it away";
-    return tl::unexpected(error);
-  }
+  const auto can_write = [](const fs::path& file) -> Result<void> {
+    auto ok = recording::can_write_file(file, false);
+    if (!ok && ok.error().kind == ErrorKind::usage) ok.error().remedy = "choose another name, or move it away";
+    return ok;
+  };
+  if (auto ok = can_write(target); !ok) return ok;
   const fs::path journal = journal_of(target);
   std::error_code ignored;
   if (fs::exists(journal, ignored)) return journal::Writer::already_there(journal);
-  if (auto ok = recording::can_write_file(journal, false); !ok) return ok;
+  if (auto ok = can_write(journal); !ok) return ok;
   constexpr std::uintmax_t kTickInRecording = 18 * sizeof(double), kMore = 16 << 20;  // channels and time; spare
   const std::uintmax_t needed = expected_ticks(plan) * (sizeof(Tick) * 11 / 10 + kTickInRecording) + kMore;
   const auto space = fs::space(target.has_parent_path() ? target.parent_path() : fs::path("."), ignored);
@@ -263,7 +264,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   guard.begun = true;
   {
     std::optional<LoopWatch> loop_watch;
-    if (in_real_time && !trial.device.simulated()) {
+    if (!trial.device.simulated()) {
       loop_watch.emplace(*flags_, robot.facts().keeps_time,
                          watched_loop(robot, recorder, stalled, sample_time, outcome));
     }

@@ -77,7 +77,9 @@ Result<void> cannot_write(const fs::path& file, int code) {
     return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
   }
   return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                  "check the folder, its permissions and the space on the disk", file.string());
+                  code == ENAMETOOLONG ? "choose a shorter name: while it is written some twenty characters are added"
+                                       : "check the folder, its permissions and the space on the disk",
+                  file.string());
 }
 
 /// Nothing is under the name, or a file that may be replaced.
