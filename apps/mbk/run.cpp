@@ -199,7 +199,10 @@ class TrialWatcher : public conduct::Watcher {
  public:
   TrialWatcher(std::unique_ptr<conduct::Watcher> page, const conduct::Attempt& attempt, session::LoopFlags& flags,
                bool quiet)
-      : page_(std::move(page)), last_words_(attempt.robot, session::journal_of(attempt.target)), keys_(flags), line_(attempt.plan.trial.name, quiet) {}
+      : page_(std::move(page)),
+        last_words_(attempt.robot, session::journal_of(attempt.target)),
+        keys_(flags),
+        line_(attempt.plan.trial.name, quiet) {}
 
   void watch(std::span<const journal::Tick> ticks) override {
     line_.show(ticks);
