@@ -248,6 +248,10 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   flags_->beats = 0;
   realtime::BoundedRing<Tick> ring(kRing);
   Recorder recorder(ring, std::move(*writer), *flags_, watch, in_real_time);
+  std::optional<LoopWatch> loop_watch;  // begun before the loop: a machine that has no thread for it moves nothing
+  if (!trial.device.simulated()) {
+    loop_watch.emplace(*flags_, robot.facts().keeps_time, watched_loop(robot, recorder, stalled, sample_time, outcome));
+  }
   std::thread loop([&] {
     const realtime::SignalStack stack;
     if (pace_.clock != nullptr) {
@@ -262,14 +266,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
     }
   });
   guard.begun = true;
-  {
-    std::optional<LoopWatch> loop_watch;
-    if (!trial.device.simulated()) {
-      loop_watch.emplace(*flags_, robot.facts().keeps_time,
-                         watched_loop(robot, recorder, stalled, sample_time, outcome));
-    }
-    loop.join();
-  }
+  loop.join();
+  loop_watch.reset();
   if (!flags_->given_up()) conclude(recorder, outcome);
   return outcome;
 }
