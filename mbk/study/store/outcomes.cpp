@@ -87,7 +87,17 @@ class OutcomeReader {
     const std::string unit = unit_of(*quantity == 'i' ? "M" : *quantity == 'd' ? "B" : "K");
     add(fmt::format("{}_area", quantity), member(ellipse, "area"), Json(), squared(unit));
     add(fmt::format("{}_shape", quantity), member(ellipse, "shape"), Json(), "");
-    add(fmt::format("{}_orientation", quantity), member(ellipse, "orientation_deg"), Json(), "°");
+    if (has_orientation(member(member(ellipse, "interval95"), "orientation_deg"))) {
+      add(fmt::format("{}_orientation", quantity), member(ellipse, "orientation_deg"), Json(), "°");
+    }
+  }
+
+  /// An ellipse that may be round has none: its interval holds every angle, and a mean over trials would take in
+  /// chance.
+  static bool has_orientation(const Json& interval) {
+    constexpr double kEvery = 180.0 - 1e-6;  // [°]
+    const Json &low = element(interval, 0), &high = element(interval, 1);
+    return !(low.is_number() && high.is_number() && high.get<double>() - low.get<double>() >= kEvery);
   }
 
   static std::string squared(const std::string& unit) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/study_summary.h"
@@ -106,6 +108,21 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
   EXPECT_EQ(by_name.at("absorbed_energy").value, 1.5);
   EXPECT_FALSE(outcomes_of("[]"));
   EXPECT_FALSE(outcomes_of("{\"model\":"));
+}
+
+TEST(Outcomes, HaveNoOrientationOfAnEllipseThatMayBeRound) {
+  const auto has = [](const std::string& interval) {
+    const auto outcomes = outcomes_of(
+        R"({"axes":2,"model":{"K":[[1,0],[0,1]]},"ellipses":{"stiffness":{"shape":1,"orientation_deg":30,"interval95":)"
+        R"({"orientation_deg":)" +
+        interval + "}}}}");
+    EXPECT_TRUE(outcomes);
+    return std::ranges::any_of(*outcomes, [](const Outcome& one) { return one.name == "stiffness_orientation"; });
+  };
+  EXPECT_TRUE(has("[10, 50]"));
+  EXPECT_TRUE(has("[-20, 150]"));
+  EXPECT_TRUE(has("null"));
+  EXPECT_FALSE(has("[-60, 120]"));
 }
 
 TEST(Outcomes, AreTheSameWhateverStandsInTheCurvesOfModels) {
