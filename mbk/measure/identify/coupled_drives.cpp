@@ -8,58 +8,37 @@
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/least_squares.h"
+#include "mbk/measure/identify/stacked_dynamics.h"
 
 namespace mbk::identify {
 namespace {
 
-/// The rows of all trials, of one joint.
+/// The rows of one joint.
 struct JointRows {
   Vector residual;
   Matrix own;                    ///< its columns of W that are not 0, and the rate of its torque
   std::vector<Matrix> friction;  ///< of each joint
-  std::vector<numeric::RowRange> ranges;
 };
 
-JointRows rows_of_joint(const std::vector<PreparedDynamics>& trials, const RobotIdentification& found, Index joint) {
-  const auto j = static_cast<std::size_t>(joint);
+JointRows rows_of_joint(const StackedDynamics& all, const RobotIdentification& found, Index joint) {
+  const Matrix& W = all.W[static_cast<std::size_t>(joint)];
   const std::vector<robot::Coefficient> names = found.model.coefficients();
-  const Index n = trials.front().torque.cols(), p = std::ssize(names);
-  std::vector<std::vector<Index>> of_friction(static_cast<std::size_t>(n));
+  std::vector<std::vector<Index>> of_friction(all.W.size());
   std::vector<Index> own;
-  for (Index k = 0; k < p; ++k) {
+  for (Index k = 0; k < W.cols(); ++k) {
     const std::string& name = names[static_cast<std::size_t>(k)].name;
-    for (Index of = 0; of < n; ++of) {
+    for (std::size_t of = 0; of < of_friction.size(); ++of) {
       const bool here = name == fmt::format("viscous_{}", of + 1) || name == fmt::format("coulomb_{}", of + 1);
-      if (here) of_friction[static_cast<std::size_t>(of)].push_back(k);
+      if (here) of_friction[of].push_back(k);
     }
-    if (std::ranges::any_of(trials, [&](const auto& trial) { return !trial.regressors[j].col(k).isZero(0.0); })) {
-      own.push_back(k);
-    }
+    if (!W.col(k).isZero(0.0)) own.push_back(k);
   }
   JointRows made;
-  Index rows = 0;
-  for (const PreparedDynamics& trial : trials) {
-    for (const Segment& segment : trial.segments) {
-      made.ranges.push_back({rows, rows + segment.size()});
-      rows += segment.size();
-    }
-  }
-  made.residual.resize(rows);
-  made.own.resize(rows, std::ssize(own) + 1);
-  for (const auto& columns : of_friction) made.friction.emplace_back(rows, std::ssize(columns));
-  std::size_t range = 0;
-  for (const PreparedDynamics& trial : trials) {
-    for (const Segment& segment : trial.segments) {
-      const Index first = made.ranges[range++].begin, size = segment.size();
-      const auto W = trial.regressors[j].middleRows(segment.begin, size);
-      made.residual.segment(first, size) =
-          trial.torque.col(joint).segment(segment.begin, size) - W * found.model.parameters;
-      made.own.middleRows(first, size) << W(Eigen::all, own), trial.torque_rate.col(joint).segment(segment.begin, size);
-      for (std::size_t of = 0; of < of_friction.size(); ++of) {
-        made.friction[of].middleRows(first, size) =
-            trial.regressors[of].middleRows(segment.begin, size)(Eigen::all, of_friction[of]);
-      }
-    }
+  made.residual = all.torque.col(joint) - W * found.model.parameters;
+  made.own.resize(all.rows(), std::ssize(own) + 1);
+  made.own << W(Eigen::all, own), all.torque_rate.col(joint);
+  for (std::size_t of = 0; of < of_friction.size(); ++of) {
+    made.friction.emplace_back(all.W[of](Eigen::all, of_friction[of]));
   }
   return made;
 }
@@ -86,10 +65,11 @@ void warn_of_coupled_drives(const std::vector<PreparedDynamics>& trials, RobotId
   constexpr double kApart = 1e-7, kBeyondChance = 6.0, kExplains = 0.36, kNegligible = 1e-3;
   const Index n = trials.front().torque.cols();
   const auto lags = static_cast<Index>(std::llround(found.hac_lag_s / trials.front().sample_time));
+  const StackedDynamics all = stack_rows(trials, std::nullopt);
   double most = kExplains;
   Index joint = -1, other = -1;
   for (Index j = 0; j < n && n > 1; ++j) {
-    const JointRows rows = rows_of_joint(trials, found, j);
+    const JointRows rows = rows_of_joint(all, found, j);
     if (rows.residual.size() < 4 * rows.own.cols()) continue;
     Vector scale = rows.own.colwise().norm();
     for (double& one : scale) one = one > 0.0 ? 1.0 / one : 0.0;
@@ -106,7 +86,7 @@ void warn_of_coupled_drives(const std::vector<PreparedDynamics>& trials, RobotId
       const auto fit = numeric::fit_least_squares(beyond, left);
       if (!fit || fit->rank < beyond.cols()) continue;
       const Vector rest = left - beyond * fit->free;
-      const Matrix covariance = numeric::newey_west_covariance(*fit, beyond, rest, rows.ranges, lags);
+      const Matrix covariance = numeric::newey_west_covariance(*fit, beyond, rest, all.ranges, lags);
       const double errors = (fit->free.array().abs() / covariance.diagonal().array().max(1e-300).sqrt()).maxCoeff();
       const double explained = 1.0 - rest.squaredNorm() / std::max(left.squaredNorm(), 1e-300);
       const bool matters = (left - rest).norm() > kNegligible * std::sqrt(torque);

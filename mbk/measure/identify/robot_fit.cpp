@@ -15,61 +15,16 @@
 #include "mbk/measure/identify/base_parameters.h"
 #include "mbk/measure/identify/regression.h"
 #include "mbk/measure/identify/robot_consistency.h"
+#include "mbk/measure/identify/stacked_dynamics.h"
 
 namespace mbk::identify {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-/// Rows of all trials under each other, joint by joint.
-struct Stack {
-  std::vector<Matrix> W, R, S;  ///< N×p for each joint; R of the instruments, S of the smoothed motion, or empty
-  Matrix torque, torque_rate;
-  std::vector<RowRange> ranges;
-
-  [[nodiscard]] Index rows() const { return torque.rows(); }
-};
-
-/// The rows of one purpose, or of both where none is named.
-Stack stack_rows(const std::vector<PreparedDynamics>& trials, std::optional<Purpose> purpose) {
-  Stack stack;
-  Index total = 0;
-  for (const PreparedDynamics& trial : trials) {
-    for (const Segment& segment : trial.segments) {
-      if (!purpose || segment.purpose == *purpose) total += segment.size();
-    }
-  }
-  const Index n = trials.front().torque.cols(), p = trials.front().regressors.front().cols();
-  const bool with_instruments = !trials.front().instruments.empty();
-  stack.W.assign(static_cast<std::size_t>(n), Matrix(total, p));
-  const bool with_smoothed = !trials.front().smoothed.empty();
-  if (with_instruments) stack.R = stack.W;
-  if (with_smoothed) stack.S = stack.W;
-  stack.torque.resize(total, n);
-  stack.torque_rate.resize(total, n);
-  Index row = 0;
-  for (const PreparedDynamics& trial : trials) {
-    for (const Segment& segment : trial.segments) {
-      if (purpose && segment.purpose != *purpose) continue;
-      const Index rows = segment.size();
-      for (std::size_t joint = 0; joint < stack.W.size(); ++joint) {
-        stack.W[joint].middleRows(row, rows) = trial.regressors[joint].middleRows(segment.begin, rows);
-        if (with_instruments) {
-          stack.R[joint].middleRows(row, rows) = trial.instruments[joint].middleRows(segment.begin, rows);
-        }
-        if (with_smoothed) stack.S[joint].middleRows(row, rows) = trial.smoothed[joint].middleRows(segment.begin, rows);
-      }
-      stack.torque.middleRows(row, rows) = trial.torque.middleRows(segment.begin, rows);
-      stack.torque_rate.middleRows(row, rows) = trial.torque_rate.middleRows(segment.begin, rows);
-      stack.ranges.push_back({row, row + rows});
-      row += rows;
-    }
-  }
-  return stack;
-}
-
 /// The rows that judge: recordings that are there for it, or else what was held out of the others.
-Stack judging_rows(const std::vector<PreparedDynamics>& trials, const std::vector<PreparedDynamics>& held_out) {
+StackedDynamics judging_rows(const std::vector<PreparedDynamics>& trials,
+                             const std::vector<PreparedDynamics>& held_out) {
   return held_out.empty() ? stack_rows(trials, Purpose::validation) : stack_rows(held_out, std::nullopt);
 }
 
@@ -120,7 +75,7 @@ class RobotFitter {
   [[nodiscard]] bool is_fixed(Index k) const { return std::ranges::find(options_.fixed, k) != options_.fixed.end(); }
   [[nodiscard]] bool by_instruments() const { return options_.method == RobotMethod::instrumental_variables; }
   /// Residuals of the rows, N×n.
-  [[nodiscard]] Matrix residuals(const Stack& rows) const {
+  [[nodiscard]] Matrix residuals(const StackedDynamics& rows) const {
     Matrix e(rows.rows(), rows.torque.cols());
     for (Index joint = 0; joint < e.cols(); ++joint) {
       e.col(joint) = rows.torque.col(joint) - rows.W[static_cast<std::size_t>(joint)] * theta_ -
@@ -133,7 +88,7 @@ class RobotFitter {
   const std::vector<PreparedDynamics>& held_out_;
   const robot::DynamicModel& model_;
   const RobotFitOptions& options_;
-  Stack rows_;
+  StackedDynamics rows_;
   Index n_ = 0, p_ = 0, lags_ = 0;
   int structural_rank_ = 0;
   Vector sigma_, theta_;
@@ -283,9 +238,9 @@ void RobotFitter::take_covariance() {
 }
 
 void RobotFitter::judge(RobotIdentification& found) const {
-  const Stack other = judging_rows(trials_, held_out_);
+  const StackedDynamics other = judging_rows(trials_, held_out_);
   found.held_out = other.rows() > 0;
-  const Stack& judged = found.held_out ? other : rows_;
+  const StackedDynamics& judged = found.held_out ? other : rows_;
   const Matrix e = residuals(judged);
   for (Index joint = 0; joint < n_; ++joint) {
     TorqueFit fit;

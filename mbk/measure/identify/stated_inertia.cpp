@@ -8,6 +8,7 @@
 
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/measure/identify/stacked_dynamics.h"
 
 namespace mbk::identify {
 namespace {
@@ -30,10 +31,11 @@ double left_beyond(const Matrix& Z, const Vector& torque) {
   return fit ? (torque - Z * fit->free).squaredNorm() : torque.squaredNorm();
 }
 
-StatedRatio ratio_of(const std::vector<PreparedDynamics>& trials, const robot::DynamicModel& stated,
-                     const RobotIdentification& found, Index joint) {
+/// @param lags  of Newey and West
+StatedRatio ratio_of(const StackedDynamics& all, const robot::DynamicModel& stated, const RobotIdentification& found,
+                     Index lags, Index joint) {
   constexpr double kSmallestShare = 0.1;  // of the torque, that the bodies take
-  const auto j = static_cast<std::size_t>(joint);
+  const Matrix& W = all.W[static_cast<std::size_t>(joint)];
   const std::vector<robot::Coefficient> names = stated.coefficients();
   const auto bodies = std::ssize(stated.mechanism->coefficients());
   Vector known_values = stated.parameters;
@@ -43,32 +45,12 @@ StatedRatio ratio_of(const std::vector<PreparedDynamics>& trials, const robot::D
     const bool rotor = names[static_cast<std::size_t>(k)].name.starts_with("motor_inertia");
     const bool known = k < bodies || (rotor && stated.parameters[k] > 0.0);
     if (known) of_stated.push_back(k);
-    const bool acts =
-        std::ranges::any_of(trials, [&](const auto& trial) { return !trial.regressors[j].col(k).isZero(0.0); });
-    if (!known && acts) of_drive.push_back(k);
+    if (!known && !W.col(k).isZero(0.0)) of_drive.push_back(k);
   }
-  std::vector<numeric::RowRange> ranges;
-  Index rows = 0;
-  for (const PreparedDynamics& trial : trials) {
-    for (const Segment& segment : trial.segments) {
-      ranges.push_back({rows, rows + segment.size()});
-      rows += segment.size();
-    }
-  }
+  const Index rows = all.rows();
   Matrix Z(rows, 1 + std::ssize(of_drive));
-  Vector torque(rows), residual(rows);
-  std::size_t range = 0;
-  for (const PreparedDynamics& trial : trials) {
-    const Matrix& W = trial.regressors[j];
-    for (const Segment& segment : trial.segments) {
-      const numeric::RowRange& at = ranges[range++];
-      const auto part = W.middleRows(segment.begin, segment.size());
-      Z.block(at.begin, 0, at.size(), 1) = part(Eigen::all, of_stated) * known_values(of_stated);
-      Z.block(at.begin, 1, at.size(), std::ssize(of_drive)) = part(Eigen::all, of_drive);
-      torque.segment(at.begin, at.size()) = trial.torque.col(joint).segment(segment.begin, segment.size());
-      residual.segment(at.begin, at.size()) = torque.segment(at.begin, at.size()) - part * found.model.parameters;
-    }
-  }
+  Z << W(Eigen::all, of_stated) * known_values(of_stated), W(Eigen::all, of_drive);
+  const Vector torque = all.torque.col(joint), residual = torque - W * found.model.parameters;
   StatedRatio made;
   const Matrix drive = Z.rightCols(std::ssize(of_drive));
   const double of_bodies = left_beyond(drive, Z.col(0));
@@ -76,12 +58,11 @@ StatedRatio ratio_of(const std::vector<PreparedDynamics>& trials, const robot::D
   const auto fit = numeric::fit_least_squares(Z, torque);
   if (!fit || fit->rank < Z.cols()) return made;
   const Vector left = torque - Z * fit->free;
-  const auto lags = static_cast<Index>(std::llround(found.hac_lag_s / trials.front().sample_time));
   const double widening =
       numeric::newey_west_widening(std::min(1.0, static_cast<double>(lags) / static_cast<double>(rows)));
   made.ratio = fit->free[0];
   made.standard_error =
-      widening * std::sqrt(std::max(0.0, numeric::newey_west_covariance(*fit, Z, left, ranges, lags)(0, 0)));
+      widening * std::sqrt(std::max(0.0, numeric::newey_west_covariance(*fit, Z, left, all.ranges, lags)(0, 0)));
   const double of_found = residual.squaredNorm(), count = static_cast<double>(rows);
   made.missed = std::sqrt(std::max(0.0, left_beyond(drive, torque - Z.col(0)) - of_found) / count);
   made.missed_scaled = std::sqrt(std::max(0.0, left.squaredNorm() - of_found) / count);
@@ -100,10 +81,12 @@ void compare_with_stated(const std::vector<PreparedDynamics>& trials, const robo
                          RobotIdentification& found) {
   found.stated.clear();
   if (!states_all_bodies(stated)) return;
+  const StackedDynamics all = stack_rows(trials, std::nullopt);
+  const auto lags = static_cast<Index>(std::llround(found.hac_lag_s / trials.front().sample_time));
   double low = 1e300, high = -1e300;
   std::vector<std::string> factors;
   for (Index joint = 0; joint < trials.front().torque.cols(); ++joint) {
-    found.stated.push_back(ratio_of(trials, stated, found, joint));
+    found.stated.push_back(ratio_of(all, stated, found, lags, joint));
     const StatedRatio& one = found.stated.back();
     if (!is_another_factor(one)) continue;
     factors.push_back(
@@ -113,9 +96,10 @@ void compare_with_stated(const std::vector<PreparedDynamics>& trials, const robo
   }
   if (factors.empty()) return;
   constexpr double kAlike = 0.03;
-  const bool all = std::ssize(factors) == std::ssize(found.stated) && factors.size() > 1 && high - low < kAlike * high;
-  std::string which = all ? fmt::format("{:.3g} at every joint", 0.5 * (low + high)) : "";
-  if (!all) {
+  const bool alike =
+      std::ssize(factors) == std::ssize(found.stated) && factors.size() > 1 && high - low < kAlike * high;
+  std::string which = alike ? fmt::format("{:.3g} at every joint", 0.5 * (low + high)) : "";
+  if (!alike) {
     for (const std::string& one : factors) which += (which.empty() ? "" : ", ") + one;
   }
   found.warnings.push_back(
