@@ -89,8 +89,8 @@ double chi_squared_beyond(double q, double degrees_of_freedom) {
   return numeric::normal_probability(-(std::cbrt(q / degrees_of_freedom) - (1.0 - spread)) / std::sqrt(spread));
 }
 
-/// Below which that share of a signal's power lies, in all experiments together; 0 where they are too short.
-Hertz power_below(const std::vector<SignalPair>& pairs, Vector SignalPair::*signal, Hertz rate, double share) {
+/// Of a signal, in all experiments together; empty where they are too short.
+dsp::Spectrum spectrum_of(const std::vector<SignalPair>& pairs, Vector SignalPair::*signal, Hertz rate) {
   Index longest = 0, total = 0;
   for (const SignalPair& pair : pairs) {
     longest = std::max(longest, pair.samples());
@@ -109,8 +109,13 @@ Hertz power_below(const std::vector<SignalPair>& pairs, Vector SignalPair::*sign
     }
     if (one->density.size() == sum.density.size()) sum.density += static_cast<double>(pair.samples()) * one->density;
   }
-  if (!(sum.density.size() > 0 && sum.density.sum() > 0.0)) return Hertz(0.0);
-  return dsp::power_quantile(sum, share, Hertz(0.5 * rate.value));
+  return sum;
+}
+
+/// Below which that share of the power lies; 0 where there is none.
+Hertz power_below(const dsp::Spectrum& spectrum, Hertz rate, double share) {
+  if (!(spectrum.density.size() > 0 && spectrum.density.sum() > 0.0)) return Hertz(0.0);
+  return dsp::power_quantile(spectrum, share, Hertz(0.5 * rate.value));
 }
 
 /// What every method gives.
@@ -269,7 +274,7 @@ Index Identifier::delay_grid(Index samples) const {
   constexpr double kShare = 0.95, kParts = 8.0;
   const auto within = [&](Index count) { return std::max<Index>(1, (samples + count - 1) / count); };
   const Hertz rate(1.0 / median_step());
-  const Hertz top = power_below(experiments_, &SignalPair::output, rate, kShare);
+  const Hertz top = power_below(spectrum_of(experiments_, &SignalPair::output, rate), rate, kShare);
   if (!(top.value > 0.0)) return within(kMax);
   return std::clamp(static_cast<Index>(rate.value / (kParts * top.value)), within(kMax), within(kMin));
 }
@@ -455,8 +460,9 @@ void Identifier::describe(const Fit& fit) {
   // Where 96 % of the input's power lies: beyond it, what is said rests on the form of the model.
   constexpr double kBelow = 0.02;
   const Hertz rate(1.0 / found_.sample_time);
-  found_.band_low = power_below(experiments_, &SignalPair::input, rate, kBelow).value;
-  found_.band_high = power_below(experiments_, &SignalPair::input, rate, 1.0 - kBelow).value;
+  const dsp::Spectrum input = spectrum_of(experiments_, &SignalPair::input, rate);
+  found_.band_low = power_below(input, rate, kBelow).value;
+  found_.band_high = power_below(input, rate, 1.0 - kBelow).value;
   if (!(found_.band_high > 0.0)) return;
   for (auto* roots : {&found_.poles, &found_.zeros}) {
     for (Root& root : *roots) root.outside_band = root.frequency > found_.band_high;
@@ -498,6 +504,9 @@ void Identifier::test(const Fit& fit) {
   const double most = static_cast<double>(std::ranges::min(inputs, {}, &Vector::size).size()) / 5.0;
   const double lags = std::min(std::clamp(3.0 * slowest / found_.sample_time, kMinLags, kMaxLags), most);
   found_.residuals = test_residuals(fit.innovations, inputs, std::max<Index>(1, static_cast<Index>(lags)));
+  if (found_.residuals.independent()) return;
+  found_.delay_found = false;  // the best of those that were tried is not good
+  found_.delay_standard_error.reset();
 }
 
 /// Less what the best initial state and offset explain.
@@ -571,10 +580,6 @@ void Identifier::warn() {
                         fmt::format("more poles or zeros (--orders), {}{}{}", delay, hold,
                                     in_loop ? "" : "; in a loop --method clsrivc")});
   }
-  if (options_.find_delay && found_.delay_found && !found_.residuals.independent()) {
-    found_.delay_found = false;  // the best of those that were tried, and not good
-    found_.delay_standard_error.reset();
-  }
   if (options_.find_delay && !found_.delay_found) {
     warnings.push_back(
         {WarningCode::delay_at_limit,
@@ -593,9 +598,10 @@ void Identifier::warn() {
     highest = std::max(highest, pole.frequency);
   }
   constexpr double kMost = 0.98;
+  const Hertz rate(1.0 / found_.sample_time);
   const bool held_out_excites_them =
       !held_out_.empty() && !outside.empty() &&
-      power_below(held_out_, &SignalPair::input, Hertz(1.0 / found_.sample_time), kMost).value > highest;
+      power_below(spectrum_of(held_out_, &SignalPair::input, rate), rate, kMost).value > highest;
   if (!outside.empty()) {
     warnings.push_back({WarningCode::pole_outside_band,
                         fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 98 % of the input's power is: they "

@@ -41,7 +41,10 @@ std::string hold_text(InputHold hold, bool found) {
 
 std::string delay_text(const TransferFunctionIdentification& found) {
   const std::string where = fmt::format("found between 0 and {:.4g} s", found.max_delay);
-  if (!found.delay_found) return fmt::format("{:.6g} s, the longest of those tried", found.model.delay);
+  if (!found.delay_found) {
+    return fmt::format("{:.6g} s, the best of those up to {:.4g} s, but not found: see the warnings", found.model.delay,
+                       found.max_delay);
+  }
   if (!found.delay_standard_error) {
     return fmt::format("{:.6g} s, {}; the intervals take it as known", found.model.delay, where);
   }
