@@ -26,8 +26,6 @@ extern "C" void on_fatal_signal(int signal) {
   raise(signal);  // taken once this handler is left
 }
 
-}  // namespace
-
 /// Made before the handler that reads it is registered, so that it is there longer.
 std::string& journal_at_work() {
   static std::string journal;
@@ -39,13 +37,14 @@ void on_exit_in_trial() {
   if (robot_at_work == nullptr) return;
   LastWords::say();
   const std::string what =
-      "\a\nmbk: MOTORS NOT CONFIRMED OFF: the robot's driver ended the program. Press the hardware stop button. What "
-      "was "
-      "recorded: mbk recover " +
+      "\a\nmbk: MOTORS NOT CONFIRMED OFF: the robot's driver ended the program. Press the hardware stop button. "
+      "What was recorded: mbk recover " +
       journal_at_work() + "\n";
   static_cast<void>(!::write(STDERR_FILENO, what.data(), what.size()));
   std::_Exit(kMotorsNotOff);
 }
+
+}  // namespace
 
 LastWords::LastWords(device::Device& robot, const std::filesystem::path& journal) {
   journal_at_work() = journal.string();

@@ -1,6 +1,10 @@
 #include "mbk/experiment/console/page_operator.h"
 
+#include <fmt/format.h>
+
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/experiment/session/idle_watch.h"
@@ -49,9 +53,8 @@ std::unique_ptr<conduct::Watcher> PageOperator::begin(const conduct::Attempt& at
   console_.begin(attempt.index, session::header_of(attempt.plan, attempt.robot.facts()), attempt.target,
                  attempt.plan.sequence.duration(0.0));
   if (!attempt.plan.trial.device.simulated()) {
-    std::string weak;
-    for (const std::string& one : safety::weakened(attempt.plan.limits)) weak += (weak.empty() ? "" : "; ") + one;
-    if (!weak.empty()) console_.say("weak limits: " + weak);
+    const std::vector<std::string> weak = safety::weakened(attempt.plan.limits);
+    if (!weak.empty()) console_.say(fmt::format("weak limits: {}", fmt::join(weak, "; ")));
   }
   return std::make_unique<PageWatcher>(console_);
 }

@@ -50,8 +50,8 @@ class UdpDevice : public device::Device {
   [[nodiscard]] const device::Facts& facts() const override { return facts_; }
 
   /// @fails  data: the address is not known; the port is taken; no answer, with what came instead; the robot's motors
-  ///         are on; it keeps its own time in spite of lock_step; another mbk
-  ///         on this machine talks to it; it has other sensors than `fittings` says.
+  ///         are on; it keeps its own time in spite of lock_step; another mbk on this machine talks to it;
+  ///         it has other sensors than `fittings` says.
   [[nodiscard]] Result<void> start() override;
   bool read(device::State& state) noexcept override;
   bool write(const device::Command& command) noexcept override;

@@ -88,9 +88,8 @@ using ReadSimulation =
 /// Every one of them may be left out, so that each planar scenario is an experiment too.
 /// @param file  how messages call it
 /// @param simulation  without it the sections that describe a simulation are not looked at
-/// @fails  data: with file, line, key, value and what is allowed; a one-axis machine; a person's name; a real robot
-/// that
-///         no [robot] describes.
+/// @fails  data: with file, line, key, value and what is allowed; a one-axis machine; a person's name; a
+///         real robot that no [robot] describes.
 [[nodiscard]] Result<std::vector<Trial>> read_experiment(std::string_view text, const std::filesystem::path& file,
                                                          const ReadSimulation& simulation = {});
 

@@ -31,7 +31,7 @@ void LoopWatch::watch() noexcept {
   std::uint64_t last = 0;  // beats
   int looks = 0;           // since the last tick
   while (!realtime::rest(kLook, [&] { return over_.load(); })) {
-    const std::uint64_t beats = flags_.beats.load(std::memory_order_acquire);
+    std::uint64_t beats = flags_.beats.load(std::memory_order_acquire);
     if (beats == 0) continue;  // it has not begun
     if (beats != last) {
       if (flags_.silent.exchange(false)) told_.again(seconds(looks));
@@ -46,7 +46,7 @@ void LoopWatch::watch() noexcept {
     }
     const bool asked = flags_.operator_stop || flags_.end_session;
     if (looks < kSilent || !(asked || (by_itself_ && looks >= kGivenUp))) continue;
-    if (!flags_.beats.compare_exchange_strong(last, LoopFlags::kGivenUp)) continue;
+    if (!flags_.beats.compare_exchange_strong(beats, LoopFlags::kGivenUp)) continue;
     told_.given_up(seconds(looks));
     return;
   }

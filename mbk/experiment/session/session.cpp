@@ -181,7 +181,7 @@ Result<void> check_target(const Plan& plan, const fs::path& target) {
   if (auto ok = can_write(target); !ok) return ok;
   const fs::path journal = journal_of(target);
   std::error_code ignored;
-  if (fs::exists(journal, ignored)) return journal::Writer::already_there(journal);
+  if (fs::exists(journal, ignored)) return tl::unexpected(journal::Writer::already_there(journal));
   if (auto ok = can_write(journal); !ok) return ok;
   constexpr std::uintmax_t kTickInRecording = 18 * sizeof(double), kMore = 16 << 20;  // channels and time; spare
   const std::uintmax_t needed = expected_ticks(plan) * (sizeof(Tick) * 11 / 10 + kTickInRecording) + kMore;
@@ -272,6 +272,7 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   return outcome;
 }
 
+/// What the outcome does not say yet of trip and motors is what the gate says.
 void Session::conclude(Recorder& recorder, TrialOutcome& outcome) const {
   if (outcome.trip.reason == safety::Reason::none) outcome.trip = gate_->trip();
   if (outcome.trip.reason == safety::Reason::operator_stop) outcome.trip.value = flags_->stop_signal;
@@ -297,12 +298,11 @@ LoopWatch::Told Session::watched_loop(device::Device& robot, Recorder& recorder,
           [=](double silent) { tell(motors_of(silent, State::waiting)); },
           [=, this, &robot, &recorder, &stalled, &outcome](double silent) {
             robot.emergency_off();
-            outcome.trip = gate_->trip();
             if (!gate_->tripped()) {
               const double now = static_cast<double>(outcome.times.ticks) * sample_time;
               outcome.trip = {safety::Reason::loop_stalled, now, outcome.times.ticks, silent, LoopWatch::kLongest};
             }
-            outcome.motors = gate_->settled() ? gate_->motors() : motors_of(silent, State::missing);
+            if (!gate_->settled()) outcome.motors = motors_of(silent, State::missing);
             conclude(recorder, outcome);
             if (stalled.given_up) stalled.given_up(outcome);
           }};

@@ -28,8 +28,7 @@ struct Pace {
 
 /// A trial that is over.
 struct TrialOutcome {
-  std::filesystem::path
-      recording;  ///< where the file is; another than the target where the target's folder was removed
+  std::filesystem::path recording;  ///< the target, or elsewhere if the target's folder was removed
   std::optional<Error> unrecorded;  ///< why the recording could not be made: the journal then still is
   std::filesystem::path journal;    ///< removed once the recording is there and holds every tick
   bool incomplete = false;          ///< not every tick that the loop made came back from the recording
@@ -130,8 +129,8 @@ struct Recovered {
 /// Makes the recording that a journal holds, reads it back, and removes the journal where it was exactly as it was
 /// written and the recording holds it to the bit. A target that is there and holds the same is left as it is.
 /// @fails  usage: the journal is being recorded; another target is there and `overwrite` is false. data: as
-/// journal::read; the recording cannot be
-///         written, or does not read back as it was written, and is then removed.
+///         journal::read; the recording cannot be written, or does not read back as it was written, and is then
+///         removed.
 [[nodiscard]] Result<Recovered> recover(const std::filesystem::path& journal, const std::filesystem::path& target,
                                         const RecoverOptions& options = {});
 

@@ -164,7 +164,7 @@ std::string_view Ending::word() const {
 Result<Writer> Writer::create(const fs::path& file, const Header& header, std::uint64_t expected) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0 && errno == EEXIST) {
-    return tl::unexpected(already_there(file).error());
+    return tl::unexpected(already_there(file));
   }
   Writer writer(file, descriptor);
   if (descriptor < 0) return tl::unexpected(writer.failure("cannot be made"));
@@ -195,13 +195,13 @@ Result<Writer> Writer::create(const fs::path& file, const Header& header, std::u
   return writer;
 }
 
-Result<void> Writer::already_there(const fs::path& file) {
+Error Writer::already_there(const fs::path& file) {
   if (const int process = recorded_by(file); process != 0) {
-    return fail(ErrorKind::usage, fmt::format("is being recorded by process {}", process), "choose another name",
-                file.string());
+    return {ErrorKind::usage, fmt::format("is being recorded by process {}", process), "choose another name",
+            file.string()};
   }
-  return fail(ErrorKind::usage, "there is a journal already",
-              "'mbk recover' makes a recording of it; then move it away", file.string());
+  return {ErrorKind::usage, "there is a journal already", "'mbk recover' makes a recording of it; then move it away",
+          file.string()};
 }
 
 /// Held by the process until it closes the file; file systems that know no locks have none.

@@ -78,8 +78,8 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
   ~Writer();
 
-  /// What is said of a journal that is there before a trial.   @fails  always: usage
-  [[nodiscard]] static Result<void> already_there(const std::filesystem::path& file);
+  /// Why no journal can begin under a name that is taken: usage.
+  [[nodiscard]] static Error already_there(const std::filesystem::path& file);
 
   /// One block of at most `kLongest` ticks, whose numbers rise from one to the next. What is not written whole is
   /// written over by what comes next.   @fails  data: the disk does not take it.

@@ -22,9 +22,9 @@ struct TestedAssumptions {
 /// what the past and present of the reference explain of it (each half of the rows by the response of the other half),
 /// so that noise in a closed loop is not taken for dynamics. Rows are whitened by an autoregression of the residual;
 /// the covariance of γ is that of White (1980), each residual divided by one less its leverage (MacKinnon and White
-/// 1985), and the test an F test for each axis, with Bonferroni's bound over the
-/// axes. What is found first, with the smallest chance, joins the model before the others are tested again. A slow
-/// trend of the residual is compared with the slow waves beside it.
+/// 1985), and the test an F test for each axis, with Bonferroni's bound over the axes. What is found first, with the
+/// smallest chance, joins the model before the others are tested again. A slow trend of the residual is compared with
+/// the slow waves beside it.
 ///
 /// An assumption is contradicted where chance is below 10⁻⁵ (a trend: 1 % in noise of 1/f, far less in white) and the
 /// finding matters: M, B or K change by more than their 95 % intervals when it is modelled, hardening also by a
