@@ -61,14 +61,13 @@ Result<Draws> draws_here(const Bootstrap& bootstrap, bool quiet) {
   Draws draws(static_cast<std::size_t>(bootstrap.draws));
   Progress progress(quiet, "resampling: ");
   int done = 0;
-  const auto ok = numeric::parallel_for(
+  MBK_TRY(numeric::parallel_for(
       bootstrap.draws, 0,
       [&](int k) -> Result<void> {
         draws[static_cast<std::size_t>(k)] = statistics::bootstrap_draw(bootstrap.tables, bootstrap.seed, k);
         return {};
       },
-      [&](int /*k*/) { progress.count(++done, bootstrap.draws); });
-  if (!ok) return tl::unexpected(ok.error());
+      [&](int /*k*/) { progress.count(++done, bootstrap.draws); }));
   return draws;
 }
 
@@ -88,17 +87,16 @@ Result<Draws> draws_elsewhere(const Bootstrap& bootstrap, const EngineArguments&
     code = carried->code;
     return bad_data("some draws are missing");
   }
-  const auto results = results_of(*carried->folder);
-  if (!results) return tl::unexpected(results.error());
-  Draws draws(results->size());
+  const auto results = MBK_TRY(results_of(*carried->folder));
+  Draws draws(results.size());
   for (std::size_t k = 0; k < draws.size(); ++k) {
-    batch::ValueReader reader((*results)[k]);
+    batch::ValueReader reader(results[k]);
     reader.get(draws[k]);
     if (!reader.complete()) return bad_data("a draw in a shard cannot be read", "begin the job again");
   }
   if (!engine.keep) {
-    if (auto ok = keep_record(*carried->folder, study); !ok) return tl::unexpected(ok.error());
-    if (auto ok = carried->folder->remove(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(keep_record(*carried->folder, study));
+    MBK_TRY(carried->folder->remove());
   }
   return draws;
 }

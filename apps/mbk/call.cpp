@@ -142,13 +142,12 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
   if (!command || !can_be_called(first)) {
     return bad_usage(fmt::format("'{}' is no command that can be called", call.command), "see 'mbk --help'");
   }
-  auto behind = typed_words(*command, call, words);
-  if (!behind) return tl::unexpected(behind.error());
+  auto behind = MBK_TRY(typed_words(*command, call, words));
   const bool said = std::ranges::any_of(call.options, [](const CallOption& o) { return o.name == "json"; });
   const bool can = command->find_option("--json").has_value();
   std::vector<std::string> typed = path;
   if (can && !said) typed.emplace_back("--json");
-  typed.insert(typed.end(), behind->begin(), behind->end());
+  typed.insert(typed.end(), behind.begin(), behind.end());
 
   auto prepared = std::make_shared<Prepared>();
   prepared->json = can && std::ranges::find(typed, "--json") != typed.end();
@@ -158,9 +157,7 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
   for (std::string& word : typed) argv.push_back(word.data());
   prepared->actions =
       add_commands(first, prepared->parser.command(), command_line(static_cast<int>(argv.size()), argv.data()));
-  if (auto ok = parse(prepared->parser, typed, fmt::format("see 'mbk {} --help'", call.command)); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(parse(prepared->parser, typed, fmt::format("see 'mbk {} --help'", call.command)));
   return std::shared_ptr<const Prepared>(std::move(prepared));
 }
 
@@ -257,11 +254,10 @@ std::string document_word(std::size_t k) {
 Result<Answer> call(const Call& call) {
   return guarded([&]() -> Result<Answer> {
     if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
-    const auto prepared = prepareds().get(call, all_words(call));
-    if (!prepared) return tl::unexpected(prepared.error());
+    const auto prepared = MBK_TRY(prepareds().get(call, all_words(call)));
     Caller caller(call);
     const Requester::Scope scope(&caller);
-    const int code = run_chosen((*prepared)->parser.command(), (*prepared)->actions);
+    const int code = run_chosen(prepared->parser.command(), prepared->actions);
     if (caller.stopped()) throw Stopped();
     bool wrote = false;
     Answer answer = caller.take(code, wrote);
@@ -269,7 +265,7 @@ Result<Answer> call(const Call& call) {
       if (!answer.errors.empty()) return tl::unexpected(answer.errors.front());
       return bad_data(fmt::format("'mbk {}' ended with exit code {}", call.command, code));
     }
-    answer.json = (*prepared)->json;
+    answer.json = prepared->json;
     return answer;
   });
 }
@@ -303,20 +299,17 @@ Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call&
   add_reading_options(parser.command(), reading);
   add_sensor_options(parser.command(), sensor);
   if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
-  auto typed = typed_words(parser.command(), call, all_words(call));
-  if (!typed) return tl::unexpected(typed.error());
-  if (auto ok = parse(parser, std::move(*typed), ""); !ok) return tl::unexpected(ok.error());
+  auto typed = MBK_TRY(typed_words(parser.command(), call, all_words(call)));
+  MBK_TRY(parse(parser, std::move(typed), ""));
   return guarded([&]() -> Result<std::vector<std::shared_ptr<const recording::InMemory>>> {
     Caller caller(call);
     const Requester::Scope scope(&caller);
-    const auto reader = RecordingReader::of(reading, sensor);
-    if (!reader) return tl::unexpected(reader.error());
+    const auto reader = MBK_TRY(RecordingReader::of(reading, sensor));
     std::vector<std::shared_ptr<const recording::InMemory>> recordings;
-    for (int k = 0; k < reader->count(); ++k) {
+    for (int k = 0; k < reader.count(); ++k) {
       stop_where_unwanted();
-      auto one = reader->read(k);
-      if (!one) return tl::unexpected(one.error());
-      recordings.push_back(std::make_shared<const recording::InMemory>(recording::InMemory::of(std::move(*one))));
+      auto one = MBK_TRY(reader.read(k));
+      recordings.push_back(std::make_shared<const recording::InMemory>(recording::InMemory::of(std::move(one))));
     }
     return recordings;
   });

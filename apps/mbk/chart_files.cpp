@@ -35,7 +35,7 @@ Result<void> ChartFiles::check(const std::filesystem::path& folder, bool overwri
   for (const std::filesystem::path& input : inputs) {
     for (const char* const name : names) {
       const std::string file = fmt::format("{}-{}.svg", chart_files::name_of({input.string(), "", ""}), name);
-      if (auto ok = check_new_file(folder / file, "--charts", overwrite, {}); !ok) return ok;
+      MBK_TRY(check_new_file(folder / file, "--charts", overwrite, {}));
     }
   }
   return {};
@@ -59,7 +59,7 @@ Result<void> ChartFiles::write(const SourceFile& source, const std::vector<repor
   for (int k = 2; std::ranges::find(begun_, unique) != begun_.end(); ++k) unique = fmt::format("{}-{}", name, k);
   begun_.push_back(unique);
   for (const report::NamedChart& one : charts) {
-    if (auto ok = write(fmt::format("{}-{}", unique, one.name), one.chart); !ok) return ok;
+    MBK_TRY(write(fmt::format("{}-{}", unique, one.name), one.chart));
   }
   return {};
 }

@@ -47,29 +47,25 @@ bool is_stored(const std::filesystem::path& file) {
 Result<Measurement> restored(result::StoredResult stored) {
   Measurement measured;
   if (stored.passivity.energy || stored.passivity.judged) {
-    auto passivity = passivity_of(stored, {});
-    if (!passivity) return tl::unexpected(passivity.error());
-    measured.passivity = std::move(*passivity);
+    auto passivity = MBK_TRY(passivity_of(stored, {}));
+    measured.passivity = std::move(passivity);
   }
   measured.identification = std::move(stored.identification);
   measured.alternative = std::move(stored.alternative);
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
-    auto ellipses = analyse::analyse_ellipses(measured.identification);
-    if (!ellipses) return tl::unexpected(ellipses.error());
-    measured.findings = std::move(*ellipses);
+    measured.findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
   }
   return measured;
 }
 
 Result<std::vector<Compared>> from_stored(const std::filesystem::path& file) {
-  auto results = stored_results(file);
-  if (!results) return tl::unexpected(results.error());
+  auto results = MBK_TRY(stored_results(file));
   std::vector<Compared> all;
-  for (result::StoredResult& stored : *results) {
+  for (result::StoredResult& stored : results) {
     auto measured = restored(std::move(stored));
     if (!measured) return tl::unexpected(measured.error().in(file.string()));
     std::string name = file.string();
-    if (results->size() > 1) name += fmt::format(", result {}", all.size() + 1);
+    if (results.size() > 1) name += fmt::format(", result {}", all.size() + 1);
     all.push_back({std::move(name), {std::move(*measured), {}, {}}});
     all.back().found.recordings.resize(all.back().found.measured.identification.sources.size());
   }
@@ -79,17 +75,14 @@ Result<std::vector<Compared>> from_stored(const std::filesystem::path& file) {
 Result<Compared> from_recording(CompareArguments arguments, const std::filesystem::path& file) {
   arguments.reading.files = {file};
   const bool with_report = arguments.report.file.has_value();
-  auto options = measurement_options(arguments, arguments.analyse, with_report);
-  if (!options) return tl::unexpected(options.error());
-  options->passivity = with_report;
-  auto recordings = read_perturbations(reading_for(arguments.reading, *options), arguments.sensor);
-  if (!recordings) return tl::unexpected(recordings.error());
-  for (Recording& recording : *recordings) add_arm(arguments.analyse, recording);
-  auto measured = measurement::measure(std::span(*recordings), *options);
-  if (!measured) return tl::unexpected(measured.error());
-  Compared one{file.string(), {std::move(*measured), {}, {}}};
-  for (std::size_t k = 0; with_report && k < recordings->size(); ++k) {
-    one.found.recordings.push_back(facts_of((*recordings)[k], one.found.measured.identification, k));
+  auto options = MBK_TRY(measurement_options(arguments, arguments.analyse, with_report));
+  options.passivity = with_report;
+  auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
+  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  auto measured = MBK_TRY(measurement::measure(std::span(recordings), options));
+  Compared one{file.string(), {std::move(measured), {}, {}}};
+  for (std::size_t k = 0; with_report && k < recordings.size(); ++k) {
+    one.found.recordings.push_back(facts_of(recordings[k], one.found.measured.identification, k));
   }
   return one;
 }
@@ -123,15 +116,13 @@ Result<Given> read_all(const CompareArguments& arguments) {
   for (const std::filesystem::path& file : arguments.reading.files) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) {
-      if (auto ok = add_folder(file, given); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(add_folder(file, given));
     } else if (is_stored(file)) {
-      auto found = from_stored(file);
-      if (!found) return tl::unexpected(found.error());
-      std::ranges::move(*found, std::back_inserter(given.all));
+      auto found = MBK_TRY(from_stored(file));
+      std::ranges::move(found, std::back_inserter(given.all));
     } else {
-      auto found = from_recording(arguments, file);
-      if (!found) return tl::unexpected(found.error());
-      given.all.push_back(std::move(*found));
+      auto found = MBK_TRY(from_recording(arguments, file));
+      given.all.push_back(std::move(found));
     }
   }
   if (given.all.size() < 2) {

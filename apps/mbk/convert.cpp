@@ -48,13 +48,12 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
 
 /// The one recording that is converted.
 Result<Recording> read_one(const ReadingArguments& reading, const SensorArguments& sensor) {
-  const auto reader = RecordingReader::of(reading, sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  if (reader->count() > 1) {
-    return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader->count()),
+  const auto reader = MBK_TRY(RecordingReader::of(reading, sensor));
+  if (reader.count() > 1) {
+    return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader.count()),
                 "say which with --trial; 'mbk info' lists them", reading.files.front().string());
   }
-  return reader->read(0);
+  return reader.read(0);
 }
 
 /// "log.h5: HDF5, 62.1 s, 6 channels, 2 events, 9 entries of metadata".

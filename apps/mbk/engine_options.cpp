@@ -113,8 +113,7 @@ batch::EngineOptions engine_options(const EngineArguments& arguments, const fs::
 
 Result<JobFolder> begin_job(const EngineArguments& arguments, const Request& request,
                             const batch::EngineOptions& options, const fs::path& folder) {
-  const auto most = batch::max_chunks(options);
-  if (!most) return tl::unexpected(most.error());
+  const auto most = MBK_TRY(batch::max_chunks(options));
   const Measured cost = measured_cost(request);
   std::vector<double> costs = request.weights;
   double total = 0.0;
@@ -122,9 +121,9 @@ Result<JobFolder> begin_job(const EngineArguments& arguments, const Request& req
   std::vector<std::int64_t> ends;
   if (arguments.chunk_units) {
     const std::vector<double> ones(costs.size(), 1.0);
-    ends = batch::cut_into_chunks(ones, static_cast<double>(*arguments.chunk_units), *most);
+    ends = batch::cut_into_chunks(ones, static_cast<double>(*arguments.chunk_units), most);
   } else {
-    ends = batch::cut_into_chunks(costs, target_of(arguments, total), *most);
+    ends = batch::cut_into_chunks(costs, target_of(arguments, total), most);
   }
   nlohmann::json specification = nlohmann::json::parse(request.specification);
   batch::Job job;
@@ -143,7 +142,7 @@ Result<JobFolder> job_of(const EngineArguments& arguments, const Request& reques
   if (!JobFolder::is_there(whole)) return begin_job(arguments, request, options, whole);
   auto opened = JobFolder::open(whole);
   if (!opened) return opened;
-  if (auto ok = opened->check_program(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(opened->check_program());
   if (opened->job().kind != request.kind ||
       nlohmann::json::parse(opened->job().specification) != nlohmann::json::parse(request.specification)) {
     return fail(ErrorKind::usage, "there is another job in this folder",
@@ -204,7 +203,7 @@ void add_engine_options(Command command, EngineArguments& arguments) {
 Result<std::vector<std::string>> results_of(const JobFolder& folder) {
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> results;
-  const auto merged = batch::merge(folder, [&](batch::MergedUnit unit) -> Result<void> {
+  const auto merged = MBK_TRY(batch::merge(folder, [&](batch::MergedUnit unit) -> Result<void> {
     if (!unit.differing.empty()) {
       return bad_data(
           fmt::format("{} gives another result than {}", unit.differing[1].string(), unit.differing[0].string()),
@@ -213,16 +212,15 @@ Result<std::vector<std::string>> results_of(const JobFolder& folder) {
     if (unit.failed) return bad_data(unit.payload);
     results.push_back(std::move(unit.payload));
     return {};
-  });
-  if (!merged) return tl::unexpected(merged.error());
-  if (merged->missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
+  }));
+  if (merged.missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
   batch::note_merged(folder, seconds_since(begin));
   return results;
 }
 
 Result<void> remove_job(const JobFolder& folder, const EngineArguments& arguments) {
   if (arguments.keep) return {};
-  if (auto ok = folder.remove(); !ok) return ok;
+  MBK_TRY(folder.remove());
   std::error_code ignored;
   if (!arguments.folder) fs::remove(folder.folder().parent_path(), ignored);
   return {};
@@ -248,19 +246,15 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
   if (Caller::current() != nullptr) {
     return bad_usage("--engine starts processes of the program mbk", "call it on the command line");
   }
-  const auto program = this_program();
-  if (!program) return tl::unexpected(program.error());
-  batch::EngineOptions options = engine_options(arguments, *program);
-  auto folder = job_of(arguments, request, options);
-  if (!folder) return tl::unexpected(folder.error());
-  const auto chunks = folder->chunks();
-  if (!chunks) return tl::unexpected(chunks.error());
-  for (const batch::Chunk& chunk : *chunks) {
+  const auto program = MBK_TRY(this_program());
+  batch::EngineOptions options = engine_options(arguments, program);
+  auto folder = MBK_TRY(job_of(arguments, request, options));
+  const auto chunks = MBK_TRY(folder.chunks());
+  for (const batch::Chunk& chunk : chunks) {
     options.longest_chunk_s = std::max(options.longest_chunk_s, chunk.expected_s);
   }
-  options.memory_mb = arguments.memory_mb.value_or(folder->job().memory_mb);
-  const auto engine = batch::make_engine(*folder, options);
-  if (!engine) return tl::unexpected(engine.error());
+  options.memory_mb = arguments.memory_mb.value_or(folder.job().memory_mb);
+  const auto engine = MBK_TRY(batch::make_engine(folder, options));
 
   batch::RunOptions run_options;
   run_options.silence_s = arguments.silence_s;
@@ -279,15 +273,14 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
       say("{}\n", batch::to_text(state));
     }
   };
-  const auto report = batch::run(*folder, **engine, run_options);
-  if (!report) return tl::unexpected(report.error());
+  const auto report = MBK_TRY(batch::run(folder, *engine, run_options));
   Carried carried;
-  if (report->end == batch::RunEnd::finished) {
-    carried.folder = std::move(*folder);
+  if (report.end == batch::RunEnd::finished) {
+    carried.folder = std::move(folder);
     return carried;
   }
-  const std::string where = folder->folder().string();
-  switch (report->end) {
+  const std::string where = folder.folder().string();
+  switch (report.end) {
     case batch::RunEnd::detached:
       say("mbk: the tasks go on without this process; 'mbk work {} --status' tells how far they are, and the same "
           "command collects what they did\n",
@@ -299,9 +292,9 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
       carried.code = 128 + signal_that_came;
       break;
     default:
-      say("mbk: {} of {} chunks could not be done; the logs stand in {}\n", report->state.given_up,
-          report->state.chunks, folder->logs().string());
-      carried.folder = std::move(*folder);
+      say("mbk: {} of {} chunks could not be done; the logs stand in {}\n", report.state.given_up, report.state.chunks,
+          folder.logs().string());
+      carried.folder = std::move(folder);
       carried.code = kBadData;
   }
   return carried;

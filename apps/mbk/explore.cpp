@@ -75,9 +75,9 @@ Result<void> check(const ExploreArguments& a) {
 
 Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
   if (!arguments.beside.charts) return {};
-  auto files = ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files);
-  if (!files) return tl::unexpected(files.error());
-  return files->write(found.recordings.front().source, report::exploration_charts(found));
+  auto files =
+      MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files));
+  return files.write(found.recordings.front().source, report::exploration_charts(found));
 }
 
 int run_explore(ExploreArguments arguments, const std::string& typed) {

@@ -10,10 +10,9 @@ namespace mbk::app {
 namespace {
 
 Result<measurement::ExploreOptions> options_of(const ExploringArguments& a) {
-  const auto window = window_limits(a.window);
-  if (!window) return tl::unexpected(window.error());
+  const auto window = MBK_TRY(window_limits(a.window));
   measurement::ExploreOptions options;
-  options.preprocess.window = *window;
+  options.preprocess.window = window;
   options.preprocess.protocol = a.protocol;
   options.preprocess.axes = a.reading.axes;
   if (a.resample_hz) options.resample = Hertz(*a.resample_hz);
@@ -58,7 +57,7 @@ Result<void> name_signals(ExploringArguments& a, measurement::ExploreOptions& op
 Result<measurement::ExploreOptions> exploring_options(ExploringArguments& arguments) {
   auto options = options_of(arguments);
   if (!options) return options;
-  if (auto ok = name_signals(arguments, *options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(name_signals(arguments, *options));
   if (options->schedule == "schedule") options->schedule_name = shown_name(arguments.schedule);
   return options;
 }

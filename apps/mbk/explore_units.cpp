@@ -58,10 +58,9 @@ batch::UnitFunction units_of(const ExploringArguments& arguments, const measurem
   return [=](std::int64_t /*number*/, const std::string& text) -> Result<std::string> {
     const Json key = Json::parse(text, nullptr, false);
     if (!key.is_object()) return bad_data("the job's list of recordings is damaged", "begin the job again");
-    const auto reader = reader_of(arguments, key);
-    if (!reader) return tl::unexpected(reader.error());
+    const auto reader = MBK_TRY(reader_of(arguments, key));
     batch::ValueWriter writer;
-    writer.put(explored(*reader, 0, options, json));
+    writer.put(explored(reader, 0, options, json));
     return writer.take();
   };
 }
@@ -116,47 +115,40 @@ std::vector<std::string> exploring_words(Command command) {
 
 Result<std::vector<ExploredRecord>> explored_here(const ExploringEach& each, unsigned threads) {
   ExploringArguments arguments = each.arguments;
-  const auto options = exploring_options(arguments);
-  if (!options) return tl::unexpected(options.error());
-  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  std::vector<ExploredRecord> all(static_cast<std::size_t>(reader->count()));
+  const auto options = MBK_TRY(exploring_options(arguments));
+  const auto reader = MBK_TRY(RecordingReader::of(arguments.reading, arguments.sensor));
+  std::vector<ExploredRecord> all(static_cast<std::size_t>(reader.count()));
   Progress progress(each.quiet);
   int done = 0;
-  const auto ok = numeric::parallel_for(
-      reader->count(), threads,
+  MBK_TRY(numeric::parallel_for(
+      reader.count(), threads,
       [&](int k) -> Result<void> {
-        all[static_cast<std::size_t>(k)] = explored(*reader, k, *options, each.json);
+        all[static_cast<std::size_t>(k)] = explored(reader, k, options, each.json);
         return {};
       },
-      [&](int k) { progress.count(++done, reader->count(), reader->file(k).string()); });
-  if (!ok) return tl::unexpected(ok.error());
+      [&](int k) { progress.count(++done, reader.count(), reader.file(k).string()); }));
   return all;
 }
 
 Result<std::vector<ExploredRecord>> explored_elsewhere(const ExploringEach& each, const EngineArguments& engine,
                                                        std::optional<int>& code) {
   ExploringArguments arguments = each.arguments;
-  const auto options = exploring_options(arguments);
-  if (!options) return tl::unexpected(options.error());
-  const auto reader = RecordingReader::of(arguments.reading, arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  auto keys = keys_of(*reader);
-  if (!keys) return tl::unexpected(keys.error());
-  const auto sensor = sensor_sum(arguments);
-  if (!sensor) return tl::unexpected(sensor.error());
-  const std::string listed = fmt::format("{}", fmt::join(*keys, "\n"));
+  const auto options = MBK_TRY(exploring_options(arguments));
+  const auto reader = MBK_TRY(RecordingReader::of(arguments.reading, arguments.sensor));
+  auto keys = MBK_TRY(keys_of(reader));
+  const auto sensor = MBK_TRY(sensor_sum(arguments));
+  const std::string listed = fmt::format("{}", fmt::join(keys, "\n"));
   Request request;
   request.kind = kExploreKind;
   request.specification = written({{"words", each.words},
                                    {"json", each.json},
-                                   {"sensor_sha256", *sensor},
+                                   {"sensor_sha256", sensor},
                                    {"recordings_sha256", recording::sha256(std::as_bytes(std::span(listed)))},
                                    {"folder", fs::current_path().string()}});
-  request.title = fmt::format("mbk explore --each, {} recordings", keys->size());
-  request.keys = std::move(*keys);
-  request.weights = weights_of(*reader);
-  request.compute = units_of(arguments, *options, each.json);
+  request.title = fmt::format("mbk explore --each, {} recordings", keys.size());
+  request.keys = std::move(keys);
+  request.weights = weights_of(reader);
+  request.compute = units_of(arguments, options, each.json);
   request.folder = job_folder_here(request.kind, request.specification);
   const auto carried = carry_out(engine, request, each.quiet);
   if (!carried) return tl::unexpected(carried.error());
@@ -164,15 +156,14 @@ Result<std::vector<ExploredRecord>> explored_elsewhere(const ExploringEach& each
     code = carried->code;
     return bad_data("some recordings are missing");
   }
-  const auto results = results_of(*carried->folder);
-  if (!results) return tl::unexpected(results.error());
-  std::vector<ExploredRecord> all(results->size());
+  const auto results = MBK_TRY(results_of(*carried->folder));
+  std::vector<ExploredRecord> all(results.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    batch::ValueReader bytes((*results)[k]);
+    batch::ValueReader bytes(results[k]);
     bytes.get(all[k]);
     if (!bytes.complete()) return bad_data("a result in a shard cannot be read", "begin the job again");
   }
-  if (auto ok = remove_job(*carried->folder, engine); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(remove_job(*carried->folder, engine));
   return all;
 }
 
@@ -187,14 +178,12 @@ Result<batch::UnitFunction> explore_units(const Json& specification) {
   if (auto ok = parser.parse(specification.at("words").get<std::vector<std::string>>()); !ok) {
     return bad_data(ok.error().what, "begin the job again");
   }
-  const auto options = exploring_options(arguments);
-  if (!options) return tl::unexpected(options.error());
-  const auto sensor = sensor_sum(arguments);
-  if (!sensor) return tl::unexpected(sensor.error());
-  if (*sensor != specification.at("sensor_sha256").get<std::string>()) {
+  const auto options = MBK_TRY(exploring_options(arguments));
+  const auto sensor = MBK_TRY(sensor_sum(arguments));
+  if (sensor != specification.at("sensor_sha256").get<std::string>()) {
     return bad_data("the calibration of --sensor has changed since the job was begun", "put it back, or begin again");
   }
-  return units_of(arguments, *options, specification.at("json").get<bool>());
+  return units_of(arguments, options, specification.at("json").get<bool>());
 }
 
 }  // namespace mbk::app

@@ -34,9 +34,8 @@ struct MeasureCommandArguments : MeasureArguments {
 Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
                              bool with_diagnostics) {
   if (with_diagnostics && recordings.size() == 1) return measurement::examine(recordings, options);
-  auto measured = measurement::measure(recordings, options);
-  if (!measured) return tl::unexpected(measured.error());
-  return Examined{std::move(*measured), {}};
+  auto measured = MBK_TRY(measurement::measure(recordings, options));
+  return Examined{std::move(measured), {}};
 }
 
 /// A recording that was read and measured; its samples are gone.
@@ -53,14 +52,12 @@ std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, con
   std::vector<Result<MeasuredOne>> results(static_cast<std::size_t>(count), bad_data("not measured"));
   const bool with_report = arguments.report.file.has_value(), draws = arguments.draws();
   const auto measured = [&](int i) -> Result<MeasuredOne> {
-    auto recording = reader.read_perturbation(i);
-    if (!recording) return tl::unexpected(recording.error());
-    add_arm(arguments.analyse, *recording);
-    auto one = measure_one({&*recording, 1}, options, draws);
-    if (!one) return tl::unexpected(one.error());
+    auto recording = MBK_TRY(reader.read_perturbation(i));
+    add_arm(arguments.analyse, recording);
+    auto one = MBK_TRY(measure_one({&recording, 1}, options, draws));
     result::RecordingFacts facts;
-    if (with_report) facts = facts_of(*recording, one->measured.identification);
-    return MeasuredOne{std::move(*one), std::move(facts)};
+    if (with_report) facts = facts_of(recording, one.measured.identification);
+    return MeasuredOne{std::move(one), std::move(facts)};
   };
   Progress progress(arguments.output.quiet);
   int done = 0;
@@ -91,26 +88,23 @@ struct MeasuredTrials {
 
 /// One fit over all of them: what cannot be read is missing in it, so that there is none.
 Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
-  auto recordings = read_perturbations(reading_for(arguments.reading, options), arguments.sensor);
-  if (!recordings) return tl::unexpected(recordings.error());
-  for (Recording& recording : *recordings) add_arm(arguments.analyse, recording);
-  auto pooled = measure_one(*recordings, options, arguments.draws());
-  if (!pooled) return tl::unexpected(pooled.error());
+  auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
+  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  auto pooled = MBK_TRY(measure_one(recordings, options, arguments.draws()));
   MeasuredTrials found;
-  for (std::size_t k = 0; arguments.report.file && k < recordings->size(); ++k) {
-    found.facts.push_back(facts_of((*recordings)[k], pooled->measured.identification, k));
+  for (std::size_t k = 0; arguments.report.file && k < recordings.size(); ++k) {
+    found.facts.push_back(facts_of(recordings[k], pooled.measured.identification, k));
   }
-  found.add(std::move(*pooled));
+  found.add(std::move(pooled));
   return found;
 }
 
 /// One result for each: a recording that cannot be measured costs only itself.
 Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
-  const auto reader = RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
+  const auto reader = MBK_TRY(RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor));
   MeasuredTrials found;
-  found.several = reader->count() > 1;
-  for (Result<MeasuredOne>& one : measure_each(*reader, options, arguments)) {
+  found.several = reader.count() > 1;
+  for (Result<MeasuredOne>& one : measure_each(reader, options, arguments)) {
     if (!one) {
       found.together.failed.push_back(one.error());
       continue;
@@ -136,22 +130,20 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
   if (const auto& file = arguments.beside.summary) {
     const std::string table = file->extension() == ".tex" ? report::trials_latex(found.measured, found.together)
                                                           : report::trials_csv(found.measured, found.together);
-    if (auto ok = recording::write_derived(*file, overwrite, table, arguments.reading.files); !ok) return ok;
+    MBK_TRY(recording::write_derived(*file, overwrite, table, arguments.reading.files));
   }
   if (!arguments.beside.charts) return {};
-  auto files = ChartFiles::in(*arguments.beside.charts, overwrite, arguments.reading.files);
-  if (!files) return tl::unexpected(files.error());
+  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, overwrite, arguments.reading.files));
   for (std::size_t k = 0; k < found.measured.size(); ++k) {
     const auto charts = report::measurement_charts(found.measured[k], found.diagnostics[k]);
-    if (auto ok = files->write(found.measured[k].identification.sources.front(), charts); !ok) return ok;
+    MBK_TRY(files.write(found.measured[k].identification.sources.front(), charts));
   }
   return {};
 }
 
 /// What can be said before the work begins.
 Result<void> check(const MeasureCommandArguments& arguments) {
-  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report, arguments.beside); !ok)
-    return ok;
+  MBK_TRY(check_files(arguments.reading.files, arguments.output.to, arguments.report, arguments.beside));
   if (!arguments.beside.charts) return {};
   return ChartFiles::check(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files,
                            {"force", "force-x"});

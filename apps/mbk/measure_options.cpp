@@ -54,8 +54,7 @@ void add_measure_options(Command command, MeasureArguments& arguments) {
 Result<measurement::Options> measurement_options(const MeasureArguments& arguments, const AnalyseArguments& analyse,
                                                  bool draws_arm) {
   const PreprocessArguments& a = arguments.preprocess;
-  const auto signals = signal_options(a.window, a.filters);
-  if (!signals) return tl::unexpected(signals.error());
+  const auto signals = MBK_TRY(signal_options(a.window, a.filters));
   if (a.procedure && a.mode != Mode::reference) {
     return bad_usage(fmt::format("--procedure {} belongs to --mode reference", word_of(*a.procedure)),
                      "add that, or leave --procedure out");
@@ -65,7 +64,7 @@ Result<measurement::Options> measurement_options(const MeasureArguments& argumen
   }
   measurement::Options options;
   options.joint_domain = analyse.domain == Domain::joint;
-  options.preprocess = *signals;
+  options.preprocess = signals;
   preprocess::Options& p = options.preprocess;
   p.mode = a.mode;
   p.procedure = a.procedure.value_or(Procedure::chapter3);

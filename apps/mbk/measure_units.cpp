@@ -24,26 +24,22 @@ std::string measure_specification(const fs::path& folder, const GivenOptions& op
 }
 
 Result<batch::UnitFunction> measure_units(const nlohmann::json& specification) {
-  const auto options = options_from_json(specification.at("options").get<std::string>());
-  if (!options) return tl::unexpected(options.error());
-  const auto measuring = measuring_of(*options);
-  if (!measuring) return tl::unexpected(measuring.error());
-  if ((*measuring)->key != specification.at("key").get<std::string>()) {
+  const auto options = MBK_TRY(options_from_json(specification.at("options").get<std::string>()));
+  const auto measuring = MBK_TRY(measuring_of(options));
+  if (measuring->key != specification.at("key").get<std::string>()) {
     return bad_data("a file that the options name is no longer what it was when the job was begun",
                     "put it back, or begin the job again");
   }
   const fs::path folder = specification.at("study").get<std::string>();
-  return measure_units(*measuring, folder);
+  return measure_units(measuring, folder);
 }
 
 batch::UnitFunction measure_units(std::shared_ptr<const Measuring> measuring, fs::path folder) {
   return [measuring = std::move(measuring), folder = std::move(folder)](std::int64_t /*number*/,
                                                                         const std::string& key) -> Result<std::string> {
-    const auto unit = unit_from(key);
-    if (!unit) return tl::unexpected(unit.error());
-    const auto result = measure_unit(*measuring, folder, *unit);
-    if (!result) return tl::unexpected(result.error());
-    return result_to_bytes(*result);
+    const auto unit = MBK_TRY(unit_from(key));
+    const auto result = MBK_TRY(measure_unit(*measuring, folder, unit));
+    return result_to_bytes(result);
   };
 }
 

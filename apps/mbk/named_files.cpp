@@ -79,9 +79,8 @@ Result<std::vector<fs::path>> files_of(const fs::path& typed) {
 Result<std::vector<std::filesystem::path>> named_files(const std::vector<std::filesystem::path>& typed) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& one : typed) {
-    const auto more = named::files_of(one);
-    if (!more) return tl::unexpected(more.error());
-    files.insert(files.end(), more->begin(), more->end());
+    const auto more = MBK_TRY(named::files_of(one));
+    files.insert(files.end(), more.begin(), more.end());
   }
   return files;
 }

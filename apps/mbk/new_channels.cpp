@@ -47,9 +47,8 @@ std::string signals_text(const std::vector<recording::FileSignal>& signals) {
 Result<Recording> read_with(const recording::RecordingFile& file, const NewChannelsArguments& arguments,
                             const std::string& map) {
   recording::ReadOptions options;
-  auto channels = recording::parse_channel_map(map);
-  if (!channels) return tl::unexpected(channels.error());
-  options.channels = std::move(*channels);
+  auto channels = MBK_TRY(recording::parse_channel_map(map));
+  options.channels = std::move(channels);
   if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
   return recording::read(file, options);
 }

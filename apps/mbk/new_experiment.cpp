@@ -35,78 +35,66 @@ constexpr OfferedPerturbation kOffered[] = {
 
 Result<std::string> robot_section(const Questions& questions) {
   const auto robot =
-      questions.ask("Robot: simulated, or one behind udp", "simulated", word_of_these({"simulated", "udp"}));
-  if (!robot) return robot;
-  if (*robot == "simulated") {
+      MBK_TRY(questions.ask("Robot: simulated, or one behind udp", "simulated", word_of_these({"simulated", "udp"})));
+  if (robot == "simulated") {
     return std::string(
         "# Without [device] the robot is simulated, with this participant at its handle. See docs/guide/devices.md.\n"
         "[participant]\nkind = \"arm\"\nnumber = 1\n");
   }
-  const auto address = questions.ask("Address of the robot", "127.0.0.1", [](const std::string& given) {
+  const auto address = MBK_TRY(questions.ask("Address of the robot", "127.0.0.1", [](const std::string& given) {
     return given.find_first_not_of("0123456789.") == std::string::npos ? "" : quoted(given) + " is no IPv4 address";
-  });
-  if (!address) return address;
-  const auto port = questions.ask("Its port", "25000", whole_number(1, 65535).wrong);
-  if (!port) return port;
+  }));
+  const auto port = MBK_TRY(questions.ask("Its port", "25000", whole_number(1, 65535).wrong));
   std::string lengths;
   for (const auto& [question, key, usual] :
        {std::tuple("Length of its first link, shoulder side, mm", "d1_mm", "254"),
         std::tuple("Length of its last link, to the handle, mm", "d2_mm", "266.7")}) {
-    const auto length = questions.ask(question, usual, positive_number());
-    if (!length) return length;
-    lengths += fmt::format("{} = {}\n", key, *length);
+    const auto length = MBK_TRY(questions.ask(question, usual, positive_number()));
+    lengths += fmt::format("{} = {}\n", key, length);
   }
   const auto place = [](const std::string& given) {
     double x = 0.0, y = 0.0;
     char more = 0;
     return std::sscanf(given.c_str(), "%lf , %lf %c", &x, &y, &more) == 2 ? "" : quoted(given) + " is no 'x, y' in mm";
   };
-  const auto home = questions.ask("Where the hand is measured, x, y in mm from the base", "300, -50", place);
-  if (!home) return home;
-  lengths += fmt::format("home_mm = [{}]\n", *home);
+  const auto home = MBK_TRY(questions.ask("Where the hand is measured, x, y in mm from the base", "300, -50", place));
+  lengths += fmt::format("home_mm = [{}]\n", home);
   return fmt::format(
       "[robot]                        # angles, inertia and friction: docs/guide/devices.md\n{}\n"
       "# Check it before anyone sits down: mbk robot check FILE --live 5\n"
       "[device]\nkind = \"udp\"\naddress = \"{}\"\nport = {}\n",
-      lengths, *address, *port);
+      lengths, address, port);
 }
 
 Result<std::string> trial_sections(const Questions& questions) {
-  const auto word = questions.ask("Perturbation: sines (position), pulses (position) or force (sines)", "sines",
-                                  word_of_these({"sines", "pulses", "force"}));
-  if (!word) return word;
+  const auto word = MBK_TRY(questions.ask("Perturbation: sines (position), pulses (position) or force (sines)", "sines",
+                                          word_of_these({"sines", "pulses", "force"})));
   const OfferedPerturbation& offered =
-      *std::ranges::find_if(kOffered, [&](const OfferedPerturbation& one) { return *word == one.word; });
-  const auto peak = questions.ask(fmt::format("Peak, {}", offered.peak_unit), offered.peak, positive_number());
-  if (!peak) return peak;
+      *std::ranges::find_if(kOffered, [&](const OfferedPerturbation& one) { return word == one.word; });
+  const auto peak = MBK_TRY(questions.ask(fmt::format("Peak, {}", offered.peak_unit), offered.peak, positive_number()));
   std::string text =
       fmt::format("[control]\nkind = \"{}\"\n\n[perturbation]                 # {}\nkind = \"{}\"\n{} = {}\n",
-                  offered.control, offered.remark, offered.kind, offered.peak_key, *peak);
+                  offered.control, offered.remark, offered.kind, offered.peak_key, peak);
   if (!offered.has_duration) return text;
-  const auto duration = questions.ask("Duration, s", "62.1", positive_number());
-  if (!duration) return duration;
+  const auto duration = MBK_TRY(questions.ask("Duration, s", "62.1", positive_number()));
   return text + fmt::format("duration_s = {}\nmoving_in_s = 5              # in which it grows, and fades at the end\n",
-                            *duration);
+                            duration);
 }
 
 Result<std::string> experiment_text(const Questions& questions) {
-  const auto robot = robot_section(questions);
-  if (!robot) return robot;
-  const auto trial = trial_sections(questions);
-  if (!trial) return trial;
+  const auto robot = MBK_TRY(robot_section(questions));
+  const auto trial = MBK_TRY(trial_sections(questions));
   const auto condition =
-      questions.ask("Condition, as it is to stand in the recording", "relaxed", [](const std::string& given) {
+      MBK_TRY(questions.ask("Condition, as it is to stand in the recording", "relaxed", [](const std::string& given) {
         return given.find_first_of("\"\\") == std::string::npos ? "" : "without quotes and backslashes";
-      });
-  if (!condition) return condition;
-  const auto repetitions = questions.ask("Trials of it", "3", whole_number(1, 100).wrong);
-  if (!repetitions) return repetitions;
+      }));
+  const auto repetitions = MBK_TRY(questions.ask("Trials of it", "3", whole_number(1, 100).wrong));
   std::string text = fmt::format(
       "# An experiment for 'mbk run'. examples/experiments/study.toml has every key with its default, the limits of\n"
       "# [safety] among them. Look at it first:  mbk run FILE --dry-run\n"
       "[recording]\nrate_hz = 1000\ncondition = \"{}\"\n\n{}\n{}",
-      *condition, *robot, *trial);
-  for (int k = 1; k <= std::stoi(*repetitions); ++k) {
+      condition, robot, trial);
+  for (int k = 1; k <= std::stoi(repetitions); ++k) {
     text += fmt::format(
         "\n[[trial]]\nname = \"trial_{0}\"\n[trial.recording]\nseed = {0}                      # other phases "
         "than the other trials\n",

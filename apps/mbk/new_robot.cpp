@@ -33,63 +33,55 @@ struct Asked {
 Result<std::string> answered(const Questions& questions, std::initializer_list<Asked> all) {
   std::string text;
   for (const Asked& one : all) {
-    const auto answer = questions.ask(one.question, one.by_default,
-                                      one.numbers > 1 ? numbers_with_commas(one.numbers) : positive_number());
-    if (!answer) return answer;
-    text += one.numbers > 1 ? fmt::format("{} = [{}]\n", one.key, *answer) : fmt::format("{} = {}\n", one.key, *answer);
+    const auto answer = MBK_TRY(questions.ask(one.question, one.by_default,
+                                              one.numbers > 1 ? numbers_with_commas(one.numbers) : positive_number()));
+    text += one.numbers > 1 ? fmt::format("{} = [{}]\n", one.key, answer) : fmt::format("{} = {}\n", one.key, answer);
   }
   return text;
 }
 
 Result<std::string> planar(const Questions& questions) {
-  const auto keys = answered(
+  const auto keys = MBK_TRY(answered(
       questions, {{"Length of the first link, mm", "d1_mm", "254", 1},
                   {"Length of the second link to the handle, mm", "d2_mm", "266.7", 1},
                   {"Range of the first joint, low,high, deg", "theta1_deg", "-55,90", 2},
                   {"Range of the second link's angle against the base, low,high, deg", "theta2_deg", "0,145", 2},
                   {"Inertia parameters alpha1,alpha2,alpha3, kg m² ('mbk robot identify' finds them)", "alpha_kg_m2",
-                   "0.06929,0.04217,0.04416", 3}});
-  if (!keys) return keys;
-  return std::string(kHead) + "[robot]\nkind = \"planar\"\n" + *keys;
+                   "0.06929,0.04217,0.04416", 3}}));
+  return std::string(kHead) + "[robot]\nkind = \"planar\"\n" + keys;
 }
 
 Result<std::string> one_axis(const Questions& questions) {
-  const auto slides = questions.ask("Does it slide or turn", "turn", word_of_these({"slide", "turn"}));
-  if (!slides) return slides;
-  const bool sliding = *slides == "slide";
-  const auto keys = sliding ? answered(questions, {{"Limits low,high, mm", "limits_mm", "-350,350", 2},
-                                                   {"Moving mass, kg", "mass_kg", "", 1}})
-                            : answered(questions, {{"Limits low,high, deg", "limits_deg", "-60,60", 2},
-                                                   {"Moment of inertia, kg m²", "inertia_kg_m2", "", 1}});
-  if (!keys) return keys;
-  return std::string(kHead) + fmt::format("[robot]\nkind = \"one_axis\"\nslides = {}\n", sliding) + *keys;
+  const auto slides = MBK_TRY(questions.ask("Does it slide or turn", "turn", word_of_these({"slide", "turn"})));
+  const bool sliding = slides == "slide";
+  const auto keys = MBK_TRY(sliding ? answered(questions, {{"Limits low,high, mm", "limits_mm", "-350,350", 2},
+                                                           {"Moving mass, kg", "mass_kg", "", 1}})
+                                    : answered(questions, {{"Limits low,high, deg", "limits_deg", "-60,60", 2},
+                                                           {"Moment of inertia, kg m²", "inertia_kg_m2", "", 1}}));
+  return std::string(kHead) + fmt::format("[robot]\nkind = \"one_axis\"\nslides = {}\n", sliding) + keys;
 }
 
 /// From a URDF: what the file says stays there.
 Result<std::string> from_urdf(const Questions& questions, const NewRobotArguments& arguments) {
   std::error_code ignored;
-  const auto described = robot_file::read_robot_description(arguments.urdf);
-  if (!described) return tl::unexpected(described.error());
-  const auto axes = questions.ask("Plane in which the hand is measured, two of x,y,z of the base frame", "x,y",
-                                  word_of_these({"x,y", "x,z", "y,z", "y,x", "z,x", "z,y"}));
-  if (!axes) return axes;
+  MBK_TRY(robot_file::read_robot_description(arguments.urdf));
+  const auto axes = MBK_TRY(questions.ask("Plane in which the hand is measured, two of x,y,z of the base frame", "x,y",
+                                          word_of_these({"x,y", "x,z", "y,z", "y,x", "z,x", "z,y"})));
   const auto gravity =
-      questions.ask("Gravity along x,y,z of the base frame, m/s²", "0,0,-9.81", numbers_with_commas(3));
-  if (!gravity) return gravity;
+      MBK_TRY(questions.ask("Gravity along x,y,z of the base frame, m/s²", "0,0,-9.81", numbers_with_commas(3)));
   const auto folder = std::filesystem::absolute(arguments.out, ignored).parent_path();
   const auto file = std::filesystem::absolute(arguments.urdf, ignored).lexically_proximate(folder);
   return std::string(kHead) + fmt::format(
                                   "[robot]\nkind = \"urdf\"\nfile = \"{}\"             # from the folder of this file\n"
                                   "gravity_m_per_s2 = [{}]\nhand_axes = [\"{}\", \"{}\"]\n",
-                                  file.generic_string(), *gravity, axes->substr(0, 1), axes->substr(2, 1));
+                                  file.generic_string(), gravity, axes.substr(0, 1), axes.substr(2, 1));
 }
 
 Result<std::string> robot_text(const Questions& questions, const NewRobotArguments& arguments) {
   if (!arguments.urdf.empty()) return from_urdf(questions, arguments);
   const auto kind =
-      questions.ask("Robot: planar (two links) or one_axis", "planar", word_of_these({"planar", "one_axis"}));
-  if (!kind) return kind;
-  return *kind == "planar" ? planar(questions) : one_axis(questions);
+      MBK_TRY(questions.ask("Robot: planar (two links) or one_axis", "planar", word_of_these({"planar", "one_axis"})));
+  return kind == "planar" ? planar(questions) : one_axis(questions);
 }
 
 int run(const NewRobotArguments& arguments) {

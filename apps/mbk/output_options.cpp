@@ -73,12 +73,12 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
   if (output.overwrite && !output.file && !report.file && !beside.summary && !beside.charts) {
     return bad_usage("--overwrite requires --out, --report, --summary or --charts", "name a file to write");
   }
-  if (auto ok = output.check(inputs); !ok) return ok;
+  MBK_TRY(output.check(inputs));
   if (beside.summary) {
-    if (auto ok = check_new_file(*beside.summary, "--summary", output.overwrite, inputs); !ok) return ok;
+    MBK_TRY(check_new_file(*beside.summary, "--summary", output.overwrite, inputs));
   }
   if (!report.file) return {};
-  if (auto page = mbk::report::page(""); !page) return tl::unexpected(page.error());
+  MBK_TRY(mbk::report::page(""));
   std::error_code error;
   if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==
                          std::filesystem::weakly_canonical(*report.file, error)) {

@@ -59,13 +59,12 @@ struct PassivityAnswers {
 };
 
 Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, const AskedBand& band) {
-  auto options = measurement_options(arguments);
-  if (!options) return tl::unexpected(options.error());
-  options->band = band;
+  auto options = MBK_TRY(measurement_options(arguments));
+  options.band = band;
   const auto answer = [&](std::span<const Recording> recordings) -> Result<LimbAnswer> {
-    const bool leaves_out = options->preprocess.mode == Mode::default_mode;
+    const bool leaves_out = options.preprocess.mode == Mode::default_mode;
     for (const Recording& recording : recordings) say_exclusions(recording, leaves_out);
-    auto measured = measurement::measure(recordings, *options);
+    auto measured = measurement::measure(recordings, options);
     if (!measured) return tl::unexpected(measured.error());
     const Identification& id = measured->identification;
     return LimbAnswer{id.sources, std::move(*measured->passivity), std::move(measured->energies),
@@ -73,19 +72,16 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
   };
   PassivityAnswers answers;
   if (arguments.pool) {
-    const auto recordings = read_perturbations(reading_for(arguments.reading, *options), arguments.sensor);
-    if (!recordings) return tl::unexpected(recordings.error());
-    auto pooled = answer(*recordings);
-    if (!pooled) return tl::unexpected(pooled.error());
-    answers.found.push_back(std::move(*pooled));
+    const auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
+    auto pooled = MBK_TRY(answer(recordings));
+    answers.found.push_back(std::move(pooled));
     return answers;
   }
-  const auto reader = RecordingReader::of(reading_for(arguments.reading, *options), arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
-  const int count = reader->count();
+  const auto reader = MBK_TRY(RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor));
+  const int count = reader.count();
   std::vector<Result<LimbAnswer>> each(static_cast<std::size_t>(count), bad_data("not measured"));
   std::ignore = numeric::parallel_for(count, arguments.threads, [&](int i) -> Result<void> {
-    const auto recording = reader->read_perturbation(i);
+    const auto recording = reader.read_perturbation(i);
     each[static_cast<std::size_t>(i)] = recording ? answer({&*recording, 1}) : tl::unexpected(recording.error());
     return {};
   });  // a failure is kept with its file
@@ -101,10 +97,9 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
 
 /// All results of a file.
 Result<std::vector<LimbAnswer>> from_file(const std::filesystem::path& file, const AskedBand& band) {
-  const auto results = stored_results(file);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(stored_results(file));
   std::vector<LimbAnswer> answers;
-  for (const result::StoredResult& stored : *results) {
+  for (const result::StoredResult& stored : results) {
     auto passivity = passivity_of(stored, band);
     if (!passivity) return tl::unexpected(passivity.error().in(file.string()));
     const Identification& id = stored.identification;

@@ -21,8 +21,8 @@ Result<void> check_order(const WindowArguments& a) {
     if (!begin || !end || *begin < *end) return {};
     return bad_usage(fmt::format("{} {:g} s is not before {} {:g} s", first, *begin, second, *end));
   };
-  if (auto ok = before("--from", a.from_s, "--to", a.to_s); !ok) return ok;
-  if (auto ok = before("--from", a.from_s, "--split", a.split_s); !ok) return ok;
+  MBK_TRY(before("--from", a.from_s, "--to", a.to_s));
+  MBK_TRY(before("--from", a.from_s, "--split", a.split_s));
   return before("--split", a.split_s, "--to", a.to_s);
 }
 
@@ -119,15 +119,14 @@ void add_signal_options(Command command, PreprocessArguments& a) {
 }
 
 Result<preprocess::WindowLimits> window_limits(const WindowArguments& a) {
-  if (auto ok = check_order(a); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_order(a));
   return preprocess::WindowLimits{a.from_s, a.split_s, a.to_s};
 }
 
 Result<preprocess::Options> signal_options(const WindowArguments& window, const FilterArguments& filters) {
-  const auto limits = window_limits(window);
-  if (!limits) return tl::unexpected(limits.error());
+  const auto limits = MBK_TRY(window_limits(window));
   preprocess::Options p;
-  p.window = *limits;
+  p.window = limits;
   p.smoothing_order = filters.sg_order;
   p.smoothing_window = filters.sg_window;
   p.no_lowpass = filters.cutoff == "none";

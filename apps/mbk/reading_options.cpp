@@ -32,9 +32,7 @@ bool is_long(const std::filesystem::path& file) {
 Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   recording::ReadOptions options;
   if (!arguments.channels.empty()) {
-    auto map = recording::parse_channel_map(arguments.channels);
-    if (!map) return tl::unexpected(map.error());
-    options.channels = std::move(*map);
+    options.channels = MBK_TRY(recording::parse_channel_map(arguments.channels));
   }
   if (arguments.rate_hz) options.rate = Hertz(*arguments.rate_hz);
   options.axes = arguments.axes;
@@ -52,13 +50,11 @@ Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
 /// All of them, or the first error.
 Result<std::vector<Recording>> all_of(const ReadingArguments& arguments, const SensorArguments& with_sensor,
                                       Result<Recording> (RecordingReader::*read)(int) const) {
-  const auto reader = RecordingReader::of(arguments, with_sensor);
-  if (!reader) return tl::unexpected(reader.error());
+  const auto reader = MBK_TRY(RecordingReader::of(arguments, with_sensor));
   std::vector<Recording> recordings;
-  for (int k = 0; k < reader->count(); ++k) {
-    auto one = ((*reader).*read)(k);
-    if (!one) return tl::unexpected(one.error());
-    recordings.push_back(std::move(*one));
+  for (int k = 0; k < reader.count(); ++k) {
+    auto one = MBK_TRY((reader.*read)(k));
+    recordings.push_back(std::move(one));
   }
   return recordings;
 }
@@ -110,10 +106,8 @@ void add_reading_options(Command command, ReadingArguments& arguments) {
 }
 
 Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, const SensorArguments& with_sensor) {
-  auto options = read_options(arguments);
-  if (!options) return tl::unexpected(options.error());
-  auto sensor = sensor_use(with_sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
+  auto options = MBK_TRY(read_options(arguments));
+  auto sensor = MBK_TRY(sensor_use(with_sensor));
   RecordingReader reader;
   if (arguments.parts && !arguments.trial.empty()) {
     return bad_usage("--parts joins files of one record each, --trial takes one of several in a file",
@@ -126,19 +120,18 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
       return fail(ErrorKind::usage, "--parts joins files, and this is in memory", "join the arrays instead",
                   file.string());
     }
-    auto records =
-        arguments.parts ? Result<std::vector<Record>>({{file, ""}}) : records_of(file, arguments.trial, *options);
-    if (!records) return tl::unexpected(records.error());
+    auto records = MBK_TRY(arguments.parts ? Result<std::vector<Record>>({{file, ""}})
+                                           : records_of(file, arguments.trial, options));
     if (many && !arguments.parts) {
-      for (const Record& one : *records) {
+      for (const Record& one : records) {
         if (one.open) recording::rest(*one.open);
       }
     }
-    reader.records_.insert(reader.records_.end(), records->begin(), records->end());
+    reader.records_.insert(reader.records_.end(), records.begin(), records.end());
   }
   reader.parts_ = arguments.parts;
-  reader.options_ = std::move(*options);
-  reader.sensor_ = std::move(*sensor);
+  reader.options_ = std::move(options);
+  reader.sensor_ = std::move(sensor);
   return reader;
 }
 
@@ -159,8 +152,7 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const s
   const auto in_file = [&](tl::unexpected<Error> error) { return tl::unexpected(error.value().in(file.string())); };
   if (trials.empty() && !trial.empty()) {
     // A slice that is wrong is why there are no trials.
-    const auto read = options.channels.empty() ? Result<Recording>(Recording{}) : recording::read(**open, options);
-    if (!read) return tl::unexpected(read.error());
+    MBK_TRY(options.channels.empty() ? Result<Recording>(Recording{}) : recording::read(**open, options));
     return in_file(bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out"));
   }
   std::vector<Record> records;
@@ -234,14 +226,13 @@ std::vector<std::filesystem::path> RecordingReader::files() const {
 }
 
 Result<Recording> RecordingReader::read_perturbation(int k) const {
-  auto one = read(k);
-  if (!one) return one;
-  const auto withdrawn = one->metadata.find("withdrawn");
-  if (withdrawn != one->metadata.end() && withdrawn->second == "yes") {
+  auto one = MBK_TRY(read(k));
+  const auto withdrawn = one.metadata.find("withdrawn");
+  if (withdrawn != one.metadata.end() && withdrawn->second == "yes") {
     return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
-                    one->sources.empty() ? "" : one->sources.front().label());
+                    one.sources.empty() ? "" : one.sources.front().label());
   }
-  return preprocess::perturbation_only(std::move(*one));
+  return preprocess::perturbation_only(std::move(one));
 }
 
 Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments, const SensorArguments& with_sensor) {

@@ -45,9 +45,8 @@ std::string report_json(const std::string& typed, const std::string& note,
 
 Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
                         const std::vector<std::filesystem::path>& sources) {
-  const auto page = report::page(report_json);
-  if (!page) return tl::unexpected(page.error());
-  return recording::write_derived(*arguments.file, overwrite, *page, sources);
+  const auto page = MBK_TRY(report::page(report_json));
+  return recording::write_derived(*arguments.file, overwrite, page, sources);
 }
 
 }  // namespace mbk::app

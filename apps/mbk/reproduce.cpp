@@ -56,17 +56,13 @@ std::string table_file(const Exhibit& exhibit, std::size_t k) {
 Result<void> write_exhibit(const Exhibit& exhibit, const ReproduceArguments& arguments) {
   for (std::size_t k = 0; k < exhibit.tables.size(); ++k) {
     const fs::path file = arguments.folder / "tables" / table_file(exhibit, k);
-    const auto csv =
-        recording::write_file(file.string() + ".csv", arguments.overwrite, result::to_csv(exhibit.tables[k]));
-    if (!csv) return csv;
-    const auto json = recording::write_file(file.string() + ".json", arguments.overwrite,
-                                            result::to_json(exhibit, exhibit.tables[k]));
-    if (!json) return json;
+    MBK_TRY(recording::write_file(file.string() + ".csv", arguments.overwrite, result::to_csv(exhibit.tables[k])));
+    MBK_TRY(recording::write_file(file.string() + ".json", arguments.overwrite,
+                                  result::to_json(exhibit, exhibit.tables[k])));
   }
   for (std::size_t k = 0; k < exhibit.charts.size(); ++k) {
     const fs::path file = arguments.folder / "figures" / fmt::format("{}-{}.svg", exhibit.id, k + 1);
-    if (auto ok = recording::write_file(file, arguments.overwrite, report::chart_svg(exhibit.charts[k])); !ok)
-      return ok;
+    MBK_TRY(recording::write_file(file, arguments.overwrite, report::chart_svg(exhibit.charts[k])));
   }
   return {};
 }
@@ -83,15 +79,13 @@ Result<void> make_folders(const ReproduceArguments& arguments) {
 
 /// Everything, tables and figures first, so that the page is there only once all of it is.
 Result<void> write_all(const Reproduction& made, const ReproduceArguments& arguments, const std::string& document) {
-  if (auto ok = make_folders(arguments); !ok) return ok;
+  MBK_TRY(make_folders(arguments));
   for (const Exhibit& exhibit : made.exhibits) {
-    if (auto ok = write_exhibit(exhibit, arguments); !ok) return ok;
+    MBK_TRY(write_exhibit(exhibit, arguments));
   }
-  const auto json = recording::write_file(arguments.folder / "reproduction.json", arguments.overwrite, document);
-  if (!json) return json;
-  const auto page = thesis::page(made, document);
-  if (!page) return tl::unexpected(page.error());
-  return recording::write_file(arguments.folder / "index.html", arguments.overwrite, *page);
+  MBK_TRY(recording::write_file(arguments.folder / "reproduction.json", arguments.overwrite, document));
+  const auto page = MBK_TRY(thesis::page(made, document));
+  return recording::write_file(arguments.folder / "index.html", arguments.overwrite, page);
 }
 
 std::string summary_text(const Reproduction& made, const fs::path& folder) {

@@ -47,37 +47,30 @@ Result<drivers::UdpAddress> address_of(const std::string& given) {
 }
 
 Result<RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments) {
-  const auto text = read_scenario_text(arguments.file);
-  if (!text) return tl::unexpected(text.error());
-  const auto setup = session::read_robot_setup(text->text, text->file, laboratory::read_simulation);
-  if (!setup) return tl::unexpected(setup.error());
-  if (arguments.live && !setup->has_device) {
+  const auto text = MBK_TRY(read_scenario_text(arguments.file));
+  const auto setup = MBK_TRY(session::read_robot_setup(text.text, text.file, laboratory::read_simulation));
+  if (arguments.live && !setup.has_device) {
     return tl::unexpected(
         Error{ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
   }
-  RobotCheckReport::Setup found{arguments.file, session::setup_text(*setup), session::check_setup(*setup), "", {}};
+  RobotCheckReport::Setup found{arguments.file, session::setup_text(setup), session::check_setup(setup), "", {}};
   if (!arguments.live) return found;
-  const auto robot = protocol::make_device(setup->trial);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto record = session::watch_robot(**robot, setup->trial.rate, *arguments.live);
-  if (!record) return tl::unexpected(record.error());
-  found.live_text = session::live_text(*setup, (*robot)->facts(), *record);
-  found.live = session::check_live(*setup, (*robot)->facts(), *record);
+  const auto robot = MBK_TRY(protocol::make_device(setup.trial));
+  const auto record = MBK_TRY(session::watch_robot(*robot, setup.trial.rate, *arguments.live));
+  found.live_text = session::live_text(setup, robot->facts(), record);
+  found.live = session::check_live(setup, robot->facts(), record);
   return found;
 }
 
 Result<RobotCheckReport::Link> check_link(const RobotCheckArguments& arguments) {
-  const auto robot = address_of(arguments.link);
-  if (!robot) return tl::unexpected(robot.error());
-  auto wire = drivers::UdpBridgeWire::open(*robot, static_cast<std::uint16_t>(arguments.local_port));
-  if (!wire) return tl::unexpected(wire.error());
+  const auto robot = MBK_TRY(address_of(arguments.link));
+  auto wire = MBK_TRY(drivers::UdpBridgeWire::open(robot, static_cast<std::uint16_t>(arguments.local_port)));
   drivers::BridgeCheckOptions options;
   options.rate = arguments.rate_hz;
   options.motors = arguments.motors;
-  if (options.motors && !arguments.output.quiet) say("the motors of {} go on, with command 0\n", robot->text());
-  auto report = drivers::check_bridge(*wire, options);
-  if (!report) return tl::unexpected(report.error());
-  return RobotCheckReport::Link{robot->text(), options, std::move(*report)};
+  if (options.motors && !arguments.output.quiet) say("the motors of {} go on, with command 0\n", robot.text());
+  auto report = MBK_TRY(drivers::check_bridge(wire, options));
+  return RobotCheckReport::Link{robot.text(), options, std::move(report)};
 }
 
 RobotCheckReport::Timing check_timing(const RobotCheckArguments& arguments) {
@@ -91,14 +84,12 @@ RobotCheckReport::Timing check_timing(const RobotCheckArguments& arguments) {
 Result<RobotCheckReport> check_all(const RobotCheckArguments& arguments) {
   RobotCheckReport report;
   if (!arguments.file.empty()) {
-    auto setup = check_setup(arguments);
-    if (!setup) return tl::unexpected(setup.error());
-    report.setup = std::move(*setup);
+    auto setup = MBK_TRY(check_setup(arguments));
+    report.setup = std::move(setup);
   }
   if (!arguments.link.empty()) {
-    auto link = check_link(arguments);
-    if (!link) return tl::unexpected(link.error());
-    report.link = std::move(*link);
+    auto link = MBK_TRY(check_link(arguments));
+    report.link = std::move(link);
   }
   if (arguments.timing) report.timing = check_timing(arguments);
   return report;

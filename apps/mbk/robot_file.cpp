@@ -12,9 +12,8 @@ namespace {
 
 /// The robot that a result describes, with the numbers that it holds.
 Result<robot::RobotDescription> from_result(const std::filesystem::path& file) {
-  const auto text = read_text(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto stored = result::robot_from_json(*text);
+  const auto text = MBK_TRY(read_text(file));
+  const auto stored = result::robot_from_json(text);
   if (!stored) return tl::unexpected(stored.error().in(file.string()));
   auto description = stored->description.empty()
                          ? robot_file::thesis_robot()
@@ -49,24 +48,23 @@ Result<robot::RobotDescription> describe_robot(const std::optional<std::filesyst
 Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>& file) {
   // Table A.1 has viscous friction, and says nothing of what else may resist.
   auto description =
-      file ? describe_robot(file)
-           : robot_file::parse_robot_description("[robot]\nkind = \"planar\"\n[drive]\nterms = [\"viscous\"]\n", "",
-                                                 "the robot of the thesis");
-  if (!description) return tl::unexpected(description.error());
-  if (!description->unstated.empty()) {
-    return bad_data(fmt::format("it does not say {}", fmt::join(description->unstated, ", ")),
+      MBK_TRY(file ? describe_robot(file)
+                   : robot_file::parse_robot_description("[robot]\nkind = \"planar\"\n[drive]\nterms = [\"viscous\"]\n",
+                                                         "", "the robot of the thesis"));
+  if (!description.unstated.empty()) {
+    return bad_data(fmt::format("it does not say {}", fmt::join(description.unstated, ", ")),
                     "find them with 'mbk robot identify FILE... --robot ROBOT --json', or state them", file->string());
   }
-  if (!description->impossible.empty()) {
-    return bad_data(fmt::format("{}", fmt::join(description->impossible, "; ")),
+  if (!description.impossible.empty()) {
+    return bad_data(fmt::format("{}", fmt::join(description.impossible, "; ")),
                     "correct it, or find it with 'mbk robot identify FILE... --robot ROBOT --json'", file->string());
   }
-  if (!description->usable) {
+  if (!description.usable) {
     return fail(ErrorKind::not_usable,
-                fmt::format("its dynamics are not usable ({})", fmt::join(description->warnings, ", ")),
+                fmt::format("its dynamics are not usable ({})", fmt::join(description.warnings, ", ")),
                 "identify the robot again, as the file's warnings advise", file->string());
   }
-  return std::move(description->model);
+  return std::move(description.model);
 }
 
 }  // namespace mbk::app

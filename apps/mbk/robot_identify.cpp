@@ -87,23 +87,21 @@ Result<void> choose(const RobotIdentifyArguments& arguments, robot::RobotDescrip
                     measurement::RobotOptions& options) {
   const bool usual = !arguments.robot && arguments.terms.empty();
   if (usual || !arguments.terms.empty()) {
-    if (auto ok = set_terms(usual ? "viscous,coulomb,offset" : arguments.terms, robot); !ok) return ok;
+    MBK_TRY(set_terms(usual ? "viscous,coulomb,offset" : arguments.terms, robot));
   }
   robot::DynamicModel& model = robot.model;
   if (arguments.smoothing) model.drive.smoothing = *arguments.smoothing;
-  const auto delay = number_or_auto(arguments.delay, "--motor-delay");
-  if (!delay) return tl::unexpected(delay.error());
-  options.fit.delay = !*delay;
-  if (*delay) model.delay = 1e-3 * **delay;
+  const auto delay = MBK_TRY(number_or_auto(arguments.delay, "--motor-delay"));
+  options.fit.delay = !delay;
+  if (delay) model.delay = 1e-3 * *delay;
   if (!arguments.stribeck_velocity.empty()) {
-    const auto velocity = number_or_auto(arguments.stribeck_velocity, "--stribeck-velocity");
-    if (!velocity) return tl::unexpected(velocity.error());
-    if (*velocity && !(**velocity > 0.0)) return bad_usage("--stribeck-velocity: not above 0");
+    const auto velocity = MBK_TRY(number_or_auto(arguments.stribeck_velocity, "--stribeck-velocity"));
+    if (velocity && !(*velocity > 0.0)) return bad_usage("--stribeck-velocity: not above 0");
     if (!model.drive.stribeck) {
       return bad_usage("--stribeck-velocity without a Stribeck term", "add --terms viscous,coulomb,stribeck,offset");
     }
-    options.stribeck_velocity = !*velocity;
-    if (*velocity) model.drive.stribeck_velocity = **velocity;
+    options.stribeck_velocity = !velocity;
+    if (velocity) model.drive.stribeck_velocity = *velocity;
   }
   return {};
 }

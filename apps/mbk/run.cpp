@@ -50,19 +50,17 @@ struct RunArguments {
 };
 
 Result<std::vector<Trial>> trials_of(const RunArguments& arguments) {
-  const auto text = read_scenario_text(arguments.experiment);
-  if (!text) return tl::unexpected(text.error());
-  auto trials = protocol::read_experiment(text->text, text->file, laboratory::read_simulation);
-  if (!trials) return trials;
+  const auto text = MBK_TRY(read_scenario_text(arguments.experiment));
+  auto trials = MBK_TRY(protocol::read_experiment(text.text, text.file, laboratory::read_simulation));
   std::vector<Trial> chosen;
   for (const std::string& name : arguments.trials) {
-    const auto found = std::ranges::find(*trials, name, &Trial::name);
-    if (found == trials->end()) {
+    const auto found = std::ranges::find(trials, name, &Trial::name);
+    if (found == trials.end()) {
       return bad_usage(fmt::format("there is no trial '{}'", name), "see the [[trial]] names in the file");
     }
     chosen.push_back(*found);
   }
-  if (chosen.empty()) chosen = std::move(*trials);
+  if (chosen.empty()) chosen = std::move(trials);
   for (Trial& trial : chosen) {
     if (arguments.seed) trial.seed = *arguments.seed;
     if (arguments.person) trial.person.number = *arguments.person;
@@ -274,10 +272,10 @@ class TerminalOperator : public conduct::Operator {
     }
     const auto written = print_text(text_);
     if (!notes_.empty() && !performed.outcome.unrecorded) {
-      if (auto ok = session::annotate(performed.outcome.recording, notes_); !ok) return ok;
+      MBK_TRY(session::annotate(performed.outcome.recording, notes_));
     }
     if (page_ != nullptr) {
-      if (auto ok = page_->judged(performed); !ok) return ok;
+      MBK_TRY(page_->judged(performed));
     }
     return written;
   }

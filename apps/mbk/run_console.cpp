@@ -44,16 +44,13 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const con
   }
   std::vector<std::string> names;
   for (const session::Plan& plan : experiment.plans) names.push_back(plan.trial.name);
-  const auto texts = console::find_texts(arguments.texts.empty() ? "en" : arguments.texts, names);
-  if (!texts) return tl::unexpected(texts.error());
+  const auto texts = MBK_TRY(console::find_texts(arguments.texts.empty() ? "en" : arguments.texts, names));
   const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
   if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
-  if (auto page = console::operator_page(); !page) return tl::unexpected(page.error());
-  auto opened = console::Console::open(arguments.port, experiment.plans, flags,
-                                       [](const std::string& line) { say("mbk: console: {}\n", line); });
-  if (!opened) return tl::unexpected(opened.error());
-  run.console_ = std::move(*opened);
-  run.console_->show_texts(*texts);
+  MBK_TRY(console::operator_page());
+  run.console_ = MBK_TRY(console::Console::open(arguments.port, experiment.plans, flags,
+                                                [](const std::string& line) { say("mbk: console: {}\n", line); }));
+  run.console_->show_texts(texts);
   run.page_ = std::make_unique<console::PageOperator>(
       *run.console_, arguments.wait, [](const std::string& warning) { say("mbk: warning: {}\n", warning); });
   say("console:              {}\nparticipant's screen: {}\nonly to watch:        {}\n", run.console_->address(),

@@ -24,9 +24,8 @@ Result<ScenarioText> read_scenario_text(const std::string& argument) {
 }
 
 Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument) {
-  const auto text = read_scenario_text(argument);
-  if (!text) return tl::unexpected(text.error());
-  return laboratory::read_scenarios(text->text, text->file);
+  const auto text = MBK_TRY(read_scenario_text(argument));
+  return laboratory::read_scenarios(text.text, text.file);
 }
 
 std::vector<std::string> ready_scenario_names() {

@@ -38,20 +38,17 @@ Result<calibration::SensorCalibrationOptions> options_of(const SensorCalibrateAr
 }
 
 Result<SensorCalibration> calibrate(const SensorCalibrateArguments& arguments) {
-  const auto options = options_of(arguments);
-  if (!options) return tl::unexpected(options.error());
+  const auto options = MBK_TRY(options_of(arguments));
   ReadingArguments reading = arguments.reading;
   reading.axes = 2;  // --axes counts those of the sensor here; the names are Fx, Fy, Vx, Vy either way
   reading.untimed = true;
-  const auto recordings = read_recordings(reading);
-  if (!recordings) return tl::unexpected(recordings.error());
+  const auto recordings = MBK_TRY(read_recordings(reading));
   std::vector<calibration::SensorRun> runs;
-  for (const Recording& recording : *recordings) {
-    auto run = calibration::sensor_run(recording, arguments.frame);
-    if (!run) return tl::unexpected(run.error());
-    runs.push_back(std::move(*run));
+  for (const Recording& recording : recordings) {
+    auto run = MBK_TRY(calibration::sensor_run(recording, arguments.frame));
+    runs.push_back(std::move(run));
   }
-  return calibration::calibrate_sensor(runs, *options);
+  return calibration::calibrate_sensor(runs, options);
 }
 
 int run_calibrate(const SensorCalibrateArguments& arguments) {
@@ -120,14 +117,12 @@ struct SensorDelayArguments {
 };
 
 Result<MeasuredDelay> find_delay(const SensorDelayArguments& arguments) {
-  const auto recordings = read_recordings(arguments.reading);
-  if (!recordings) return tl::unexpected(recordings.error());
-  if (recordings->size() != 1) return bad_usage("a delay is found in one recording", "name one FILE");
-  auto signals = signal_options(arguments.window, arguments.filters);
-  if (!signals) return tl::unexpected(signals.error());
-  signals->axes = arguments.reading.axes;
-  auto found = measurement::find_sensor_delay(recordings->front(), arguments.mass, *signals);
-  if (!found) return tl::unexpected<Error>(found.error().in(recordings->front().sources.front().label()));
+  const auto recordings = MBK_TRY(read_recordings(arguments.reading));
+  if (recordings.size() != 1) return bad_usage("a delay is found in one recording", "name one FILE");
+  auto signals = MBK_TRY(signal_options(arguments.window, arguments.filters));
+  signals.axes = arguments.reading.axes;
+  auto found = measurement::find_sensor_delay(recordings.front(), arguments.mass, signals);
+  if (!found) return tl::unexpected<Error>(found.error().in(recordings.front().sources.front().label()));
   return found;
 }
 

@@ -93,11 +93,10 @@ Result<std::optional<calibration::SensorUse>> sensor_use(const SensorArguments& 
   if (!arguments.file) return std::nullopt;
   calibration::SensorUse use;
   if (!arguments.zero.empty()) {
-    if (auto ok = read_zero(arguments.zero, use); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(read_zero(arguments.zero, use));
   }
-  const auto text = read_text(*arguments.file);
-  if (!text) return tl::unexpected(text.error());
-  auto calibration = result::sensor_calibration_from_json(*text);
+  const auto text = MBK_TRY(read_text(*arguments.file));
+  auto calibration = result::sensor_calibration_from_json(text);
   if (!calibration) return tl::unexpected(calibration.error().in(arguments.file->string()));
   use.calibration = std::move(*calibration);
   use.name = arguments.file->string();

@@ -12,12 +12,11 @@
 namespace mbk::app {
 
 Result<void> place_signals(ReadingArguments& reading, std::span<const SignalName> signals) {
-  const auto mapped = reading.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
-                                               : recording::parse_channel_map(reading.channels);
-  if (!mapped) return tl::unexpected(mapped.error());
+  const auto mapped = MBK_TRY(reading.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
+                                                       : recording::parse_channel_map(reading.channels));
   const auto in_map = [&](const std::string& name) {
     const auto meant = recording::kinds_called(name);
-    return std::ranges::any_of(*mapped, [&](const recording::ChannelSource& entry) {
+    return std::ranges::any_of(mapped, [&](const recording::ChannelSource& entry) {
       const auto kinds = recording::kinds_called(entry.channel);
       return std::ranges::find_first_of(meant, kinds) != meant.end();
     });
@@ -26,7 +25,7 @@ Result<void> place_signals(ReadingArguments& reading, std::span<const SignalName
     if (signal.given.empty()) continue;
     const bool flipped = signal.given.front() == '-' && signal.sign != nullptr;
     const std::string name = signal.given.substr(flipped ? 1 : 0);
-    const bool by_name = mapped->empty() && !recording::kinds_called(name).empty();
+    const bool by_name = mapped.empty() && !recording::kinds_called(name).empty();
     if (by_name || in_map(name)) {
       signal.to = name;
       if (flipped) *signal.sign = -1.0;

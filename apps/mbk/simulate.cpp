@@ -53,23 +53,21 @@ fs::path file_name(const SimulateArguments& arguments, const std::string& trial,
 }
 
 Result<std::vector<Job>> jobs_of(const SimulateArguments& arguments) {
-  const auto scenarios = read_scenario_argument(arguments.scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  const auto scenarios = MBK_TRY(read_scenario_argument(arguments.scenario));
   std::vector<laboratory::Scenario> chosen;
   for (const std::string& name : arguments.trials) {
     if (std::ranges::count(arguments.trials, name) > 1) {
       return bad_usage(fmt::format("trial '{}' is asked for twice", name), "name each --trial once");
     }
-    const auto trial = find_trial(*scenarios, name);
-    if (!trial) return tl::unexpected(trial.error());
-    chosen.push_back(*trial);
+    const auto trial = MBK_TRY(find_trial(scenarios, name));
+    chosen.push_back(trial);
   }
   std::vector<Job> jobs;
-  for (const laboratory::Scenario& scenario : arguments.trials.empty() ? *scenarios : chosen) {
+  for (const laboratory::Scenario& scenario : arguments.trials.empty() ? scenarios : chosen) {
     for (int k = 0; k < arguments.seeds; ++k) {
       Job job{scenario, {}};
       job.scenario.seed = arguments.seed.value_or(scenario.seed) + static_cast<std::uint64_t>(k);
-      job.file = file_name(arguments, scenarios->size() > 1 ? scenario.name : "",
+      job.file = file_name(arguments, scenarios.size() > 1 ? scenario.name : "",
                            arguments.seeds > 1 ? std::optional(job.scenario.seed) : std::nullopt);
       jobs.push_back(std::move(job));
     }
@@ -88,7 +86,7 @@ Result<void> check_files(const std::vector<Job>& jobs, const SimulateArguments& 
     Output output;
     output.file = job.file;
     output.overwrite = arguments.overwrite;
-    if (auto ok = output.check({arguments.scenario}); !ok) return ok;
+    MBK_TRY(output.check({arguments.scenario}));
   }
   return {};
 }
@@ -179,10 +177,9 @@ Result<std::string> scenario_sum(const std::string& scenario) {
 }
 
 Result<std::string> specification_of(const SimulateArguments& arguments) {
-  const auto sum = scenario_sum(arguments.scenario);
-  if (!sum) return tl::unexpected(sum.error());
+  const auto sum = MBK_TRY(scenario_sum(arguments.scenario));
   nlohmann::json json = {
-      {"scenario", arguments.scenario},       {"scenario_sha256", *sum},  {"trials", arguments.trials},
+      {"scenario", arguments.scenario},       {"scenario_sha256", sum},   {"trials", arguments.trials},
       {"out", arguments.out.string()},        {"seeds", arguments.seeds}, {"blind", arguments.blind},
       {"folder", fs::current_path().string()}};
   if (arguments.seed) json["seed"] = *arguments.seed;
@@ -236,9 +233,8 @@ int run(const SimulateArguments& arguments, recording::Format format) {
         const Job& job = (*jobs)[static_cast<std::size_t>(i)];
         laboratory::SimulateOptions options;
         if (count == 1) options.progress = [&](double fraction) { progress.reached(fraction); };
-        auto line = perform(arguments, format, job, options);
-        if (!line) return tl::unexpected(line.error());
-        lines[static_cast<std::size_t>(i)] = std::move(*line);
+        auto line = MBK_TRY(perform(arguments, format, job, options));
+        lines[static_cast<std::size_t>(i)] = std::move(line);
         return {};
       },
       [&](int i) { progress.count(++done, count, (*jobs)[static_cast<std::size_t>(i)].file.string()); });
@@ -259,9 +255,8 @@ Result<batch::UnitFunction> simulate_units(const nlohmann::json& specification) 
   fs::current_path(specification.at("folder").get<std::string>(), error);
   if (error) return bad_data(error.message(), "every machine must see the folder in which the job was begun");
   arguments.scenario = specification.at("scenario");
-  const auto sum = scenario_sum(arguments.scenario);
-  if (!sum) return tl::unexpected(sum.error());
-  if (*sum != specification.at("scenario_sha256").get<std::string>()) {
+  const auto sum = MBK_TRY(scenario_sum(arguments.scenario));
+  if (sum != specification.at("scenario_sha256").get<std::string>()) {
     return bad_data("it has changed since the job was begun", "put it back, or begin again", arguments.scenario);
   }
   arguments.trials = specification.at("trials").get<std::vector<std::string>>();

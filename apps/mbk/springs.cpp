@@ -41,14 +41,12 @@ struct FindArguments {
 
 /// The springs of a scenario's [rig].
 Result<std::vector<Spring>> springs_of_scenario(const FieldArguments& arguments) {
-  const auto scenarios = read_scenario_argument(arguments.scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  if (arguments.trial.empty() && scenarios->size() > 1) {
-    return bad_usage(fmt::format("{} has {} trials", arguments.scenario, scenarios->size()), "choose one by --trial");
+  const auto scenarios = MBK_TRY(read_scenario_argument(arguments.scenario));
+  if (arguments.trial.empty() && scenarios.size() > 1) {
+    return bad_usage(fmt::format("{} has {} trials", arguments.scenario, scenarios.size()), "choose one by --trial");
   }
-  const auto chosen = arguments.trial.empty() ? scenarios->front() : find_trial(*scenarios, arguments.trial);
-  if (!chosen) return tl::unexpected(chosen.error());
-  const auto* planar = std::get_if<laboratory::PlanarTrial>(&chosen->trial);
+  const auto chosen = MBK_TRY(arguments.trial.empty() ? scenarios.front() : find_trial(scenarios, arguments.trial));
+  const auto* planar = std::get_if<laboratory::PlanarTrial>(&chosen.trial);
   const auto* rig = planar == nullptr ? nullptr : std::get_if<laboratory::RigPlan>(&planar->load);
   if (rig == nullptr || rig->springs.empty()) {
     return bad_data("there is no [[rig.spring]]", "'mbk springs find' writes some", arguments.scenario);
@@ -60,34 +58,28 @@ Result<std::vector<Spring>> springs_of(const FieldArguments& arguments) {
   if (!arguments.scenario.empty()) return springs_of_scenario(arguments);
   std::vector<Spring> springs;
   for (const std::string& given : arguments.springs) {
-    const auto spring = parse_spring(given);
-    if (!spring) return tl::unexpected(spring.error());
-    springs.push_back(*spring);
+    const auto spring = MBK_TRY(parse_spring(given));
+    springs.push_back(spring);
   }
   return springs;
 }
 
 Result<SpringField> field_of(const FieldArguments& arguments) {
-  const auto given = springs_of(arguments);
-  if (!given) return tl::unexpected(given.error());
-  const std::vector<Spring>& springs = *given;
+  const auto given = MBK_TRY(springs_of(arguments));
+  const std::vector<Spring>& springs = given;
   Eigen::Vector2d start = calibration::centre_of_anchors(springs);
   if (!arguments.start.empty()) {
-    const auto place = parse_place("--start", arguments.start);
-    if (!place) return tl::unexpected(place.error());
-    start = *place;
+    start = MBK_TRY(parse_place("--start", arguments.start));
   }
-  const auto array = calibration::SpringArray::create(
-      springs, arguments.push ? calibration::Compression::push : calibration::Compression::slack);
-  if (!array) return tl::unexpected(array.error());
+  const auto array = MBK_TRY(calibration::SpringArray::create(
+      springs, arguments.push ? calibration::Compression::push : calibration::Compression::slack));
   const double radius = arguments.radius_mm / kMillimetres;
   const double rotation = arguments.rotation_deg * std::numbers::pi / 180.0;
-  auto field = calibration::spring_field(*array, start, radius, rotation);
+  auto field = calibration::spring_field(array, start, radius, rotation);
   if (field && arguments.grid_step_mm) {
     const double step = *arguments.grid_step_mm / kMillimetres;
-    const auto grid = calibration::grid_field(*array, field->equilibrium, radius, step, rotation);
-    if (!grid) return tl::unexpected(grid.error());
-    field->grid = *grid;
+    const auto grid = MBK_TRY(calibration::grid_field(array, field->equilibrium, radius, step, rotation));
+    field->grid = grid;
   }
   return field;
 }
@@ -106,33 +98,26 @@ int run_field(const FieldArguments& arguments) {
 
 Result<calibration::SpringRequest> request_of(const FindArguments& arguments) {
   calibration::SpringRequest request;
-  const auto K = parse_stiffness(arguments.stiffness);
-  if (!K) return tl::unexpected(K.error());
-  request.K = *K;
-  const auto frame = parse_place("--frame", arguments.frame);
-  if (!frame) return tl::unexpected(frame.error());
-  request.equilibrium = *frame;
+  const auto K = MBK_TRY(parse_stiffness(arguments.stiffness));
+  request.K = K;
+  const auto frame = MBK_TRY(parse_place("--frame", arguments.frame));
+  request.equilibrium = frame;
   if (!arguments.at.empty()) {
-    const auto at = parse_place("--at", arguments.at);
-    if (!at) return tl::unexpected(at.error());
-    request.equilibrium = *at;
+    request.equilibrium = MBK_TRY(parse_place("--at", arguments.at));
   }
-  request.eyes = calibration::frame_eyes(*frame);
+  request.eyes = calibration::frame_eyes(frame);
   if (!arguments.eyes.empty()) request.eyes.clear();
   for (const std::string& given : arguments.eyes) {
-    const auto eye = parse_place("--eye", given);
-    if (!eye) return tl::unexpected(eye.error());
-    request.eyes.push_back(*eye);
+    const auto eye = MBK_TRY(parse_place("--eye", given));
+    request.eyes.push_back(eye);
   }
   if (arguments.disc) {
-    for (const Eigen::Vector2d& eye : request.eyes) request.holes.push_back(calibration::facing_hole(eye, *frame));
+    for (const Eigen::Vector2d& eye : request.eyes) request.holes.push_back(calibration::facing_hole(eye, frame));
   }
-  const auto stiffness = parse_range("--spring-stiffness", arguments.spring_stiffness);
-  if (!stiffness) return tl::unexpected(stiffness.error());
-  request.stiffness = *stiffness;
-  const auto length = parse_range("--spring-length", arguments.spring_length);
-  if (!length) return tl::unexpected(length.error());
-  request.rest_length = {length->first / kMillimetres, length->second / kMillimetres};
+  const auto stiffness = MBK_TRY(parse_range("--spring-stiffness", arguments.spring_stiffness));
+  request.stiffness = stiffness;
+  const auto length = MBK_TRY(parse_range("--spring-length", arguments.spring_length));
+  request.rest_length = {length.first / kMillimetres, length.second / kMillimetres};
   request.travel = arguments.travel_mm / kMillimetres;
   request.min_extension = arguments.min_extension_mm / kMillimetres;
   request.max_springs = arguments.max_springs;

@@ -6,9 +6,8 @@
 namespace mbk::app {
 
 Result<std::vector<result::StoredResult>> stored_results(const std::filesystem::path& file) {
-  const auto text = read_text(file);
-  if (!text) return tl::unexpected(text.error());
-  auto results = result::results_from_json(*text);
+  const auto text = MBK_TRY(read_text(file));
+  auto results = result::results_from_json(text);
   if (!results) return tl::unexpected(results.error().in(file.string()));
   return results;
 }
@@ -32,9 +31,8 @@ Result<Passivity> passivity_of(const result::StoredResult& stored, const AskedBa
   const Identification* first = &main;
   const Identification* other = stored.alternative ? &*stored.alternative : nullptr;
   if (other != nullptr && stored.passivity.predicts == other->method) std::swap(first, other);
-  auto models = analyse::model_passivities({first, other}, band);
-  if (!models) return tl::unexpected(models.error());
-  passivity.models = std::move(*models);
+  auto models = MBK_TRY(analyse::model_passivities({first, other}, band));
+  passivity.models = std::move(models);
   passivity.prediction = analyse::predict_passivity(passivity.models, main.usable, passivity.band);
   return passivity;
 }

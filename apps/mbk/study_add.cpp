@@ -44,10 +44,9 @@ class Adder {
   /// @param facts  whose trial it is, as far as that was said
   Result<std::vector<AddedRecording>> add(const std::filesystem::path& file, const KnownFacts& facts) {
     if (recording::may_be_bids(file)) return add_of_bids(file, facts);
-    auto incoming = study_.bring_in(file);
-    if (!incoming) return tl::unexpected(incoming.error());
-    auto added = add(*incoming, facts);
-    if (!added) return tl::unexpected(named(added.error(), incoming->path(), file));
+    auto incoming = MBK_TRY(study_.bring_in(file));
+    auto added = add(incoming, facts);
+    if (!added) return tl::unexpected(named(added.error(), incoming.path(), file));
     return added;
   }
 
@@ -65,23 +64,20 @@ class Adder {
   Added add(store::IncomingFile& incoming, const KnownFacts& facts) {
     ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {incoming.path()};
-    const auto reader = RecordingReader::of(reading, measuring_->arguments.sensor);
-    if (!reader) return tl::unexpected(reader.error());
-    if (facts.trial && reader->count() > 1) {
-      return bad_usage(fmt::format("the file holds {} trials", reader->count()), "leave --trial out: they are counted");
+    const auto reader = MBK_TRY(RecordingReader::of(reading, measuring_->arguments.sensor));
+    if (facts.trial && reader.count() > 1) {
+      return bad_usage(fmt::format("the file holds {} trials", reader.count()), "leave --trial out: they are counted");
     }
-    if (auto there = find_stripped(incoming, *reader, facts); !there || !there->empty()) return there;
+    if (auto there = find_stripped(incoming, reader, facts); !there || !there->empty()) return there;
     std::vector<store::NewRecording> recordings;
-    for (int k = 0; k < reader->count(); ++k) {
-      auto recording = reader->read(k);
-      if (!recording) return tl::unexpected(recording.error());
-      const std::vector<std::string> unseen = unseen_entries(incoming.path(), *recording);
-      auto trial = check(*recording, facts, unseen);
-      if (!trial) return tl::unexpected(trial.error());
-      if (!unseen.empty() || !store::identifying_entries(recording->metadata).empty()) {
-        return add_stripped(incoming, *reader, facts, unseen);
+    for (int k = 0; k < reader.count(); ++k) {
+      auto recording = MBK_TRY(reader.read(k));
+      const std::vector<std::string> unseen = unseen_entries(incoming.path(), recording);
+      auto trial = MBK_TRY(check(recording, facts, unseen));
+      if (!unseen.empty() || !store::identifying_entries(recording.metadata).empty()) {
+        return add_stripped(incoming, reader, facts, unseen);
       }
-      recordings.push_back(to_store(reader->count() > 1 ? k + 1 : 0, *trial, *recording));
+      recordings.push_back(to_store(reader.count() > 1 ? k + 1 : 0, trial, recording));
     }
     const std::string sha256 = incoming.sha256();
     return study_.add(std::move(incoming), recordings, sha256, arguments_.study.role);
@@ -137,10 +133,9 @@ class Adder {
 
   /// What a file became when it was added before with --strip.
   Added find_stripped(const store::IncomingFile& incoming, const RecordingReader& reader, const KnownFacts& facts) {
-    const auto there = study_.recordings_of(incoming.sha256());
-    if (!there) return tl::unexpected(there.error());
+    const auto there = MBK_TRY(study_.recordings_of(incoming.sha256()));
     std::vector<AddedRecording> found;
-    for (const store::StoredRecording& one : *there) {
+    for (const store::StoredRecording& one : there) {
       if (one.sha256 == one.origin_sha256) continue;
       if (facts.participant && *facts.participant != one.participant) {
         return bad_data(fmt::format("is there already, as recording {} of participant {}", one.number, one.participant),
@@ -157,13 +152,10 @@ class Adder {
                      const std::vector<std::string>& unseen) {
     std::vector<AddedRecording> all;
     for (int k = 0; k < reader.count(); ++k) {
-      auto recording = reader.read(k);
-      if (!recording) return tl::unexpected(recording.error());
-      const auto trial = check(*recording, facts, unseen);
-      if (!trial) return tl::unexpected(trial.error());
-      auto added = add_copy(incoming, std::move(*recording), *trial, unseen);
-      if (!added) return added;
-      all.insert(all.end(), added->begin(), added->end());
+      auto recording = MBK_TRY(reader.read(k));
+      const auto trial = MBK_TRY(check(recording, facts, unseen));
+      auto added = MBK_TRY(add_copy(incoming, std::move(recording), trial, unseen));
+      all.insert(all.end(), added.begin(), added.end());
     }
     return all;
   }
@@ -177,22 +169,19 @@ class Adder {
     }
     ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {motion};
-    const auto reader = RecordingReader::of(reading, measuring_->arguments.sensor);
-    if (!reader) return tl::unexpected(reader.error());
-    auto recording = reader->read(0);
-    if (!recording) return tl::unexpected(recording.error());
+    const auto reader = MBK_TRY(RecordingReader::of(reading, measuring_->arguments.sensor));
+    auto recording = MBK_TRY(reader.read(0));
     KnownFacts known = facts;
-    const auto condition = recording->metadata.find("condition");  // in full; a name has only its letters and digits
-    if (facts.condition && condition != recording->metadata.end() &&
+    const auto condition = recording.metadata.find("condition");  // in full; a name has only its letters and digits
+    if (facts.condition && condition != recording.metadata.end() &&
         store::is_bids_label(*facts.condition, condition->second)) {
       known.condition = condition->second;
     }
-    const auto trial = check(*recording, known, {});
+    const auto trial = check(recording, known, {});
     if (!trial) return tl::unexpected(trial.error().in(motion.string()));
-    auto incoming = study_.bring_in(motion);
-    if (!incoming) return tl::unexpected(incoming.error());
-    auto added = add_copy(*incoming, std::move(*recording), *trial, {});
-    if (!added) return tl::unexpected(named(added.error(), incoming->path(), motion));
+    auto incoming = MBK_TRY(study_.bring_in(motion));
+    auto added = add_copy(incoming, std::move(recording), *trial, {});
+    if (!added) return tl::unexpected(named(added.error(), incoming.path(), motion));
     return added;
   }
 
@@ -209,9 +198,7 @@ class Adder {
     // Beside the file that came in: what an interrupted process leaves there is tidied up.
     const std::filesystem::path made =
         incoming.path().parent_path() / (incoming.path().stem().string() + ".copy.h5.part");
-    if (auto ok = recording::write(recording, made, recording::Format::hdf5, true); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(recording::write(recording, made, recording::Format::hdf5, true));
     auto copy = study_.bring_in(made, kCopyExtension);
     std::error_code ignored;
     std::filesystem::remove(made, ignored);
@@ -275,14 +262,13 @@ bool alike(const KnownFacts& one, const KnownFacts& other) {
 
 /// The recordings of a BIDS data set, by their names.
 Result<std::vector<store::SheetRow>> rows_of_bids(const std::filesystem::path& folder) {
-  const auto runs = recording::find_bids_runs(folder);
-  if (!runs) return tl::unexpected(runs.error());
-  if (runs->empty()) {
+  const auto runs = MBK_TRY(recording::find_bids_runs(folder));
+  if (runs.empty()) {
     return fail(ErrorKind::data, "is a folder without a BIDS recording (…_motion.tsv)",
                 "name recordings, or the folder of a BIDS data set with motion data", folder.string());
   }
   std::vector<store::SheetRow> rows;
-  for (const recording::BidsRun& run : *runs) {
+  for (const recording::BidsRun& run : runs) {
     const auto facts = store::facts_of_bids(run.motion.stem().string());
     if (!facts) return tl::unexpected(facts.error().in(run.motion.string()));
     const auto twin = std::ranges::find_if(rows, [&](const auto& row) { return alike(row.facts, *facts); });

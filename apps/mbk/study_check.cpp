@@ -35,37 +35,33 @@ class Repeater {
       : study_(study), arguments_(arguments), report_(report) {}
 
   Result<void> repeat_all() {
-    const auto analyses = study_.analyses();
-    if (!analyses) return tl::unexpected(analyses.error());
-    for (const store::Analysis& analysis : *analyses) {
-      if (auto ok = repeat(analysis); !ok) return ok;
+    const auto analyses = MBK_TRY(study_.analyses());
+    for (const store::Analysis& analysis : analyses) {
+      MBK_TRY(repeat(analysis));
     }
     return {};
   }
 
  private:
   Result<void> repeat(const store::Analysis& analysis) {
-    const auto units = study_.measured(analysis.number);
-    if (!units) return tl::unexpected(units.error());
-    if (units->empty()) return {};
-    const std::string count = counted(std::ssize(*units), "result", "results");
+    const auto units = MBK_TRY(study_.measured(analysis.number));
+    if (units.empty()) return {};
+    const std::string count = counted(std::ssize(units), "result", "results");
     if (analysis.version != version()) {
       report_.notes.push_back(fmt::format("{} of analysis {} not repeated: mbk {} made them, this is {}", count,
                                           analysis.number, analysis.version, version()));
       return {};
     }
-    const auto options = options_from_json(analysis.options);
-    if (!options) return tl::unexpected(options.error());
-    if (names_files(*options)) {
+    const auto options = MBK_TRY(options_from_json(analysis.options));
+    if (names_files(options)) {
       report_.notes.push_back(
           fmt::format("{} of analysis {} not repeated: they depend on a file (--robot, --sensor) that a study does not "
                       "keep",
                       count, analysis.number));
       return {};
     }
-    const auto measuring = measuring_of(*options);
-    if (!measuring) return tl::unexpected(measuring.error());
-    return repeat(analysis, **measuring, *units);
+    const auto measuring = MBK_TRY(measuring_of(options));
+    return repeat(analysis, *measuring, units);
   }
 
   Result<void> repeat(const store::Analysis& analysis, const Measuring& measuring,
@@ -73,7 +69,7 @@ class Repeater {
     std::vector<std::string> problems(units.size());
     Progress progress(arguments_.output.quiet, "measured again: ");
     int done = 0;
-    auto ok = numeric::parallel_for(
+    MBK_TRY(numeric::parallel_for(
         static_cast<int>(units.size()), arguments_.threads,
         [&](int k) -> Result<void> {
           const store::Unit& unit = units[static_cast<std::size_t>(k)];
@@ -84,16 +80,14 @@ class Repeater {
             return {};
           }
           const std::scoped_lock lock(mutex_);
-          const auto stored = study_.document(unit, analysis.number);
-          if (!stored) return tl::unexpected(stored.error());
-          if (*stored != again->document) {
+          const auto stored = MBK_TRY(study_.document(unit, analysis.number));
+          if (stored != again->document) {
             problem =
                 fmt::format("{}: measured again it gives another result (analysis {})", unit.file, analysis.number);
           }
           return {};
         },
-        [&](int) { progress.count(++done, static_cast<int>(units.size())); });
-    if (!ok) return ok;
+        [&](int) { progress.count(++done, static_cast<int>(units.size())); }));
     for (std::string& problem : problems) {
       if (problem.empty()) {
         ++report_.repeated;

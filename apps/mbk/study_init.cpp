@@ -24,7 +24,7 @@ Result<std::string> kept_options(Command command) {
     return bad_usage("--robot and --sensor name files, which a study does not keep",
                      "pass them to 'mbk study measure'");
   }
-  if (auto ok = measuring_of(given); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(measuring_of(given));
   return options_to_json(given);
 }
 

@@ -45,13 +45,12 @@ std::vector<fs::path> job_folders(const fs::path& study) {
 }
 
 Result<void> keep_record(const batch::JobFolder& job, const fs::path& study) {
-  const auto efficiency = batch::job_efficiency(job);
-  if (!efficiency) return tl::unexpected(efficiency.error());
+  const auto efficiency = MBK_TRY(batch::job_efficiency(job));
   const fs::path jobs = study / "jobs";
   std::error_code error;
   fs::create_directories(jobs, error);
   if (error) return bad_data(error.message(), "check the permissions of the study", jobs.string());
-  return recording::write_file(new_record(jobs, job), false, batch::to_json(*efficiency), Readers::owner);
+  return recording::write_file(new_record(jobs, job), false, batch::to_json(efficiency), Readers::owner);
 }
 
 Result<std::vector<std::string>> job_documents(const fs::path& study) {
@@ -65,11 +64,9 @@ Result<std::vector<std::string>> job_documents(const fs::path& study) {
     documents.push_back(text.str());
   }
   for (const fs::path& folder : job_folders(study)) {
-    const auto job = batch::JobFolder::open(folder);
-    if (!job) return tl::unexpected(job.error());
-    const auto efficiency = batch::job_efficiency(*job);
-    if (!efficiency) return tl::unexpected(efficiency.error());
-    documents.push_back(batch::to_json(*efficiency));
+    const auto job = MBK_TRY(batch::JobFolder::open(folder));
+    const auto efficiency = MBK_TRY(batch::job_efficiency(job));
+    documents.push_back(batch::to_json(efficiency));
   }
   return documents;
 }

@@ -116,9 +116,8 @@ int write(const ListArguments& arguments, const store::Store& study, const std::
 
 Result<std::vector<OutcomeSummary>> summarised(const store::Store& study, const StudyList& list) {
   if (!list.analysis) return std::vector<OutcomeSummary>();
-  const auto columns = study.columns(list.analysis->number);
-  if (!columns) return tl::unexpected(columns.error());
-  return store::summarise_outcomes(*columns);
+  const auto columns = MBK_TRY(study.columns(list.analysis->number));
+  return store::summarise_outcomes(columns);
 }
 
 int run_list(const ListArguments& arguments) {
@@ -184,10 +183,9 @@ std::string study_head_text(const StudyList& list) {
 }
 
 Result<StudyList> listed_study(const AnalysisArguments& arguments, std::optional<store::Store>& study) {
-  if (auto ok = check_files({}, arguments.output.to); !ok) return tl::unexpected(ok.error());
-  auto opened = open_study(arguments.study);
-  if (!opened) return tl::unexpected(opened.error());
-  study.emplace(std::move(*opened));
+  MBK_TRY(check_files({}, arguments.output.to));
+  auto opened = MBK_TRY(open_study(arguments.study));
+  study.emplace(std::move(opened));
   return store::list_study(*study, arguments.analysis);
 }
 

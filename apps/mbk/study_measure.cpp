@@ -171,10 +171,9 @@ int said_of(const Tally& tally, std::size_t count, std::optional<int> code = {})
 
 /// How long a recording takes is about how long it is.
 Result<std::vector<double>> lengths_of(const store::Store& study, const std::vector<store::Unit>& units) {
-  const auto recordings = study.recordings();
-  if (!recordings) return tl::unexpected(recordings.error());
+  const auto recordings = MBK_TRY(study.recordings());
   std::map<std::pair<std::string, std::int64_t>, double> length;
-  for (const store::StoredRecording& one : *recordings) length[{one.sha256, one.part}] = one.duration_s;
+  for (const store::StoredRecording& one : recordings) length[{one.sha256, one.part}] = one.duration_s;
   std::vector<double> lengths;
   for (const store::Unit& unit : units) lengths.push_back(std::max(length[{unit.sha256, unit.part}], 1.0));
   return lengths;
@@ -183,19 +182,18 @@ Result<std::vector<double>> lengths_of(const store::Store& study, const std::vec
 /// Stores what a job's shards hold, in the order of the keys.
 Result<std::size_t> collect(const batch::JobFolder& folder, ResultQueue& queue) {
   const auto merged = batch::merge(folder, [&](batch::MergedUnit unit) -> Result<void> {
-    auto key = unit_from(unit.key);
-    if (!key) return tl::unexpected(key.error());
+    auto key = MBK_TRY(unit_from(unit.key));
     Result<store::UnitResult> result = store::UnitResult();
     if (!unit.differing.empty()) {
       result = bad_data(
           fmt::format("{} gives another result than {}", unit.differing[1].string(), unit.differing[0].string()),
-          "two machines measured it differently; nothing of it is stored", key->file);
+          "two machines measured it differently; nothing of it is stored", key.file);
     } else if (unit.failed) {
       result = bad_data(unit.payload);
     } else {
       result = result_from(unit.payload);
     }
-    queue.add(std::move(*key), std::move(result));
+    queue.add(std::move(key), std::move(result));
     if (queue.error) return tl::unexpected(*queue.error);
     return {};
   });

@@ -213,18 +213,16 @@ std::string options_text(const GivenOptions& given) {
 
 Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given) {
   auto measuring = std::make_shared<Measuring>();
-  if (auto ok = parse(given, measuring->arguments); !ok) return tl::unexpected(ok.error());
-  auto options = measurement_options(measuring->arguments, measuring->arguments.analyse);
-  if (!options) return tl::unexpected(options.error());
-  measuring->options = std::move(*options);
+  MBK_TRY(parse(given, measuring->arguments));
+  auto options = MBK_TRY(measurement_options(measuring->arguments, measuring->arguments.analyse));
+  measuring->options = std::move(options);
   GivenOptions key = without_defaults(canonical(given));
   for (const std::string& name : options_with_files()) {
     const auto found = key.find(name);
     if (found == key.end()) continue;
     for (std::string& value : found->second) {
-      auto sum = hash_of_file(name, value);
-      if (!sum) return tl::unexpected(sum.error());
-      value = kHashPrefix + *sum;
+      auto sum = MBK_TRY(hash_of_file(name, value));
+      value = kHashPrefix + sum;
     }
   }
   measuring->key = options_to_json(key);
@@ -232,15 +230,13 @@ Result<std::shared_ptr<const Measuring>> measuring_of(const GivenOptions& given)
 }
 
 Result<std::string> key_in(const store::Store& study, const Measuring& measuring) {
-  const auto analyses = study.analyses();
-  if (!analyses) return tl::unexpected(analyses.error());
+  const auto analyses = MBK_TRY(study.analyses());
   std::optional<std::string> alike;
-  for (const store::Analysis& analysis : *analyses) {
+  for (const store::Analysis& analysis : analyses) {
     if (analysis.version != version()) continue;
     if (analysis.options == measuring.key) return measuring.key;
-    const auto options = options_from_json(analysis.options);
-    if (!options) return tl::unexpected(options.error());
-    if (!alike && options_to_json(without_defaults(*options)) == measuring.key) alike = analysis.options;
+    const auto options = MBK_TRY(options_from_json(analysis.options));
+    if (!alike && options_to_json(without_defaults(options)) == measuring.key) alike = analysis.options;
   }
   return alike.value_or(measuring.key);
 }
@@ -250,9 +246,8 @@ bool names_files(const GivenOptions& key) {
 }
 
 Result<GivenOptions> default_options(const store::Store& study) {
-  const auto facts = study.facts();
-  if (!facts) return tl::unexpected(facts.error());
-  return options_from_json(facts->options);
+  const auto facts = MBK_TRY(study.facts());
+  return options_from_json(facts.options);
 }
 
 Result<Recording> read_stored(const Measuring& measuring, const std::filesystem::path& file, std::int64_t part,
@@ -267,11 +262,10 @@ Result<Recording> read_stored(const Measuring& measuring, const std::filesystem:
     reading.rate_hz = plain.rate_hz;
   }
   reading.files = {file};
-  const auto reader = RecordingReader::of(reading, measuring.arguments.sensor);
-  if (!reader) return tl::unexpected(reader.error());
+  const auto reader = MBK_TRY(RecordingReader::of(reading, measuring.arguments.sensor));
   const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
-  if (which >= reader->count()) return bad_data(fmt::format("there is no record {} in it", part), "", file.string());
-  return what == Reading::perturbation ? reader->read_perturbation(which) : reader->read(which);
+  if (which >= reader.count()) return bad_data(fmt::format("there is no record {} in it", part), "", file.string());
+  return what == Reading::perturbation ? reader.read_perturbation(which) : reader.read(which);
 }
 
 Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::filesystem::path& folder,
@@ -283,9 +277,8 @@ Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::fi
   };
   auto recording = read_stored(measuring, file, unit.part, Reading::perturbation);
   if (!recording) {
-    const auto sum = store::file_sha256(file);
-    if (!sum) return tl::unexpected(sum.error());
-    if (*sum != unit.sha256) return damaged();
+    const auto sum = MBK_TRY(store::file_sha256(file));
+    if (sum != unit.sha256) return damaged();
     // What is wrong with a recording is a result; that the disk failed for a moment is none.
     auto again = read_stored(measuring, file, unit.part, Reading::perturbation);
     if (!again && again.error().message == recording.error().message) {

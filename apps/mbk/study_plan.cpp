@@ -42,23 +42,21 @@ Result<statistics::Pilot> measured_pilot(const PlanArguments& arguments) {
                      "pass --outcome K_xx, or state the variances with --sd-people and the rest");
   }
   std::optional<store::Store> study;
-  const auto list = listed_study(arguments, study);
-  if (!list) return tl::unexpected(list.error());
-  if (!list->analysis) return bad_data("nothing was measured", "'mbk study measure' does that");
-  auto columns = study->columns(list->analysis->number);
-  if (!columns) return tl::unexpected(columns.error());
-  statistics::add_matrix_numbers(*columns);
+  const auto list = MBK_TRY(listed_study(arguments, study));
+  if (!list.analysis) return bad_data("nothing was measured", "'mbk study measure' does that");
+  auto columns = MBK_TRY(study->columns(list.analysis->number));
+  statistics::add_matrix_numbers(columns);
   std::vector<std::string> conditions = arguments.conditions;
   if (conditions.empty()) {
-    if (columns->conditions.size() != 1) {
+    if (columns.conditions.size() != 1) {
       std::string known;
-      for (const std::string& one : columns->conditions) known += (known.empty() ? "" : ", ") + one;
+      for (const std::string& one : columns.conditions) known += (known.empty() ? "" : ", ") + one;
       return bad_usage("the study has several conditions",
                        "pass --condition with one, or with two to be compared: " + known);
     }
-    conditions = columns->conditions;
+    conditions = columns.conditions;
   }
-  return statistics::pilot_of(*columns, arguments.outcome, conditions, arguments.draws, arguments.goal.seed);
+  return statistics::pilot_of(columns, arguments.outcome, conditions, arguments.draws, arguments.goal.seed);
 }
 
 int run_plan(const PlanArguments& arguments) {

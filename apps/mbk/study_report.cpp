@@ -39,30 +39,25 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
                                 store::StudyList list) {
   store::OutcomeColumns columns;
   if (list.analysis) {
-    auto found = study.columns(list.analysis->number);
-    if (!found) return tl::unexpected(found.error());
-    columns = std::move(*found);
+    columns = MBK_TRY(study.columns(list.analysis->number));
   }
   statistics::add_matrix_numbers(columns);
-  const auto options = statistics_options(arguments.comparing);
-  if (!options) return tl::unexpected(options.error());
-  const auto statistics = statistics::study_statistics(columns, *options);
+  const auto options = MBK_TRY(statistics_options(arguments.comparing));
+  const auto statistics = statistics::study_statistics(columns, options);
   if (!statistics) return tl::unexpected(statistics.error());
   const std::string summary =
       store::to_json(list, store::summarise_outcomes(columns), statistics::to_json(*statistics));
   const std::string command = command_of(arguments, list);
-  auto report = longitudinal::study_report(std::move(list), std::move(columns), *statistics, arguments.participant,
-                                           arguments.outcome);
-  if (!report) return tl::unexpected(report.error());
-  report->command = command;
-  report->note = printable(arguments.note);
+  auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), *statistics,
+                                                   arguments.participant, arguments.outcome));
+  report.command = command;
+  report.note = printable(arguments.note);
   if (!arguments.participant) {
-    auto jobs = job_documents(study.folder());
-    if (!jobs) return tl::unexpected(jobs.error());
-    report->jobs = std::move(*jobs);
+    auto jobs = MBK_TRY(job_documents(study.folder()));
+    report.jobs = std::move(jobs);
   }
-  return arguments.participant ? longitudinal::participant_report_json(*report, *arguments.participant)
-                               : longitudinal::study_report_json(*report, summary);
+  return arguments.participant ? longitudinal::participant_report_json(report, *arguments.participant)
+                               : longitudinal::study_report_json(report, summary);
 }
 
 int run_report(const StudyReportArguments& arguments) {

@@ -26,9 +26,8 @@ struct StatusArguments {
 
 Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
   if (arguments.job) return std::vector{*arguments.job};
-  const auto study = open_study(arguments.study);
-  if (!study) return tl::unexpected(study.error());
-  return job_folders(study->folder());
+  const auto study = MBK_TRY(open_study(arguments.study));
+  return job_folders(study.folder());
 }
 
 nlohmann::ordered_json json_of(const batch::JobFolder& folder, const batch::JobState& state,

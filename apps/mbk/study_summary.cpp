@@ -64,13 +64,12 @@ Result<statistics::PeopleGroup> group_of(const std::string& text) {
 Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments) {
   statistics::StatisticsOptions options;
   for (const std::string& text : arguments.groups) {
-    auto group = group_of(text);
-    if (!group) return tl::unexpected(group.error());
-    const auto same = std::ranges::find(options.groups, group->name, &statistics::PeopleGroup::name);
+    auto group = MBK_TRY(group_of(text));
+    const auto same = std::ranges::find(options.groups, group.name, &statistics::PeopleGroup::name);
     if (same == options.groups.end()) {
-      options.groups.push_back(std::move(*group));
+      options.groups.push_back(std::move(group));
     } else {
-      same->participants.insert(same->participants.end(), group->participants.begin(), group->participants.end());
+      same->participants.insert(same->participants.end(), group.participants.begin(), group.participants.end());
     }
   }
   if (arguments.compare.empty()) {

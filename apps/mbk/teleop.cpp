@@ -63,11 +63,10 @@ Result<void> check(const TeleopArguments& arguments) {
   if (arguments.output.overwrite && !arguments.output.file && arguments.charts.empty()) {
     return bad_usage("--overwrite requires --out or --charts", "name a file to write");
   }
-  if (auto ok = arguments.output.check(inputs); !ok) return ok;
+  MBK_TRY(arguments.output.check(inputs));
   if (arguments.charts.empty()) return {};
   for (const std::string& name : chart_names(arguments)) {
-    if (auto ok = check_new_file(chart_file(arguments, name), "--charts", arguments.output.overwrite, inputs); !ok)
-      return ok;
+    MBK_TRY(check_new_file(chart_file(arguments, name), "--charts", arguments.output.overwrite, inputs));
   }
   return {};
 }
@@ -75,35 +74,30 @@ Result<void> check(const TeleopArguments& arguments) {
 Result<TeleoperationFinding> find(const TeleopArguments& arguments) {
   teleop::Question question;
   if (!arguments.parameter.empty()) {
-    auto sweep = teleop::parse_sweep(arguments.parameter);
-    if (!sweep) return tl::unexpected(sweep.error());
-    question.sweep = std::move(*sweep);
+    auto sweep = MBK_TRY(teleop::parse_sweep(arguments.parameter));
+    question.sweep = std::move(sweep);
   }
   if (!arguments.excess.empty()) {
-    const auto excess = teleop::parse_excess(arguments.excess);
-    if (!excess) return tl::unexpected(excess.error());
-    question.excess = *excess;
+    const auto excess = MBK_TRY(teleop::parse_excess(arguments.excess));
+    question.excess = excess;
   }
   if (!arguments.operator_result.empty()) {
-    const auto text = read_text(arguments.operator_result);
-    if (!text) return tl::unexpected(text.error());
-    auto shortage = result::operator_shortage_from_json(*text);
+    const auto text = MBK_TRY(read_text(arguments.operator_result));
+    auto shortage = result::operator_shortage_from_json(text);
     if (!shortage) return tl::unexpected(shortage.error().in(arguments.operator_result.string()));
     shortage->rule = arguments.operator_result.string() + ": " + shortage->rule;
     question.operator_shortage = std::move(*shortage);
   }
-  const auto design = teleop::read_design(arguments.design);
-  if (!design) return tl::unexpected(design.error());
+  const auto design = MBK_TRY(teleop::read_design(arguments.design));
   Progress progress(arguments.quiet, "teleop: ");
   question.sweep_progress = [&](double share) { progress.reached(share); };
   question.progress = [&](int done, int of) { progress.count(done, of); };
-  auto finding = teleop::judge(*design, question);
+  auto finding = teleop::judge(design, question);
   if (!finding || !arguments.simulate) return finding;
   const std::optional<double> a =
       finding->operator_shortage ? std::optional(finding->operator_shortage->a) : std::nullopt;
-  auto simulation = laboratory::simulate(*design, a, [&](double fraction) { progress.reached(fraction); });
-  if (!simulation) return tl::unexpected(simulation.error());
-  finding->simulation = std::move(*simulation);
+  auto simulation = MBK_TRY(laboratory::simulate(design, a, [&](double fraction) { progress.reached(fraction); }));
+  finding->simulation = std::move(simulation);
   return finding;
 }
 

@@ -99,16 +99,14 @@ Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given)
 
 Result<measurement::TransferFunctionMeasurement> options_of(const TfArguments& a) {
   measurement::TransferFunctionMeasurement options;
-  const auto window = window_limits(a.window);
-  if (!window) return tl::unexpected(window.error());
-  options.window = *window;
+  const auto window = MBK_TRY(window_limits(a.window));
+  options.window = window;
   identify::TransferFunctionOptions& fit = options.fit;
   if (!a.orders.empty()) {
     if (a.poles || a.zeros)
       return bad_usage("--orders chooses poles and zeros automatically", "leave --poles and --zeros out");
-    auto orders = orders_of(a.orders);
-    if (!orders) return tl::unexpected(orders.error());
-    fit.orders = std::move(*orders);
+    auto orders = MBK_TRY(orders_of(a.orders));
+    fit.orders = std::move(orders);
   } else if (!a.poles) {
     return bad_usage("--poles is missing", "pass --poles 4 --zeros 3, or --orders 1:4 to try several");
   } else {
@@ -159,9 +157,7 @@ Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<
   for (const Recording& recording : *recordings) say_exclusions(recording, false);
   if (!a.resample_hz) return recordings;
   for (Recording& recording : *recordings) {
-    auto even = preprocess::resample(recording, Hertz(*a.resample_hz));
-    if (!even) return tl::unexpected(even.error());
-    recording = std::move(*even);
+    recording = MBK_TRY(preprocess::resample(recording, Hertz(*a.resample_hz)));
   }
   return recordings;
 }
@@ -199,7 +195,7 @@ Result<void> check_written(const TfArguments& arguments) {
 Result<void> write_charts(const TfArguments& arguments, const std::vector<Chart>& charts) {
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
     const Output file{chart_file(arguments, k), arguments.output.to.overwrite};
-    if (auto ok = file.write(report::chart_svg(charts[k]), files_of(arguments)); !ok) return ok;
+    MBK_TRY(file.write(report::chart_svg(charts[k]), files_of(arguments)));
   }
   return {};
 }

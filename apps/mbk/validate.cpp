@@ -98,10 +98,9 @@ Result<void> write_charts(const ValidationTable& table, const std::filesystem::p
   if (table.charts.empty()) {
     return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "omit --charts");
   }
-  const auto files = ChartFiles::in(folder, overwrite, {});
-  if (!files) return tl::unexpected(files.error());
+  const auto files = MBK_TRY(ChartFiles::in(folder, overwrite, {}));
   for (std::size_t k = 0; k < table.charts.size(); ++k) {
-    if (auto ok = files->write(fmt::format("{}-{}", table.study, k + 1), table.charts[k]); !ok) return ok;
+    MBK_TRY(files.write(fmt::format("{}-{}", table.study, k + 1), table.charts[k]));
   }
   return {};
 }

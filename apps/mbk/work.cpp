@@ -62,9 +62,7 @@ int run(const WorkArguments& arguments) {
   }
   batch::ChunkDone done;
   const auto worked = with_units(*folder, [&](const batch::UnitFunction& compute) -> Result<void> {
-    const auto one = batch::work(*folder, *arguments.chunk, compute, {arguments.heartbeat_s});
-    if (!one) return tl::unexpected(one.error());
-    done = *one;
+    done = MBK_TRY(batch::work(*folder, *arguments.chunk, compute, {arguments.heartbeat_s}));
     return {};
   });
   if (!worked) return report_error(worked.error());

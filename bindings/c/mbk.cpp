@@ -108,9 +108,7 @@ Result<InMemory::Signal> signal_of(const mbk_signal& given, const std::shared_pt
   InMemory::Signal signal{text_of(given.name), text_of(given.unit), {}, static_cast<Index>(given.rows)};
   const std::size_t step = given.stride == 0 ? 1 : static_cast<std::size_t>(std::abs(given.stride));
   if (step > static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(double)) return mbk::bad_usage("a stride is too large");
-  if (auto ok = check_list(signal.name, given.values, given.count, step * sizeof(double)); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(check_list(signal.name, given.values, given.count, step * sizeof(double)));
   if (given.rows > static_cast<std::size_t>(PTRDIFF_MAX)) {
     return mbk::bad_usage("'" + signal.name + "' cannot have " + std::to_string(given.rows) + " rows");
   }

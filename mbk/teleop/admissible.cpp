@@ -161,7 +161,7 @@ Result<CriticalValues> critical_values(const ParametricTwoPort& two_port, const 
   critical.add_coefficients(d);
   for (const auto& row : n) {
     for (const ParametricPolynomial& entry : row) {
-      if (auto ok = add_poles(reduced(entry, d), critical); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(add_poles(reduced(entry, d), critical));
       work.finish(cost_of_entry);
     }
   }
@@ -255,12 +255,10 @@ double value_of(const Boundary& boundary) {
 Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Rational& low, const Rational& high,
                                      const std::function<void(double)>& progress) {
   if (low > high) return bad_usage("the range of the parameter ends before it begins", "write LOW:HIGH");
-  const auto two_port = immittance(equations);
-  if (!two_port) return tl::unexpected(two_port.error());
-  const auto critical = critical_values(*two_port, progress);
-  if (!critical) return tl::unexpected(critical.error());
-  const std::vector<Boundary> ends = boundaries(*critical, low, high);
-  const Search search(equations, *two_port);
+  const auto two_port = MBK_TRY(immittance(equations));
+  const auto critical = MBK_TRY(critical_values(two_port, progress));
+  const std::vector<Boundary> ends = boundaries(critical, low, high);
+  const Search search(equations, two_port);
 
   std::vector<Rational> samples;
   std::vector<bool> inside;  // whether the piece after each boundary but the last holds

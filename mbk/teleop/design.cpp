@@ -164,7 +164,7 @@ Result<Design> design_of(const Document& document, std::string_view file) {
     design.shortage = fraction(terminated, "shortage_N_s_per_m", *a);
   }
   if (design.is_architecture()) design.simulation = read_simulation(root.section("simulation"));
-  if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(document.finish());
   return design;
 }
 

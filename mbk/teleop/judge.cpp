@@ -101,12 +101,10 @@ struct Judged {
 };
 
 Result<Judged> judge_with(const Design& design, Port port, const Rational& a) {
-  const auto two_port = design.equations().with_shortage(port, Polynomial{a}).at(0);
-  if (!two_port) return tl::unexpected(two_port.error());
-  if (!design.exact_delay) return Judged{llewellyn(*two_port), *two_port};
-  auto stability = llewellyn_on_grid(std::get<Teleoperator>(design.network), *design.exact_delay, port, a);
-  if (!stability) return tl::unexpected(stability.error());
-  return Judged{std::move(*stability), *two_port};
+  const auto two_port = MBK_TRY(design.equations().with_shortage(port, Polynomial{a}).at(0));
+  if (!design.exact_delay) return Judged{llewellyn(two_port), two_port};
+  auto stability = MBK_TRY(llewellyn_on_grid(std::get<Teleoperator>(design.network), *design.exact_delay, port, a));
+  return Judged{std::move(stability), two_port};
 }
 
 Result<LargestShortage> largest_shortage_of(const Design& design, Port port) {
@@ -161,8 +159,7 @@ Result<std::string> unit_of(const Design& design, const std::string& name) {
 
 Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, const Rational& a,
                             const std::function<void(double)>& progress = {}) {
-  auto unit = unit_of(design, asked.parameter);
-  if (!unit) return tl::unexpected(unit.error());
+  auto unit = MBK_TRY(unit_of(design, asked.parameter));
   if (design.exact_delay) {
     return bad_usage("--parameter: with an exact delay there are no polynomials to solve", "use pade in [delay]");
   }
@@ -170,7 +167,7 @@ Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, 
   auto set = admissible_set(equations, asked.low, asked.high, progress);
   if (set) {
     set->parameter = asked.parameter;
-    set->unit = std::move(*unit);
+    set->unit = std::move(unit);
   }
   return set;
 }
@@ -197,11 +194,10 @@ Result<ExcessSweep> sweep_excess(const Design& design, const Question::Sweep& as
   result.frequency = kFelt;
   for (int i = 0; i < excess.steps; ++i) {
     const Rational delta = excess.low + (excess.high - excess.low) * Rational(i, excess.steps - 1);
-    auto set = sweep(design, asked, -delta);
-    if (!set) return tl::unexpected(set.error());
-    result.parameter = set->parameter;
-    result.unit = set->unit;
-    ExcessStep step{lti::to_double(delta), std::move(*set), {}};
+    auto set = MBK_TRY(sweep(design, asked, -delta));
+    result.parameter = set.parameter;
+    result.unit = set.unit;
+    ExcessStep step{lti::to_double(delta), std::move(set), {}};
     if (!step.set.intervals.empty()) {
       const auto largest = lti::exact(step.set.intervals.back().high.value);
       if (largest) step.felt = felt(design.equations(asked.parameter), *largest);
@@ -312,17 +308,14 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
     finding.largest_shortages.push_back(*largest);
   }
   if (question.sweep) {
-    auto set = sweep(design, *question.sweep, a, question.sweep_progress);
-    if (!set) return tl::unexpected(set.error());
-    finding.admissible = std::move(*set);
+    finding.admissible = MBK_TRY(sweep(design, *question.sweep, a, question.sweep_progress));
   }
   if (question.excess) {
     if (!question.sweep)
       return bad_usage("--excess shows a parameter against it", "name one: --parameter slave.k=0:1000");
-    auto swept = sweep_excess(design, *question.sweep, *question.excess, question.progress);
-    if (!swept) return tl::unexpected(swept.error());
-    swept->chart = excess_chart(*swept, finding.operator_shortage);
-    finding.excess = std::move(*swept);
+    auto swept = MBK_TRY(sweep_excess(design, *question.sweep, *question.excess, question.progress));
+    swept.chart = excess_chart(swept, finding.operator_shortage);
+    finding.excess = std::move(swept);
   }
 
   Immittance immittance = [&](RadPerSec omega) -> Eigen::MatrixXcd { return passive->two_port.matrix(omega); };

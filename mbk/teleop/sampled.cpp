@@ -56,10 +56,9 @@ std::vector<RadPerSec> frequencies(const FrequencyGrid& grid) {
 
 Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid, Port port,
                                             const Rational& a, double sample_time) {
-  if (auto ok = check_poles(teleoperator); !ok) return tl::unexpected(ok.error());
-  const auto at_once = teleoperator.without_delay().with_shortage(port, Polynomial{a}).at(0);
-  if (!at_once) return tl::unexpected(at_once.error());
-  const AbsoluteStability poles = llewellyn(*at_once);
+  MBK_TRY(check_poles(teleoperator));
+  const auto at_once = MBK_TRY(teleoperator.without_delay().with_shortage(port, Polynomial{a}).at(0));
+  const AbsoluteStability poles = llewellyn(at_once);
 
   const std::vector<RadPerSec> omega = frequencies(grid);
   std::vector<double> r11, r22, product, squares, third;
@@ -92,7 +91,7 @@ Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, co
 
 Result<LargestShortage> largest_shortage_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid,
                                                  Port port) {
-  if (auto ok = check_poles(teleoperator); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_poles(teleoperator));
   LargestShortage result;
   result.port = static_cast<int>(port);
   result.at_least = std::numeric_limits<double>::infinity();

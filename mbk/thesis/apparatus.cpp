@@ -48,15 +48,11 @@ Result<RobotIdentification> published(const Recording& recording, FrictionModel 
 }
 
 Result<FreeMotion> identified(const Recording& recording) {
-  auto viscous = published(recording, FrictionModel::viscous);
-  if (!viscous) return tl::unexpected(viscous.error());
-  auto full = published(recording, FrictionModel::full);
-  if (!full) return tl::unexpected(full.error());
-  auto by_default = validation::identified_robot(recording, FrictionModel::full);
-  if (!by_default) return tl::unexpected(by_default.error());
-  auto printed = published(recording, FrictionModel::full, PlanarMechanism::Coriolis::printed);
-  if (!printed) return tl::unexpected(printed.error());
-  return FreeMotion{std::move(*viscous), std::move(*full), std::move(*by_default), std::move(*printed)};
+  auto viscous = MBK_TRY(published(recording, FrictionModel::viscous));
+  auto full = MBK_TRY(published(recording, FrictionModel::full));
+  auto by_default = MBK_TRY(validation::identified_robot(recording, FrictionModel::full));
+  auto printed = MBK_TRY(published(recording, FrictionModel::full, PlanarMechanism::Coriolis::printed));
+  return FreeMotion{std::move(viscous), std::move(full), std::move(by_default), std::move(printed)};
 }
 
 }  // namespace
@@ -84,22 +80,18 @@ void add_claim(ReproducedTable& table, const char* claim, std::string ours) {
 }
 
 Result<FreeMotions> make_free_motions(Workbench& bench) {
-  const auto scenarios = validation::ready("free_motion");
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  const auto scenarios = MBK_TRY(validation::ready("free_motion"));
   FreeMotions all;
   all.trials.resize(kFreeMotions);
-  const auto ran = numeric::parallel_for(kFreeMotions, bench.options().threads, [&](int i) -> Result<void> {
-    laboratory::Scenario scenario = scenarios->front();
+  MBK_TRY(numeric::parallel_for(kFreeMotions, bench.options().threads, [&](int i) -> Result<void> {
+    laboratory::Scenario scenario = scenarios.front();
     scenario.seed = rig_seed(bench, scenario) + static_cast<std::uint64_t>(i);
-    auto performance = laboratory::simulate(scenario);
-    if (!performance) return tl::unexpected(performance.error());
-    auto found = identified(performance->recording);
-    if (!found) return tl::unexpected(found.error());
-    all.trials[static_cast<std::size_t>(i)] = std::move(*found);
-    if (i == 0) all.first = std::move(performance->recording);
+    auto performance = MBK_TRY(laboratory::simulate(scenario));
+    auto found = MBK_TRY(identified(performance.recording));
+    all.trials[static_cast<std::size_t>(i)] = std::move(found);
+    if (i == 0) all.first = std::move(performance.recording);
     return {};
-  });
-  if (!ran) return tl::unexpected(ran.error());
+  }));
   return all;
 }
 
@@ -108,18 +100,15 @@ Result<PreparedDynamics> prepare_free_motion(const Recording& recording, const r
 }
 
 Result<validation::Robots> identified_robots(Workbench& bench) {
-  const auto scenarios = validation::ready("free_motion");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario scenario = scenarios->front();
+  const auto scenarios = MBK_TRY(validation::ready("free_motion"));
+  laboratory::Scenario scenario = scenarios.front();
   scenario.seed = rig_seed(bench, scenario);
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
   validation::Robots robots;
   for (const FrictionModel friction : {FrictionModel::viscous, FrictionModel::full}) {
-    auto found = published(performance->recording, friction);
-    if (!found) return tl::unexpected(found.error());
-    found->model.covariance.resize(0, 0);  // no interval of what rests on it is shown
-    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(std::move(found->model));
+    auto found = MBK_TRY(published(performance.recording, friction));
+    found.model.covariance.resize(0, 0);  // no interval of what rests on it is shown
+    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(std::move(found.model));
   }
   return robots;
 }

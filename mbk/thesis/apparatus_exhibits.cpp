@@ -50,8 +50,7 @@ constexpr std::array kCoulomb = {Coefficient{"Coulomb, joint 1", "coulomb_1"},
 
 /// What the coefficients of a model are found to be, beside what they are.
 Result<ReproducedTable> coefficient_table(const char* id, const FreeMotions& motions, Model model, bool coulomb) {
-  const auto truth = validation::true_parameters(validation::FrictionModel::full);
-  if (!truth) return tl::unexpected(truth.error());
+  const auto truth = MBK_TRY(validation::true_parameters(validation::FrictionModel::full));
   ReproducedTable table;
   table.id = id;
   table.provenance = Provenance::simulated;
@@ -68,7 +67,7 @@ Result<ReproducedTable> coefficient_table(const char* id, const FreeMotions& mot
     const auto at = std::ranges::find(full.coefficients, std::string_view(one.name), [](const RobotCoefficient& known) {
       return std::string_view(known.coefficient.name);
     });
-    const double is = (*truth)[at - full.coefficients.begin()];
+    const double is = truth[at - full.coefficients.begin()];
     table.rows.push_back(
         {one.symbol,
          {cell(*value.ours), cell(value.spread.value_or(0.0)), cell(is), cell(100.0 * (*value.ours / is - 1.0))}});
@@ -106,40 +105,35 @@ ReproducedTable torque_table(const FreeMotions& motions) {
 
 /// " --seed 1001" of the first free motion, where it is not the scenario's own.
 Result<std::string> free_motion_seed(const Workbench& bench) {
-  const auto scenarios = validation::ready("free_motion");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  return seed_option(bench, scenarios->front());
+  const auto scenarios = MBK_TRY(validation::ready("free_motion"));
+  return seed_option(bench, scenarios.front());
 }
 
 Result<std::vector<std::string>> robot_commands(const Workbench& bench) {
-  const auto seed = free_motion_seed(bench);
-  if (!seed) return tl::unexpected(seed.error());
+  const auto seed = MBK_TRY(free_motion_seed(bench));
   return std::vector{
-      fmt::format("mbk simulate free_motion{} --out free.h5", *seed),
+      fmt::format("mbk simulate free_motion{} --out free.h5", seed),
       fmt::format("mbk robot identify free.h5 --terms viscous {}      # as published", kPublishedRobotOptions),
       fmt::format("mbk robot identify free.h5 {}      # with Coulomb friction", kPublishedRobotOptions),
       std::string("mbk robot identify free.h5      # mbk's own procedure")};
 }
 
 Result<void> table_A_1(Workbench& bench, Draft& exhibit) {
-  const auto motions = bench.once(make_free_motions);
-  if (!motions) return tl::unexpected(motions.error());
-  auto commands = robot_commands(bench);
-  if (!commands) return tl::unexpected(commands.error());
-  exhibit.commands = std::move(*commands);
+  const auto motions = MBK_TRY(bench.once(make_free_motions));
+  auto commands = MBK_TRY(robot_commands(bench));
+  exhibit.commands = std::move(commands);
   exhibit.commands.emplace_back("mbk validate robot --runs 6");
   exhibit.related = {"figure-A.4", "erratum-9", "table-5.4"};
   for (const auto& [id, model, coulomb] :
        {std::tuple{"A.1", &FreeMotion::viscous, false}, std::tuple{"A.1 with Coulomb", &FreeMotion::full, true},
         std::tuple{"A.1 by default", &FreeMotion::by_default, true}}) {
-    auto table = coefficient_table(id, **motions, model, coulomb);
-    if (!table) return tl::unexpected(table.error());
-    exhibit.tables.push_back(std::move(*table));
+    auto table = MBK_TRY(coefficient_table(id, *motions, model, coulomb));
+    exhibit.tables.push_back(std::move(table));
   }
-  exhibit.tables.push_back(torque_table(**motions));
+  exhibit.tables.push_back(torque_table(*motions));
   ReproducedTable claims = claims_table("A.1 claims");
   for (const int joint : {0, 1}) {
-    const std::vector<double> vaf = of_motions(**motions, &FreeMotion::viscous, [&](const RobotIdentification& found) {
+    const std::vector<double> vaf = of_motions(*motions, &FreeMotion::viscous, [&](const RobotIdentification& found) {
       return found.fit[static_cast<std::size_t>(joint)].vaf;
     });
     add_claim(claims, joint == 0 ? "VAF of τ1 in every trial" : "VAF of τ2 in every trial",
@@ -152,15 +146,12 @@ Result<void> table_A_1(Workbench& bench, Draft& exhibit) {
 // --- figure A.2
 
 Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
-  const auto scenarios = validation::ready("relaxed_sinusoidal");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario scenario = scenarios->front();
+  const auto scenarios = MBK_TRY(validation::ready("relaxed_sinusoidal"));
+  laboratory::Scenario scenario = scenarios.front();
   const laboratory::PlanarTrial& trial = validation::planar(scenario);
   const robot::PlanarRobot& robot = trial.robot.robot;
-  const auto workspace = robot::workspace(robot.geometry);
-  if (!workspace) return tl::unexpected(workspace.error());
-  const auto posture = robot::posture(robot, trial.home);
-  if (!posture) return tl::unexpected(posture.error());
+  const auto workspace = MBK_TRY(robot::workspace(robot.geometry));
+  const auto posture = MBK_TRY(robot::posture(robot, trial.home));
   exhibit.commands = {
       fmt::format("mbk robot workspace --at {:g},{:g} --out workspace.svg", 1e3 * trial.home[0], 1e3 * trial.home[1])};
   exhibit.related = {"table-A.1", "erratum-8"};
@@ -168,10 +159,10 @@ Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
   chart.equal_scale = true;
   ChartSeries outline{.name = "limit of the workspace", .drawn = ChartSeries::Drawn::line};
   constexpr std::size_t kPoints = 600;
-  const std::size_t every = (workspace->outline.size() + kPoints - 1) / kPoints;
-  for (std::size_t i = 0; i + 1 < workspace->outline.size(); i += every) {
-    outline.x.push_back(1e3 * workspace->outline[i][0]);
-    outline.y.push_back(1e3 * workspace->outline[i][1]);
+  const std::size_t every = (workspace.outline.size() + kPoints - 1) / kPoints;
+  for (std::size_t i = 0; i + 1 < workspace.outline.size(); i += every) {
+    outline.x.push_back(1e3 * workspace.outline[i][0]);
+    outline.y.push_back(1e3 * workspace.outline[i][1]);
   }
   outline.x.push_back(outline.x.front());
   outline.y.push_back(outline.y.front());
@@ -188,14 +179,14 @@ Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
   const auto add = [&](const char* name, double value, const char* unit) {
     table.rows.push_back({name, {cell(value), words(unit)}});
   };
-  add("area", 1e4 * workspace->area, "cm²");
-  add("least x", 1e3 * workspace->low[0], "mm");
-  add("largest x", 1e3 * workspace->high[0], "mm");
-  add("least y", 1e3 * workspace->low[1], "mm");
-  add("largest y", 1e3 * workspace->high[1], "mm");
-  add("θ1 at the test location", kDegrees * posture->theta[0], "°");
-  add("θ2 at the test location", kDegrees * posture->theta[1], "°");
-  add("nearest limit from there", kDegrees * robot::margin(robot.geometry.limits, posture->theta), "°");
+  add("area", 1e4 * workspace.area, "cm²");
+  add("least x", 1e3 * workspace.low[0], "mm");
+  add("largest x", 1e3 * workspace.high[0], "mm");
+  add("least y", 1e3 * workspace.low[1], "mm");
+  add("largest y", 1e3 * workspace.high[1], "mm");
+  add("θ1 at the test location", kDegrees * posture.theta[0], "°");
+  add("θ2 at the test location", kDegrees * posture.theta[1], "°");
+  add("nearest limit from there", kDegrees * robot::margin(robot.geometry.limits, posture.theta), "°");
   exhibit.tables.push_back(std::move(table));
   return {};
 }
@@ -203,35 +194,31 @@ Result<void> figure_A_2(Workbench& /*bench*/, Draft& exhibit) {
 // --- figure A.4
 
 Result<void> figure_A_4(Workbench& bench, Draft& exhibit) {
-  const auto motions = bench.once(make_free_motions);
-  if (!motions) return tl::unexpected(motions.error());
-  const FreeMotion& first = (*motions)->trials.front();
-  auto commands = robot_commands(bench);
-  if (!commands) return tl::unexpected(commands.error());
-  exhibit.commands = std::move(*commands);
+  const auto motions = MBK_TRY(bench.once(make_free_motions));
+  const FreeMotion& first = motions->trials.front();
+  auto commands = MBK_TRY(robot_commands(bench));
+  exhibit.commands = std::move(commands);
   exhibit.related = {"table-A.1"};
-  const auto signals = prepare_free_motion((*motions)->first, first.viscous.model);
-  if (!signals) return tl::unexpected(signals.error());
-  const auto coulomb = prepare_free_motion((*motions)->first, first.full.model);
-  if (!coulomb) return tl::unexpected(coulomb.error());
+  const auto signals = MBK_TRY(prepare_free_motion(motions->first, first.viscous.model));
+  const auto coulomb = MBK_TRY(prepare_free_motion(motions->first, first.full.model));
   for (std::size_t joint = 0; joint < 2; ++joint) {
-    const Vector predicted = signals->regressors[joint] * first.viscous.model.parameters;
-    const Vector with_coulomb = coulomb->regressors[joint] * first.full.model.parameters;
+    const Vector predicted = signals.regressors[joint] * first.viscous.model.parameters;
+    const Vector with_coulomb = coulomb.regressors[joint] * first.full.model.parameters;
     Chart torque{.x = {"time", "s"}, .y = {"torque", "N·m"}};
     Chart left{.x = {"time", "s"}, .y = {"recorded − predicted", "mN·m"}};
     ChartSeries recorded{.name = "recorded", .drawn = ChartSeries::Drawn::line},
         model{.name = "predicted", .drawn = ChartSeries::Drawn::line},
         viscous{.name = "viscous friction", .drawn = ChartSeries::Drawn::line},
         full{.name = "with Coulomb friction", .drawn = ChartSeries::Drawn::line};
-    for (const Segment& segment : signals->segments) {
+    for (const Segment& segment : signals.segments) {
       if (segment.purpose != Purpose::validation) continue;
       for (Index i = segment.begin; i < segment.end; ++i) {
-        const double time = signals->time[i], measured = signals->torque(i, static_cast<Index>(joint));
+        const double time = signals.time[i], measured = signals.torque(i, static_cast<Index>(joint));
         for (ChartSeries* series : {&recorded, &model, &viscous, &full}) series->x.push_back(time);
         recorded.y.push_back(measured);
         model.y.push_back(predicted[i]);
         viscous.y.push_back(1e3 * (measured - predicted[i]));
-        full.y.push_back(1e3 * (coulomb->torque(i, static_cast<Index>(joint)) - with_coulomb[i]));
+        full.y.push_back(1e3 * (coulomb.torque(i, static_cast<Index>(joint)) - with_coulomb[i]));
       }
     }
     torque.series = {std::move(recorded), std::move(model)};
@@ -258,15 +245,14 @@ Result<calibration::SensorRun> hang_weights(std::uint64_t seed, double scatter) 
   constexpr double kSampleTime = 1e-3, kLargest = 50.0, kStep = 10.0;  // [s], [N], [N]
   constexpr int kSettle = 500;                                         // samples
   const laboratory::StrainGaugeOptions options;
-  auto gauge = laboratory::StrainGauge::create(options, kSampleTime, seed);
-  if (!gauge) return tl::unexpected(gauge.error());
+  auto gauge = MBK_TRY(laboratory::StrainGauge::create(options, kSampleTime, seed));
   numeric::Random random(seed, 1);
   std::vector<Eigen::Vector4d> rows;
   const auto hang = [&](Index axis, double load) {
     const Eigen::Vector2d said = load * Eigen::Vector2d::Unit(axis);
     const Eigen::Vector2d hung = said + scatter * random.normal() * Eigen::Vector2d::Unit(axis);
-    Eigen::Vector2d reading = gauge->read(hung);
-    for (int k = 0; k < kSettle; ++k) reading = gauge->read(hung);
+    Eigen::Vector2d reading = gauge.read(hung);
+    for (int k = 0; k < kSettle; ++k) reading = gauge.read(hung);
     rows.emplace_back(said[0], said[1], voltage_of(options, reading[0], 0), voltage_of(options, reading[1], 1));
   };
   for (const Index axis : {Index{0}, Index{1}}) {
@@ -295,17 +281,14 @@ struct Gauge {
 
 Result<Gauge> make_gauge(Workbench& bench) {
   const std::uint64_t seed = bench.seed(0, 1);
-  auto exact = hang_weights(seed, 0.0), scattered = hang_weights(seed, kScatter);
-  if (!exact) return tl::unexpected(exact.error());
-  if (!scattered) return tl::unexpected(scattered.error());
+  auto exact = MBK_TRY(hang_weights(seed, 0.0));
+  auto scattered = MBK_TRY(hang_weights(seed, kScatter));
   calibration::SensorCalibrationOptions options;
   options.lever_arm = laboratory::StrainGaugeOptions{}.calibration_arm;
   options.converter = calibration::Converter{};
-  auto first = calibration::calibrate_sensor({*exact}, options);
-  if (!first) return tl::unexpected(first.error());
-  auto second = calibration::calibrate_sensor({*scattered}, options);
-  if (!second) return tl::unexpected(second.error());
-  return Gauge{std::move(*exact), std::move(*scattered), std::move(*first), std::move(*second)};
+  auto first = MBK_TRY(calibration::calibrate_sensor({exact}, options));
+  auto second = MBK_TRY(calibration::calibrate_sensor({scattered}, options));
+  return Gauge{std::move(exact), std::move(scattered), std::move(first), std::move(second)};
 }
 
 ReproducedTable line_table(const char* id, int decimals) {
@@ -357,11 +340,10 @@ Result<ReproducedTable> resolution_table(std::uint64_t seed) {
   std::array<Eigen::Vector2d, 3> rms;
   std::size_t at = 0;
   for (const laboratory::StrainGaugeOptions& one : {without_converter, without_noise, options}) {
-    auto gauge = laboratory::StrainGauge::create(one, kSampleTime, seed);
-    if (!gauge) return tl::unexpected(gauge.error());
+    auto gauge = MBK_TRY(laboratory::StrainGauge::create(one, kSampleTime, seed));
     Eigen::Vector2d squares(0.0, 0.0);
     // The rise is so slow that the filter's delay is a thousandth of a millinewton.
-    for (int k = 0; k < kSamples; ++k) squares += gauge->added(Eigen::Vector2d::Constant(kSlowRise * k)).cwiseAbs2();
+    for (int k = 0; k < kSamples; ++k) squares += gauge.added(Eigen::Vector2d::Constant(kSlowRise * k)).cwiseAbs2();
     rms[at++] = (squares / kSamples).cwiseSqrt();
   }
   ReproducedTable table;
@@ -392,28 +374,24 @@ constexpr const char* kLoadsCommand =
 constexpr const char* kCalibrateCommand = "mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10";
 
 Result<void> table_E_2(Workbench& bench, Draft& exhibit) {
-  const auto gauge = bench.once(make_gauge);
-  if (!gauge) return tl::unexpected(gauge.error());
-  auto resolution = resolution_table(bench.seed(0, 2));
-  if (!resolution) return tl::unexpected(resolution.error());
+  const auto gauge = MBK_TRY(bench.once(make_gauge));
+  auto resolution = MBK_TRY(resolution_table(bench.seed(0, 2)));
   exhibit.commands = {kLoadsCommand, kCalibrateCommand};
   exhibit.related = {"figure-E.5", "withdrawn-errata"};
-  exhibit.tables = {published_lines("E.2", (*gauge)->of_exact, 4),
-                    inverted_lines("E.2 inverted", (*gauge)->of_exact, 4),
-                    published_lines("E.2 scattered", (*gauge)->of_scattered, 3),
-                    inverted_lines("E.2 scattered inverted", (*gauge)->of_scattered, 3), std::move(*resolution)};
+  exhibit.tables = {published_lines("E.2", gauge->of_exact, 4), inverted_lines("E.2 inverted", gauge->of_exact, 4),
+                    published_lines("E.2 scattered", gauge->of_scattered, 3),
+                    inverted_lines("E.2 scattered inverted", gauge->of_scattered, 3), std::move(resolution)};
   return {};
 }
 
 Result<void> figure_E_5(Workbench& bench, Draft& exhibit) {
-  const auto gauge = bench.once(make_gauge);
-  if (!gauge) return tl::unexpected(gauge.error());
+  const auto gauge = MBK_TRY(bench.once(make_gauge));
   exhibit.commands = {kLoadsCommand, kCalibrateCommand};
   exhibit.related = {"table-E.2"};
-  const calibration::SensorRun& run = (*gauge)->scattered;
+  const calibration::SensorRun& run = gauge->scattered;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto at = static_cast<Index>(axis);
-    const ForceOnVoltage& line = (*gauge)->of_scattered.axes[axis].published;
+    const ForceOnVoltage& line = gauge->of_scattered.axes[axis].published;
     Chart chart{.x = {"voltage", "V"}, .y = {"load", "N"}};
     ChartSeries marks{.name = "loads"}, fitted{.name = "line of best fit", .drawn = ChartSeries::Drawn::line};
     const Index loads = run.force.rows() / 2;  // of this axis; the others hang at the other one

@@ -135,11 +135,10 @@ Result<void> gradient_of_springs(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.1", "table-5.1", "erratum-4"};
   const Given& given = bench.given();
   const double d1 = given.number("setup", "frame d1, m"), d2 = given.number("setup", "frame d2, m");
-  const auto array = calibration::SpringArray::create({{120.0, 0.09, {d2, d1}, {0.0, 0.0}},
-                                                       {80.0, 0.08, {-d2, d1}, {0.0, 0.0}},
-                                                       {150.0, 0.1, {-d2, -d1}, {0.0, 0.0}},
-                                                       {60.0, 0.07, {d2, 0.0}, {0.0, 0.0}}});
-  if (!array) return tl::unexpected(array.error());
+  const auto array = MBK_TRY(calibration::SpringArray::create({{120.0, 0.09, {d2, d1}, {0.0, 0.0}},
+                                                               {80.0, 0.08, {-d2, d1}, {0.0, 0.0}},
+                                                               {150.0, 0.1, {-d2, -d1}, {0.0, 0.0}},
+                                                               {60.0, 0.07, {d2, 0.0}, {0.0, 0.0}}}));
   const auto table_of = [](const char* id, const Matrix2d& gradient, const Matrix2d& K) {
     ReproducedTable table =
         computed_table(id, "entry", {{"K", "N/m", 2}, {"−grad F", "N/m", 2}, {"(D.3), as printed", "N/m", 2}});
@@ -154,13 +153,13 @@ Result<void> gradient_of_springs(Workbench& bench, Draft& exhibit) {
     return table;
   };
   const Vector2d hand(0.02, -0.03);
-  const Matrix2d of_springs = differences([&](const Vector2d& R) { return array->force(R); }, hand);
+  const Matrix2d of_springs = differences([&](const Vector2d& R) { return array.force(R); }, hand);
   Matrix2d K = model_of(arm_of(given.sinusoidal, "P1")).K;
   const double k_a = antisymmetric_stiffness(given);
   K(0, 1) += k_a;
   K(1, 0) -= k_a;
   const Matrix2d of_arm = differences([&](const Vector2d& x) { return Vector2d(-K * x); }, hand);
-  exhibit.tables = {table_of("erratum-10", of_springs, array->stiffness(hand)), table_of("erratum-10 arm", of_arm, K)};
+  exhibit.tables = {table_of("erratum-10", of_springs, array.stiffness(hand)), table_of("erratum-10 arm", of_arm, K)};
   return {};
 }
 
@@ -168,18 +167,17 @@ Result<void> majority_of_the_workspace(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {"mbk robot workspace --at 300,-50      # its area"};
   exhibit.related = {"table-A.1", "figure-A.2", "statements"};
   const robot::Geometry geometry;
-  const auto workspace = robot::workspace(geometry);
-  if (!workspace) return tl::unexpected(workspace.error());
+  const auto workspace = MBK_TRY(robot::workspace(geometry));
   // |cos| is largest, and symmetric, about θ₁ = θ₂: ∫∫ cos(θ₁ − θ₂) over a square of side r is 2 (1 − cos r).
   const auto swept = [&](double range) { return geometry.d1 * geometry.d2 * 2.0 * (1.0 - std::cos(range)); };
   const double range = bench.given().number("setup", "joint range of appendix A, °") * std::numbers::pi / 180.0;
-  const double half = std::acos(1.0 - 0.25 * workspace->area / (geometry.d1 * geometry.d2));
+  const double half = std::acos(1.0 - 0.25 * workspace.area / (geometry.d1 * geometry.d2));
   ReproducedTable table = computed_table("erratum-20", "", {{"area", "m²", 4}, {"of the workspace", "%", 1}});
   const auto add = [&](std::string name, double area) {
-    table.rows.push_back({std::move(name), {cell(area), cell(100.0 * area / workspace->area)}});
+    table.rows.push_back({std::move(name), {cell(area), cell(100.0 * area / workspace.area)}});
   };
-  exhibit.values = {{"swept", 100.0 * swept(range) / workspace->area}};
-  add("the workspace", workspace->area);
+  exhibit.values = {{"swept", 100.0 * swept(range) / workspace.area}};
+  add("the workspace", workspace.area);
   add("40° of each joint", swept(range));
   add(fmt::format("{:.0f}° of each joint", half * 180.0 / std::numbers::pi), swept(half));
   exhibit.tables = {std::move(table)};

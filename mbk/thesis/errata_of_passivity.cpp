@@ -26,11 +26,9 @@ Result<lti::RationalMatrix> impedance_of(const impedance::Model& model) {
 }
 
 Result<bool> is_positive_real(const impedance::Model& model) {
-  const auto Z = impedance_of(model);
-  if (!Z) return tl::unexpected(Z.error());
-  const auto real = lti::positive_real(*Z);
-  if (!real) return tl::unexpected(real.error());
-  return real->holds();
+  const auto Z = MBK_TRY(impedance_of(model));
+  const auto real = MBK_TRY(lti::positive_real(Z));
+  return real.holds();
 }
 
 /// Smallest eigenvalue of Z(jω) + Z(jω)*, of the numbers themselves.
@@ -59,19 +57,17 @@ Result<void> excess_of_the_largest(Workbench& bench, Draft& exhibit) {
   const auto add = [&](const std::vector<PrintedArm>& arms, const char* perturbation) -> Result<void> {
     for (const PrintedArm& arm : arms) {
       const impedance::Model model = model_of(arm);
-      const auto Z = impedance_of(model);
-      if (!Z) return tl::unexpected(Z.error());
-      const auto index = lti::input_passivity_index(*Z);
-      if (!index) return tl::unexpected(index.error());
+      const auto Z = MBK_TRY(impedance_of(model));
+      const auto index = MBK_TRY(lti::input_passivity_index(Z));
       const double published = impedance::published_excess_of_passivity(model).value;
       table.rows.push_back({fmt::format("{}, {}", arm.name, perturbation),
-                            {cell(published), cell(impedance::smallest_eigenvalue(model, 1).value), cell(index->value),
+                            {cell(published), cell(impedance::smallest_eigenvalue(model, 1).value), cell(index.value),
                              cell(smallest_of_hermitian_part(model, 1.0) - 2.0 * published)}});
     }
     return {};
   };
-  if (auto ok = add(bench.given().sinusoidal, "sinusoidal"); !ok) return ok;
-  if (auto ok = add(bench.given().underdamped, "underdamped"); !ok) return ok;
+  MBK_TRY(add(bench.given().sinusoidal, "sinusoidal"));
+  MBK_TRY(add(bench.given().underdamped, "underdamped"));
   exhibit.tables = {std::move(table)};
   return {};
 }
@@ -92,12 +88,11 @@ Result<void> theorem_at_its_boundary(Workbench& /*bench*/, Draft& exhibit) {
     if (k == 2) model.K = edge;
     const Matrix& Z = impedance::matrix_of(model, std::min(k, 2));
     const double determinant = Z(0, 0) * Z(1, 1) - Z(0, 1) * Z(1, 0) + 0.0;  // no minus zero
-    const auto real = is_positive_real(model);
-    if (!real) return tl::unexpected(real.error());
+    const auto real = MBK_TRY(is_positive_real(model));
     table.rows.push_back(
         {kNames[static_cast<std::size_t>(k)],
          {cell(Z(0, 0)), cell(determinant), words(Z(0, 0) >= 0.0 && determinant >= 0.0 ? "passive" : "not passive"),
-          cell(impedance::smallest_eigenvalue(model, std::min(k, 2)).value), words(yes(*real))}});
+          cell(impedance::smallest_eigenvalue(model, std::min(k, 2)).value), words(yes(real))}});
   }
   exhibit.tables = {std::move(table)};
   return {};
@@ -108,29 +103,27 @@ Result<void> theorem_without_poles(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"erratum-1", "erratum-2", "erratum-17"};
   const impedance::Model p1 = model_of(arm_of(bench.given().sinusoidal, "P1"));
   const double excess = impedance::smallest_eigenvalue(p1, 1).value;
-  const auto Z = impedance_of(p1);
-  if (!Z) return tl::unexpected(Z.error());
+  const auto Z = MBK_TRY(impedance_of(p1));
   std::string finite;
-  for (const auto& pole : lti::poles(*Z)) finite += fmt::format("{}{:g}", finite.empty() ? "" : ", ", pole.real());
-  exhibit.values = {{"finite_poles", finite}, {"poles_at_infinity", (*Z)(0, 0).is_proper() ? "none" : "one"}};
+  for (const auto& pole : lti::poles(Z)) finite += fmt::format("{}{:g}", finite.empty() ? "" : ", ", pole.real());
+  exhibit.values = {{"finite_poles", finite}, {"poles_at_infinity", Z(0, 0).is_proper() ? "none" : "one"}};
   ReproducedTable table = computed_table(
       "erratum-3", "δ taken off the damping",
       {{"δ", "N·s/m", 3}, {"½ λ_min(H)", "N·s/m", 3}, {"λ_min(K)", "N/m", 1}, {"Z − δI positive real", "", 0}});
   const auto add = [&](const char* name, impedance::Model model, double delta) -> Result<void> {
     model.B -= delta * Matrix::Identity(2, 2);
-    const auto real = is_positive_real(model);
-    if (!real) return tl::unexpected(real.error());
+    const auto real = MBK_TRY(is_positive_real(model));
     table.rows.push_back({name,
                           {cell(delta), cell(0.5 * smallest_of_hermitian_part(model, 1.0)),
-                           cell(impedance::smallest_eigenvalue(model, 2).value), words(yes(*real))}});
+                           cell(impedance::smallest_eigenvalue(model, 2).value), words(yes(real))}});
     return {};
   };
   impedance::Model springy = p1;
   springy.K = -springy.K;
-  if (auto ok = add("0.999 λ_min", p1, 0.999 * excess); !ok) return ok;
-  if (auto ok = add("1.001 λ_min", p1, 1.001 * excess); !ok) return ok;
-  if (auto ok = add("λ_max/2, as published", p1, impedance::published_excess_of_passivity(p1).value); !ok) return ok;
-  if (auto ok = add("0.999 λ_min, with −K in place of K", springy, 0.999 * excess); !ok) return ok;
+  MBK_TRY(add("0.999 λ_min", p1, 0.999 * excess));
+  MBK_TRY(add("1.001 λ_min", p1, 1.001 * excess));
+  MBK_TRY(add("λ_max/2, as published", p1, impedance::published_excess_of_passivity(p1).value));
+  MBK_TRY(add("0.999 λ_min, with −K in place of K", springy, 0.999 * excess));
   exhibit.tables = {std::move(table)};
   return {};
 }

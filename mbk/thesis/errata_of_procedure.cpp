@@ -80,9 +80,8 @@ Result<double> minus_3_db(const dsp::SavitzkyGolay& filter, int derivative) {
   double low = 0.1, high = 100.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    const auto gain = dsp::savitzky_golay_gain(filter, derivative, Hertz(middle), kRate);
-    if (!gain) return tl::unexpected(gain.error());
-    (*gain > std::numbers::sqrt2 / 2.0 ? low : high) = middle;
+    const auto gain = MBK_TRY(dsp::savitzky_golay_gain(filter, derivative, Hertz(middle), kRate));
+    (gain > std::numbers::sqrt2 / 2.0 ? low : high) = middle;
   }
   return low;
 }
@@ -96,10 +95,9 @@ Result<Chart> filter_chart(const dsp::SectionCascade& lowpass) {
     ChartSeries series{kNames[static_cast<std::size_t>(derivative)], {}, {}, {}, ChartSeries::Drawn::line};
     for (int i = 1; i <= 100; ++i) {
       const Hertz frequency(0.1 * i);
-      const auto gain = dsp::savitzky_golay_gain(kSmoothing, derivative, frequency, kRate);
-      if (!gain) return tl::unexpected(gain.error());
+      const auto gain = MBK_TRY(dsp::savitzky_golay_gain(kSmoothing, derivative, frequency, kRate));
       series.x.push_back(frequency.value);
-      series.y.push_back(*gain * std::pow(dsp::gain(lowpass, frequency, kRate), 2));
+      series.y.push_back(gain * std::pow(dsp::gain(lowpass, frequency, kRate), 2));
     }
     chart.series.push_back(std::move(series));
   }
@@ -117,33 +115,29 @@ Result<void> smoothing_cutoff(Workbench& bench, Draft& exhibit) {
   ReproducedTable table = computed_table(
       "erratum-7", "N, W", {{"(3.6), as printed", "Hz", 2}, {"Schafer", "Hz", 2}, {"from the weights", "Hz", 2}});
   for (const dsp::SavitzkyGolay& filter : {kSmoothing, dsp::SavitzkyGolay{6, 151}, dsp::SavitzkyGolay{4, 51}}) {
-    const auto cutoff = dsp::savitzky_golay_cutoff(filter, kRate);
-    if (!cutoff) return tl::unexpected(cutoff.error());
+    const auto cutoff = MBK_TRY(dsp::savitzky_golay_cutoff(filter, kRate));
     const double nyquist = 0.5 * kRate.value;
     table.rows.push_back(
         {fmt::format("{}, {}", filter.order, filter.window),
          {cell(nyquist * (filter.order + 1) / (1.6 * filter.window - 4.6)),
-          cell(nyquist * (filter.order + 1) / (3.2 * filter.half_window() - 4.6)), cell(cutoff->value)}});
+          cell(nyquist * (filter.order + 1) / (3.2 * filter.half_window() - 4.6)), cell(cutoff.value)}});
   }
   ReproducedTable derivatives = computed_table("erratum-7 derivatives", "derivative", {{"cutoff", "Hz", 1}});
   for (const int derivative : {1, 2}) {
-    const auto cutoff = minus_3_db(kSmoothing, derivative);
-    if (!cutoff) return tl::unexpected(cutoff.error());
-    derivatives.rows.push_back({derivative == 1 ? "first" : "second", {cell(*cutoff)}});
+    const auto cutoff = MBK_TRY(minus_3_db(kSmoothing, derivative));
+    derivatives.rows.push_back({derivative == 1 ? "first" : "second", {cell(cutoff)}});
   }
   const double cutoff = bench.given().number("setup", "cutoff of chapter 3, Hz");
-  const auto lowpass = dsp::butterworth_lowpass(5, Hertz(cutoff), kRate);
-  if (!lowpass) return tl::unexpected(lowpass.error());
+  const auto lowpass = MBK_TRY(dsp::butterworth_lowpass(5, Hertz(cutoff), kRate));
   ReproducedTable twice =
       computed_table("erratum-7 low-pass", "frequency", {{"gain, once", "", 3}, {"gain, forward and backward", "", 3}});
   for (const double frequency : {2.0, 3.0, 4.0, 5.0}) {
-    const double gain = dsp::gain(*lowpass, Hertz(frequency), kRate);
+    const double gain = dsp::gain(lowpass, Hertz(frequency), kRate);
     twice.rows.push_back({fmt::format("{:g} Hz", frequency), {cell(gain), cell(gain * gain)}});
   }
-  auto chart = filter_chart(*lowpass);
-  if (!chart) return tl::unexpected(chart.error());
+  auto chart = MBK_TRY(filter_chart(lowpass));
   exhibit.tables = {std::move(table), std::move(derivatives), std::move(twice)};
-  exhibit.charts = {std::move(*chart)};
+  exhibit.charts = {std::move(chart)};
   return {};
 }
 
@@ -223,11 +217,10 @@ Result<Recording> sinusoidal_recording(const impedance::Model& model) {
 }
 
 Result<Recording> pulse_recording(const impedance::Model& model) {
-  const auto pulses = perturbation::PulseSchedule::create({});
-  if (!pulses) return tl::unexpected(pulses.error());
-  const auto samples = static_cast<Index>((pulses->pulses().back().offset + 3.0) * kRate.value);
+  const auto pulses = MBK_TRY(perturbation::PulseSchedule::create({}));
+  const auto samples = static_cast<Index>((pulses.pulses().back().offset + 3.0) * kRate.value);
   return exact_recording(
-      model, samples, [&](double t) { return pulses->at(t); }, [&](double t) { return pulses->reference(t); });
+      model, samples, [&](double t) { return pulses.at(t); }, [&](double t) { return pulses.reference(t); });
 }
 
 }  // namespace
@@ -238,17 +231,15 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
       "mbk measure pulses.h5"};
   exhibit.related = {"table-3.2", "table-3.4", "statements"};
   impedance::Model model = model_of(arm_of(bench.given().sinusoidal, "P1"));
-  const auto lasting = sinusoidal_recording(model);
-  if (!lasting) return tl::unexpected(lasting.error());
+  const auto lasting = MBK_TRY(sinusoidal_recording(model));
   preprocess::Options reference;
   reference.mode = Mode::reference;
   reference.protocol = Protocol::sinusoidal;
-  const auto trial = preprocess::prepare(*lasting, recording::inspect(*lasting), reference);
-  if (!trial) return tl::unexpected(trial.error());
+  const auto trial = MBK_TRY(preprocess::prepare(lasting, recording::inspect(lasting), reference));
   // The program's window is samples 11999 to 61999, both of them in it.
   const Index window = 62000 - 11999, possible = window - 2 * kSmoothing.half_window();
-  Index used = 0, validating = 0, first = trial->recording_duration > 0 ? 1000000 : 0;
-  for (const Segment& segment : trial->segments) {
+  Index used = 0, validating = 0, first = trial.recording_duration > 0 ? 1000000 : 0;
+  for (const Segment& segment : trial.segments) {
     used += segment.size();
     if (segment.purpose == Purpose::validation) validating += segment.size();
     first = std::min(first, segment.first_sample);
@@ -264,8 +255,7 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
                   {"to validate",
                    {cell(static_cast<double>(possible - 40000)), cell(static_cast<double>(validating)),
                     cell(static_cast<double>(validating) / kRate.value)}}};
-  const auto pulses = pulse_recording(model);
-  if (!pulses) return tl::unexpected(pulses.error());
+  const auto pulses = MBK_TRY(pulse_recording(model));
   ReproducedTable smear = computed_table(
       "erratum-13 pulses", "procedure",
       {{"m_yy", "kg", 5}, {"b_yy", "N·s/m", 4}, {"k_yy", "N/m", 4}, {"largest error of M, B, K", "", 6}});
@@ -276,9 +266,8 @@ Result<void> samples_of_the_program(Workbench& bench, Draft& exhibit) {
     options.preprocess.mode = mode;
     options.passivity = false;
     options.identify.parameters_from = ParametersFrom::all;
-    const auto measured = measurement::measure({&*pulses, 1}, options);
-    if (!measured) return tl::unexpected(measured.error());
-    const impedance::Model& found = measured->identification.model;
+    const auto measured = MBK_TRY(measurement::measure({&pulses, 1}, options));
+    const impedance::Model& found = measured.identification.model;
     double largest = 0.0;
     for (const auto& [a, b] : {std::pair{&found.M, &model.M}, {&found.B, &model.B}, {&found.K, &model.K}}) {
       largest = std::max(largest, (*a - *b).cwiseAbs().maxCoeff() / b->cwiseAbs().maxCoeff());

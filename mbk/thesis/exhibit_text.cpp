@@ -193,7 +193,7 @@ Result<std::vector<ExhibitText>> read_text(std::span<const std::string_view> fil
   for (std::string_view file : files) {
     while (!file.empty()) {
       const auto end = std::min(file.find('\n'), file.size());
-      if (auto ok = reader.take(file.substr(0, end)); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(reader.take(file.substr(0, end)));
       file.remove_prefix(std::min(end + 1, file.size()));
     }
   }
@@ -220,28 +220,27 @@ Names placeholders(const ExhibitText& text) {
 }
 
 Result<void> put_text(const ExhibitText& text, const TextValues& common, Draft& draft) {
-  auto words = filled(text, common, draft.values);
-  if (!words) return tl::unexpected(words.error());
-  draft.title = std::move(words->title);
-  draft.text = std::move(words->paragraphs);
-  if (!std::ranges::equal(words->tables, draft.tables, {}, &TableText::id, &ReproducedTable::id)) {
+  auto words = MBK_TRY(filled(text, common, draft.values));
+  draft.title = std::move(words.title);
+  draft.text = std::move(words.paragraphs);
+  if (!std::ranges::equal(words.tables, draft.tables, {}, &TableText::id, &ReproducedTable::id)) {
     return bad_data("the text has other tables");
   }
   for (std::size_t k = 0; k < draft.tables.size(); ++k) {
-    TableText& table = words->tables[k];
+    TableText& table = words.tables[k];
     draft.tables[k].title = std::move(table.caption);
     if (table.columns.empty()) continue;
-    if (auto ok = put_columns(table, draft.tables[k]); !ok) return ok;
+    MBK_TRY(put_columns(table, draft.tables[k]));
   }
-  auto chart_text = words->charts.begin();
+  auto chart_text = words.charts.begin();
   for (Chart& chart : draft.charts) {
     if (!chart.title.empty()) continue;
-    if (chart_text == words->charts.end()) return bad_data("a chart has no caption");
+    if (chart_text == words.charts.end()) return bad_data("a chart has no caption");
     chart.title = std::move(chart_text->caption);
     chart.notes = std::move(chart_text->notes);
     ++chart_text;
   }
-  if (chart_text != words->charts.end()) return bad_data(fmt::format("there is no chart '{}'", chart_text->caption));
+  if (chart_text != words.charts.end()) return bad_data(fmt::format("there is no chart '{}'", chart_text->caption));
   return {};
 }
 

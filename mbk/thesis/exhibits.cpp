@@ -27,9 +27,8 @@ std::vector<double> of_trials(const TaskResult& result, const std::function<doub
 }
 
 Result<const TaskResult*> first_of(Workbench& bench, Task task) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
-  return &(*results)->front();
+  const auto results = MBK_TRY(bench.results(task));
+  return &results->front();
 }
 
 std::string report_command(const Workbench& bench, Task task) {

@@ -50,17 +50,14 @@ controller_stiffness_N_per_m = 200
 
 /// The slave's stiffnesses that are stable with an operator of that shortage a.
 Result<ReproducedCell> admissible_stiffness(double a) {
-  const auto design = teleop::parse_design(kDesign, "position_position.toml");
-  if (!design) return tl::unexpected(design.error());
+  const auto design = MBK_TRY(teleop::parse_design(kDesign, "position_position.toml"));
   teleop::Question question;
   question.operator_shortage = OperatorShortage{a, "measured", {}};
-  const auto sweep = teleop::parse_sweep("slave.k=0:5000");
-  if (!sweep) return tl::unexpected(sweep.error());
-  question.sweep = *sweep;
-  const auto finding = teleop::judge(*design, question);
-  if (!finding) return tl::unexpected(finding.error());
+  const auto sweep = MBK_TRY(teleop::parse_sweep("slave.k=0:5000"));
+  question.sweep = sweep;
+  const auto finding = MBK_TRY(teleop::judge(design, question));
   std::string text;
-  for (const AdmissibleInterval& interval : finding->admissible->intervals) {
+  for (const AdmissibleInterval& interval : finding.admissible->intervals) {
     text += fmt::format("{}{:.1f} to {:.1f}", text.empty() ? "" : ", ", interval.low.value, interval.high.value);
   }
   return words(text.empty() ? "none" : text);
@@ -73,11 +70,9 @@ Result<void> teleoperation(Workbench& bench, Draft& exhibit) {
       "p1.json && mbk teleop examples/teleop/position_position.toml --parameter slave.k=0:5000 --operator "
       "p1.json",
       bench.seed(1, 1), kHandleMass)};
-  const auto relaxed = first_of(bench, Task::relaxed_sinusoidal);
-  if (!relaxed) return tl::unexpected(relaxed.error());
-  const auto rigid = first_of(bench, Task::rigid_underdamped);
-  if (!rigid) return tl::unexpected(rigid.error());
-  const auto& models = (*relaxed)->pooled.passivity->models;
+  const auto relaxed = MBK_TRY(first_of(bench, Task::relaxed_sinusoidal));
+  const auto rigid = MBK_TRY(first_of(bench, Task::rigid_underdamped));
+  const auto& models = relaxed->pooled.passivity->models;
   if (models.empty() || !models.front().excess) return bad_data("the relaxed arm has no excess of passivity");
   ReproducedTable table =
       table_of(exhibit, "operator", {{"excess of passivity", "N·s/m", 2}, {"stable k_s, 0 to 5000 N/m", "N/m", 1}});
@@ -85,10 +80,9 @@ Result<void> teleoperation(Workbench& bench, Draft& exhibit) {
        {std::pair{"passive, nothing else known", 0.0},
         std::pair{"P1 relaxed: lower end of the 95 % interval", models.front().excess->corrected95.first},
         std::pair{"P1 rigid under pulses: upper end of the shortage",
-                  -(*rigid)->pooled.passivity->trial->energy.shortage_largest95.second}}) {
-    auto stable = admissible_stiffness(-excess);
-    if (!stable) return tl::unexpected(stable.error());
-    table.rows.push_back({name, {cell(excess), std::move(*stable)}});
+                  -rigid->pooled.passivity->trial->energy.shortage_largest95.second}}) {
+    auto stable = MBK_TRY(admissible_stiffness(-excess));
+    table.rows.push_back({name, {cell(excess), std::move(stable)}});
   }
   exhibit.tables = {std::move(table)};
   return {};
@@ -97,10 +91,9 @@ Result<void> teleoperation(Workbench& bench, Draft& exhibit) {
 Result<void> cns_model(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-4.4", "table-4.1"};
   exhibit.commands = {"mbk validate one-dimensional", "mbk validate participant"};
-  const auto grasps = bench.one_axis_grasps();
-  if (!grasps) return tl::unexpected(grasps.error());
-  Vector vaf(std::ssize(**grasps));
-  for (Index k = 0; k < vaf.size(); ++k) vaf[k] = (**grasps)[static_cast<std::size_t>(k)].vaf;
+  const auto grasps = MBK_TRY(bench.one_axis_grasps());
+  Vector vaf(std::ssize(*grasps));
+  for (Index k = 0; k < vaf.size(); ++k) vaf[k] = (*grasps)[static_cast<std::size_t>(k)].vaf;
   std::ranges::sort(vaf);
   ReproducedTable table = table_of(exhibit, "of the trials", {{"VAF", "%", 1}});
   table.rows = {{"lowest", {cell(vaf[0])}},
@@ -131,11 +124,10 @@ Result<void> reaction_time(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {fmt::format(
       "mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
       bench.seed(1, 1), kHandleMass)};
-  const auto results = bench.results(Task::rigid_underdamped);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(Task::rigid_underdamped));
   ReproducedTable table = table_of(exhibit, "participant", {{"first 150 ms", "mJ", 1}, {"from then on", "mJ", 1}});
   table.spread_is = "standard deviation over the pulses";
-  for (const TaskResult& result : **results) {
+  for (const TaskResult& result : *results) {
     std::vector<double> before, after;
     for (const EnergyPart& pulse : result.trials.front().energy.parts) {
       before.push_back(1e3 * absorbed(result.first, pulse.from_s, pulse.from_s + kReaction));
@@ -153,16 +145,13 @@ Result<void> joint_domain(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {fmt::format(
       "mbk simulate relaxed_sinusoidal --seed {} --out p1.h5 && mbk measure p1.h5 --handle-mass {} --domain joint",
       bench.seed(1, 1), kHandleMass)};
-  const auto relaxed = first_of(bench, Task::relaxed_sinusoidal);
-  if (!relaxed) return tl::unexpected(relaxed.error());
-  const Identification& identification = (*relaxed)->pooled.identification;
+  const auto relaxed = MBK_TRY(first_of(bench, Task::relaxed_sinusoidal));
+  const Identification& identification = relaxed->pooled.identification;
   const Preparation& window = identification.preparations.front();
-  const auto posture = analyse::posture((*relaxed)->first, window.from_s, window.to_s);
+  const auto posture = analyse::posture(relaxed->first, window.from_s, window.to_s);
   if (!posture) return bad_data("the recording does not say how the arm stood");
-  const auto joints = analyse::analyse_joint_domain(identification, *posture);
-  if (!joints) return tl::unexpected(joints.error());
-  const auto limb = participant::participant_limb(1);
-  if (!limb) return tl::unexpected(limb.error());
+  const auto joints = MBK_TRY(analyse::analyse_joint_domain(identification, *posture));
+  const auto limb = MBK_TRY(participant::participant_limb(1));
   ReproducedTable table =
       table_of(exhibit, "element", {{"measured", "", 3}, {"standard error", "", 3}, {"given to the arm", "", 3}});
   struct Quantity {
@@ -170,9 +159,9 @@ Result<void> joint_domain(Workbench& bench, Draft& exhibit) {
     const Matrix *value, *error;
     const Eigen::Matrix2d* given;
   };
-  for (const Quantity& quantity : {Quantity{"M_q", "kg·m²", &joints->M, &joints->M_error, &limb->joints.inertia},
-                                   Quantity{"B_q", "N·m·s/rad", &joints->B, &joints->B_error, &limb->joints.damping},
-                                   Quantity{"K_q", "N·m/rad", &joints->K, &joints->K_error, &limb->joints.stiffness}}) {
+  for (const Quantity& quantity : {Quantity{"M_q", "kg·m²", &joints.M, &joints.M_error, &limb.joints.inertia},
+                                   Quantity{"B_q", "N·m·s/rad", &joints.B, &joints.B_error, &limb.joints.damping},
+                                   Quantity{"K_q", "N·m/rad", &joints.K, &joints.K_error, &limb.joints.stiffness}}) {
     for (const auto& [i, j] : {std::pair{0, 0}, std::pair{0, 1}, std::pair{1, 1}}) {
       table.rows.push_back(
           {fmt::format("{} {}{} [{}]", quantity.name, i + 1, j + 1, quantity.unit),
@@ -190,20 +179,17 @@ struct Measured {
 };
 
 Result<Measured> measured(laboratory::Scenario scenario) {
-  auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
+  auto performance = MBK_TRY(laboratory::simulate(scenario));
   measurement::Options options;
   options.identify.handle_mass = kHandleMass;
-  auto found = measurement::measure({&performance->recording, 1}, options);
-  if (!found) return tl::unexpected(found.error());
-  return Measured{std::move(*performance), std::move(*found)};
+  auto found = MBK_TRY(measurement::measure({&performance.recording, 1}, options));
+  return Measured{std::move(performance), std::move(found)};
 }
 
 Result<void> force_task(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"table-3.2"};
   exhibit.commands = {"mbk simulate force_task --out force.h5 && mbk measure force.h5 --handle-mass 0.194"};
-  auto scenarios = validation::ready("force_task");
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  auto scenarios = MBK_TRY(validation::ready("force_task"));
   ReproducedTable table = table_of(exhibit, "task",
                                    {{"λ_min K", "N/m", 0},
                                     {"λ_max K", "N/m", 0},
@@ -214,22 +200,21 @@ Result<void> force_task(Workbench& bench, Draft& exhibit) {
                                     {"RMS force", "N", 2},
                                     {"energy absorbed", "J", 2}});
   for (const bool task : {true, false}) {
-    laboratory::Scenario scenario = scenarios->front();
+    laboratory::Scenario scenario = scenarios.front();
     scenario.seed = bench.seed(1, 1);
     auto& arm = std::get<participant::ArmOptions>(std::get<laboratory::PlanarTrial>(scenario.trial).load);
     if (!task) arm.controller.force_gain = 0.0;
-    const auto found = measured(scenario);
-    if (!found) return tl::unexpected(found.error());
-    const Identification& identification = found->result.identification;
+    const auto found = MBK_TRY(measured(scenario));
+    const Identification& identification = found.result.identification;
     const impedance::Ellipse K = impedance::ellipse(identification.model.K),
                              B = impedance::ellipse(identification.model.B);
-    const Recording& recording = found->performance.recording;
+    const Recording& recording = found.performance.recording;
     const Vector squares =
         recording.find("force_x")->values.cwiseAbs2() + recording.find("force_y")->values.cwiseAbs2();
     table.rows.push_back({task ? "force to be kept at zero" : "relaxed",
                           {cell(K.lambda_min), cell(K.lambda_max), cell(B.lambda_min), cell(B.lambda_max),
                            cell(identification.fit.vaf[0]), cell(identification.fit.vaf[1]),
-                           cell(std::sqrt(squares.mean())), cell(found->performance.energy_absorbed)}});
+                           cell(std::sqrt(squares.mean())), cell(found.performance.energy_absorbed)}});
   }
   exhibit.tables = {std::move(table)};
   return {};
@@ -238,14 +223,12 @@ Result<void> force_task(Workbench& bench, Draft& exhibit) {
 Result<void> pathologies(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"future-work-7"};
   exhibit.commands = {"mbk simulate abnormal_tone --out tone.h5 && mbk measure tone.h5 --handle-mass 0.194"};
-  auto scenarios = validation::ready("abnormal_tone");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  scenarios->front().seed = bench.seed(1, 1);
+  auto scenarios = MBK_TRY(validation::ready("abnormal_tone"));
+  scenarios.front().seed = bench.seed(1, 1);
   const auto& robot =
-      std::get<participant::ToneRobot::Options>(std::get<laboratory::PlanarTrial>(scenarios->front().trial).load);
-  const auto found = measured(scenarios->front());
-  if (!found) return tl::unexpected(found.error());
-  const Identification& identification = found->result.identification;
+      std::get<participant::ToneRobot::Options>(std::get<laboratory::PlanarTrial>(scenarios.front().trial).load);
+  const auto found = MBK_TRY(measured(scenarios.front()));
+  const Identification& identification = found.result.identification;
   ReproducedTable table =
       table_of(exhibit, "element", {{"programmed", "", 1}, {"measured", "", 1}, {"standard error", "", 1}});
   struct Quantity {
@@ -278,26 +261,23 @@ Result<void> impedance_width(Workbench& bench, Draft& exhibit) {
       "mbk simulate relaxed_sinusoidal --seed {0} --out relaxed.h5 && mbk simulate rigid_sinusoidal_6N --seed {0} "
       "--out rigid.h5 && mbk compare relaxed.h5 rigid.h5 --method iv --handle-mass {1}",
       bench.seed(1, 1), kHandleMass)};
-  const auto relaxed = first_of(bench, Task::relaxed_sinusoidal);
-  if (!relaxed) return tl::unexpected(relaxed.error());
-  const auto rigid = first_of(bench, Task::rigid_sinusoidal);
-  if (!rigid) return tl::unexpected(rigid.error());
+  const auto relaxed = MBK_TRY(first_of(bench, Task::relaxed_sinusoidal));
+  const auto rigid = MBK_TRY(first_of(bench, Task::rigid_sinusoidal));
   const auto widths =
-      analyse::analyse_width((*relaxed)->pooled.identification, (*rigid)->by(Method::instrumental_variables));
-  if (!widths) return tl::unexpected(widths.error());
+      MBK_TRY(analyse::analyse_width(relaxed->pooled.identification, rigid->by(Method::instrumental_variables)));
   ReproducedTable table = table_of(exhibit, "matrix",
                                    {{"width", "", 2},
                                     {"95 %, low", "", 2},
                                     {"95 %, high", "", 2},
                                     {"rigid over relaxed, least", "times", 1},
                                     {"rigid over relaxed, most", "times", 1}});
-  for (std::size_t k = 0; k < widths->of.size(); ++k) {
+  for (std::size_t k = 0; k < widths.of.size(); ++k) {
     ReproducedRow row{kMatrixNames[k], std::vector<ReproducedCell>(5)};
-    if (const auto& width = widths->of[k]) {
+    if (const auto& width = widths.of[k]) {
       row.cells = {cell(width->distance), cell(width->distance95.first), cell(width->distance95.second),
                    cell(width->ratios.front().ratio), cell(width->ratios.back().ratio)};
     } else {
-      row.cells[0] = words(widths->refused[k]);
+      row.cells[0] = words(widths.refused[k]);
     }
     table.rows.push_back(std::move(row));
   }

@@ -30,12 +30,11 @@ struct Outcome {
 };
 
 Result<Outcome> outcome_of(Workbench& bench, Task task) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(task));
   Outcome outcome;
   outcome.min_energy = std::numeric_limits<double>::infinity();
   outcome.max_energy = -outcome.min_energy;
-  for (const TaskResult& result : **results) {
+  for (const TaskResult& result : *results) {
     ++outcome.people;
     const Verdict verdict = result.pooled.passivity->trial->energy.verdict;
     ++outcome.verdicts[verdict == Verdict::passive ? 0 : verdict == Verdict::active ? 1 : 2];
@@ -79,9 +78,8 @@ Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
                                            {"prediction", "", 0}});
   int passive = 0, absorbing = 0, people = 0, by_theorem = 0, trials = 0;
   for (const Task task : {Task::relaxed_sinusoidal, Task::relaxed_underdamped}) {
-    const auto results = bench.results(task);
-    if (!results) return tl::unexpected(results.error());
-    for (const TaskResult& result : **results) {
+    const auto results = MBK_TRY(bench.results(task));
+    for (const TaskResult& result : *results) {
       const Passivity& passivity = *result.pooled.passivity;
       const ModelPassivity& model = passivity.models.front();
       const auto& predicted = passivity.prediction.verdict;
@@ -113,8 +111,7 @@ Result<void> with_dynamics(Workbench& bench, Draft& exhibit) {
 }
 
 Result<void> with_a_task(Workbench& bench, Draft& exhibit) {
-  const auto results = bench.results(Task::rigid_underdamped);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(Task::rigid_underdamped));
   ReproducedTable table = simulated_table("question-2", "participant",
                                           {{"energy of all trials", "J", 2},
                                            {"low", "J", 2},
@@ -125,7 +122,7 @@ Result<void> with_a_task(Workbench& bench, Draft& exhibit) {
                                            {"verdict", "", 0}});
   int active = 0;
   double explained = 0.0;
-  for (const TaskResult& result : **results) {
+  for (const TaskResult& result : *results) {
     const Passivity& passivity = *result.pooled.passivity;
     const EnergyAccount& energy = passivity.trial->energy;
     const auto& predicted = passivity.prediction.verdict;
@@ -141,7 +138,7 @@ Result<void> with_a_task(Workbench& bench, Draft& exhibit) {
           words(std::string(word_of(energy.verdict)))}});
   }
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
-  const auto people = static_cast<int>((*results)->size());
+  const auto people = static_cast<int>(results->size());
   exhibit.values = {{"active", active}, {"people", people}, {"explained", explained / people}};
   exhibit.commands = {simulate_command(bench, Task::rigid_underdamped)};
   exhibit.related = {"table-4.1", "table-4.5", "figure-4.3", "question-3"};
@@ -159,14 +156,13 @@ Result<void> with_other_protocols(Workbench& bench, Draft& exhibit) {
                                            {"mbk: passive, active, undecided", "", 0}});
   std::array<Outcome, kTasks.size()> outcomes;
   for (std::size_t k = 0; k < kTasks.size(); ++k) {
-    const auto outcome = outcome_of(bench, kTasks[k]);
-    if (!outcome) return tl::unexpected(outcome.error());
-    outcomes[k] = *outcome;
+    const auto outcome = MBK_TRY(outcome_of(bench, kTasks[k]));
+    outcomes[k] = outcome;
     table.rows.push_back(
         {text(kTasks[k]),
-         {words(of(outcome->passive_by_theorem, outcome->trials)), words(of(outcome->absorbing, outcome->trials)),
-          cell(outcome->min_energy), cell(outcome->max_energy), cell(outcome->mean_vaf),
-          words(fmt::format("{}, {}, {}", outcome->verdicts[0], outcome->verdicts[1], outcome->verdicts[2]))}});
+         {words(of(outcome.passive_by_theorem, outcome.trials)), words(of(outcome.absorbing, outcome.trials)),
+          cell(outcome.min_energy), cell(outcome.max_energy), cell(outcome.mean_vaf),
+          words(fmt::format("{}, {}, {}", outcome.verdicts[0], outcome.verdicts[1], outcome.verdicts[2]))}});
   }
   for (const auto& [of_whom, outcome] : {std::pair{"relaxed_sines", &outcomes[0]},
                                          {"relaxed_pulses", &outcomes[1]},
@@ -209,13 +205,11 @@ constexpr int kStiffestSlave = 2000;  // looked at [N/m]
 
 /// The stiffest slave that is stable with an operator of that excess [N/m]; 0 where none is.
 Result<double> stiffest_slave(double excess) {
-  const auto delta = lti::exact(std::round(100.0 * excess) / 100.0);
-  if (!delta) return tl::unexpected(delta.error());
+  const auto delta = MBK_TRY(lti::exact(std::round(100.0 * excess) / 100.0));
   const auto equations =
-      example_teleoperator().equations("slave.k").with_shortage(teleop::Port::one, lti::Polynomial{-*delta});
-  const auto set = teleop::admissible_set(equations, 0, kStiffestSlave);
-  if (!set) return tl::unexpected(set.error());
-  return set->intervals.empty() ? 0.0 : set->intervals.back().high.value;
+      example_teleoperator().equations("slave.k").with_shortage(teleop::Port::one, lti::Polynomial{-delta});
+  const auto set = MBK_TRY(teleop::admissible_set(equations, 0, kStiffestSlave));
+  return set.intervals.empty() ? 0.0 : set.intervals.back().high.value;
 }
 
 Result<ReproducedTable> bought(Workbench& bench, double min_excess, double published, double shortage) {
@@ -227,9 +221,8 @@ Result<ReproducedTable> bought(Workbench& bench, double min_excess, double publi
         {"the least of table 3.6, corrected", min_excess},
         {"the least of table 3.6, as published", published},
         {"the least shortage of table 4.5", -shortage}}) {
-    const auto stiffness = stiffest_slave(excess);
-    if (!stiffness) return tl::unexpected(stiffness.error());
-    table.rows.push_back({name, {cell(excess), *stiffness > 0.0 ? cell(*stiffness) : words("none is stable")}});
+    const auto stiffness = MBK_TRY(stiffest_slave(excess));
+    table.rows.push_back({name, {cell(excess), stiffness > 0.0 ? cell(stiffness) : words("none is stable")}});
   }
   return table;
 }
@@ -242,19 +235,17 @@ Result<ReproducedTable> measured_excess(Workbench& bench) {
                                            {"largest shortage, rigid, 2 N pulses", "N·s/m", 1},
                                            {"shortage, low", "N·s/m", 1},
                                            {"shortage, high", "N·s/m", 1}});
-  const auto relaxed = bench.results(Task::relaxed_sinusoidal);
-  if (!relaxed) return tl::unexpected(relaxed.error());
-  const auto rigid = bench.results(Task::rigid_underdamped);
-  if (!rigid) return tl::unexpected(rigid.error());
-  for (std::size_t i = 0; i < (*relaxed)->size(); ++i) {
-    const TaskResult& result = (**relaxed)[i];
+  const auto relaxed = MBK_TRY(bench.results(Task::relaxed_sinusoidal));
+  const auto rigid = MBK_TRY(bench.results(Task::rigid_underdamped));
+  for (std::size_t i = 0; i < relaxed->size(); ++i) {
+    const TaskResult& result = (*relaxed)[i];
     ReproducedRow row{person(result.participant), {}};
     const auto& excess = result.pooled.passivity->models.front().excess;
     for (const double value : {excess ? excess->corrected : kNone, excess ? excess->corrected95.first : kNone,
                                excess ? excess->corrected95.second : kNone}) {
       row.cells.push_back(std::isfinite(value) ? cell(value) : words("none"));
     }
-    const EnergyAccount& energy = (**rigid)[i].pooled.passivity->trial->energy;
+    const EnergyAccount& energy = (*rigid)[i].pooled.passivity->trial->energy;
     for (const double value :
          {energy.shortage_largest, energy.shortage_largest95.first, energy.shortage_largest95.second}) {
       row.cells.push_back(cell(value));
@@ -276,12 +267,10 @@ Result<void> how_much(Workbench& bench, Draft& exhibit) {
   for (const auto& [name, row] : bench.given().tables.at("4.5").rows) {
     shortage = std::min(shortage, row.front().value);
   }
-  auto simulated = measured_excess(bench);
-  if (!simulated) return tl::unexpected(simulated.error());
-  auto teleoperation = bought(bench, least, published, shortage);
-  if (!teleoperation) return tl::unexpected(teleoperation.error());
+  auto simulated = MBK_TRY(measured_excess(bench));
+  auto teleoperation = MBK_TRY(bought(bench, least, published, shortage));
   const auto shown = [&](std::size_t row) {
-    const auto& value = teleoperation->rows[row].cells[1].ours;
+    const auto& value = teleoperation.rows[row].cells[1].ours;
     return value ? fmt::format("{:.0f} N/m", *value) : std::string("none");
   };
   exhibit.values = {{"least", least},
@@ -293,7 +282,7 @@ Result<void> how_much(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {"mbk teleop examples/teleop/position_position.toml --parameter slave.k=0:2000 --excess 0:10:6",
                       simulate_command(bench, Task::relaxed_sinusoidal)};
   exhibit.related = {"table-3.6", "table-4.5", "erratum-1", "erratum-5", "erratum-11"};
-  exhibit.tables = {std::move(*simulated), std::move(*teleoperation)};
+  exhibit.tables = {std::move(simulated), std::move(teleoperation)};
   return {};
 }
 

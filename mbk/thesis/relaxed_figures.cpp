@@ -83,11 +83,10 @@ Matrix mean_matrix(const TaskResult& result, int matrix) {
 Result<void> figure_3_10(Workbench& bench, Draft& exhibit) {
   exhibit.values = references();
   exhibit.related = {"table-3.3", "figure-3.11"};
-  const auto limb = participant::participant_limb(1);
-  if (!limb) return tl::unexpected(limb.error());
-  const auto angles = participant::joint_angles(limb->geometry, limb->equilibrium);
-  const Eigen::Vector2d shoulder = limb->geometry.shoulder, hand = limb->equilibrium;
-  const Eigen::Vector2d elbow = participant::elbow_position(limb->geometry, angles);
+  const auto limb = MBK_TRY(participant::participant_limb(1));
+  const auto angles = participant::joint_angles(limb.geometry, limb.equilibrium);
+  const Eigen::Vector2d shoulder = limb.geometry.shoulder, hand = limb.equilibrium;
+  const Eigen::Vector2d elbow = participant::elbow_position(limb.geometry, angles);
   Chart chart = plane({"x from the shoulder", "m"}, {"y from the shoulder", "m"});
   constexpr double kRadius = 0.08;  // of the reference circle [m]
   Vector x(3), y(3);
@@ -106,9 +105,8 @@ Result<void> figure_3_10(Workbench& bench, Draft& exhibit) {
 
 Result<void> ellipses_figure(Workbench& bench, Task task, const std::vector<PrintedArm>& arms, Draft& exhibit) {
   exhibit.values = references();
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
-  for (const TaskResult& result : **results) {
+  const auto results = MBK_TRY(bench.results(task));
+  for (const TaskResult& result : *results) {
     Chart chart = plane({"x", "of the reference"}, {"y", "of the reference"});
     chart.title = person(result.participant);
     const auto arm = std::ranges::find(arms, person(result.participant), &PrintedArm::name);
@@ -163,8 +161,7 @@ Result<void> figure_3_12(Workbench& bench, Draft& exhibit) {
 
 /// z_mean of everyone, from the pooled trials, with 95 % intervals.
 Result<void> antisymmetry_figure(Workbench& bench, std::size_t which, Draft& exhibit) {
-  const auto results = bench.results(Task::relaxed_sinusoidal);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(Task::relaxed_sinusoidal));
   Chart chart;
   chart.x = {"participant", ""};
   chart.y = {"z_mean", "%"};
@@ -175,7 +172,7 @@ Result<void> antisymmetry_figure(Workbench& bench, std::size_t which, Draft& exh
   table.provenance = Provenance::simulated;
   table.what_rows_are = "participant";
   table.columns = {{"z_mean", "%", 1}, {"95 %, low", "%", 1}, {"95 %, high", "%", 1}};
-  for (const TaskResult& result : **results) {
+  for (const TaskResult& result : *results) {
     const AntisymmetryFinding& finding = result.pooled.findings->antisymmetry[which];
     marks.x.push_back(result.participant);
     marks.y.push_back(finding.zmean_percent);
@@ -202,9 +199,8 @@ Result<void> figure_3_14(Workbench& bench, Draft& exhibit) {
 }
 
 Result<void> energy_figure(Workbench& bench, Task task, Draft& exhibit) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
-  exhibit.charts = {energy_chart(**results)};
+  const auto results = MBK_TRY(bench.results(task));
+  exhibit.charts = {energy_chart(*results)};
   exhibit.commands = {fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
                                   scenario_of(task), bench.seed(1, 1), kHandleMass)};
   return {};

@@ -49,8 +49,7 @@ ReproducedRow impedance_row(const TaskResult& result) {
 }  // namespace
 
 Result<void> add_impedances(Workbench& bench, Task task, const char* id, Draft& exhibit) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(task));
   ReproducedTable table;
   table.id = id;
   table.provenance = Provenance::simulated;
@@ -62,7 +61,7 @@ Result<void> add_impedances(Workbench& bench, Task task, const char* id, Draft& 
   table.columns.push_back({"VAF x", "%", 1});
   table.columns.push_back({"VAF y", "%", 1});
   table.columns.push_back({"passive by theorem 3.2", "", 0});
-  for (const TaskResult& result : **results) table.rows.push_back(impedance_row(result));
+  for (const TaskResult& result : *results) table.rows.push_back(impedance_row(result));
   exhibit.tables.push_back(std::move(table));
   exhibit.commands.push_back(
       fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk measure p1.h5 --mode reference --handle-mass {}"
@@ -138,11 +137,10 @@ Result<void> ellipse_exhibit(Workbench& bench, Task task, const std::vector<Prin
                   scenario_of(task), bench.seed(1, 1), kHandleMass)};
   exhibit.tables.push_back(ellipse_table(id, Provenance::recomputed));
   for (const PrintedArm& arm : arms) exhibit.tables.back().rows.push_back(rebuilt_row(arm));
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(task));
   exhibit.tables.push_back(ellipse_table(id, Provenance::simulated));
   exhibit.tables.back().spread_is = fmt::format("standard error over {} trials", kTrials);
-  for (const TaskResult& result : **results) exhibit.tables.back().rows.push_back(measured_row(result));
+  for (const TaskResult& result : *results) exhibit.tables.back().rows.push_back(measured_row(result));
   return {};
 }
 

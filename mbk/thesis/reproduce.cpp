@@ -58,16 +58,15 @@ std::vector<ExhibitName> exhibit_names() {
 }
 
 Result<Reproduction> reproduce(const Source& source, const ReproduceOptions& options) {
-  const auto makers = chosen(options.only);
-  if (!makers) return tl::unexpected(makers.error());
+  const auto makers = MBK_TRY(chosen(options.only));
   if (!texts()) return tl::unexpected(texts().error());
   const TextValues common = {{"tuned_gains", laboratory::kTunedGains}};
   Workbench bench(source.given, {options.seed, options.threads});
   Reproduction reproduction;
   reproduction.source = source.name;
-  for (const Maker& maker : *makers) {
+  for (const Maker& maker : makers) {
     if (options.progress) {
-      options.progress(static_cast<int>(reproduction.exhibits.size()), static_cast<int>(makers->size()), maker.id);
+      options.progress(static_cast<int>(reproduction.exhibits.size()), static_cast<int>(makers.size()), maker.id);
     }
     const ExhibitText* text = text_of(maker.id);
     if (text == nullptr) return bad_data("there is no text of it", "", maker.id);

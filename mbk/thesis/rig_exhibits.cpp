@@ -33,41 +33,34 @@ Result<Rig> rig_of(laboratory::Scenario scenario, std::string name) {
   constexpr double kGridReach = 3e-3;  // [m]
   const laboratory::PlanarTrial& trial = validation::planar(scenario);
   const auto& plan = std::get<laboratory::RigPlan>(trial.load);
-  const auto array = calibration::SpringArray::create(plan.springs);
-  if (!array) return tl::unexpected(array.error());
-  auto field = calibration::spring_field(*array, trial.home, kRadius);
-  if (!field) return tl::unexpected(field.error());
-  auto grid = calibration::grid_field(*array, trial.home, kGridReach, kGridStep);
-  if (!grid) return tl::unexpected(grid.error());
-  field->grid = std::move(*grid);
+  const auto array = MBK_TRY(calibration::SpringArray::create(plan.springs));
+  auto field = MBK_TRY(calibration::spring_field(array, trial.home, kRadius));
+  auto grid = MBK_TRY(calibration::grid_field(array, trial.home, kGridReach, kGridStep));
+  field.grid = std::move(grid);
   const double mass = plan.mass;
-  return Rig{std::move(name), std::move(scenario), mass, std::move(*field)};
+  return Rig{std::move(name), std::move(scenario), mass, std::move(field)};
 }
 
 /// The six of table 3.1.
 Result<std::vector<Rig>> rigs_3_1() {
-  auto scenarios = validation::ready("rig_springs_table_3_1");
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  auto scenarios = MBK_TRY(validation::ready("rig_springs_table_3_1"));
   std::vector<Rig> rigs;
-  for (laboratory::Scenario& scenario : *scenarios) {
-    auto rig = rig_of(std::move(scenario), fmt::format("configuration {}", rigs.size() + 1));
-    if (!rig) return tl::unexpected(rig.error());
-    rigs.push_back(std::move(*rig));
+  for (laboratory::Scenario& scenario : scenarios) {
+    auto rig = MBK_TRY(rig_of(std::move(scenario), fmt::format("configuration {}", rigs.size() + 1)));
+    rigs.push_back(std::move(rig));
   }
   return rigs;
 }
 
 /// Of the twenty-five of table 5.1, those that are called so.
 Result<std::vector<Rig>> rigs_5_1(bool stiffnesses) {
-  auto scenarios = validation::ready(kSpringRigs);
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  auto scenarios = MBK_TRY(validation::ready(kSpringRigs));
   std::vector<Rig> rigs;
-  for (laboratory::Scenario& scenario : *scenarios) {
+  for (laboratory::Scenario& scenario : scenarios) {
     const auto [stiffness, mass] = validation::rig_names(scenario.name);
     if (stiffnesses ? mass != "M1" : stiffness != "K1") continue;
-    auto rig = rig_of(std::move(scenario), stiffnesses ? stiffness : mass);
-    if (!rig) return tl::unexpected(rig.error());
-    rigs.push_back(std::move(*rig));
+    auto rig = MBK_TRY(rig_of(std::move(scenario), stiffnesses ? stiffness : mass));
+    rigs.push_back(std::move(rig));
   }
   return rigs;
 }
@@ -121,38 +114,36 @@ ReproducedTable linearity_table(const char* id, const std::vector<Rig>& rigs) {
 }
 
 Result<void> table_3_1(Workbench& /*bench*/, Draft& exhibit) {
-  const auto rigs = rigs_3_1();
-  if (!rigs) return tl::unexpected(rigs.error());
+  const auto rigs = MBK_TRY(rigs_3_1());
   exhibit.commands = {"mbk springs field rig_springs_table_3_1 --trial config_1 --grid-step 0.15 --radius 25",
                       "mbk springs find --disc --stiffness 443.86,232.34,16.74 --at 393:-55"};
   exhibit.related = {"figure-3.8", "table-5.1"};
   ReproducedTable table = rig_table("3.1");
   table.columns.push_back({"m", "kg", 3});
-  for (const Rig& rig : *rigs) {
+  for (const Rig& rig : rigs) {
     ReproducedRow row{rig.name, field_cells(rig.field.K, rig.field.equilibrium)};
     row.cells.push_back(cell(rig.mass));
     table.rows.push_back(std::move(row));
   }
-  exhibit.tables = {std::move(table), grid_table("3.1 by grid", *rigs), linearity_table("3.1 linearity", *rigs)};
+  exhibit.tables = {std::move(table), grid_table("3.1 by grid", rigs), linearity_table("3.1 linearity", rigs)};
   return {};
 }
 
 Result<void> table_5_1(Workbench& /*bench*/, Draft& exhibit) {
-  const auto stiffnesses = rigs_5_1(true), masses = rigs_5_1(false);
-  if (!stiffnesses) return tl::unexpected(stiffnesses.error());
-  if (!masses) return tl::unexpected(masses.error());
+  const auto stiffnesses = MBK_TRY(rigs_5_1(true));
+  const auto masses = MBK_TRY(rigs_5_1(false));
   exhibit.commands = {"mbk springs field rig_springs_table_5_1 --trial K5_M5 --grid-step 0.15 --radius 25",
                       "mbk springs find --disc --stiffness 373.81,377.10,73.16 --at 332:-61"};
   exhibit.related = {"table-3.1", "table-5.3", "table-5.4"};
   ReproducedTable stiffness = rig_table("5.1 stiffness");
-  for (const Rig& rig : *stiffnesses) {
+  for (const Rig& rig : stiffnesses) {
     stiffness.rows.push_back({rig.name, field_cells(rig.field.K, rig.field.equilibrium)});
   }
   ReproducedTable mass = rig_table("5.1 mass", false);
   mass.columns = {{"m", "kg", 3}};
-  for (const Rig& rig : *masses) mass.rows.push_back({rig.name, {cell(rig.mass)}});
-  exhibit.tables = {std::move(stiffness), std::move(mass), grid_table("5.1 by grid", *stiffnesses),
-                    linearity_table("5.1 linearity", *stiffnesses)};
+  for (const Rig& rig : masses) mass.rows.push_back({rig.name, {cell(rig.mass)}});
+  exhibit.tables = {std::move(stiffness), std::move(mass), grid_table("5.1 by grid", stiffnesses),
+                    linearity_table("5.1 linearity", stiffnesses)};
   return {};
 }
 
@@ -161,15 +152,13 @@ Result<void> table_5_1(Workbench& /*bench*/, Draft& exhibit) {
 /// One rig of table 3.1, identified by the published procedure.
 Result<Identification> identified(laboratory::Scenario scenario, std::uint64_t seed) {
   scenario.seed = seed;
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
   measurement::Options options = validation::mass_and_springs();
   options.preprocess.mode = Mode::reference;
   options.identify.parameters_from = ParametersFrom::all;
   options.passivity = false;
-  auto measured = measurement::measure({&performance->recording, 1}, options);
-  if (!measured) return tl::unexpected(measured.error());
-  return std::move(measured->identification);
+  auto measured = MBK_TRY(measurement::measure({&performance.recording, 1}, options));
+  return std::move(measured.identification);
 }
 
 using Identifications = std::vector<Identification>;
@@ -246,15 +235,11 @@ std::vector<Rig> linear_rigs(const std::vector<laboratory::Scenario>& scenarios,
 
 Result<Identifications> identify_all(Workbench& bench, const std::vector<Rig>& rigs) {
   Identifications found(rigs.size());
-  const auto ran =
-      numeric::parallel_for(static_cast<int>(rigs.size()), bench.options().threads, [&](int i) -> Result<void> {
-        const auto at = static_cast<std::size_t>(i);
-        auto one = identified(rigs[at].scenario, rig_seed(bench, rigs[at].scenario));
-        if (!one) return tl::unexpected(one.error());
-        found[at] = std::move(*one);
-        return {};
-      });
-  if (!ran) return tl::unexpected(ran.error());
+  MBK_TRY(numeric::parallel_for(static_cast<int>(rigs.size()), bench.options().threads, [&](int i) -> Result<void> {
+    const auto at = static_cast<std::size_t>(i);
+    found[at] = MBK_TRY(identified(rigs[at].scenario, rig_seed(bench, rigs[at].scenario)));
+    return {};
+  }));
   return found;
 }
 
@@ -275,8 +260,7 @@ ReproducedRow mean_errors(const char* name, const std::vector<Rig>& rigs, const 
 
 /// Where the errors come from: springs against linear fields, a damper against none.
 Result<ReproducedTable> cause_table(Workbench& bench, const std::vector<Rig>& rigs, const Identifications& found) {
-  const auto scenarios = validation::ready("rig_table_3_1");
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  const auto scenarios = MBK_TRY(validation::ready("rig_table_3_1"));
   ReproducedTable table = rig_table("3.8 causes", false);
   table.what_rows_are = "what is simulated";
   table.spread_is = "standard deviation over the rigs";
@@ -284,11 +268,10 @@ Result<ReproducedTable> cause_table(Workbench& bench, const std::vector<Rig>& ri
   table.columns.push_back({"m", "kg", 4});
   table.rows.push_back(mean_errors("springs on the disc, damper of 1 N·s/m", rigs, found));
   for (const bool damper : {true, false}) {
-    const std::vector<Rig> linear = linear_rigs(*scenarios, damper);
-    const auto of_linear = identify_all(bench, linear);
-    if (!of_linear) return tl::unexpected(of_linear.error());
+    const std::vector<Rig> linear = linear_rigs(scenarios, damper);
+    const auto of_linear = MBK_TRY(identify_all(bench, linear));
     table.rows.push_back(
-        mean_errors(damper ? "linear fields, damper of 1 N·s/m" : "linear fields, no damper", linear, *of_linear));
+        mean_errors(damper ? "linear fields, damper of 1 N·s/m" : "linear fields, no damper", linear, of_linear));
   }
   return table;
 }
@@ -308,36 +291,33 @@ ChartSeries series_of(const char* name, const std::vector<Rig>& rigs, const Iden
 }
 
 Result<void> figure_3_8(Workbench& bench, Draft& exhibit) {
-  const auto rigs = rigs_3_1();
-  if (!rigs) return tl::unexpected(rigs.error());
-  const auto found = identify_all(bench, *rigs);
-  if (!found) return tl::unexpected(found.error());
-  auto causes = cause_table(bench, *rigs, *found);
-  if (!causes) return tl::unexpected(causes.error());
+  const auto rigs = MBK_TRY(rigs_3_1());
+  const auto found = MBK_TRY(identify_all(bench, rigs));
+  auto causes = MBK_TRY(cause_table(bench, rigs, found));
   exhibit.commands = {fmt::format("mbk simulate rig_springs_table_3_1 --trial config_1{} --out rig.h5 && mbk measure "
                                   "rig_config_1.h5 --mode reference --structure mass-spring --parameters-from all",
-                                  seed_option(bench, rigs->front().scenario)),
+                                  seed_option(bench, rigs.front().scenario)),
                       "mbk validate springs --runs 1      # these and table 5.1, by mbk's own procedure"};
   exhibit.related = {"table-3.1", "figure-5.4"};
-  exhibit.tables = {identified_table(*rigs, *found), error_table(*rigs, *found), claims_3_8(*rigs, *found),
-                    std::move(*causes)};
+  exhibit.tables = {identified_table(rigs, found), error_table(rigs, found), claims_3_8(rigs, found),
+                    std::move(causes)};
   Chart stiffness = validation::identified_against_true("", "N/m");
   stiffness.x.label = "theoretical stiffness";
   stiffness.y.label = "identified stiffness";
   stiffness.series = {series_of(
-                          "k_xx", *rigs, *found, [](const Rig& rig) { return rig.field.K(0, 0); },
+                          "k_xx", rigs, found, [](const Rig& rig) { return rig.field.K(0, 0); },
                           [](const impedance::Model& model) { return model.K(0, 0); }),
                       series_of(
-                          "k_yy", *rigs, *found, [](const Rig& rig) { return rig.field.K(1, 1); },
+                          "k_yy", rigs, found, [](const Rig& rig) { return rig.field.K(1, 1); },
                           [](const impedance::Model& model) { return model.K(1, 1); }),
                       series_of(
-                          "k_s", *rigs, *found, [](const Rig& rig) { return rig.field.K(0, 1); },
+                          "k_s", rigs, found, [](const Rig& rig) { return rig.field.K(0, 1); },
                           [](const impedance::Model& model) { return model.K(0, 1); })};
   Chart mass = validation::identified_against_true("", "kg");
   mass.x.label = "theoretical mass";
   mass.y.label = "identified mass";
   mass.series = {series_of(
-      "m", *rigs, *found, [](const Rig& rig) { return rig.mass; },
+      "m", rigs, found, [](const Rig& rig) { return rig.mass; },
       [](const impedance::Model& model) { return model.M(0, 0); })};
   exhibit.charts = {std::move(stiffness), std::move(mass)};
   return {};

@@ -21,9 +21,8 @@ Result<void> figure_4_1(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"figure-3.4"};
   for (const auto& [task, from, to] :
        {std::tuple{Task::rigid_underdamped, 16.0, 36.0}, std::tuple{Task::rigid_sinusoidal, 20.0, 30.0}}) {
-    const auto results = bench.results(task);
-    if (!results) return tl::unexpected(results.error());
-    const auto charts = signal_charts(text(task), (*results)->front().first, from, to);
+    const auto results = MBK_TRY(bench.results(task));
+    const auto charts = signal_charts(text(task), results->front().first, from, to);
     exhibit.charts.insert(exhibit.charts.end(), charts.begin(), charts.end());
     exhibit.commands.push_back(report_command(bench, task));
   }
@@ -31,9 +30,8 @@ Result<void> figure_4_1(Workbench& bench, Draft& exhibit) {
 }
 
 Result<void> rigid_energy_figure(Workbench& bench, Task task, Draft& exhibit) {
-  const auto results = bench.results(task);
-  if (!results) return tl::unexpected(results.error());
-  exhibit.charts = {energy_chart(**results)};
+  const auto results = MBK_TRY(bench.results(task));
+  exhibit.charts = {energy_chart(*results)};
   exhibit.commands = {
       fmt::format("mbk simulate {} --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}", scenario_of(task),
                   bench.seed(1, 1), kHandleMass),
@@ -90,37 +88,30 @@ Result<void> figure_4_5(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {fmt::format(
       "mbk simulate rigid_underdamped_8N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {} --json",
       bench.seed(1, 1), kHandleMass)};
-  const auto relaxed = bench.results(Task::relaxed_underdamped);
-  if (!relaxed) return tl::unexpected(relaxed.error());
-  const auto rigid = bench.results(Task::rigid_underdamped);
-  if (!rigid) return tl::unexpected(rigid.error());
-  auto scenarios = validation::ready("rigid_underdamped_8N");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  scenarios->front().seed = bench.seed(1, 1);
-  const auto strong = laboratory::simulate(scenarios->front());
-  if (!strong) return tl::unexpected(strong.error());
-  const auto measured = measurement::measure({&strong->recording, 1}, {});
-  if (!measured) return tl::unexpected(measured.error());
+  const auto relaxed = MBK_TRY(bench.results(Task::relaxed_underdamped));
+  const auto rigid = MBK_TRY(bench.results(Task::rigid_underdamped));
+  auto scenarios = MBK_TRY(validation::ready("rigid_underdamped_8N"));
+  scenarios.front().seed = bench.seed(1, 1);
+  const auto strong = MBK_TRY(laboratory::simulate(scenarios.front()));
+  const auto measured = MBK_TRY(measurement::measure({&strong.recording, 1}, {}));
   const auto add = [&](const TaskResult& result) { add_pulse(result.first, result.trials.front().energy, exhibit); };
-  add((*relaxed)->front());
-  add((*rigid)->front());
-  add_pulse(strong->recording, measured->energies.front(), exhibit);
+  add(relaxed->front());
+  add(rigid->front());
+  add_pulse(strong.recording, measured.energies.front(), exhibit);
   return {};
 }
 
 Result<void> figure_4_6(Workbench& bench, Draft& exhibit) {
-  const auto grasps = bench.one_axis_grasps();
-  if (!grasps) return tl::unexpected(grasps.error());
+  const auto grasps = MBK_TRY(bench.one_axis_grasps());
   exhibit.related = {"table-4.4", "figure-4.7"};
   exhibit.commands = {"mbk simulate one_axis_random_binary --out binary.h5"};
-  exhibit.charts = signal_charts("one axis", (*grasps)->front().recording, 12.0, 42.0, 1);
+  exhibit.charts = signal_charts("one axis", grasps->front().recording, 12.0, 42.0, 1);
   return {};
 }
 
 Result<void> figure_4_7(Workbench& bench, Draft& exhibit) {
-  const auto grasps = bench.one_axis_grasps();
-  if (!grasps) return tl::unexpected(grasps.error());
-  const OneAxisGrasp& first = (*grasps)->front();
+  const auto grasps = MBK_TRY(bench.one_axis_grasps());
+  const OneAxisGrasp& first = grasps->front();
   exhibit.values = {{"vaf", first.vaf}};
   exhibit.related = {"table-4.4"};
   exhibit.commands = {"mbk validate one-dimensional --charts charts"};

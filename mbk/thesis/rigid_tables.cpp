@@ -88,14 +88,10 @@ void add_bias_rows(const TaskResult& result, ReproducedTable& table) {
 }
 
 Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
-  const auto relaxed_sines = bench.results(Task::relaxed_sinusoidal);
-  if (!relaxed_sines) return tl::unexpected(relaxed_sines.error());
-  const auto relaxed_pulses = bench.results(Task::relaxed_underdamped);
-  if (!relaxed_pulses) return tl::unexpected(relaxed_pulses.error());
-  const auto rigid_sines = bench.results(Task::rigid_sinusoidal);
-  if (!rigid_sines) return tl::unexpected(rigid_sines.error());
-  const auto rigid_pulses = bench.results(Task::rigid_underdamped);
-  if (!rigid_pulses) return tl::unexpected(rigid_pulses.error());
+  const auto relaxed_sines = MBK_TRY(bench.results(Task::relaxed_sinusoidal));
+  const auto relaxed_pulses = MBK_TRY(bench.results(Task::relaxed_underdamped));
+  const auto rigid_sines = MBK_TRY(bench.results(Task::rigid_sinusoidal));
+  const auto rigid_pulses = MBK_TRY(bench.results(Task::rigid_underdamped));
 
   exhibit.related = {"table-4.1", "table-4.2", "figure-4.3", "figure-4.4"};
   exhibit.commands = {
@@ -108,12 +104,12 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
   verdicts.provenance = Provenance::simulated;
   verdicts.what_rows_are = "task, approach";
   verdicts.columns = {{"sinusoidal", "", 0}, {"underdamped", "", 0}};
-  verdicts.rows = {{"relaxed, impedance model", {by_model(**relaxed_sines), by_model(**relaxed_pulses)}},
-                   {"relaxed, integral", {by_energy(**relaxed_sines), by_energy(**relaxed_pulses)}},
-                   {"rigid, impedance model", {by_model(**rigid_sines), by_model(**rigid_pulses)}},
+  verdicts.rows = {{"relaxed, impedance model", {by_model(*relaxed_sines), by_model(*relaxed_pulses)}},
+                   {"relaxed, integral", {by_energy(*relaxed_sines), by_energy(*relaxed_pulses)}},
+                   {"rigid, impedance model", {by_model(*rigid_sines), by_model(*rigid_pulses)}},
                    {"rigid, impedance model by instrumental variables, trials pooled",
-                    {by_instruments(**rigid_sines), words("no valid instrument")}},
-                   {"rigid, integral", {by_energy(**rigid_sines), by_energy(**rigid_pulses)}}};
+                    {by_instruments(*rigid_sines), words("no valid instrument")}},
+                   {"rigid, integral", {by_energy(*rigid_sines), by_energy(*rigid_pulses)}}};
 
   ReproducedTable bias;
   bias.id = "4.3 mechanism";
@@ -125,7 +121,7 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
     }
   }
   bias.columns.push_back({"verdict", "", 0});
-  for (const TaskResult& result : **rigid_sines) add_bias_rows(result, bias);
+  for (const TaskResult& result : *rigid_sines) add_bias_rows(result, bias);
 
   ReproducedTable pulses;
   pulses.id = "4.3 pulses";
@@ -137,7 +133,7 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
                     {"95 %, high", "J", 2},
                     {"the trial", "", 0},
                     {"the model predicts", "", 0}};
-  for (const TaskResult& result : **rigid_pulses) {
+  for (const TaskResult& result : *rigid_pulses) {
     const Passivity& passivity = *result.pooled.passivity;
     const EnergyAccount& energy = passivity.trial->energy;
     const auto& predicted = passivity.prediction.verdict;
@@ -152,8 +148,7 @@ Result<void> table_4_3(Workbench& bench, Draft& exhibit) {
 }
 
 Result<void> table_4_4(Workbench& bench, Draft& exhibit) {
-  const auto trials = bench.one_axis_grasps();
-  if (!trials) return tl::unexpected(trials.error());
+  const auto trials = MBK_TRY(bench.one_axis_grasps());
   exhibit.related = {"figure-4.6", "figure-4.7", "withdrawn-errata"};
   exhibit.commands = {"mbk validate one-dimensional"};
   ReproducedTable table;
@@ -161,16 +156,15 @@ Result<void> table_4_4(Workbench& bench, Draft& exhibit) {
   table.provenance = Provenance::simulated;
   table.what_rows_are = "trial";
   table.columns = {{"VAF", "%", 1}};
-  for (std::size_t k = 0; k < (*trials)->size(); ++k) {
-    table.rows.push_back({fmt::format("trial {}", k + 1), {cell((**trials)[k].vaf)}});
+  for (std::size_t k = 0; k < trials->size(); ++k) {
+    table.rows.push_back({fmt::format("trial {}", k + 1), {cell((*trials)[k].vaf)}});
   }
   exhibit.tables = {std::move(table)};
   return {};
 }
 
 Result<void> table_4_5(Workbench& bench, Draft& exhibit) {
-  const auto results = bench.results(Task::rigid_underdamped);
-  if (!results) return tl::unexpected(results.error());
+  const auto results = MBK_TRY(bench.results(Task::rigid_underdamped));
   exhibit.related = {"figure-4.3", "erratum-5"};
   exhibit.commands = {
       fmt::format("mbk simulate rigid_underdamped_2N --seed {} --out p1.h5 && mbk passivity p1.h5 --handle-mass {}",
@@ -181,7 +175,7 @@ Result<void> table_4_5(Workbench& bench, Draft& exhibit) {
   table.what_rows_are = "participant";
   table.spread_is = fmt::format("standard error over {} trials", kTrials);
   table.columns = {{"shortage of passivity", "N·s/m", 1}, {"at the end of the trial", "N·s/m", 1}};
-  for (const TaskResult& result : **results) {
+  for (const TaskResult& result : *results) {
     table.rows.push_back(
         {person(result.participant),
          {cell(of_trials(result, [](const TaskTrial& trial) { return trial.energy.account.shortage_largest; }),

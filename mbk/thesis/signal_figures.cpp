@@ -18,9 +18,8 @@ Result<void> figure_3_4(Workbench& bench, Draft& exhibit) {
                       report_command(bench, Task::relaxed_underdamped)};
   for (const auto& [task, from, to] :
        {std::tuple{Task::relaxed_sinusoidal, 20.0, 30.0}, std::tuple{Task::relaxed_underdamped, 16.0, 36.0}}) {
-    const auto result = first_of(bench, task);
-    if (!result) return tl::unexpected(result.error());
-    const auto charts = signal_charts(text(task), (*result)->first, from, to);
+    const auto result = MBK_TRY(first_of(bench, task));
+    const auto charts = signal_charts(text(task), result->first, from, to);
     exhibit.charts.insert(exhibit.charts.end(), charts.begin(), charts.end());
   }
   return {};
@@ -36,28 +35,25 @@ Result<PreparedTrial> prepared(const Recording& recording, AccelerationSource ac
 Result<void> figure_3_5(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"erratum-7", "figure-3.6"};
   exhibit.commands = {report_command(bench, Task::relaxed_sinusoidal) + "      # the report draws its filters"};
-  const auto result = first_of(bench, Task::relaxed_sinusoidal);
-  if (!result) return tl::unexpected(result.error());
-  const auto trial = prepared((*result)->first, AccelerationSource::derivative);
-  if (!trial) return tl::unexpected(trial.error());
-  const auto response = analyse::filter_response(*trial);
-  if (!response) return tl::unexpected(response.error());
+  const auto result = MBK_TRY(first_of(bench, Task::relaxed_sinusoidal));
+  const auto trial = MBK_TRY(prepared(result->first, AccelerationSource::derivative));
+  const auto response = MBK_TRY(analyse::filter_response(trial));
   // Above it every gain is below what can be drawn.
   constexpr double kHighest = 40.0, kMinGain = 1e-6;
   const auto chart = [&](const char* unit, const Vector& gain, const Vector* ideal) {
     Chart drawing;
     drawing.x = {"frequency", "Hz", true};
     drawing.y = {"gain", unit, true};
-    const Index count = (response->frequency.array() <= kHighest).count();
+    const Index count = (response.frequency.array() <= kHighest).count();
     const Vector shown = (gain.head(count).array() > kMinGain).select(gain.head(count).array(), std::nan(""));
-    drawing.series.push_back(line("filter", response->frequency.head(count), shown));
+    drawing.series.push_back(line("filter", response.frequency.head(count), shown));
     if (ideal != nullptr) {
-      drawing.series.push_back(line("ideal differentiator", response->frequency.head(count), ideal->head(count)));
+      drawing.series.push_back(line("ideal differentiator", response.frequency.head(count), ideal->head(count)));
     }
     return drawing;
   };
-  exhibit.charts = {chart("", response->smoothing, nullptr), chart("1/s", response->first, &response->first_ideal),
-                    chart("1/s²", response->second, &response->second_ideal)};
+  exhibit.charts = {chart("", response.smoothing, nullptr), chart("1/s", response.first, &response.first_ideal),
+                    chart("1/s²", response.second, &response.second_ideal)};
   return {};
 }
 
@@ -79,10 +75,9 @@ Vector on_line_of(const Vector& y, const Vector& target) {
 
 Result<void> figure_3_6(Workbench& bench, Draft& exhibit) {
   exhibit.commands = {report_command(bench, Task::relaxed_sinusoidal)};
-  const auto result = first_of(bench, Task::relaxed_sinusoidal);
-  if (!result) return tl::unexpected(result.error());
-  const auto trial = prepared((*result)->first, AccelerationSource::derivative);
-  const auto sensed = prepared((*result)->first, AccelerationSource::sensor);
+  const auto result = MBK_TRY(first_of(bench, Task::relaxed_sinusoidal));
+  const auto trial = prepared(result->first, AccelerationSource::derivative);
+  const auto sensed = prepared(result->first, AccelerationSource::sensor);
   if (!trial) return tl::unexpected(trial.error());
   if (!sensed) return tl::unexpected(sensed.error());
   const auto begin = static_cast<Index>(10.0 / trial->sample_time),

@@ -73,10 +73,9 @@ double relative_change(double from, double to) {
 
 /// Largest |r| of a step through (3.5) for a step of height 1.
 Result<double> overshoot() {
-  const auto pulse = perturbation::UnderdampedPulse::create(1.0);
-  if (!pulse) return tl::unexpected(pulse.error());
+  const auto pulse = MBK_TRY(perturbation::UnderdampedPulse::create(1.0));
   double largest = 0.0;
-  for (int i = 0; i <= 20000; ++i) largest = std::max(largest, pulse->at(1e-4 * i).value);
+  for (int i = 0; i <= 20000; ++i) largest = std::max(largest, pulse.at(1e-4 * i).value);
   return largest;
 }
 
@@ -86,11 +85,10 @@ struct HandRange {
 };
 Result<HandRange> hand_range(double degrees) {
   const robot::Geometry geometry;
-  const auto theta = robot::joint_angles(geometry, {0.3, -0.05});
-  if (!theta) return tl::unexpected(theta.error());
+  const auto theta = MBK_TRY(robot::joint_angles(geometry, {0.3, -0.05}));
   const double half = 0.5 * degrees / kDegrees;
   const auto at = [&](double first, double second) {
-    return robot::hand_position(geometry, *theta + half * Eigen::Vector2d(first, second));
+    return robot::hand_position(geometry, theta + half * Eigen::Vector2d(first, second));
   };
   return HandRange{std::max((at(1, 1) - at(-1, -1)).norm(), (at(1, -1) - at(-1, 1)).norm()),
                    std::max((at(1, 0) - at(-1, 0)).norm(), (at(0, 1) - at(0, -1)).norm())};
@@ -119,13 +117,11 @@ void protocol(const Given& given, Statements& table) {
 
 Result<void> signals(const Given& given, Statements& table) {
   const auto setup = [&](const char* name) { return given.number("setup", name); };
-  const auto peak = overshoot();
-  if (!peak) return tl::unexpected(peak.error());
-  table.number("the 5 mm step peaks at [mm]", *peak * setup("position step, mm"));
-  const auto range = hand_range(setup("joint range of chapter 3, °"));
-  if (!range) return tl::unexpected(range.error());
+  const auto peak = MBK_TRY(overshoot());
+  table.number("the 5 mm step peaks at [mm]", peak * setup("position step, mm"));
+  const auto range = MBK_TRY(hand_range(setup("joint range of chapter 3, °")));
   table.text("circle of the hand with 4° of each joint [mm]",
-             fmt::format("{:.1f} to {:.1f}", 1e3 * range->one, 1e3 * range->both));
+             fmt::format("{:.1f} to {:.1f}", 1e3 * range.one, 1e3 * range.both));
   table.text("filter N = 6, W = 101 within the bounds of (3.6)",
              yes(setup("window W of chapter 3") >= 51.0 &&
                  setup("order N of chapter 3") < (setup("window W of chapter 3") - 1.0) / 2.0));
@@ -190,7 +186,7 @@ void ellipses(const Given& given, Statements& table) {
 Result<ReproducedTable> chapter_3(const Given& given, TextValues& values) {
   Statements table("statements 3", values);
   protocol(given, table);
-  if (auto ok = signals(given, table); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(signals(given, table));
   ellipses(given, table);
   return table.take();
 }
@@ -224,17 +220,14 @@ ReproducedTable excess_range(const Given& given, TextValues& values) {
 Result<ReproducedTable> chapter_4(Workbench& bench, TextValues& values) {
   const Given& given = bench.given();
   Statements table("statements 4", values);
-  const auto peak = overshoot();
-  if (!peak) return tl::unexpected(peak.error());
-  const auto scenario = task_scenario(Task::rigid_underdamped, 1, bench.seed(1, 1));
-  if (!scenario) return tl::unexpected(scenario.error());
-  const auto performance = laboratory::simulate(*scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  const Vector& x = performance->recording.find("force_x")->values;
-  const Vector& y = performance->recording.find("force_y")->values;
+  const auto peak = MBK_TRY(overshoot());
+  const auto scenario = MBK_TRY(task_scenario(Task::rigid_underdamped, 1, bench.seed(1, 1)));
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
+  const Vector& x = performance.recording.find("force_x")->values;
+  const Vector& y = performance.recording.find("force_y")->values;
   table.value("strongest", (x.array().square() + y.array().square()).sqrt().maxCoeff());
-  table.number("force of the 2 N step at its peak [N]", *peak * given.number("setup", "force step, N"));
-  table.number("force of the 8 N step at its peak [N]", *peak * given.number("setup", "large force step, N"));
+  table.number("force of the 2 N step at its peak [N]", peak * given.number("setup", "force step, N"));
+  table.number("force of the 8 N step at its peak [N]", peak * given.number("setup", "large force step, N"));
   Cases above;
   double least = 1e300;
   for (const auto* arms : {&given.sinusoidal, &given.underdamped}) {
@@ -367,10 +360,9 @@ Result<void> places_and_resonances(const Given& given, Statements& table) {
   table.value("lowest_resonance", lowest);
   table.value("highest_resonance", highest);
   table.text("resonances of payload and springs between 4 and 5 Hz", fmt::format("{} of {}", inside, all));
-  const auto range = hand_range(given.number("setup", "joint range of chapter 5, °"));
-  if (!range) return tl::unexpected(range.error());
+  const auto range = MBK_TRY(hand_range(given.number("setup", "joint range of chapter 5, °")));
   table.text("circle of the hand with 10° of each joint [mm]",
-             fmt::format("{:.1f} to {:.1f}", 1e3 * range->one, 1e3 * range->both));
+             fmt::format("{:.1f} to {:.1f}", 1e3 * range.one, 1e3 * range.both));
   return {};
 }
 
@@ -378,7 +370,7 @@ Result<ReproducedTable> chapter_5(const Given& given, TextValues& values) {
   Statements table("statements 5", values);
   rigs(given, table);
   errors_of_both_methods(given, table);
-  if (auto ok = places_and_resonances(given, table); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(places_and_resonances(given, table));
   return table.take();
 }
 
@@ -408,9 +400,8 @@ Result<ReproducedTable> appendices(const Given& given, TextValues& values) {
   const double off = (J.inverse() * (hand_acceleration - J_rate * rate) - acceleration).norm();
   table.value("acceleration_error", off);
   table.text("(5.3) gives θ̈ back", yes(off < 1e-4));
-  const auto angles = robot::joint_angles(geometry, robot::hand_position(geometry, theta));
-  if (!angles) return tl::unexpected(angles.error());
-  table.text("(A.4) undoes (A.1)", yes((*angles - theta).norm() < kRounding));
+  const auto angles = MBK_TRY(robot::joint_angles(geometry, robot::hand_position(geometry, theta)));
+  table.text("(A.4) undoes (A.1)", yes((angles - theta).norm() < kRounding));
   const Eigen::Matrix2d R = robot::link_axes(theta[1]);
   table.text("(E.4) is a rotation",
              yes((R * R.transpose() - Eigen::Matrix2d::Identity()).norm() < kRounding && R.determinant() > 0.0));

@@ -34,18 +34,14 @@ validation::ForceMeasurement published() {
 
 Result<Trials> perform_all(Workbench& bench, const std::vector<laboratory::Scenario>& scenarios,
                            const validation::ForceMeasurement& how) {
-  const auto robots = bench.once(identified_robots);
-  if (!robots) return tl::unexpected(robots.error());
+  const auto robots = MBK_TRY(bench.once(identified_robots));
   Trials trials(scenarios.size());
-  const auto ran =
+  MBK_TRY(
       numeric::parallel_for(static_cast<int>(scenarios.size()), bench.options().threads, [&](int i) -> Result<void> {
         const auto at = static_cast<std::size_t>(i);
-        auto trial = validation::perform(scenarios[at], **robots, how);
-        if (!trial) return tl::unexpected(trial.error());
-        trials[at] = std::move(*trial);
+        trials[at] = MBK_TRY(validation::perform(scenarios[at], *robots, how));
         return {};
-      });
-  if (!ran) return tl::unexpected(ran.error());
+      }));
   return trials;
 }
 
@@ -55,18 +51,15 @@ struct RigTrials {
 };
 
 Result<RigTrials> make_rig_trials(Workbench& bench) {
-  auto springs = validation::ready(kSpringRigs), linear = validation::ready(kLinearRigs);
-  if (!springs) return tl::unexpected(springs.error());
-  if (!linear) return tl::unexpected(linear.error());
-  std::erase_if(*linear, [](const laboratory::Scenario& scenario) {
-    return validation::rig_names(scenario.name).second != "M3";
-  });
-  const auto count = static_cast<std::ptrdiff_t>(springs->size());
-  springs->insert(springs->end(), linear->begin(), linear->end());
-  for (laboratory::Scenario& scenario : *springs) scenario.seed = rig_seed(bench, scenario);
-  auto all = perform_all(bench, *springs, published());
-  if (!all) return tl::unexpected(all.error());
-  return RigTrials{{all->begin(), all->begin() + count}, {all->begin() + count, all->end()}};
+  auto springs = MBK_TRY(validation::ready(kSpringRigs));
+  auto linear = MBK_TRY(validation::ready(kLinearRigs));
+  std::erase_if(
+      linear, [](const laboratory::Scenario& scenario) { return validation::rig_names(scenario.name).second != "M3"; });
+  const auto count = static_cast<std::ptrdiff_t>(springs.size());
+  springs.insert(springs.end(), linear.begin(), linear.end());
+  for (laboratory::Scenario& scenario : springs) scenario.seed = rig_seed(bench, scenario);
+  auto all = MBK_TRY(perform_all(bench, springs, published()));
+  return RigTrials{{all.begin(), all.begin() + count}, {all.begin() + count, all.end()}};
 }
 
 /// A number of tables 5.3 and 5.4.
@@ -133,31 +126,27 @@ ReproducedTable error_table(const char* id, const Trials& trials, char letter, c
 
 /// " --seed 1025" of a trial of a ready scenario, where it is not the scenario's own; "" stands for the only trial.
 Result<std::string> trial_seed(const Workbench& bench, const char* file, std::string_view trial) {
-  const auto scenarios = validation::ready(file);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  return seed_option(bench, *std::ranges::find(*scenarios, trial, &laboratory::Scenario::name));
+  const auto scenarios = MBK_TRY(validation::ready(file));
+  return seed_option(bench, *std::ranges::find(scenarios, trial, &laboratory::Scenario::name));
 }
 
 /// What makes robot.json.
 Result<std::string> robot_command(const Workbench& bench) {
-  const auto seed = trial_seed(bench, "free_motion", "");
-  if (!seed) return tl::unexpected(seed.error());
+  const auto seed = MBK_TRY(trial_seed(bench, "free_motion", ""));
   return fmt::format(
       "mbk simulate free_motion{} --out free.h5 && mbk robot identify free.h5 --terms viscous {} --json --out "
       "robot.json",
-      *seed, kPublishedRobotOptions);
+      seed, kPublishedRobotOptions);
 }
 
 Result<void> add_rig_commands(const Workbench& bench, Draft& exhibit) {
-  auto robot = robot_command(bench);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto seed = trial_seed(bench, kSpringRigs, "K5_M5");
-  if (!seed) return tl::unexpected(seed.error());
+  auto robot = MBK_TRY(robot_command(bench));
+  const auto seed = MBK_TRY(trial_seed(bench, kSpringRigs, "K5_M5"));
   const std::string measure = "mbk measure rig_K5_M5.h5 --mode reference --procedure chapter5 --structure mass-spring";
-  exhibit.commands = {
-      std::move(*robot), fmt::format("mbk simulate {} --trial K5_M5{} --out rig.h5", kSpringRigs, *seed),
-      measure + " --force-source virtual --robot robot.json      # method 1", measure + "      # method 2",
-      "mbk validate virtual-sensor --runs 1      # linear fields, by mbk's own procedure"};
+  exhibit.commands = {std::move(robot), fmt::format("mbk simulate {} --trial K5_M5{} --out rig.h5", kSpringRigs, seed),
+                      measure + " --force-source virtual --robot robot.json      # method 1",
+                      measure + "      # method 2",
+                      "mbk validate virtual-sensor --runs 1      # linear fields, by mbk's own procedure"};
   return {};
 }
 
@@ -209,10 +198,9 @@ ReproducedTable claims_5_4(const Trials& trials) {
 }
 
 Result<void> table_5_4(Workbench& bench, Draft& exhibit) {
-  const auto trials = bench.once(make_rig_trials);
-  if (!trials) return tl::unexpected(trials.error());
-  const auto& [springs, linear] = **trials;
-  if (auto ok = add_rig_commands(bench, exhibit); !ok) return ok;
+  const auto trials = MBK_TRY(bench.once(make_rig_trials));
+  const auto& [springs, linear] = *trials;
+  MBK_TRY(add_rig_commands(bench, exhibit));
   exhibit.related = {"table-5.1", "table-5.3", "table-5.5", "figure-5.4", "erratum-12"};
   const std::vector<Element> stiffness(kStiffnesses.begin(), kStiffnesses.end());
   const std::vector<ForceMethod> published_methods = {{"method 1", kMethod1}, {"method 2", kMethod2}};
@@ -284,10 +272,9 @@ ReproducedTable claims_5_5(const Trials& trials) {
 }
 
 Result<void> table_5_5(Workbench& bench, Draft& exhibit) {
-  const auto trials = bench.once(make_rig_trials);
-  if (!trials) return tl::unexpected(trials.error());
-  const Trials& springs = (*trials)->springs;
-  if (auto ok = add_rig_commands(bench, exhibit); !ok) return ok;
+  const auto trials = MBK_TRY(bench.once(make_rig_trials));
+  const Trials& springs = trials->springs;
+  MBK_TRY(add_rig_commands(bench, exhibit));
   exhibit.related = {"table-5.1", "table-5.4"};
   exhibit.tables = {vaf_table("5.5", springs, kMethod1), vaf_table("5.5 with Coulomb", springs, kMethod1Coulomb),
                     vaf_table("5.5 method 2", springs, kMethod2), claims_5_5(springs)};
@@ -319,36 +306,31 @@ ChartSeries segment_of(const char* name, const PreparedTrial& trial, const Matri
 }
 
 Result<void> figure_5_3(Workbench& bench, Draft& exhibit) {
-  const auto robots = bench.once(identified_robots);
-  if (!robots) return tl::unexpected(robots.error());
-  auto scenarios = validation::ready(kSpringRigs);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario& scenario = *std::ranges::find(*scenarios, "K5_M5", &laboratory::Scenario::name);
+  const auto robots = MBK_TRY(bench.once(identified_robots));
+  auto scenarios = MBK_TRY(validation::ready(kSpringRigs));
+  laboratory::Scenario& scenario = *std::ranges::find(scenarios, "K5_M5", &laboratory::Scenario::name);
   scenario.seed = rig_seed(bench, scenario);
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
   const preprocess::Options options = published().options.preprocess;
-  const auto sensor = validation::prepare_with(performance->recording, kMethod2, **robots, options);
-  if (!sensor) return tl::unexpected(sensor.error());
-  const auto computed = validation::prepare_with(performance->recording, kMethod1, **robots, options);
-  if (!computed) return tl::unexpected(computed.error());
-  if (auto ok = add_rig_commands(bench, exhibit); !ok) return ok;
+  const auto sensor = MBK_TRY(validation::prepare_with(performance.recording, kMethod2, *robots, options));
+  const auto computed = MBK_TRY(validation::prepare_with(performance.recording, kMethod1, *robots, options));
+  MBK_TRY(add_rig_commands(bench, exhibit));
   exhibit.related = {"table-5.4", "table-5.5"};
-  const impedance::Model& truth = performance->truth;
+  const impedance::Model& truth = performance.truth;
   Chart place{.x = {"time", "s"}, .y = {"from the equilibrium", "mm"}};
-  place.series = {segment_of("x", *sensor, sensor->position, 0, 1e3, truth.x0[0]),
-                  segment_of("y", *sensor, sensor->position, 1, 1e3, truth.x0[1])};
+  place.series = {segment_of("x", sensor, sensor.position, 0, 1e3, truth.x0[0]),
+                  segment_of("y", sensor, sensor.position, 1, 1e3, truth.x0[1])};
   Chart velocity{.x = {"time", "s"}, .y = {"velocity", "mm/s"}};
-  velocity.series = {segment_of("x", *sensor, sensor->velocity, 0, 1e3),
-                     segment_of("y", *sensor, sensor->velocity, 1, 1e3)};
+  velocity.series = {segment_of("x", sensor, sensor.velocity, 0, 1e3),
+                     segment_of("y", sensor, sensor.velocity, 1, 1e3)};
   Chart acceleration{.x = {"time", "s"}, .y = {"acceleration", "m/s²"}};
-  acceleration.series = {segment_of("x", *sensor, sensor->acceleration, 0, 1.0),
-                         segment_of("y", *sensor, sensor->acceleration, 1, 1.0)};
+  acceleration.series = {segment_of("x", sensor, sensor.acceleration, 0, 1.0),
+                         segment_of("y", sensor, sensor.acceleration, 1, 1.0)};
   exhibit.charts = {std::move(place), std::move(velocity), std::move(acceleration)};
   for (Index axis = 0; axis < 2; ++axis) {
     Chart force{.x = {"time", "s"}, .y = {"force", "N"}};
-    force.series = {segment_of("sensor", *sensor, sensor->force_hand_on_robot, axis, 1.0),
-                    segment_of("virtual sensor", *computed, computed->force_hand_on_robot, axis, 1.0)};
+    force.series = {segment_of("sensor", sensor, sensor.force_hand_on_robot, axis, 1.0),
+                    segment_of("virtual sensor", computed, computed.force_hand_on_robot, axis, 1.0)};
     exhibit.charts.push_back(std::move(force));
   }
   return {};
@@ -357,10 +339,9 @@ Result<void> figure_5_3(Workbench& bench, Draft& exhibit) {
 // --- figure 5.4
 
 Result<void> figure_5_4(Workbench& bench, Draft& exhibit) {
-  const auto trials = bench.once(make_rig_trials);
-  if (!trials) return tl::unexpected(trials.error());
-  const Trials& springs = (*trials)->springs;
-  if (auto ok = add_rig_commands(bench, exhibit); !ok) return ok;
+  const auto trials = MBK_TRY(bench.once(make_rig_trials));
+  const Trials& springs = trials->springs;
+  MBK_TRY(add_rig_commands(bench, exhibit));
   exhibit.related = {"table-5.3", "table-5.4", "figure-3.8"};
   Chart stiffness = validation::identified_against_true("", "N/m");
   Chart mass = validation::identified_against_true("", "kg");
@@ -400,9 +381,8 @@ struct ArmTrials {
 };
 
 Result<laboratory::Scenario> arm_scenario(int participant, std::uint64_t seed) {
-  auto scenarios = validation::ready(kArmScenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  auto scenario = validation::with_limb(scenarios->front(), participant);
+  auto scenarios = MBK_TRY(validation::ready(kArmScenario));
+  auto scenario = validation::with_limb(scenarios.front(), participant);
   if (scenario) scenario->seed = seed;
   return scenario;
 }
@@ -410,23 +390,21 @@ Result<laboratory::Scenario> arm_scenario(int participant, std::uint64_t seed) {
 Result<ArmTrials> make_arm_trials(Workbench& bench) {
   std::vector<laboratory::Scenario> scenarios;
   const auto add = [&](int participant, int trial) -> Result<void> {
-    auto scenario = arm_scenario(participant, bench.seed(participant, trial));
-    if (!scenario) return tl::unexpected(scenario.error());
-    scenarios.push_back(std::move(*scenario));
+    auto scenario = MBK_TRY(arm_scenario(participant, bench.seed(participant, trial)));
+    scenarios.push_back(std::move(scenario));
     return {};
   };
   for (int trial = 1; trial <= kArmTrials; ++trial) {
-    if (auto ok = add(1, trial); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add(1, trial));
   }
   for (int participant = 2; participant <= 5; ++participant) {
-    if (auto ok = add(participant, 1); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add(participant, 1));
   }
   validation::ForceMeasurement how = published();
   how.options.identify.structure = Structure::full;
   how.options.identify.handle_mass = kHandle;
-  auto all = perform_all(bench, scenarios, how);
-  if (!all) return tl::unexpected(all.error());
-  return ArmTrials{{all->begin(), all->begin() + kArmTrials}, {all->begin() + kArmTrials, all->end()}};
+  auto all = MBK_TRY(perform_all(bench, scenarios, how));
+  return ArmTrials{{all.begin(), all.begin() + kArmTrials}, {all.begin() + kArmTrials, all.end()}};
 }
 
 /// Columns of a table of arms: M, B, K and the VAF.
@@ -498,12 +476,10 @@ ReproducedTable claims_5_6(const ArmTrials& arms) {
 }
 
 Result<void> table_5_6(Workbench& bench, Draft& exhibit) {
-  const auto arms = bench.once(make_arm_trials);
-  if (!arms) return tl::unexpected(arms.error());
-  auto robot = robot_command(bench);
-  if (!robot) return tl::unexpected(robot.error());
+  const auto arms = MBK_TRY(bench.once(make_arm_trials));
+  auto robot = MBK_TRY(robot_command(bench));
   exhibit.commands = {
-      std::move(*robot),
+      std::move(robot),
       fmt::format("mbk simulate {} --seed {} --out arm.h5      # the first trial of P1", kArmScenario,
                   bench.seed(1, 1)),
       fmt::format("mbk measure arm.h5 --mode reference --procedure chapter5 --handle-mass {} --force-source virtual "
@@ -516,16 +492,16 @@ Result<void> table_5_6(Workbench& bench, Draft& exhibit) {
   own.spread_is = fmt::format("standard deviation over {} trials", kArmTrials);
   ReproducedTable others = arm_table("5.6 others");
   others.what_rows_are = "participant, method";
-  for (const auto& [name, force] : kArmMethods) own.rows.push_back(arm_row(name, (*arms)->first, force));
-  own.rows.push_back(arm_row("simulated arm", (*arms)->first, {}));
-  for (std::size_t i = 0; i < (*arms)->others.size(); ++i) {
+  for (const auto& [name, force] : kArmMethods) own.rows.push_back(arm_row(name, arms->first, force));
+  own.rows.push_back(arm_row("simulated arm", arms->first, {}));
+  for (std::size_t i = 0; i < arms->others.size(); ++i) {
     const std::string who = person(static_cast<int>(i) + 2);
     for (const auto& [name, force] : kArmMethods) {
-      others.rows.push_back(arm_row(fmt::format("{}, {}", who, name), {(*arms)->others[i]}, force));
+      others.rows.push_back(arm_row(fmt::format("{}, {}", who, name), {arms->others[i]}, force));
     }
-    others.rows.push_back(arm_row(who + ", simulated arm", {(*arms)->others[i]}, {}));
+    others.rows.push_back(arm_row(who + ", simulated arm", {arms->others[i]}, {}));
   }
-  exhibit.tables = {std::move(own), std::move(others), claims_5_6(**arms)};
+  exhibit.tables = {std::move(own), std::move(others), claims_5_6(*arms)};
   return {};
 }
 

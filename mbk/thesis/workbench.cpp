@@ -34,24 +34,20 @@ Result<TaskResult> perform(Task task, int participant, const Workbench& bench) {
   std::vector<Recording> recordings;
   Vector truth;
   for (int k = 1; k <= kTrials; ++k) {
-    const auto scenario = task_scenario(task, participant, bench.seed(participant, k));
-    if (!scenario) return tl::unexpected(scenario.error());
-    auto performance = laboratory::simulate(*scenario);
-    if (!performance) return tl::unexpected(performance.error());
-    const Vector one = impedance::stacked(performance->truth) / kTrials;
+    const auto scenario = MBK_TRY(task_scenario(task, participant, bench.seed(participant, k)));
+    auto performance = MBK_TRY(laboratory::simulate(scenario));
+    const Vector one = impedance::stacked(performance.truth) / kTrials;
     truth = k == 1 ? one : Vector(truth + one);
-    recordings.push_back(std::move(performance->recording));
-    auto measured = measurement::measure({&recordings.back(), 1}, published_procedure());
-    if (!measured) return tl::unexpected(measured.error());
+    recordings.push_back(std::move(performance.recording));
+    auto measured = MBK_TRY(measurement::measure({&recordings.back(), 1}, published_procedure()));
     result.trials.push_back(
-        {std::move(measured->identification), std::move(measured->energies.front()), passive_as_published(*measured)});
+        {std::move(measured.identification), std::move(measured.energies.front()), passive_as_published(measured)});
   }
   result.truth = impedance::unstacked(truth, 2);
   measurement::Options options;
   options.identify.handle_mass = kHandleMass;
-  auto pooled = measurement::measure(recordings, options);
-  if (!pooled) return tl::unexpected(pooled.error());
-  result.pooled = std::move(*pooled);
+  auto pooled = MBK_TRY(measurement::measure(recordings, options));
+  result.pooled = std::move(pooled);
   result.first = std::move(recordings.front());
   return result;
 }
@@ -59,14 +55,11 @@ Result<TaskResult> perform(Task task, int participant, const Workbench& bench) {
 Result<OneAxisGrasp> grasp(laboratory::Scenario scenario) {
   namespace one_dimensional = validation::one_dimensional;
   std::get<perturbation::RandomBinaryPlan>(scenario.perturbation.kind).sequence.switching_time = kSwitchingTime;
-  auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  const auto axis = one_dimensional::axis_of(performance->recording);
-  if (!axis) return tl::unexpected(axis.error());
-  const auto attempt = one_dimensional::attempted(axis->impedance);
-  if (!attempt) return tl::unexpected(attempt.error());
-  return OneAxisGrasp{attempt->vaf, one_dimensional::validation_output(*attempt, axis->impedance),
-                      std::move(performance->recording)};
+  auto performance = MBK_TRY(laboratory::simulate(scenario));
+  const auto axis = MBK_TRY(one_dimensional::axis_of(performance.recording));
+  const auto attempt = MBK_TRY(one_dimensional::attempted(axis.impedance));
+  return OneAxisGrasp{attempt.vaf, one_dimensional::validation_output(attempt, axis.impedance),
+                      std::move(performance.recording)};
 }
 
 /// make(i) for i = 0, …, count − 1, several at a time, in their order.
@@ -74,22 +67,18 @@ template <class Value>
 Result<std::vector<Value>> made(std::size_t count, unsigned threads,
                                 const std::function<Result<Value>(std::size_t)>& make) {
   std::vector<Value> all(count);
-  const auto ran = numeric::parallel_for(static_cast<int>(count), threads, [&](int i) -> Result<void> {
+  MBK_TRY(numeric::parallel_for(static_cast<int>(count), threads, [&](int i) -> Result<void> {
     const auto at = static_cast<std::size_t>(i);
-    auto value = make(at);
-    if (!value) return tl::unexpected(value.error());
-    all[at] = std::move(*value);
+    all[at] = MBK_TRY(make(at));
     return {};
-  });
-  if (!ran) return tl::unexpected(ran.error());
+  }));
   return all;
 }
 
 Result<std::vector<OneAxisGrasp>> make_grasps(Workbench& bench) {
-  const auto scenarios = validation::ready("one_axis_random_binary");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  return made<OneAxisGrasp>(scenarios->size(), bench.options().threads, [&](std::size_t i) {
-    laboratory::Scenario scenario = (*scenarios)[i];
+  const auto scenarios = MBK_TRY(validation::ready("one_axis_random_binary"));
+  return made<OneAxisGrasp>(scenarios.size(), bench.options().threads, [&](std::size_t i) {
+    laboratory::Scenario scenario = scenarios[i];
     scenario.seed = bench.options().seed + i;
     return grasp(std::move(scenario));
   });
@@ -148,9 +137,8 @@ std::vector<int> participants_of(Task task) {
 }
 
 Result<laboratory::Scenario> task_scenario(Task task, int participant, std::uint64_t seed) {
-  auto scenarios = validation::ready(scenario_of(task));
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  auto scenario = validation::with_limb(scenarios->front(), participant);
+  auto scenarios = MBK_TRY(validation::ready(scenario_of(task)));
+  auto scenario = validation::with_limb(scenarios.front(), participant);
   if (scenario) scenario->seed = seed;
   return scenario;
 }
@@ -162,10 +150,9 @@ std::uint64_t Workbench::seed(int participant, int trial) const {
 Result<const std::vector<TaskResult>*> Workbench::results(Task task) {
   if (const auto found = results_.find(task); found != results_.end()) return &found->second;
   const std::vector<int> people = participants_of(task);
-  auto all =
-      made<TaskResult>(people.size(), options_.threads, [&](std::size_t i) { return perform(task, people[i], *this); });
-  if (!all) return tl::unexpected(all.error());
-  return &(results_[task] = std::move(*all));
+  auto all = MBK_TRY(made<TaskResult>(people.size(), options_.threads,
+                                      [&](std::size_t i) { return perform(task, people[i], *this); }));
+  return &(results_[task] = std::move(all));
 }
 
 Result<const std::vector<OneAxisGrasp>*> Workbench::one_axis_grasps() {

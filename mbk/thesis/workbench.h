@@ -93,9 +93,8 @@ class Workbench {
   [[nodiscard]] Result<const T*> once(Result<T> (*make)(Workbench&)) {
     std::shared_ptr<const void>& kept = kept_[typeid(T)];
     if (kept == nullptr) {
-      auto made = make(*this);
-      if (!made) return tl::unexpected(made.error());
-      kept = std::make_shared<const T>(std::move(*made));
+      auto made = MBK_TRY(make(*this));
+      kept = std::make_shared<const T>(std::move(made));
     }
     return static_cast<const T*>(kept.get());
   }

@@ -193,9 +193,8 @@ Result<Document> Document::parse(std::string_view text, std::string_view file) {
 }
 
 Result<Document> Document::read(const std::filesystem::path& file) {
-  const auto text = read_text_file(file, kLargestText);
-  if (!text) return tl::unexpected(text.error());
-  return parse(*text, file.string());
+  const auto text = MBK_TRY(read_text_file(file, kLargestText));
+  return parse(text, file.string());
 }
 
 Section Document::root() const {

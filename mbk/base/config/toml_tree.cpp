@@ -39,7 +39,7 @@ class NestingScan {
       } else if (c == '"' || c == '\'') {
         skip_string(c);
       } else {
-        if (auto ok = structure(c); !ok) return ok;
+        MBK_TRY(structure(c));
         ++at_;
       }
     }
@@ -139,7 +139,7 @@ Result<Node> parse_toml(std::string_view text) {
   if (text.size() > kLargestText) {
     return bad_data(fmt::format("{} bytes are more than {}", text.size(), kLargestText));
   }
-  if (auto bounded = NestingScan(text).run(); !bounded) return tl::unexpected(bounded.error());
+  MBK_TRY(NestingScan(text).run());
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();

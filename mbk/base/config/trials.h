@@ -17,18 +17,15 @@ namespace mbk::config {
 template <class Read>
 auto read_trials(std::string_view text, const std::filesystem::path& file, const Read& read)
     -> Result<std::vector<typename std::invoke_result_t<Read, Section, std::string>::value_type>> {
-  const auto document = Document::parse(text, file.string());
-  if (!document) return tl::unexpected(document.error());
-  const auto trials = document->trials();
-  if (!trials) return tl::unexpected(trials.error());
+  const auto document = MBK_TRY(Document::parse(text, file.string()));
+  const auto trials = MBK_TRY(document.trials());
   std::vector<typename std::invoke_result_t<Read, Section, std::string>::value_type> values;
-  for (const Trial& trial : *trials) {
-    auto value = read(trial.document.root(), trial.name);
-    if (!value) return tl::unexpected(value.error());
-    if (auto ok = trial.document.finish(); !ok) return tl::unexpected(ok.error());
-    values.push_back(std::move(*value));
+  for (const Trial& trial : trials) {
+    auto value = MBK_TRY(read(trial.document.root(), trial.name));
+    MBK_TRY(trial.document.finish());
+    values.push_back(std::move(value));
   }
-  if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(document.finish());
   return values;
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <type_traits>
+#include <utility>
 
 namespace mbk {
 
@@ -40,4 +42,24 @@ using Result = tl::expected<Value, Error>;
 
 [[nodiscard]] tl::unexpected<Error> bad_usage(std::string message, std::string remedy = "");
 
+/// What MBK_TRY takes out of a result that holds a value.
+template <class Value>
+Value taken(tl::expected<Value, Error>&& result) {
+  if constexpr (!std::is_void_v<Value>) return *std::move(result);
+}
+
 }  // namespace mbk
+
+/// The value of a `Result`; if it holds an Error, the function around it returns that error:
+///
+///     const auto recording = MBK_TRY(read(file));
+///     MBK_TRY(check(recording));
+///
+/// A statement expression, which GCC and Clang know; write it only as a whole statement or a whole initialiser.
+#define MBK_TRY(...)                                                                          \
+  __extension__({                                                                             \
+    auto mbk_result = (__VA_ARGS__);                                                          \
+    if (!mbk_result) [[unlikely]]                                                             \
+      return ::tl::unexpected<::mbk::Error>(std::move(mbk_result).error());                   \
+    ::mbk::taken(std::move(mbk_result));                                                      \
+  })

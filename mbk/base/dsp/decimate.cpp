@@ -16,12 +16,10 @@ Result<Matrix> decimate(const Matrix& signals, Hertz sample_rate, Index every, I
   if (every == 1) return Matrix(signals(rows, Eigen::all));
   constexpr int kOrder = 8;
   const double nyquist = 0.5 * sample_rate.value / static_cast<double>(every);
-  const auto lowpass = butterworth_lowpass(kOrder, Hertz(kDecimationCutoff * nyquist), sample_rate);
-  if (!lowpass) return tl::unexpected(lowpass.error());
+  const auto lowpass = MBK_TRY(butterworth_lowpass(kOrder, Hertz(kDecimationCutoff * nyquist), sample_rate));
   constexpr Index kPeriods = 6;  // of the new clock, in which the filter forgets its ends
-  const auto smooth = filter_zero_phase(*lowpass, signals, {.samples = kPeriods * every});
-  if (!smooth) return tl::unexpected(smooth.error());
-  return Matrix((*smooth)(rows, Eigen::all));
+  const auto smooth = MBK_TRY(filter_zero_phase(lowpass, signals, {.samples = kPeriods * every}));
+  return Matrix(smooth(rows, Eigen::all));
 }
 
 }  // namespace mbk::dsp

@@ -118,10 +118,9 @@ Result<std::optional<DecimatedChain>> DecimatedChain::plan(const FilterChain& ch
   made.direct_ = made.kappa_ * OneWay::gain(chain.lowpass);
   if (!made.choose_blocks()) return std::nullopt;
   for (const int derivative : derivatives) {
-    auto weights = savitzky_golay_weights(chain.smoothing, derivative);
-    if (!weights) return tl::unexpected(weights.error());
+    auto weights = MBK_TRY(savitzky_golay_weights(chain.smoothing, derivative));
     Smoothing& smoothing = made.smoothing_.emplace_back();
-    smoothing.weights = *weights * std::pow(rate.value, derivative);
+    smoothing.weights = weights * std::pow(rate.value, derivative);
     smoothing.parity = derivative % 2 == 0 ? 1.0 : -1.0;
     for (const Mode& mode : made.modes_) {
       std::vector<Complex>& U = smoothing.U.emplace_back();

@@ -164,15 +164,12 @@ Result<void> smooth_directly(const FilterChain& chain, std::span<const Column> c
   Matrix smoothed;
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const Column& column = columns[static_cast<std::size_t>(outputs[k].column)];
-    const auto one = savitzky_golay(chain.smoothing, outputs[k].derivative, column, rate);
-    if (!one) return tl::unexpected(one.error());
-    smoothed.conservativeResize(one->rows(), static_cast<Index>(outputs.size()));
-    smoothed.col(static_cast<Index>(k)) = *one;
+    const auto one = MBK_TRY(savitzky_golay(chain.smoothing, outputs[k].derivative, column, rate));
+    smoothed.conservativeResize(one.rows(), static_cast<Index>(outputs.size()));
+    smoothed.col(static_cast<Index>(k)) = one;
   }
   if (!chain.lowpass.empty()) {
-    auto filtered = filter_zero_phase(chain.lowpass, smoothed, chain.padding);
-    if (!filtered) return tl::unexpected(filtered.error());
-    smoothed = std::move(*filtered);
+    smoothed = MBK_TRY(filter_zero_phase(chain.lowpass, smoothed, chain.padding));
   }
   for (std::size_t k = 0; k < to.size(); ++k) {
     Eigen::Map<Vector>(to[k], smoothed.rows()) = smoothed.col(static_cast<Index>(k));
@@ -263,11 +260,10 @@ Result<void> filter_all(const FilterChain& chain, std::span<const Column> column
   }
   const Index count = columns.front().size() - chain.smoothing.window + 1;
   for (const Batch& batch : batches_of(outputs)) {
-    const auto sums = running_sums(chain.smoothing, batch.derivatives, rate.value);
-    if (!sums) return tl::unexpected(sums.error());
+    const auto sums = MBK_TRY(running_sums(chain.smoothing, batch.derivatives, rate.value));
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);  // sums of differences keep the digits that sums of values lose
-    filter_batch(chain, *sums, lanes, count, reference, Layout(batch, reference, to));
+    filter_batch(chain, sums, lanes, count, reference, Layout(batch, reference, to));
   }
   return {};
 }
@@ -278,14 +274,13 @@ Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> col
                            std::span<double* const> to) {
   const Index length = columns.front().size(), count = (length - chain.smoothing.window) / every + 1;
   for (const Batch& batch : batches_of(outputs)) {
-    const auto blocks = DecimatedChain::plan(chain, batch.derivatives, rate, every);
-    if (!blocks) return tl::unexpected(blocks.error());
-    if (!*blocks || length < (*blocks)->shortest()) return false;
+    const auto blocks = MBK_TRY(DecimatedChain::plan(chain, batch.derivatives, rate, every));
+    if (!blocks || length < blocks->shortest()) return false;
     const FourColumns lanes = lanes_of(batch, columns);
     const FourValues reference = values_at(lanes, 0);
     const std::size_t width = kLanes * batch.derivatives.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
-    (*blocks)->run(lanes, length, reference, passed, values.get());
+    blocks->run(lanes, length, reference, passed, values.get());
     for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
       std::array<double*, kLanes> lane_to{};
       for (const auto& [from, target] : batch.outputs) {
@@ -308,27 +303,23 @@ std::vector<double*> columns_of(Matrix& matrix) {
 
 Result<Index> rows_left(const FilterChain& chain, Index samples, Index every) {
   if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
-  const auto left = smoothed_length(chain, samples);
-  if (!left) return left;
-  return (*left - 1) / every + 1;
+  const auto left = MBK_TRY(smoothed_length(chain, samples));
+  return (left - 1) / every + 1;
 }
 
 Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                  std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
                                  const Passed& passed, std::span<double* const> to) {
-  const auto length = length_of(columns);
-  if (!length) return tl::unexpected(length.error());
-  const auto rows = rows_left(chain, *length, every);
-  if (!rows) return tl::unexpected(rows.error());
+  const auto length = MBK_TRY(length_of(columns));
+  const auto rows = MBK_TRY(rows_left(chain, length, every));
   if (every == 1) return filter_all(chain, columns, outputs, sample_rate, to);
 
-  const auto some = filter_blocks(chain, columns, outputs, every, sample_rate, passed, to);
-  if (!some) return tl::unexpected(some.error());
-  if (*some) return {};
-  Matrix all(*length - chain.smoothing.window + 1, static_cast<Index>(outputs.size()));
-  if (auto ok = filter_all(chain, columns, outputs, sample_rate, columns_of(all)); !ok) return ok;
+  const auto some = MBK_TRY(filter_blocks(chain, columns, outputs, every, sample_rate, passed, to));
+  if (some) return {};
+  Matrix all(length - chain.smoothing.window + 1, static_cast<Index>(outputs.size()));
+  MBK_TRY(filter_all(chain, columns, outputs, sample_rate, columns_of(all)));
   for (std::size_t k = 0; k < to.size(); ++k) {
-    Eigen::Map<Vector>(to[k], *rows) = all(Eigen::seqN(0, *rows, every), static_cast<Index>(k));
+    Eigen::Map<Vector>(to[k], rows) = all(Eigen::seqN(0, rows, every), static_cast<Index>(k));
   }
   return {};
 }
@@ -336,13 +327,10 @@ Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Colum
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                    std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
                                    const Passed& passed) {
-  const auto length = length_of(columns);
-  if (!length) return tl::unexpected(length.error());
-  const auto rows = rows_left(chain, *length, every);
-  if (!rows) return tl::unexpected(rows.error());
-  Matrix answer(*rows, static_cast<Index>(outputs.size()));
-  auto ok = smooth_then_lowpass(chain, columns, outputs, sample_rate, every, passed, columns_of(answer));
-  if (!ok) return tl::unexpected(ok.error());
+  const auto length = MBK_TRY(length_of(columns));
+  const auto rows = MBK_TRY(rows_left(chain, length, every));
+  Matrix answer(rows, static_cast<Index>(outputs.size()));
+  MBK_TRY(smooth_then_lowpass(chain, columns, outputs, sample_rate, every, passed, columns_of(answer)));
   return answer;
 }
 

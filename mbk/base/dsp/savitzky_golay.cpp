@@ -75,7 +75,7 @@ void correlate(const Vector& weights, double sign, const double* x, double* out,
 }  // namespace
 
 Result<SavitzkyGolayWeights> savitzky_golay_polynomial(const SavitzkyGolay& filter, int derivative) {
-  if (auto ok = check(filter, derivative); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(filter, derivative));
   const Index half = filter.half_window(), window = filter.window;
   const double scale = half > 0 ? 1.0 / static_cast<double>(half) : 1.0;
   const Vector t = Vector::LinSpaced(window, -static_cast<double>(half), static_cast<double>(half)) * scale;
@@ -106,24 +106,22 @@ Result<SavitzkyGolayWeights> savitzky_golay_polynomial(const SavitzkyGolay& filt
 }
 
 Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative) {
-  auto weights = savitzky_golay_polynomial(filter, derivative);
-  if (!weights) return tl::unexpected(weights.error());
-  return std::move(weights->samples);
+  auto weights = MBK_TRY(savitzky_golay_polynomial(filter, derivative));
+  return std::move(weights.samples);
 }
 
 Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const Matrix& signals, Hertz sample_rate) {
-  auto weights = savitzky_golay_weights(filter, derivative);
-  if (!weights) return tl::unexpected(weights.error());
+  auto weights = MBK_TRY(savitzky_golay_weights(filter, derivative));
   const Index count = signals.rows() - filter.window + 1;
   if (count < 1) {
     return bad_data(
         fmt::format("{} samples are fewer than the Savitzky–Golay window of {}", signals.rows(), filter.window),
         "take a longer recording or a smaller --sg-window");
   }
-  *weights *= std::pow(sample_rate.value, derivative);
+  weights *= std::pow(sample_rate.value, derivative);
   Matrix filtered(count, signals.cols());
   for (Index column = 0; column < signals.cols(); ++column) {
-    correlate(*weights, derivative % 2 == 0 ? 1.0 : -1.0, signals.col(column).data(), filtered.col(column).data(),
+    correlate(weights, derivative % 2 == 0 ? 1.0 : -1.0, signals.col(column).data(), filtered.col(column).data(),
               count);
   }
   return filtered;
@@ -131,14 +129,13 @@ Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const
 
 Result<Vector> savitzky_golay_response(const SavitzkyGolay& filter, int derivative, const Vector& frequency_hz,
                                        Hertz sample_rate) {
-  const auto weights = savitzky_golay_weights(filter, derivative);
-  if (!weights) return tl::unexpected(weights.error());
+  const auto weights = MBK_TRY(savitzky_golay_weights(filter, derivative));
   Vector response(frequency_hz.size());
   for (Index k = 0; k < response.size(); ++k) {
     const double omega = 2.0 * std::numbers::pi * frequency_hz[k] / sample_rate.value;  // per sample
     std::complex<double> sum = 0.0;
-    for (Index i = 0; i < weights->size(); ++i) {
-      sum += (*weights)[i] * std::polar(1.0, omega * static_cast<double>(i - filter.half_window()));
+    for (Index i = 0; i < weights.size(); ++i) {
+      sum += weights[i] * std::polar(1.0, omega * static_cast<double>(i - filter.half_window()));
     }
     response[k] = std::abs(sum) * std::pow(sample_rate.value, derivative);
   }
@@ -146,15 +143,15 @@ Result<Vector> savitzky_golay_response(const SavitzkyGolay& filter, int derivati
 }
 
 Result<double> savitzky_golay_gain(const SavitzkyGolay& filter, int derivative, Hertz frequency, Hertz sample_rate) {
-  const auto response = savitzky_golay_response(filter, derivative, Vector::Constant(1, frequency.value), sample_rate);
-  if (!response) return tl::unexpected(response.error());
-  return (*response)[0] / std::pow(2.0 * std::numbers::pi * frequency.value, derivative);
+  const auto response =
+      MBK_TRY(savitzky_golay_response(filter, derivative, Vector::Constant(1, frequency.value), sample_rate));
+  return response[0] / std::pow(2.0 * std::numbers::pi * frequency.value, derivative);
 }
 
 Result<Hertz> savitzky_golay_cutoff(const SavitzkyGolay& filter, Hertz sample_rate) {
   const double target = std::numbers::sqrt2 / 2.0;
   const auto gain_at = [&](double hz) { return savitzky_golay_gain(filter, 0, Hertz(hz), sample_rate); };
-  if (auto ok = gain_at(0.0); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(gain_at(0.0));
   // Below the main lobe's first crossing the gain falls from 1; walk up to bracket it, then bisect.
   const double step = sample_rate.value / (16.0 * filter.window);
   double low = 0.0, high = step;

@@ -370,11 +370,10 @@ Result<RunningSums> running_sums(const SavitzkyGolay& filter, std::span<const in
     }
   }
   for (const int derivative : derivatives) {
-    const auto weights = savitzky_golay_polynomial(filter, derivative);
-    if (!weights) return tl::unexpected(weights.error());
+    const auto weights = MBK_TRY(savitzky_golay_polynomial(filter, derivative));
     for (int k = 0; k <= order; ++k) {
       double share = 0.0;
-      for (int m = order; m >= k; --m) share += weights->powers[m] * power_in_binomials(m, k);
+      for (int m = order; m >= k; --m) share += weights.powers[m] * power_in_binomials(m, k);
       f.shares.push_back(share * std::pow(rate, derivative));
     }
   }

@@ -73,9 +73,8 @@ void Polynomial::trim() {
 Result<Polynomial> Polynomial::from_decimals(std::span<const double> ascending) {
   std::vector<Rational> coefficients;
   for (const double value : ascending) {
-    auto coefficient = exact(value);
-    if (!coefficient) return tl::unexpected(coefficient.error());
-    coefficients.push_back(std::move(*coefficient));
+    auto coefficient = MBK_TRY(exact(value));
+    coefficients.push_back(std::move(coefficient));
   }
   return Polynomial(std::move(coefficients));
 }

@@ -24,11 +24,9 @@ Result<RationalFunction> RationalFunction::of(const Polynomial& numerator, const
 
 Result<RationalFunction> RationalFunction::from_decimals(std::span<const double> numerator,
                                                          std::span<const double> denominator) {
-  const auto above = Polynomial::from_decimals(numerator);
-  if (!above) return tl::unexpected(above.error());
-  const auto below = Polynomial::from_decimals(denominator);
-  if (!below) return tl::unexpected(below.error());
-  return of(*above, *below);
+  const auto above = MBK_TRY(Polynomial::from_decimals(numerator));
+  const auto below = MBK_TRY(Polynomial::from_decimals(denominator));
+  return of(above, below);
 }
 
 std::complex<double> RationalFunction::operator()(std::complex<double> s) const {
@@ -67,9 +65,8 @@ Result<RationalMatrix> RationalMatrix::impedance(const Matrix& M, const Matrix& 
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
       const double numerator[] = {K(i, j), B(i, j), M(i, j)}, denominator[] = {0.0, 1.0};
-      auto entry = RationalFunction::from_decimals(numerator, denominator);
-      if (!entry) return tl::unexpected(entry.error());
-      Z(i, j) = std::move(*entry);
+      auto entry = MBK_TRY(RationalFunction::from_decimals(numerator, denominator));
+      Z(i, j) = std::move(entry);
     }
   }
   return Z;

@@ -138,11 +138,10 @@ tl::unexpected<Error> does_not_exist(const std::string& index, const std::string
 
 /// ν of a matrix under the name by which it is asked for.
 Result<PassivityIndex> min_hermitian_part(const RationalMatrix& G, const std::string& name, const std::string& of) {
-  const auto judged = positive_real(G);
-  if (!judged) return tl::unexpected(judged.error());
+  const auto judged = MBK_TRY(positive_real(G));
   for (const auto condition :
        {PositiveRealCondition::no_right_poles, PositiveRealCondition::simple_poles, PositiveRealCondition::residues}) {
-    if (!(*judged)[condition].holds()) return does_not_exist(name, of + (*judged)[condition].line());
+    if (!judged[condition].holds()) return does_not_exist(name, of + judged[condition].line());
   }
   const Polynomial denominator = common_denominator(G);
   return Infimum(scaled_hermitian_part(G, denominator), denominator, 2).find();
@@ -179,10 +178,9 @@ Result<PassivityIndex> relative_passivity_index(const RationalMatrix& G) {
   }
   // R² = −inf λ_min(−S*S)
   const ComplexPolynomialMatrix minus_N = numerators_on_axis(RationalMatrix(S.size()) - S, denominator);
-  const auto squared = Infimum(adjoint(minus_N) * numerators_on_axis(S, denominator), denominator, 1).find();
-  if (!squared) return tl::unexpected(squared.error());
+  const auto squared = MBK_TRY(Infimum(adjoint(minus_N) * numerators_on_axis(S, denominator), denominator, 1).find());
   const auto root = [](double value) { return std::sqrt(std::max(0.0, -value)); };
-  return PassivityIndex{root(squared->value), root(squared->at_most), root(squared->at_least), squared->frequency};
+  return PassivityIndex{root(squared.value), root(squared.at_most), root(squared.at_least), squared.frequency};
 }
 
 }  // namespace mbk::lti

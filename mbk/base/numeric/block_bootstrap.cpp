@@ -169,19 +169,18 @@ Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const M
   if (S.size() > 0 && S.rows() != Z.cols() * Y.cols()) {
     return bad_usage(fmt::format("a structure of {} rows does not tie {} coefficients", S.rows(), Z.cols() * Y.cols()));
   }
-  const auto resampler = BlockResampler::make(Z, R, Y, ranges, options.block_rows);
-  if (!resampler) return tl::unexpected(resampler.error());
-  const Moments data = resampler->moments(resampler->ranges());
-  const Solver solver(data, Z, R, resampler->ranges(), S);
+  const auto resampler = MBK_TRY(BlockResampler::make(Z, R, Y, ranges, options.block_rows));
+  const Moments data = resampler.moments(resampler.ranges());
+  const Solver solver(data, Z, R, resampler.ranges(), S);
   auto estimate = solver.solve(data);
   if (!estimate) return fail(ErrorKind::not_usable, "the terms of the regression cannot be distinguished");
-  BlockBootstrap result{std::move(*estimate), {}, resampler->blocks()};
+  BlockBootstrap result{std::move(*estimate), {}, resampler.blocks()};
   result.coefficients.resize(result.estimate.size(), options.replicates);
   constexpr int kTogether = 64;  // replicates to a turn of a thread
   const auto work = [&](int turn) -> Result<void> {
     for (int i = turn * kTogether; i < std::min((turn + 1) * kTogether, options.replicates); ++i) {
       const auto solution =
-          solver.solve(resampler->moments(resampler->draw(options.seed, static_cast<std::uint32_t>(i))));
+          solver.solve(resampler.moments(resampler.draw(options.seed, static_cast<std::uint32_t>(i))));
       if (!solution) {
         return fail(ErrorKind::not_usable, fmt::format("in bootstrap sample {} the terms cannot be distinguished", i),
                     "record longer, or choose shorter blocks");
@@ -190,8 +189,7 @@ Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const M
     }
     return {};
   };
-  const auto done = parallel_for((options.replicates - 1) / kTogether + 1, options.threads, work);
-  if (!done) return tl::unexpected(done.error());
+  MBK_TRY(parallel_for((options.replicates - 1) / kTogether + 1, options.threads, work));
   return result;
 }
 

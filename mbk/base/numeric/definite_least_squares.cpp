@@ -253,7 +253,7 @@ DefiniteSolution DefiniteSolver::solution() const {
 Result<DefiniteSolution> DefiniteSolver::solve() {
   constexpr int kMostSteps = 500;
   constexpr double kCentred = 0.01, kSettled = 1e-3, kFollows = 0.8;
-  if (auto ok = prepare(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(prepare());
   const double last = program_.gap / static_cast<double>(std::max<Index>(order_, 1));
   weight_ = std::max(last, std::abs(objective(x_)));
   for (const Matrix& factor : factors_) {

@@ -113,7 +113,7 @@ Result<Experiment> plan_experiment(const std::vector<protocol::Trial>& trials, c
     if (!plan) return tl::unexpected(plan.error().in(file));
     experiment.plans.push_back(std::move(*plan));
     const fs::path target = recording_of(trial, out, trials.size() > 1);
-    if (auto ok = session::check_target(experiment.plans.back(), target); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(session::check_target(experiment.plans.back(), target));
   }
   return experiment;
 }

@@ -14,9 +14,8 @@ Result<Measurement> measure_recording(const Recording& recording) {
 Result<Measurement> measure_trial(const std::filesystem::path& file, const Measure& measure) {
   recording::ReadOptions options;
   options.own_samples = true;
-  auto recording = recording::read(file, options);
-  if (!recording) return tl::unexpected(recording.error());
-  return measure(preprocess::perturbation_only(std::move(*recording)));
+  auto recording = MBK_TRY(recording::read(file, options));
+  return measure(preprocess::perturbation_only(std::move(recording)));
 }
 
 bool poor(const Identification& identification) {

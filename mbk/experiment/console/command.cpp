@@ -57,9 +57,8 @@ bool knows(Action action, std::string_view key) {
 }  // namespace
 
 Result<Command> parse_command(std::string_view json) {
-  const auto parsed = parse(json);
-  if (!parsed) return tl::unexpected(parsed.error());
-  const auto& message = *parsed;
+  const auto parsed = MBK_TRY(parse(json));
+  const auto& message = parsed;
   const auto named = message.find("command");
   if (named == message.end() || !named->is_string()) return refused("a message names no command");
   const auto& name = named->get_ref<const std::string&>();

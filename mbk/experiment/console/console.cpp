@@ -145,14 +145,13 @@ Result<std::unique_ptr<Console>> Console::open(std::uint16_t port, const std::ve
                                                ServerTimes times) {
   std::unique_ptr<Console> console(new Console(plans, flags));
   Console& self = *console;
-  auto server = Server::listen(
+  auto server = MBK_TRY(Server::listen(
       port,
       {[&self](std::string_view path) { return self.page(path); },
        [&self](const Command& command) { return self.command(command); }, [&self] { self.beat(); }, std::move(log)},
-      times);
-  if (!server) return tl::unexpected(server.error());
+      times));
   const std::scoped_lock lock(self.mutex_);
-  self.server_ = std::move(*server);
+  self.server_ = std::move(server);
   return console;
 }
 

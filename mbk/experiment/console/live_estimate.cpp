@@ -54,39 +54,35 @@ bool warns_of(const Identification& id, WarningCode code) {
 
 /// The perturbation in it, as far as its readings have come.
 Result<Recording> perturbation_of(const journal::Journal& journal) {
-  auto recording = journal::to_recording(journal);
-  if (!recording) return tl::unexpected(recording.error());
+  auto recording = MBK_TRY(journal::to_recording(journal));
   const auto holds = [&](const char* name) {
-    return std::ranges::find(recording->events, name, &Event::name) != recording->events.end();
+    return std::ranges::find(recording.events, name, &Event::name) != recording.events.end();
   };
   if (holds("trigger")) {
     return bad_data("a hand that reaches has no M, B and K about one place", "'mbk explore' measures the recording");
   }
   if (!holds("perturbation_start")) return bad_data("nothing was perturbed yet", "wait for the perturbation");
-  if (!holds("perturbation_end")) cut_unread(*recording, journal.header.force_latency);
-  return preprocess::perturbation_only(std::move(*recording));
+  if (!holds("perturbation_end")) cut_unread(recording, journal.header.force_latency);
+  return preprocess::perturbation_only(std::move(recording));
 }
 
 }  // namespace
 
 Result<Measurement> estimate(const journal::Journal& journal, const measurement::Options& options) {
-  const auto perturbation = perturbation_of(journal);
-  if (!perturbation) return tl::unexpected(perturbation.error());
-  return measurement::measure({&*perturbation, 1}, options);
+  const auto perturbation = MBK_TRY(perturbation_of(journal));
+  return measurement::measure({&perturbation, 1}, options);
 }
 
 Result<Recent> estimate_now(const journal::Journal& journal, const measurement::Options& options) {
-  const auto perturbation = perturbation_of(journal);
-  if (!perturbation) return tl::unexpected(perturbation.error());
-  auto whole = measurement::measure({&*perturbation, 1}, options);
-  if (!whole) return tl::unexpected(whole.error());
+  const auto perturbation = MBK_TRY(perturbation_of(journal));
+  auto whole = MBK_TRY(measurement::measure({&perturbation, 1}, options));
   const double from = perturbed(journal) - kRecent;
-  if (from < kRecent) return Recent{0.0, std::move(*whole)};
+  if (from < kRecent) return Recent{0.0, std::move(whole)};
   measurement::Options last = options;
   last.preprocess.window.from_s = from;
-  auto recent = measurement::measure({&*perturbation, 1}, last);
-  if (!recent) return Recent{0.0, std::move(*whole)};
-  const Identification& all = whole->identification;
+  auto recent = measurement::measure({&perturbation, 1}, last);
+  if (!recent) return Recent{0.0, std::move(whole)};
+  const Identification& all = whole.identification;
   Identification& now = recent->identification;
   const auto say = [&](const char* what, WarningCode code, Matrix impedance::Model::*part) {
     if (!warns_of(all, code) && !differs(now, all, part)) return false;
@@ -99,7 +95,7 @@ Result<Recent> estimate_now(const journal::Journal& journal, const measurement::
   };
   const bool stiffness = say("stiffness", WarningCode::stiffness_changes, &impedance::Model::K);
   const bool damping = say("damping", WarningCode::damping_changes, &impedance::Model::B);
-  if (!stiffness && !damping) return Recent{0.0, std::move(*whole)};
+  if (!stiffness && !damping) return Recent{0.0, std::move(whole)};
   return Recent{from, std::move(*recent)};
 }
 

@@ -96,9 +96,8 @@ Result<void> PageOperator::judged(const conduct::Performed& performed) {
 Result<void> PageOperator::keep_notes() {
   for (const Exclusion& one : console_.take_exclusions()) {
     warn_of_names("the reason", one.excluded + one.excluded_windows);
-    const auto kept = session::set_metadata(
-        one.recording, {{preprocess::kExcluded, one.excluded}, {preprocess::kExcludedWindows, one.excluded_windows}});
-    if (!kept) return kept;
+    MBK_TRY(session::set_metadata(
+        one.recording, {{preprocess::kExcluded, one.excluded}, {preprocess::kExcludedWindows, one.excluded_windows}}));
   }
   std::error_code ignored;
   if (!std::filesystem::exists(recording_, ignored)) return {};

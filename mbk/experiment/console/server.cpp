@@ -133,7 +133,7 @@ Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::listen(std::uint16_t port, Handlers handlers, ServerTimes times) {
   auto implementation = std::make_unique<Implementation>(std::move(handlers), times);
-  if (auto ok = implementation->open(port); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(implementation->open(port));
   return std::unique_ptr<Server>(new Server(std::move(implementation)));
 }
 

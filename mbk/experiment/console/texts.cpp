@@ -29,16 +29,15 @@ Result<Texts> texts_of(const config::Document& document, const std::vector<std::
     const config::Section own = root.section("trial").section(name);
     if (own.given()) texts.trials[name] = sentences_in(own, false);
   }
-  if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(document.finish());
   return texts;
 }
 
 }  // namespace
 
 Result<Texts> read_texts(std::string_view text, std::string_view file, const std::vector<std::string>& trials) {
-  const auto document = config::Document::parse(text, file);
-  if (!document) return tl::unexpected(document.error());
-  return texts_of(*document, trials);
+  const auto document = MBK_TRY(config::Document::parse(text, file));
+  return texts_of(document, trials);
 }
 
 Result<Texts> find_texts(const std::string& name_or_file, const std::vector<std::string>& trials) {
@@ -52,9 +51,8 @@ Result<Texts> find_texts(const std::string& name_or_file, const std::vector<std:
     return bad_data(fmt::format("no such file, and no texts of that name ({})", names),
                     "copy examples/texts/en.toml and put your own words in it", name_or_file);
   }
-  const auto document = config::Document::read(name_or_file);
-  if (!document) return tl::unexpected(document.error());
-  return texts_of(*document, trials);
+  const auto document = MBK_TRY(config::Document::read(name_or_file));
+  return texts_of(document, trials);
 }
 
 }  // namespace mbk::console

@@ -14,9 +14,8 @@ Result<JointPositionControl> JointPositionControl::create(const Gains& gains, do
       return tl::unexpected(ok.error());
     }
   }
-  const auto velocity = robot::VelocityEstimate::create(sample_time, gains.velocity_cutoff);
-  if (!velocity) return tl::unexpected(velocity.error());
-  return JointPositionControl(gains, *velocity);
+  const auto velocity = MBK_TRY(robot::VelocityEstimate::create(sample_time, gains.velocity_cutoff));
+  return JointPositionControl(gains, velocity);
 }
 
 Vector2d JointPositionControl::step(const Vector2d& measured, const Vector2d& reference,
@@ -44,9 +43,8 @@ Result<LineConstraint> LineConstraint::create(const Options& options, const robo
       !ok) {
     return tl::unexpected(ok.error());
   }
-  const auto velocity = robot::VelocityEstimate::create(sample_time, options.velocity_cutoff);
-  if (!velocity) return tl::unexpected(velocity.error());
-  return LineConstraint(options, geometry, *velocity);
+  const auto velocity = MBK_TRY(robot::VelocityEstimate::create(sample_time, options.velocity_cutoff));
+  return LineConstraint(options, geometry, velocity);
 }
 
 Vector2d LineConstraint::step(const Vector2d& measured, const Vector2d& force_on_hand) noexcept {

@@ -39,7 +39,7 @@ void PassivityObserver::step(double position, double force) noexcept {
 }
 
 Result<SeriesPassivityController> SeriesPassivityController::create(double sample_time, double largest_damping) {
-  if (auto ok = check(sample_time, largest_damping, "largest damping"); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(sample_time, largest_damping, "largest damping"));
   return SeriesPassivityController(sample_time, largest_damping);
 }
 
@@ -61,7 +61,7 @@ double SeriesPassivityController::step(double position, double force) noexcept {
 }
 
 Result<ParallelPassivityController> ParallelPassivityController::create(double sample_time, double largest_admittance) {
-  if (auto ok = check(sample_time, largest_admittance, "largest admittance"); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(sample_time, largest_admittance, "largest admittance"));
   return ParallelPassivityController(sample_time, largest_admittance);
 }
 

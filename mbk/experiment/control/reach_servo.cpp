@@ -55,9 +55,8 @@ Result<ReachServo> ReachServo::create(const JointPositionControl::Gains& gains,
     const auto angles = robot::check_hand(geometry, home + share * schedule.options().reach);
     if (!angles) return tl::unexpected(angles.error().in("way of the reach"));
   }
-  auto law = JointPositionControl::create(gains, sample_time);
-  if (!law) return tl::unexpected(law.error());
-  return ReachServo(schedule, geometry, home, *law, sample_time);
+  auto law = MBK_TRY(JointPositionControl::create(gains, sample_time));
+  return ReachServo(schedule, geometry, home, law, sample_time);
 }
 
 std::int64_t ReachServo::ticks_in(double seconds) const noexcept {

@@ -45,7 +45,7 @@ Result<Sequencer> Sequencer::create(const TrialControl& trial, const SequenceOpt
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = not_negative({{"settling time", options.settle, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(not_negative({{"settling time", options.settle, "s"}}));
   constexpr double kLongest = 3600.0, kFarthest = 1.0;  // [s], [m]
   for (const Choice& time : {Choice{"soft start", options.soft_start, "s"},
                              {"shortest move", options.shortest_move, "s"},
@@ -54,9 +54,8 @@ Result<Sequencer> Sequencer::create(const TrialControl& trial, const SequenceOpt
                              {"a move of 1 m at that speed", kPeakSpeed * kFarthest / options.move_speed, "s"}}) {
     if (time.value > kLongest) return bad_usage(fmt::format("{} is longer than {:g} s", time.text(), kLongest));
   }
-  auto hold = JointPositionControl::create(options.hold, sample_time);
-  if (!hold) return tl::unexpected(hold.error());
-  return Sequencer(trial, options, geometry, *hold, sample_time);
+  auto hold = MBK_TRY(JointPositionControl::create(options.hold, sample_time));
+  return Sequencer(trial, options, geometry, hold, sample_time);
 }
 
 double Sequencer::move_duration(double distance) const {

@@ -35,26 +35,20 @@ Result<TrialControl> TrialControl::create(const Mode& mode, const Schedule& sche
   }
   TrialControl control(schedule, geometry, home, *home_angles);
   if (const ReachSchedule* reaches = schedule.reaches()) {
-    auto servo = ReachServo::create(std::get<PositionMode>(mode).gains, *reaches, geometry, home, sample_time);
-    if (!servo) return tl::unexpected(servo.error());
-    control.law_ = *servo;
+    control.law_ =
+        MBK_TRY(ReachServo::create(std::get<PositionMode>(mode).gains, *reaches, geometry, home, sample_time));
   } else if (const auto* follow = std::get_if<PositionMode>(&mode)) {
-    auto law = JointPositionControl::create(follow->gains, sample_time);
-    if (!law) return tl::unexpected(law.error());
-    control.law_ = *law;
+    control.law_ = MBK_TRY(JointPositionControl::create(follow->gains, sample_time));
     perturbation::Limits limits;
     limits.reachable = [&](const Vector2d& displacement) -> Result<void> {
-      const auto angles = robot::check_hand(geometry, control.displaced(displacement));
-      if (!angles) return tl::unexpected(angles.error());
+      MBK_TRY(robot::check_hand(geometry, control.displaced(displacement)));
       return {};
     };
     if (auto ok = schedule.check(limits); !ok) return tl::unexpected(ok.error().in("perturbation"));
   } else if (const auto* along = std::get_if<LineMode>(&mode)) {
     LineConstraint::Options line = along->line;
     line.through = home;
-    auto law = LineConstraint::create(line, geometry, sample_time);
-    if (!law) return tl::unexpected(law.error());
-    control.law_ = *law;
+    control.law_ = MBK_TRY(LineConstraint::create(line, geometry, sample_time));
   }
   return control;
 }

@@ -655,11 +655,9 @@ bool BridgeReport::conforms() const {
 }
 
 Result<UdpBridgeWire> UdpBridgeWire::open(const UdpAddress& robot, std::uint16_t local_port) {
-  auto mbk = UdpSocket::open({0, local_port});
-  if (!mbk) return tl::unexpected(mbk.error());
-  auto stranger = UdpSocket::open({0, 0});
-  if (!stranger) return tl::unexpected(stranger.error());
-  return UdpBridgeWire(robot, std::move(*mbk), std::move(*stranger));
+  auto mbk = MBK_TRY(UdpSocket::open({0, local_port}));
+  auto stranger = MBK_TRY(UdpSocket::open({0, 0}));
+  return UdpBridgeWire(robot, std::move(mbk), std::move(stranger));
 }
 
 std::int64_t UdpBridgeWire::now() noexcept {

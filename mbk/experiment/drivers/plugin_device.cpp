@@ -53,7 +53,7 @@ Result<void> check(const mbk_device_plugin* plugin, const Fittings& fittings) {
     return bad_data(fmt::format("its {} is {}, and the experiment's {}", key, fitted, expected),
                     fmt::format("set {} in [device]", key));
   };
-  if (auto ok = agree("has_force", plugin->has_force != 0, fittings.has_force); !ok) return ok;
+  MBK_TRY(agree("has_force", plugin->has_force != 0, fittings.has_force));
   return agree("has_acceleration", plugin->has_acceleration != 0, fittings.has_acceleration);
 }
 
@@ -75,7 +75,7 @@ PluginDevice::PluginDevice(PluginOptions options, const Fittings& fittings, Libr
 }
 
 Result<std::unique_ptr<PluginDevice>> PluginDevice::create(const PluginOptions& options, const Fittings& fittings) {
-  if (auto ok = above_zero({{"watchdog", options.watchdog, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(above_zero({{"watchdog", options.watchdog, "s"}}));
   // An absolute path: a bare name would be looked for where the system keeps its own libraries.
   std::error_code ignored;
   const std::filesystem::path file = std::filesystem::absolute(options.library, ignored);

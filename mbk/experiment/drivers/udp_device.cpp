@@ -71,23 +71,21 @@ Result<std::unique_ptr<UdpDevice>> UdpDevice::create(const UdpOptions& options, 
     return bad_usage(fmt::format("watchdog {:g} s is not between {:g} and {:g} s", options.watchdog, kShortestWatchdog,
                                  kLongestWatchdog));
   }
-  if (auto ok = above_zero({{"time to answer", options.answer_within, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(above_zero({{"time to answer", options.answer_within, "s"}}));
   if (fittings.force_latency < 0) return bad_usage("the latency of the force is below zero");
   return std::unique_ptr<UdpDevice>(new UdpDevice(options, fittings));
 }
 
 Result<void> UdpDevice::start() {
-  const auto robot = UdpAddress::find(options_.address, options_.port);
-  if (!robot) return tl::unexpected(robot.error());
-  if (claim_ = claim_of(*robot); !claim_) {
+  const auto robot = MBK_TRY(UdpAddress::find(options_.address, options_.port));
+  if (claim_ = claim_of(robot); !claim_) {
     return bad_data(fmt::format("{}: another mbk on this machine talks to this robot", facts_.name),
                     "end that one first, or wait until its trial is over");
   }
-  auto socket = UdpSocket::open({0, options_.local_port});
-  if (!socket) return tl::unexpected(socket.error());
+  auto socket = MBK_TRY(UdpSocket::open({0, options_.local_port}));
   has_last_words_ = false;
-  robot_ = *robot;
-  socket_ = std::move(*socket);
+  robot_ = robot;
+  socket_ = std::move(socket);
   counts_ = {};
   newest_ = {};
   alarms_ = {};
@@ -124,7 +122,7 @@ Result<void> UdpDevice::start() {
                                 yes_or_no(sent), yes_or_no(expected)),
                     fmt::format("set {} in [device], or connect the sensor", key));
   };
-  if (auto ok = differs("force sensors", "has_force", newest_.has_force, facts_.has_force); !ok) return ok;
+  MBK_TRY(differs("force sensors", "has_force", newest_.has_force, facts_.has_force));
   return differs("accelerometers", "has_acceleration", newest_.has_acceleration, facts_.has_acceleration);
 }
 

@@ -34,11 +34,10 @@ UdpRobot::UdpRobot(device::Device& robot, UdpSocket socket, double sample_time, 
 
 Result<UdpRobot> UdpRobot::create(device::Device& robot, const UdpAddress& local, double sample_time,
                                   UdpRobotLink* link) {
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
-  auto socket = UdpSocket::open(local);
-  if (!socket) return tl::unexpected(socket.error());
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
+  auto socket = MBK_TRY(UdpSocket::open(local));
   static UdpRobotLink straight;
-  return UdpRobot(robot, std::move(*socket), sample_time, link != nullptr ? *link : straight);
+  return UdpRobot(robot, std::move(socket), sample_time, link != nullptr ? *link : straight);
 }
 
 void UdpRobot::serve(const std::atomic<bool>& over, const std::atomic<bool>& stop_button) noexcept {

@@ -94,9 +94,7 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.home = robot.vector2("home_mm", trial.home);
     trial.control = read_control(root.section("control"));
     if (simulation) {
-      auto made = simulation(root, trial);
-      if (!made) return tl::unexpected(made.error());
-      trial.simulation = std::move(*made);
+      trial.simulation = MBK_TRY(simulation(root, trial));
     } else {
       for (const char* key : {"steps_per_tick", "capstan"}) robot.leave_to_others(key);
       for (const char* key : {"participant", "rig", "sensors"}) root.leave_to_others(key);

@@ -64,8 +64,8 @@ Gate::Gate(const Limits& limits, const robot::PlanarRobot& robot, const Vector2d
 
 Result<Gate> Gate::create(const Limits& limits, const robot::PlanarRobot& robot, const Vector2d& home,
                           double sample_time) {
-  if (auto ok = safety::check(limits); !ok) return tl::unexpected(ok.error());
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(safety::check(limits));
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
   return Gate(limits, robot, home, sample_time);
 }
 

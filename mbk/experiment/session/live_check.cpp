@@ -76,7 +76,7 @@ void Readings::add(double value) noexcept {
 }
 
 Result<LiveRecord> watch_robot(device::Device& robot, Hertz rate, double seconds) {
-  if (auto ok = robot.start(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(robot.start());
   LiveRecord record;
   realtime::WallClock clock(1.0 / rate.value);
   clock.start();

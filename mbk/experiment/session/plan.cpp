@@ -73,9 +73,8 @@ Result<PlannedMotion> check_path(const control::TrialControl& control, const pro
       return bad_usage(fmt::format("the hand leaves the safety workspace by {:.1f} mm at {:.3f} s", 1e3 * outside, t),
                        "perturb less, move home, or widen safety.workspace_low_mm and workspace_high_mm");
     }
-    const auto angles = robot::check_hand(geometry, hand);
-    if (!angles) return tl::unexpected(angles.error());
-    const double margin = robot::margin(geometry.limits, *angles);
+    const auto angles = MBK_TRY(robot::check_hand(geometry, hand));
+    const double margin = robot::margin(geometry.limits, angles);
     if (margin < limits.joint_margin) {
       return bad_usage(fmt::format("a joint comes within {:.2f}° of its limit at {:.3f} s, closer than "
                                    "safety.joint_margin_deg = {:.2f}",
@@ -125,38 +124,33 @@ Result<safety::Gate> Plan::gate() const {
 }
 
 Result<Plan> make_plan(protocol::Trial trial) {
-  auto schedule = perturbation::make_schedule(trial.perturbation, trial.seed);
-  if (!schedule) return tl::unexpected(schedule.error());
+  auto schedule = MBK_TRY(perturbation::make_schedule(trial.perturbation, trial.seed));
   const robot::Geometry& geometry = trial.robot.geometry;
   const double sample_time = 1.0 / trial.rate.value;
-  auto control = control::TrialControl::create(trial.control, *schedule, geometry, trial.home, sample_time);
+  auto control = control::TrialControl::create(trial.control, schedule, geometry, trial.home, sample_time);
   if (!control) return tl::unexpected(control.error());
-  auto sequence = control::Sequencer::create(*control, trial.sequence, geometry, sample_time);
-  if (!sequence) return tl::unexpected(sequence.error());
-  if (auto ok = safety::check(trial.limits); !ok) return tl::unexpected(ok.error());
-  if (schedule->quantity() == perturbation::Quantity::force) {
-    const perturbation::Facts facts = schedule->facts();
+  auto sequence = MBK_TRY(control::Sequencer::create(*control, trial.sequence, geometry, sample_time));
+  MBK_TRY(safety::check(trial.limits));
+  if (schedule.quantity() == perturbation::Quantity::force) {
+    const perturbation::Facts facts = schedule.facts();
     if (auto ok =
             within("the force", facts.peak, trial.limits.handle_force, 1.0, "N", "handle_force_N", facts.peak_time);
         !ok) {
       return tl::unexpected(ok.error());
     }
   }
-  const auto planned = check_path(*control, trial);
-  if (!planned) return tl::unexpected(planned.error());
-  const safety::Limits limits = limits_of(trial, *planned);
-  Plan plan{std::move(trial), limits, std::move(*schedule), std::move(*sequence)};
-  if (const auto gate = plan.gate(); !gate) return tl::unexpected(gate.error());
+  const auto planned = MBK_TRY(check_path(*control, trial));
+  const safety::Limits limits = limits_of(trial, planned);
+  Plan plan{std::move(trial), limits, std::move(schedule), std::move(sequence)};
+  MBK_TRY(plan.gate());
   return plan;
 }
 
 Result<Rehearsal> rehearse(const Plan& plan) {
   const protocol::Trial& trial = plan.trial;
   if (!trial.simulation) return bad_usage("there is nothing that simulates the robot", "run the trial itself");
-  auto robot = trial.simulation->robot(trial);
-  if (!robot) return tl::unexpected(robot.error());
-  auto gate = plan.gate();
-  if (!gate) return tl::unexpected(gate.error());
+  auto robot = MBK_TRY(trial.simulation->robot(trial));
+  auto gate = MBK_TRY(plan.gate());
   control::Sequencer sequence = plan.sequence;
   Rehearsal rehearsal;
   realtime::BoundedRing<journal::Tick> ring(4096);
@@ -176,10 +170,10 @@ Result<Rehearsal> rehearse(const Plan& plan) {
   realtime::VirtualClock clock(plan.sample_time());
   LoopFlags flags;
   LoopTimes times;
-  run_loop(**robot, sequence, *gate, clock, ring, flags, times);
+  run_loop(*robot, sequence, gate, clock, ring, flags, times);
   over = true;
   looking.join();
-  rehearsal.trip = gate->trip();
+  rehearsal.trip = gate.trip();
   return rehearsal;
 }
 

@@ -191,15 +191,13 @@ std::string frame_text(device::Wiring::Frame frame) {
 
 Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file,
                                     const protocol::ReadSimulation& simulation) {
-  const auto document = config::Document::parse(text, file.string());
-  if (!document) return tl::unexpected(document.error());
-  const config::Section root = document->root();
+  const auto document = MBK_TRY(config::Document::parse(text, file.string()));
+  const config::Section root = document.root();
   RobotSetup setup;
   setup.has_device = root.has("device");
   if (root.has("control") || root.has("perturbation") || root.has("trial")) {
-    auto trials = protocol::read_experiment(text, file, simulation);
-    if (!trials) return tl::unexpected(trials.error());
-    setup.trial = std::move(trials->front());
+    auto trials = MBK_TRY(protocol::read_experiment(text, file, simulation));
+    setup.trial = std::move(trials.front());
     setup.has_device = setup.has_home = true;
     return setup;
   }
@@ -209,12 +207,12 @@ Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem
                                       "'mbk robot describe' shows what is understood of others"));
   }
   // The whole description is judged by its own reader, which knows every key.
-  if (auto ok = robot_file::parse_robot_description(text, "", file.string()); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(robot_file::parse_robot_description(text, "", file.string()));
   setup.trial.robot = robot_file::read_planar_robot(robot);
   setup.trial.device = protocol::read_device(root.section("device"), file.parent_path());
   root.leave_to_others("robot");
   root.leave_to_others("drive");
-  if (auto ok = document->finish(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(document.finish());
   return setup;
 }
 

@@ -50,7 +50,7 @@ journal::Ending ending_of(const TrialOutcome& outcome, const LoopFlags& flags) {
 
 /// Starts the robot, and looks at its stop button before anything moves.
 Result<void> start(device::Device& robot) {
-  if (auto ok = robot.start(); !ok) return ok;
+  MBK_TRY(robot.start());
   device::State state;
   robot.read(state);
   if (!state.stop) return {};
@@ -92,10 +92,9 @@ template <class Change>
 Result<void> change_metadata(const fs::path& file, const Change& change) {
   auto recording = recording::read(file, {});
   if (!recording) return tl::unexpected(recording.error());
-  const auto format = recording::format_of(file);
-  if (!format) return tl::unexpected(format.error());
+  const auto format = MBK_TRY(recording::format_of(file));
   change(recording->metadata);
-  return recording::write(*recording, file, *format, true, recording::readers_of(file));
+  return recording::write(*recording, file, format, true, recording::readers_of(file));
 }
 
 std::uint64_t expected_ticks(const Plan& plan) {
@@ -172,17 +171,17 @@ Header header_of(const Plan& plan, const device::Facts& facts) {
 }
 
 Result<void> check_target(const Plan& plan, const fs::path& target) {
-  if (const auto format = recording::format_of(target); !format) return tl::unexpected(format.error());
+  MBK_TRY(recording::format_of(target));
   const auto can_write = [](const fs::path& file) -> Result<void> {
     auto ok = recording::can_write_file(file, false);
     if (!ok && ok.error().kind == ErrorKind::usage) ok.error().remedy = "choose another name, or move it away";
     return ok;
   };
-  if (auto ok = can_write(target); !ok) return ok;
+  MBK_TRY(can_write(target));
   const fs::path journal = journal_of(target);
   std::error_code ignored;
   if (fs::exists(journal, ignored)) return tl::unexpected(journal::Writer::already_there(journal));
-  if (auto ok = can_write(journal); !ok) return ok;
+  MBK_TRY(can_write(journal));
   constexpr std::uintmax_t kTickInRecording = 18 * sizeof(double), kMore = 16 << 20;  // channels and time; spare
   const std::uintmax_t needed = expected_ticks(plan) * (sizeof(Tick) * 11 / 10 + kTickInRecording) + kMore;
   const auto space = fs::space(target.has_parent_path() ? target.parent_path() : fs::path("."), ignored);
@@ -203,7 +202,7 @@ void Session::see_idle(const IdleState& state) {
 Result<void> Session::reset() {
   const std::scoped_lock lock(*gate_mutex_);
   if (gate_) {
-    if (auto ok = gate_->reset(); !ok) return ok;
+    MBK_TRY(gate_->reset());
   }
   flags_->operator_stop = false;
   flags_->stop_signal = 0;
@@ -220,34 +219,32 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   if (gate_ && gate_->tripped()) {
     return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "see to the reason, then reset");
   }
-  if (auto ok = check_target(plan, target); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_target(plan, target));
   if (pace_.virtual_clock && robot.facts().keeps_time && !trial.device.simulated()) {
     return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
                      "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
   }
-  auto gate = plan.gate();
-  if (!gate) return tl::unexpected(gate.error());
+  auto gate = MBK_TRY(plan.gate());
   const double sample_time = plan.sample_time();
 
   TrialOutcome outcome;
   outcome.recording = target;
   outcome.journal = journal_of(target);
-  auto writer = journal::Writer::create(outcome.journal, header_of(plan, robot.facts()), expected_ticks(plan));
-  if (!writer) return tl::unexpected(writer.error());
+  auto writer = MBK_TRY(journal::Writer::create(outcome.journal, header_of(plan, robot.facts()), expected_ticks(plan)));
   NotBegun guard{outcome.journal};
   const bool in_real_time = !pace_.virtual_clock && pace_.clock == nullptr;
   if (in_real_time) realtime::lock_memory();
-  if (auto ok = start(robot); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(start(robot));
   guard.robot = &robot;
 
-  gate_ = std::move(*gate);
+  gate_ = std::move(gate);
   control::Sequencer sequence = plan.sequence;
   flags_->end_trial = false;
   flags_->recording = true;
   flags_->silent = false;
   flags_->beats = 0;
   realtime::BoundedRing<Tick> ring(kRing);
-  Recorder recorder(ring, std::move(*writer), *flags_, watch, in_real_time);
+  Recorder recorder(ring, std::move(writer), *flags_, watch, in_real_time);
   std::optional<LoopWatch> loop_watch;  // begun before the loop: a machine that has no thread for it moves nothing
   if (!trial.device.simulated()) {
     loop_watch.emplace(*flags_, robot.facts().keeps_time, watched_loop(robot, recorder, stalled, sample_time, outcome));
@@ -344,12 +341,9 @@ Result<Recovered> recover(const fs::path& file, const fs::path& target, const Re
     recovered.recording = std::move(*made);
   }
   const Recording& recording = recovered.recording;
-  const auto format = recording::format_of(target);
-  if (!format) return tl::unexpected(format.error());
+  const auto format = MBK_TRY(recording::format_of(target));
   if (options.overwrite || !holds_the_same(target, recording)) {
-    if (auto ok = recording::write(recording, target, *format, options.overwrite, *readers); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(recording::write(recording, target, format, options.overwrite, *readers));
     if (!holds_the_same(target, recording)) {
       std::error_code ignored;
       fs::remove(target, ignored);

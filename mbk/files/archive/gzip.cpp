@@ -46,7 +46,7 @@ class GrowingBytes {
   Result<void> grow() {
     if (buffer_.size >= limit_) return too_large(limit_);
     const std::uint64_t size = std::min<std::uint64_t>(2 * std::uint64_t{buffer_.size}, limit_);
-    if (auto ok = check_memory(size); !ok) return ok;
+    MBK_TRY(check_memory(size));
     Buffer larger(static_cast<std::size_t>(size));
     std::memcpy(larger.data.get(), buffer_.data.get(), used_);
     buffer_ = std::move(larger);
@@ -94,13 +94,13 @@ Result<Buffer> gunzip(std::span<const std::byte> file) {
   // The trailer says the size of the last member, modulo 2³². It is believed as far as such a file can hold it.
   const std::uint64_t limit = largest_unpacked(file.size());
   const std::uint64_t said = std::min<std::uint64_t>(ByteView{file}.at<std::uint32_t>(file.size() - 4), limit);
-  if (auto ok = check_memory(said); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_memory(said));
   GrowingBytes bytes(said + 1, limit);
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(file.data()));
   std::size_t left = file.size();
   for (;;) {
     if (bytes.room().empty()) {
-      if (auto ok = bytes.grow(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(bytes.grow());
     }
     constexpr std::size_t kMost = std::numeric_limits<uInt>::max();
     const auto in = static_cast<uInt>(std::min(left, kMost)),

@@ -134,7 +134,7 @@ Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool
   if (found == places_.end()) return damaged(fmt::format("it holds no {}", in_quotes(name)));
   const Place& place = found->second;
   const std::uint64_t size = std::min(members_[place.member].size, count);
-  if (auto ok = check_memory(size); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_memory(size));
   Cursor at{file_};
   const Handle archive = open_at(at);
   const unz64_file_pos position{place.entry, place.of_number};

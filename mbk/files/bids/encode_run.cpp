@@ -143,8 +143,8 @@ class Encoder {
 
   Result<std::vector<BidsFile>> run() {
     add_data_set();
-    if (auto ok = add_participant(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = add_scan(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_participant());
+    MBK_TRY(add_scan());
     add_events();
     add_channels();
     add_sidecar();
@@ -231,9 +231,8 @@ class Encoder {
     }
     if (described.contains("age")) described["age"]["Units"] = "year";
     const auto table = existing_("participants.tsv");
-    auto text = with_row(table, columns, cells, "participants.tsv");
-    if (!text) return tl::unexpected(text.error());
-    if (!table || *text != *table) add("participants.tsv", std::move(*text), false);
+    auto text = MBK_TRY(with_row(table, columns, cells, "participants.tsv"));
+    if (!table || text != *table) add("participants.tsv", std::move(text), false);
     if (!table && !existing_("participants.json")) add_json("participants.json", described, false);
     return {};
   }
@@ -241,10 +240,10 @@ class Encoder {
   Result<void> add_scan() {
     const std::string path = fmt::format("{}/{}_scans.tsv", name_.session_folder(), name_.session());
     const auto table = existing_(path);
-    auto text = with_row(table, {"filename", "acq_time"},
-                         {fmt::format("motion/{}_motion.tsv", name_.text()), std::string(kNotAvailable)}, path);
-    if (!text) return tl::unexpected(text.error());
-    if (!table || *text != *table) add(path, std::move(*text), false);
+    auto text =
+        MBK_TRY(with_row(table, {"filename", "acq_time"},
+                         {fmt::format("motion/{}_motion.tsv", name_.text()), std::string(kNotAvailable)}, path));
+    if (!table || text != *table) add(path, std::move(text), false);
     return {};
   }
 

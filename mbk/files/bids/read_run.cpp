@@ -72,7 +72,7 @@ class Run {
   Result<Contents> run() {
     contents_.format = "BIDS motion";
     contents_.table = true;
-    if (auto ok = take_sidecars(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(take_sidecars());
     channels_ = parse_tsv(texts_.channels);
     for (const std::string_view column : {"name", "type", "units"}) {
       if (channels_.has(column)) continue;
@@ -84,8 +84,8 @@ class Run {
       return bad_data(fmt::format("it describes {} channels", count), "describe every column of motion.tsv",
                       std::string(kChannels.substr(1)));
     }
-    if (auto ok = take_numbers(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = name_channels(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(take_numbers());
+    MBK_TRY(name_channels());
     take_events();
     return std::move(contents_);
   }
@@ -118,7 +118,7 @@ class Run {
     const std::size_t columns = channels_.rows.size();
     const auto lines_there = static_cast<std::uint64_t>(std::ranges::count(texts_.motion, '\n')) + 1;
     const std::uint64_t rows_there = std::min<std::uint64_t>(lines_there, texts_.motion.size() / columns + 1);
-    if (auto ok = check_memory(8 * rows_there * columns); !ok) return ok;
+    MBK_TRY(check_memory(8 * rows_there * columns));
     std::vector<Vector> numbers(columns, Vector(static_cast<Index>(rows_there)));
     TextLines lines(texts_.motion);
     Index rows = 0;
@@ -339,28 +339,23 @@ Result<std::vector<BidsRun>> find_bids_runs(const fs::path& path) {
 }
 
 Result<Contents> read_bids_run(const fs::path& motion) {
-  const auto numbers = read_text(motion);
-  if (!numbers) return tl::unexpected(numbers.error());
+  const auto numbers = MBK_TRY(read_text(motion));
   const auto channel_files = files_for(motion, kChannels);
   if (channel_files.empty()) {
     return bad_data(fmt::format("there is no {}{} beside it", stem_of(motion), kChannels),
                     "it must say name, type and units of every column");
   }
-  const auto channels = read_text(channel_files.back());
-  if (!channels) return tl::unexpected(channels.error());
-  BidsTexts texts{*numbers, *channels, {}, "", "", ""};
+  const auto channels = MBK_TRY(read_text(channel_files.back()));
+  BidsTexts texts{numbers, channels, {}, "", "", ""};
   for (const fs::path& file : files_for(motion, kSidecar)) {
-    auto text = read_text(file);
-    if (!text) return tl::unexpected(text.error());
-    texts.sidecars.push_back(std::move(*text));
+    auto text = MBK_TRY(read_text(file));
+    texts.sidecars.push_back(std::move(text));
   }
   std::string events, descriptions;
   for (auto& [text, end] : {std::pair(&events, kEvents), std::pair(&descriptions, kDescriptions)}) {
     const auto files = files_for(motion, end);
     if (files.empty()) continue;
-    auto found = read_text(files.back());
-    if (!found) return tl::unexpected(found.error());
-    *text = std::move(*found);
+    *text = MBK_TRY(read_text(files.back()));
   }
   texts.events = events;
   texts.descriptions = descriptions;

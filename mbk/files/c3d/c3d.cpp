@@ -30,10 +30,8 @@ class Decoder {
   Result<Contents> run() {
     contents_.format = "C3D";
     contents_.table = true;
-    auto layout = c3d_layout(file_, parameters_, file_.view.size(), contents_.notes);
-    if (!layout) return tl::unexpected(layout.error());
-    layout_ = std::move(*layout);
-    if (auto ok = check_room(); !ok) return tl::unexpected(ok.error());
+    layout_ = MBK_TRY(c3d_layout(file_, parameters_, file_.view.size(), contents_.notes));
+    MBK_TRY(check_room());
     say_what_there_is();
     take_points();
     take_analog();
@@ -296,24 +294,20 @@ Result<Parameters> parameters_of(std::span<const std::byte> bytes) {
 }  // namespace
 
 Result<C3dParameters> decode_c3d_parameters(std::span<const std::byte> bytes) {
-  auto found = parameters_of(bytes);
-  if (!found) return tl::unexpected(found.error());
-  return std::move(found->parameters);
+  auto found = MBK_TRY(parameters_of(bytes));
+  return std::move(found.parameters);
 }
 
 Result<C3dLength> decode_c3d_length(std::span<const std::byte> bytes, std::uint64_t size) {
-  const auto found = parameters_of(bytes);
-  if (!found) return tl::unexpected(found.error());
+  const auto found = MBK_TRY(parameters_of(bytes));
   std::vector<std::string> notes;
-  const auto layout = c3d_layout(found->file, found->parameters, size, notes);
-  if (!layout) return tl::unexpected(layout.error());
-  return C3dLength{layout->frames, layout->point_rate};
+  const auto layout = MBK_TRY(c3d_layout(found.file, found.parameters, size, notes));
+  return C3dLength{layout.frames, layout.point_rate};
 }
 
 Result<Contents> decode_c3d(std::span<const std::byte> bytes) {
-  auto found = parameters_of(bytes);
-  if (!found) return tl::unexpected(found.error());
-  return Decoder(found->file, std::move(found->parameters)).run();
+  auto found = MBK_TRY(parameters_of(bytes));
+  return Decoder(found.file, std::move(found.parameters)).run();
 }
 
 }  // namespace mbk::recording

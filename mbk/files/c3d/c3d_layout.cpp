@@ -71,8 +71,8 @@ class Finder {
 
   Result<C3dLayout> run() {
     C3dLayout by_parameters, by_header;
-    if (auto ok = find_shapes(by_parameters, by_header); !ok) return tl::unexpected(ok.error());
-    if (auto ok = find_starts(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(find_shapes(by_parameters, by_header));
+    MBK_TRY(find_starts());
     find_counts();
     auto layout = choose(by_parameters, by_header);
     if (!layout) return layout;
@@ -80,7 +80,7 @@ class Finder {
       return bad_data("it says that it holds 0 frames", "nothing was recorded, or it is damaged");
     }
     set_scale(*layout);
-    if (auto ok = set_rates(*layout); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(set_rates(*layout));
     layout->first_frame = field("ACTUAL_START_FIELD").value_or(header(4));
     return layout;
   }

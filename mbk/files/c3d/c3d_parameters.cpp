@@ -119,10 +119,9 @@ Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begi
     if (id < 0) {
       group_names.try_emplace(-id, std::move(name));
     } else {
-      auto parameter = parameter_at(file, link + 2, name);
-      if (!parameter) return tl::unexpected(parameter.error());
-      content_end += 2 + parameter->dimensions.size() + parameter->data.view.size();
-      found.try_emplace({id, std::move(name)}, std::move(*parameter));
+      auto parameter = MBK_TRY(parameter_at(file, link + 2, name));
+      content_end += 2 + parameter.dimensions.size() + parameter.data.view.size();
+      found.try_emplace({id, std::move(name)}, std::move(parameter));
     }
     parameters.end_ = std::min(content_end, end);
     if (distance == 0) break;

@@ -102,28 +102,25 @@ namespace {
 
 Result<Buffer> read_whole(int descriptor, std::size_t size) {
   // The numbers in it take at least as much again, before its bytes can go.
-  if (auto ok = check_memory(2 * std::uint64_t{size}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_memory(2 * std::uint64_t{size}));
   Buffer buffer(size);
-  if (auto ok = read_bytes(descriptor, 0, buffer.data.get(), size); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(read_bytes(descriptor, 0, buffer.data.get(), size));
   return buffer;
 }
 
 }  // namespace
 
 Result<Buffer> read_file(const std::filesystem::path& file) {
-  const auto open = open_file(file);
-  if (!open) return tl::unexpected(open.error());
-  return read_whole(open->descriptor.number, open->size);
+  const auto open = MBK_TRY(open_file(file));
+  return read_whole(open.descriptor.number, open.size);
 }
 
 Result<OpenFile> OpenFile::open(const std::filesystem::path& file) {
   OpenFile made;
   made.path_ = file;
-  if (auto ok = made.wake(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(made.wake());
   made.begin_.resize(std::min(kBegin, made.size_));
-  if (auto ok = read_bytes(made.descriptor_, 0, made.begin_.data(), made.begin_.size()); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(read_bytes(made.descriptor_, 0, made.begin_.data(), made.begin_.size()));
   return made;
 }
 
@@ -147,20 +144,18 @@ void OpenFile::rest() {
 
 Result<void> OpenFile::wake() {
   if (descriptor_ >= 0) return {};
-  auto opened = open_file(path_);
-  if (!opened) return tl::unexpected(opened.error());
-  descriptor_ = std::exchange(opened->descriptor.number, -1);
-  size_ = opened->size;
+  auto opened = MBK_TRY(open_file(path_));
+  descriptor_ = std::exchange(opened.descriptor.number, -1);
+  size_ = opened.size;
   return {};
 }
 
 Result<std::shared_ptr<Buffer>> OpenFile::bytes() {
   if (bytes_ != nullptr) return bytes_;
-  if (auto ok = wake(); !ok) return tl::unexpected(ok.error());
-  auto all = read_whole(descriptor_, size_);
-  if (!all) return tl::unexpected(all.error());
-  sum_ = recording::sha256(all->bytes());
-  bytes_ = std::make_shared<Buffer>(std::move(*all));
+  MBK_TRY(wake());
+  auto all = MBK_TRY(read_whole(descriptor_, size_));
+  sum_ = recording::sha256(all.bytes());
+  bytes_ = std::make_shared<Buffer>(std::move(all));
   return bytes_;
 }
 
@@ -171,7 +166,7 @@ Result<std::shared_ptr<Buffer>> OpenFile::take() {
 }
 
 Result<FileInPassing> OpenFile::in_passing() {
-  if (auto ok = wake(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(wake());
   void* const room = ::mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();
   ::madvise(room, size_, MADV_HUGEPAGE);  // only advice: it may fail
@@ -203,7 +198,7 @@ void FileInPassing::read_ahead() {
   use_spare();
   const auto read = [descriptor = descriptor_, from = read_, to = data_ + read_,
                      count = std::min(kPiece, size_ - read_), sum = sum_.get()]() -> Result<void> {
-    if (auto ok = read_bytes(descriptor, from, to, count); !ok) return ok;
+    MBK_TRY(read_bytes(descriptor, from, to, count));
     sum->add(std::as_bytes(std::span(to, count)));
     return {};
   };
@@ -214,7 +209,7 @@ void FileInPassing::read_ahead() {
 
 Result<void> FileInPassing::read_on() {
   if (!ahead_.valid()) read_ahead();
-  if (auto ok = ahead_.get(); !ok) return ok;
+  MBK_TRY(ahead_.get());
   read_ += std::min(kPiece, size_ - read_);
   if (read_ < size_) read_ahead();
   return {};

@@ -17,20 +17,19 @@ struct Walk {
   Result<void> node(std::uint64_t address, int expected_level) {
     const auto broken = [&] { return damaged(fmt::format("the B-tree node at byte {} is broken", address)); };
     const std::size_t prefix_size = 8 + 2 * file.sizes.address;
-    const auto prefix = file.block(address, prefix_size, "a B-tree node");
-    if (!prefix) return tl::unexpected(prefix.error());
-    Cursor head = file.cursor(*prefix);
+    const auto prefix = MBK_TRY(file.block(address, prefix_size, "a B-tree node"));
+    Cursor head = file.cursor(prefix);
     const bool known = head.is("TREE") && head.byte() == static_cast<std::uint8_t>(kind);
     const int level = head.byte();
     const std::uint64_t entries = head.word();
     if (!known || level > kMostLevels || (expected_level >= 0 && level != expected_level)) return broken();
-    const auto block = file.block(address + prefix_size, entries * (key_size + file.sizes.address), "a B-tree node");
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file.cursor(*block);
+    const auto block =
+        MBK_TRY(file.block(address + prefix_size, entries * (key_size + file.sizes.address), "a B-tree node"));
+    Cursor in = file.cursor(block);
     for (std::uint64_t i = 0; i < entries; ++i) {
       const Cursor key = file.cursor(in.take(key_size));
       const std::uint64_t child = in.address();
-      if (auto ok = level > 0 ? node(child, level - 1) : use(key, child); !ok) return ok;
+      MBK_TRY(level > 0 ? node(child, level - 1) : use(key, child));
     }
     return {};
   }

@@ -28,9 +28,8 @@ class Walk2 {
   Result<void> run(std::uint64_t address) {
     const Sizes sizes = file_.sizes;
     const std::size_t size = 4 + 1 + 1 + 4 + 2 + 2 + 1 + 1 + sizes.address + 2 + sizes.length + kChecksumSize;
-    const auto block = file_.checked_block(address, size, "a B-tree");
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file_.cursor(*block);
+    const auto block = MBK_TRY(file_.checked_block(address, size, "a B-tree"));
+    Cursor in = file_.cursor(block);
     const bool known = in.is("BTHD") && in.byte() == 0;
     kind_ = static_cast<BTree2>(in.byte());
     node_size_ = in.dword();
@@ -75,9 +74,9 @@ class Walk2 {
     const auto broken = [&] { return damaged(fmt::format("the B-tree node at byte {} is broken", address)); };
     if (records > level.max_records) return broken();
     const std::uint64_t pointers = depth > 0 ? (records + 1) * level.pointer_size : 0;
-    const auto block = file_.checked_block(address, kFrame + records * record_size_ + pointers, "a B-tree node");
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file_.cursor(*block);
+    const auto block =
+        MBK_TRY(file_.checked_block(address, kFrame + records * record_size_ + pointers, "a B-tree node"));
+    Cursor in = file_.cursor(block);
     const bool known = in.is(depth > 0 ? "BTIN" : "BTLF") && in.byte() == 0 && in.byte() == static_cast<int>(kind_);
     if (!known) return broken();
     Cursor record = file_.cursor(in.take(records * record_size_));
@@ -86,10 +85,10 @@ class Walk2 {
         const std::uint64_t child = in.address();
         const std::uint64_t in_child = in.number(bytes_for(levels_.front().max_records));
         in.skip(level.total_size);
-        if (auto ok = node(child, depth - 1, in_child); !ok) return ok;
+        MBK_TRY(node(child, depth - 1, in_child));
       }
       if (i == records) break;
-      if (auto ok = use_(kind_, file_.cursor(record.take(record_size_))); !ok) return ok;
+      MBK_TRY(use_(kind_, file_.cursor(record.take(record_size_))));
     }
     return {};
   }

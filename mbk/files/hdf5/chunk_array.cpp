@@ -55,7 +55,7 @@ struct Array {
 
   Result<void> elements(Cursor& in, std::uint64_t first, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) {
-      if (auto ok = use(first + i, file.cursor(in.take(element_size))); !ok) return ok;
+      MBK_TRY(use(first + i, file.cursor(in.take(element_size))));
     }
     return {};
   }
@@ -72,22 +72,20 @@ struct Array {
     if (!multiply(paged ? 0 : count, element_size, bytes) || bytes > file.bytes.size()) {
       return broken_array(address);
     }
-    const auto block = file.checked_block(address, head_size + bytes + kChecksumSize, kWhat);
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file.cursor(*block);
+    const auto block = MBK_TRY(file.checked_block(address, head_size + bytes + kChecksumSize, kWhat));
+    Cursor in = file.cursor(block);
     if (!begins(in, signature)) return broken_array(address);
     in.skip(head_size - in.at());
     if (!paged) return elements(in, first, count);
-    if (written.bits.empty()) written = {block->subspan(head_size - bitmap_size), 0};
+    if (written.bits.empty()) written = {block.subspan(head_size - bitmap_size), 0};
     std::uint64_t page_address = address + head_size + kChecksumSize;
     for (std::uint64_t page = 0; page * per_page < count; ++page) {
       const std::uint64_t here = std::min(per_page, count - page * per_page);
       const std::uint64_t page_bytes = here * element_size + kChecksumSize;
       if (written.has(page)) {
-        const auto stored = file.checked_block(page_address, page_bytes, kWhat);
-        if (!stored) return tl::unexpected(stored.error());
-        Cursor page_in = file.cursor(*stored);
-        if (auto ok = elements(page_in, first + page * per_page, here); !ok) return ok;
+        const auto stored = MBK_TRY(file.checked_block(page_address, page_bytes, kWhat));
+        Cursor page_in = file.cursor(stored);
+        MBK_TRY(elements(page_in, first + page * per_page, here));
       }
       page_address += page_bytes;
     }
@@ -98,9 +96,8 @@ struct Array {
 struct FixedArray : Array {
   Result<void> read(std::uint64_t address) {
     const std::size_t size = 4 + 1 + 1 + 1 + 1 + file.sizes.length + file.sizes.address + kChecksumSize;
-    const auto block = file.checked_block(address, size, kWhat);
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file.cursor(*block);
+    const auto block = MBK_TRY(file.checked_block(address, size, kWhat));
+    Cursor in = file.cursor(block);
     const bool known = begins(in, "FAHD");
     element_size = in.byte();
     page_bits = in.byte();
@@ -126,9 +123,8 @@ struct ExtensibleArray : Array {
 
   Result<void> read(std::uint64_t address) {
     const std::size_t size = 4 + 1 + 1 + 6 + 6 * file.sizes.length + file.sizes.address + kChecksumSize;
-    const auto block = file.checked_block(address, size, kWhat);
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file.cursor(*block);
+    const auto block = MBK_TRY(file.checked_block(address, size, kWhat));
+    Cursor in = file.cursor(block);
     const bool known = begins(in, "EAHD");
     element_size = in.byte();
     bits = in.byte();
@@ -155,24 +151,22 @@ struct ExtensibleArray : Array {
     const unsigned direct = std::min(supers, 2 * log2_of(min_pointers));  // super blocks without one of their own
     const std::uint64_t pointers = 2 * (min_pointers - 1) + (supers - direct);
     const std::uint64_t size = prefix_size() + in_index * element_size + pointers * file.sizes.address + kChecksumSize;
-    const auto block = file.checked_block(address, size, kWhat);
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file.cursor(*block);
+    const auto block = MBK_TRY(file.checked_block(address, size, kWhat));
+    Cursor in = file.cursor(block);
     if (!begins(in, "EAIB")) return broken_array(address);
     in.address();  // of the header
-    if (auto ok = elements(in, 0, in_index); !ok) return ok;
+    MBK_TRY(elements(in, 0, in_index));
     std::uint64_t first = in_index;
     for (unsigned super = 0; super < supers; ++super) {
       if (super >= direct) {
         const std::uint64_t secondary = in.address();
         if (secondary == kUndefined) {
           first += blocks_in(super) * elements_in(super);
-        } else if (auto ok = super_block(secondary, super, first); !ok) {
-          return ok;
-        }
+        } else
+          MBK_TRY(super_block(secondary, super, first));
         continue;
       }
-      if (auto ok = data_blocks(in, super, first, {}); !ok) return ok;
+      MBK_TRY(data_blocks(in, super, first, {}));
     }
     return {};
   }
@@ -187,9 +181,8 @@ struct ExtensibleArray : Array {
         size > file.bytes.size()) {
       return broken_array(address);
     }
-    const auto block = file.checked_block(address, head_size + size + kChecksumSize, kWhat);
-    if (!block) return tl::unexpected(block.error());
-    Cursor in = file.cursor(*block);
+    const auto block = MBK_TRY(file.checked_block(address, head_size + size + kChecksumSize, kWhat));
+    Cursor in = file.cursor(block);
     if (!begins(in, "EASB")) return broken_array(address);
     in.skip(head_size - in.at());
     return data_blocks(in, super, first, in.take(blocks * bitmap));
@@ -205,7 +198,7 @@ struct ExtensibleArray : Array {
       const std::uint64_t address = addresses.address();
       if (address == kUndefined) continue;
       if (written.empty() && pages > 1) return broken_array(address);
-      if (auto ok = data_block(address, "EADB", offset_size(), first, count, {written, k * pages}); !ok) return ok;
+      MBK_TRY(data_block(address, "EADB", offset_size(), first, count, {written, k * pages}));
     }
     return {};
   }

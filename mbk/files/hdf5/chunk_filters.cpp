@@ -113,9 +113,7 @@ Result<Bytes> Unpacker::unpack(Bytes stored, std::uint32_t skipped) {
   Bytes bytes = stored;
   for (std::size_t i = filters_.steps.size(); i-- > 0;) {
     if ((skipped >> i & 1u) != 0) continue;
-    const auto undone = undo(filters_.steps[i], bytes);
-    if (!undone) return undone;
-    bytes = *undone;
+    bytes = MBK_TRY(undo(filters_.steps[i], bytes));
   }
   if (bytes.size() != chunk_bytes_) {
     return damaged(fmt::format("a chunk holds {} bytes where it should hold {}", bytes.size(), chunk_bytes_));

@@ -131,7 +131,7 @@ class IndexReader {
       return damaged("its chunks are more than the file can hold");
     }
     for (std::uint64_t i = 0; i < count; ++i) {
-      if (auto ok = use_({place_of(i), index_.address + i * chunk_bytes_, chunk_bytes_, 0}); !ok) return ok;
+      MBK_TRY(use_({place_of(i), index_.address + i * chunk_bytes_, chunk_bytes_, 0}));
     }
     return {};
   }

@@ -19,15 +19,14 @@ class ChunkReader {
       : file_(file), index_(index), filters_(filters), space_(space), elements_(elements) {}
 
   Result<void> read() {
-    if (auto ok = measure(); !ok) return ok;
-    const auto found = for_each_chunk(file_, index_, space_, !filters_.steps.empty(), chunk_bytes_,
-                                      [&](const Chunk& c) { return add(c); });
-    if (!found) return found;
+    MBK_TRY(measure());
+    MBK_TRY(for_each_chunk(file_, index_, space_, !filters_.steps.empty(), chunk_bytes_,
+                           [&](const Chunk& c) { return add(c); }));
     if (chunks_.size() != seen_.size()) return damaged("a part of it was never written");
-    if (auto ok = elements_.allocate(space_.count); !ok) return ok;
+    MBK_TRY(elements_.allocate(space_.count));
     Unpacker unpacker(filters_, static_cast<std::size_t>(chunk_bytes_));
     for (const Chunk& chunk : chunks_) {
-      if (auto ok = unpack(chunk, unpacker); !ok) return ok;
+      MBK_TRY(unpack(chunk, unpacker));
     }
     return {};
   }
@@ -48,7 +47,7 @@ class ChunkReader {
     }
     // Every chunk has at least a byte in the file, or an entry in the index.
     if (!fits || total > file_.bytes.size()) return damaged("its chunks are more than the file can hold");
-    if (auto ok = file_.budget.borrow(chunk_bytes_); !ok) return ok;
+    MBK_TRY(file_.budget.borrow(chunk_bytes_));
     seen_.resize(static_cast<std::size_t>(total));
     return {};
   }
@@ -67,14 +66,12 @@ class ChunkReader {
   }
 
   Result<void> unpack(const Chunk& chunk, Unpacker& unpacker) {
-    const auto stored = file_.block(chunk.address, chunk.size, "a chunk");
-    if (!stored) return tl::unexpected(stored.error());
-    if (auto ok = file_.budget.work(chunk_bytes_ * (1 + filters_.steps.size())); !ok) return ok;
+    const auto stored = MBK_TRY(file_.block(chunk.address, chunk.size, "a chunk"));
+    MBK_TRY(file_.budget.work(chunk_bytes_ * (1 + filters_.steps.size())));
     const bool plain_edge = !index_.whole_edges && reaches_beyond(chunk);
     const std::uint32_t skipped = plain_edge ? ~std::uint32_t{0} : chunk.skipped;
-    const auto bytes = unpacker.unpack(*stored, skipped);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return put(chunk, *bytes);
+    const auto bytes = MBK_TRY(unpacker.unpack(stored, skipped));
+    return put(chunk, bytes);
   }
 
   [[nodiscard]] bool reaches_beyond(const Chunk& chunk) const {
@@ -103,7 +100,7 @@ class ChunkReader {
         to = to * space_.shape[i] + start[i] + at[i];
       }
       const Bytes elements = bytes.subspan(static_cast<std::size_t>(from * index_.element_size), run);
-      if (auto ok = elements_.put(to, elements); !ok) return ok;
+      MBK_TRY(elements_.put(to, elements));
       std::size_t i = rank - 1;  // the last dimension is done: on in the one before it
       do {
         if (i == 0) return {};

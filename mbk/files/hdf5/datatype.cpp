@@ -175,13 +175,12 @@ Result<Member> member(const Header& header, Cursor& in, int depth) {
     }
     if (rank > 4) return damaged("its datatype is broken");
   }
-  auto type = any_type(in, depth + 1);
-  if (!type) return tl::unexpected(type.error());
+  auto type = MBK_TRY(any_type(in, depth + 1));
   std::uint64_t size = 0;
-  if (!multiply(count, type->size, size) || size > header.size || one.offset > header.size - size) {
+  if (!multiply(count, type.size, size) || size > header.size || one.offset > header.size - size) {
     return damaged("a member of its datatype lies outside of the element");
   }
-  one.type = std::move(*type);
+  one.type = std::move(type);
   if (!shape.empty() && one.type.kind == Datatype::Kind::compound) {
     one.type = Datatype{};
     one.type.what = "of arrays of a compound type";
@@ -199,14 +198,13 @@ Result<Datatype> compound(const Header& header, Cursor& in, int depth) {
   const unsigned count = header.bits & 0xFFFFu;
   std::uint64_t taken = 0;
   for (unsigned i = 0; i < count; ++i) {
-    auto one = member(header, in, depth);
-    if (!one) return tl::unexpected(one.error());
-    taken += one->type.size;
+    auto one = MBK_TRY(member(header, in, depth));
+    taken += one.type.size;
     if (taken > header.size) return damaged("members of its datatype lie in each other");
     for (const Member& other : type.members) {
-      if (other.name == one->name) return damaged(fmt::format("its datatype has two members '{}'", one->name));
+      if (other.name == one.name) return damaged(fmt::format("its datatype has two members '{}'", one.name));
     }
-    type.members.push_back(std::move(*one));
+    type.members.push_back(std::move(one));
     if (type.members.size() > kMaxMembers)
       return unread(header, fmt::format("a table of more than {} columns", kMaxMembers));
   }

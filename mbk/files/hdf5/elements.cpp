@@ -110,7 +110,7 @@ Result<void> Elements::allocate(std::uint64_t count) {
   if (type_.kind == Kind::compound) {
     for (Elements& column : columns_) {
       if (!is_column(column.type_)) continue;
-      if (auto ok = column.allocate(count); !ok) return ok;
+      MBK_TRY(column.allocate(count));
     }
     return {};
   }
@@ -118,11 +118,11 @@ Result<void> Elements::allocate(std::uint64_t count) {
   const bool are_texts = type_.kind == Kind::text || type_.kind == Kind::long_text;
   const bool may_leave_rests = type_.stored == Stored::int64 || type_.stored == Stored::uint64;
   const std::size_t number = sizeof(double) + (may_leave_rests ? sizeof(std::int16_t) : 0);
-  if (auto ok = file_.budget.keep(count, are_texts ? sizeof(std::string) : number); !ok) return ok;
+  MBK_TRY(file_.budget.keep(count, are_texts ? sizeof(std::string) : number));
   if (are_texts) {
     texts_.resize(static_cast<std::size_t>(count));
   } else if (type_.kind == Kind::reference) {
-    if (auto ok = file_.budget.keep(count, sizeof(std::string)); !ok) return ok;  // paths will stand there
+    MBK_TRY(file_.budget.keep(count, sizeof(std::string)));  // paths will stand there
     addresses_.resize(static_cast<std::size_t>(count));
   } else {
     numbers_.resize(static_cast<Index>(count));
@@ -158,7 +158,7 @@ Result<void> Elements::put_columns(std::uint64_t first, Bytes bytes) {
     for (std::size_t row = 0; row < rows; ++row, from += type_.size) {
       std::memcpy(gathered_.data() + row * size, from, size);
     }
-    if (auto ok = columns_[k].put(first, gathered_); !ok) return ok;
+    MBK_TRY(columns_[k].put(first, gathered_));
   }
   return {};
 }
@@ -171,11 +171,9 @@ Result<void> Elements::put_texts(std::size_t first, Bytes bytes) {
     if (type_.kind == Kind::text) {
       text = trimmed(element, type_.padded_with_blanks);
     } else {
-      auto found = long_text(element);
-      if (!found) return tl::unexpected(found.error());
-      text = std::move(*found);
+      text = MBK_TRY(long_text(element));
     }
-    if (auto ok = file_.budget.keep(1, text.size()); !ok) return ok;
+    MBK_TRY(file_.budget.keep(1, text.size()));
   }
   return {};
 }
@@ -186,10 +184,9 @@ Result<std::string> Elements::long_text(Bytes element) {
   const std::uint64_t collection = in.address();
   const std::uint64_t number = in.dword();
   if (length == 0 || collection == 0 || collection == kUndefined) return std::string();
-  const auto object = heap_.object(file_, collection, number);
-  if (!object) return tl::unexpected(object.error());
-  if (length > object->size()) return damaged("a text is longer than its place in the global heap");
-  return trimmed(object->first(static_cast<std::size_t>(length)), false);
+  const auto object = MBK_TRY(heap_.object(file_, collection, number));
+  if (length > object.size()) return damaged("a text is longer than its place in the global heap");
+  return trimmed(object.first(static_cast<std::size_t>(length)), false);
 }
 
 Value Elements::value(std::vector<std::uint64_t> shape) {

@@ -65,23 +65,19 @@ Result<Bytes> File::from(std::uint64_t address, std::uint64_t least, std::string
     return damaged(address == kUndefined ? fmt::format("{} is missing", what)
                                          : fmt::format("{} at byte {} lies beyond the end", what, address));
   }
-  if (auto ok = budget.work(least > kUndefined / kStructureWeight ? kUndefined : least * kStructureWeight); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(budget.work(least > kUndefined / kStructureWeight ? kUndefined : least * kStructureWeight));
   return bytes.subspan(static_cast<std::size_t>(address));
 }
 
 Result<Bytes> File::block(std::uint64_t address, std::uint64_t size, std::string_view what) {
-  const auto rest = from(address, size, what);
-  if (!rest) return rest;
-  return rest->first(static_cast<std::size_t>(size));
+  const auto rest = MBK_TRY(from(address, size, what));
+  return rest.first(static_cast<std::size_t>(size));
 }
 
 Result<Bytes> File::checked_block(std::uint64_t address, std::uint64_t size, std::string_view what) {
-  const auto whole = block(address, size, what);
-  if (!whole) return whole;
-  if (!checksum_is_right(*whole)) return damaged(fmt::format("{} at byte {} has a wrong checksum", what, address));
-  return whole->first(whole->size() - kChecksumSize);
+  const auto whole = MBK_TRY(block(address, size, what));
+  if (!checksum_is_right(whole)) return damaged(fmt::format("{} at byte {} has a wrong checksum", what, address));
+  return whole.first(whole.size() - kChecksumSize);
 }
 
 }  // namespace mbk::hdf5

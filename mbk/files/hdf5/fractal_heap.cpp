@@ -58,9 +58,8 @@ Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
   const Sizes sizes = file.sizes;
   const std::size_t size =
       4 + 1 + 2 + 2 + 1 + 4 + 12 * sizes.length + 3 * sizes.address + 2 + 2 + 2 + 2 + kChecksumSize;
-  const auto prefix = file.from(address, size, "a fractal heap");
-  if (!prefix) return tl::unexpected(prefix.error());
-  Cursor in = file.cursor(*prefix);
+  const auto prefix = MBK_TRY(file.from(address, size, "a fractal heap"));
+  Cursor in = file.cursor(prefix);
   FractalHeap heap;
   const bool known = in.is("FRHP") && in.byte() == 0;
   heap.id_size_ = in.word();
@@ -68,7 +67,7 @@ Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
   heap.has_checksums_ = (in.byte() & 2u) != 0;
   if (!known) return broken();
   if (filtered) return bad_data("a fractal heap is packed by filters, which is not read", "write it without them");
-  if (!checksum_is_right(prefix->first(size))) return damaged("a fractal heap has a wrong checksum");
+  if (!checksum_is_right(prefix.first(size))) return damaged("a fractal heap has a wrong checksum");
   heap.largest_ = in.dword();
   in.length();  // the next huge object
   heap.huge_tree_ = in.address();
@@ -115,9 +114,8 @@ Result<Bytes> FractalHeap::managed(File& file, Cursor id) {
   for (std::uint64_t rows = rows_; rows > 0;) {
     const Place place = place_of(inside, width_, start_);
     if (place.row >= rows) return broken();
-    const auto blocks = children(file, address, rows);
-    if (!blocks) return tl::unexpected(blocks.error());
-    address = (**blocks)[static_cast<std::size_t>(place.row * width_ + place.column)];
+    const auto blocks = MBK_TRY(children(file, address, rows));
+    address = (*blocks)[static_cast<std::size_t>(place.row * width_ + place.column)];
     inside -= place.block_start;
     size = place.block_size;
     if (place.row < direct_rows) break;
@@ -125,9 +123,8 @@ Result<Bytes> FractalHeap::managed(File& file, Cursor id) {
     rows = log2_of(size) - log2_of(width_ * start_) + std::uint64_t{1};  // fewer than before: this ends
   }
   if (inside > size || length > size - inside) return broken();
-  const auto block = direct_block(file, address, size);
-  if (!block) return block;
-  return block->subspan(static_cast<std::size_t>(inside), static_cast<std::size_t>(length));
+  const auto block = MBK_TRY(direct_block(file, address, size));
+  return block.subspan(static_cast<std::size_t>(inside), static_cast<std::size_t>(length));
 }
 
 Result<const std::vector<std::uint64_t>*> FractalHeap::children(File& file, std::uint64_t address, std::uint64_t rows) {
@@ -137,9 +134,8 @@ Result<const std::vector<std::uint64_t>*> FractalHeap::children(File& file, std:
   }
   const std::size_t prefix = 4 + 1 + file.sizes.address + (bits_ + 7) / 8;
   const std::uint64_t size = prefix + rows * width_ * file.sizes.address + kChecksumSize;
-  const auto block = file.checked_block(address, size, "a block of a fractal heap");
-  if (!block) return tl::unexpected(block.error());
-  Cursor in = file.cursor(*block);
+  const auto block = MBK_TRY(file.checked_block(address, size, "a block of a fractal heap"));
+  Cursor in = file.cursor(block);
   const bool known = in.is("FHIB") && in.byte() == 0;
   if (!known) return broken();
   in.skip(prefix - 5);
@@ -172,14 +168,13 @@ Result<Bytes> FractalHeap::huge(File& file, Cursor id) const {
   const std::uint64_t wanted = id.number(std::min(id_size_ - 1, sizes.length));
   std::uint64_t address = kUndefined;
   std::uint64_t length = 0;
-  auto searched = for_each_record(file, huge_tree_, [&](BTree2 kind, Cursor record) -> Result<void> {
+  MBK_TRY(for_each_record(file, huge_tree_, [&](BTree2 kind, Cursor record) -> Result<void> {
     const std::uint64_t at = record.address();
     const std::uint64_t size = record.length();
     if (kind != BTree2::huge_objects) return broken();
     if (record.length() == wanted && record.ok()) address = at, length = size;
     return {};
-  });
-  if (!searched) return tl::unexpected(searched.error());
+  }));
   return file.block(address, length, "a large object of a fractal heap");
 }
 

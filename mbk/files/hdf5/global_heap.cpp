@@ -15,18 +15,16 @@ tl::unexpected<Error> broken_heap(std::uint64_t address) {
 
 Result<GlobalHeap::Collection> GlobalHeap::read(File& file, std::uint64_t address) {
   const std::size_t prefix_size = 8 + file.sizes.length;
-  const auto prefix = file.block(address, prefix_size, "a global heap");
-  if (!prefix) return tl::unexpected(prefix.error());
-  Cursor head = file.cursor(*prefix);
+  const auto prefix = MBK_TRY(file.block(address, prefix_size, "a global heap"));
+  Cursor head = file.cursor(prefix);
   const bool known = head.is("GCOL") && head.byte() == 1;
   head.skip(3);
   const std::uint64_t size = head.length();
   if (!known || size < prefix_size) return broken_heap(address);
-  const auto block = file.block(address, size, "a global heap");
-  if (!block) return tl::unexpected(block.error());
+  const auto block = MBK_TRY(file.block(address, size, "a global heap"));
 
   Collection objects;
-  Cursor in = file.cursor(block->subspan(prefix_size));
+  Cursor in = file.cursor(block.subspan(prefix_size));
   while (in.left() >= prefix_size) {
     const std::uint64_t number = in.word();
     in.skip(6);  // references and a reserved field
@@ -34,7 +32,7 @@ Result<GlobalHeap::Collection> GlobalHeap::read(File& file, std::uint64_t addres
     if (number == 0) break;  // what is left is free
     const Bytes object = in.take(length);
     if (!in.ok() || !objects.emplace(number, object).second) return broken_heap(address);
-    if (auto ok = file.budget.keep(1, kNodeMemory); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(file.budget.keep(1, kNodeMemory));
     in.skip(std::min<std::uint64_t>((8 - length % 8) % 8, in.left()));
   }
   return objects;
@@ -43,9 +41,8 @@ Result<GlobalHeap::Collection> GlobalHeap::read(File& file, std::uint64_t addres
 Result<Bytes> GlobalHeap::object(File& file, std::uint64_t collection, std::uint64_t number) {
   auto known = collections_.find(collection);
   if (known == collections_.end()) {
-    auto objects = read(file, collection);
-    if (!objects) return tl::unexpected(objects.error());
-    known = collections_.emplace(collection, std::move(*objects)).first;
+    auto objects = MBK_TRY(read(file, collection));
+    known = collections_.emplace(collection, std::move(objects)).first;
   }
   const auto found = known->second.find(number);
   if (found == known->second.end()) {

@@ -22,35 +22,31 @@ class LinkReader {
     const std::uint64_t heap = message.address();
     if (!message.ok()) return damaged("a group is broken");
     const std::size_t head_size = 8 + 2 * file_.sizes.length + file_.sizes.address;
-    const auto head = file_.block(heap, head_size, "a local heap");
-    if (!head) return tl::unexpected(head.error());
-    Cursor in = file_.cursor(*head);
+    const auto head = MBK_TRY(file_.block(heap, head_size, "a local heap"));
+    Cursor in = file_.cursor(head);
     const bool known = in.is("HEAP") && in.byte() == 0;
     in.skip(3);
     const std::uint64_t size = in.length();
     in.length();  // its free space
     const std::uint64_t address = in.address();
     if (!known) return damaged(fmt::format("the local heap at byte {} is broken", heap));
-    const auto names = file_.block(address, size, "a local heap");
-    if (!names) return tl::unexpected(names.error());
+    const auto names = MBK_TRY(file_.block(address, size, "a local heap"));
     return for_each_child(file_, tree, BTree1::group, file_.sizes.length,
-                          [&](Cursor, std::uint64_t child) { return symbols(child, *names); });
+                          [&](Cursor, std::uint64_t child) { return symbols(child, names); });
   }
 
   Result<void> symbols(std::uint64_t address, Bytes names) {
     constexpr std::uint32_t kSoftLink = 2;
     const std::size_t entry_size = 2 * file_.sizes.address + 4 + 4 + 16;
-    const auto head = file_.block(address, 8, "a symbol table node");
-    if (!head) return tl::unexpected(head.error());
-    Cursor prefix = file_.cursor(*head);
+    const auto head = MBK_TRY(file_.block(address, 8, "a symbol table node"));
+    Cursor prefix = file_.cursor(head);
     const bool known = prefix.is("SNOD") && prefix.byte() == 1;
     prefix.skip(1);
     const std::uint64_t count = prefix.word();
     if (!known) return damaged(fmt::format("the symbol table node at byte {} is broken", address));
-    const auto block = file_.block(address + 8, count * entry_size, "a symbol table node");
-    if (!block) return tl::unexpected(block.error());
+    const auto block = MBK_TRY(file_.block(address + 8, count * entry_size, "a symbol table node"));
     for (std::uint64_t i = 0; i < count; ++i) {
-      Cursor in = file_.cursor(block->subspan(static_cast<std::size_t>(i) * entry_size, entry_size));
+      Cursor in = file_.cursor(block.subspan(static_cast<std::size_t>(i) * entry_size, entry_size));
       const std::uint64_t name_at = in.number(file_.sizes.address);
       const std::uint64_t target = in.address();
       const bool soft = in.dword() == kSoftLink;
@@ -59,7 +55,7 @@ class LinkReader {
       Link link{text_at(names, name_at), soft ? Link::Kind::soft : Link::Kind::hard, target};
       if (soft) link.path = text_at(names, path_at);
       if (outside_) return damaged("a name lies outside of its local heap");
-      if (auto ok = add(std::move(link)); !ok) return ok;
+      MBK_TRY(add(std::move(link)));
     }
     return {};
   }
@@ -99,15 +95,13 @@ class LinkReader {
     const std::uint64_t tree = in.address();
     if (version != 0 || !in.ok()) return damaged("a group is broken");
     if (heap_address == kUndefined) return {};
-    auto heap = FractalHeap::open(file_, heap_address);
-    if (!heap) return tl::unexpected(heap.error());
+    auto heap = MBK_TRY(FractalHeap::open(file_, heap_address));
     return for_each_record(file_, tree, [&](BTree2 kind, Cursor record) -> Result<void> {
       record.skip(4);  // hash of the name
-      const Cursor id = file_.cursor(record.take(heap->id_size()));
+      const Cursor id = file_.cursor(record.take(heap.id_size()));
       if (kind != BTree2::link_names || !record.ok()) return damaged("a group is broken");
-      const auto message = heap->object(file_, id);
-      if (!message) return tl::unexpected(message.error());
-      return link(file_.cursor(*message));
+      const auto message = MBK_TRY(heap.object(file_, id));
+      return link(file_.cursor(message));
     });
   }
 
@@ -123,7 +117,7 @@ class LinkReader {
 
   Result<void> add(Link link) {
     const std::uint64_t texts = link.name.size() + link.path.size() + link.file.size();
-    if (auto ok = file_.budget.keep(1, kLinkMemory + texts); !ok) return ok;
+    MBK_TRY(file_.budget.keep(1, kLinkMemory + texts));
     links.push_back(std::move(link));
     return {};
   }

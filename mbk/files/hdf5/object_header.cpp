@@ -25,21 +25,20 @@ class HeaderReader {
   ObjectHeader header;
 
   Result<void> read(std::uint64_t address) {
-    const auto start = file_.from(address, 16, "an object header");
-    if (!start) return tl::unexpected(start.error());
-    Cursor in = file_.cursor(*start);
-    const bool is_new = Cursor(*start).is("OHDR");
-    if (auto ok = is_new ? read_new(in, address) : read_old(in, address); !ok) return ok;
+    const auto start = MBK_TRY(file_.from(address, 16, "an object header"));
+    Cursor in = file_.cursor(start);
+    const bool is_new = Cursor(start).is("OHDR");
+    MBK_TRY(is_new ? read_new(in, address) : read_old(in, address));
     while (!segments_.empty()) {
       const Segment next = segments_.front();
       segments_.pop_front();
       if (!seen_.insert(next.address).second) return damaged("an object header continues in itself");
-      const auto block = is_new ? file_.checked_block(next.address, next.size, "an object header's continuation")
-                                : file_.block(next.address, next.size, "an object header's continuation");
-      if (!block) return tl::unexpected(block.error());
-      Cursor messages = file_.cursor(*block);
+      const auto block =
+          MBK_TRY(is_new ? file_.checked_block(next.address, next.size, "an object header's continuation")
+                         : file_.block(next.address, next.size, "an object header's continuation"));
+      Cursor messages = file_.cursor(block);
       if (is_new && !messages.is("OCHK")) return damaged("an object header's continuation is broken");
-      if (auto ok = is_new ? new_messages(messages) : old_messages(messages); !ok) return ok;
+      MBK_TRY(is_new ? new_messages(messages) : old_messages(messages));
     }
     return {};
   }
@@ -67,9 +66,8 @@ class HeaderReader {
     const std::uint64_t size = in.number(std::size_t{1} << (flags & 3u));
     if (!in.ok() || size > in.left()) return damaged("an object header reaches beyond the end");
     const std::size_t prefix = in.at();
-    const auto block = file_.checked_block(address, prefix + size + kChecksumSize, "an object header");
-    if (!block) return tl::unexpected(block.error());
-    Cursor messages = file_.cursor(block->subspan(prefix));
+    const auto block = MBK_TRY(file_.checked_block(address, prefix + size + kChecksumSize, "an object header"));
+    Cursor messages = file_.cursor(block.subspan(prefix));
     return new_messages(messages);
   }
 
@@ -80,7 +78,7 @@ class HeaderReader {
       const std::uint64_t size = in.word();
       const unsigned flags = in.byte();
       in.skip(3);
-      if (auto ok = add({type, (flags & kSharedFlag) != 0, in.take(size)}, in.ok()); !ok) return ok;
+      MBK_TRY(add({type, (flags & kSharedFlag) != 0, in.take(size)}, in.ok()));
     }
     return {};
   }
@@ -92,7 +90,7 @@ class HeaderReader {
       const std::uint64_t size = in.word();
       const unsigned flags = in.byte();
       if (ordered_) in.skip(2);
-      if (auto ok = add({type, (flags & kSharedFlag) != 0, in.take(size)}, in.ok()); !ok) return ok;
+      MBK_TRY(add({type, (flags & kSharedFlag) != 0, in.take(size)}, in.ok()));
     }
     return {};
   }
@@ -127,7 +125,7 @@ const Message* ObjectHeader::find(MessageType type) const {
 
 Result<ObjectHeader> read_object_header(File& file, std::uint64_t address) {
   HeaderReader reader(file);
-  if (auto ok = reader.read(address); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(reader.read(address));
   return std::move(reader.header);
 }
 
@@ -142,9 +140,8 @@ Result<Bytes> shared_body(File& file, MessageType type, Bytes body) {
   }
   const std::uint64_t address = in.address();
   if (!in.ok()) return damaged("a shared message is broken");
-  const auto header = read_object_header(file, address);
-  if (!header) return tl::unexpected(header.error());
-  const Message* const found = header->find(type);
+  const auto header = MBK_TRY(read_object_header(file, address));
+  const Message* const found = header.find(type);
   if (found == nullptr || found->shared) return damaged("a shared message is not where it should be");
   return found->body;
 }

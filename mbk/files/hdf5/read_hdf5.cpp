@@ -32,7 +32,7 @@ class Tree {
     if (!header) return tl::unexpected(header.error().in("/"));
     if (!is_group(*header)) return damaged("its root is not a group");
     if (const auto links = links_of(root_address_, *header); !links) return tl::unexpected(links.error().in("/"));
-    if (auto ok = group(root_address_, *header, "", 0, root); !ok) return ok;
+    MBK_TRY(group(root_address_, *header, "", 0, root));
     return resolve();
   }
 
@@ -60,7 +60,7 @@ class Tree {
         place.damage = printable(fmt::format("'{}' is there twice", link.name));
         continue;
       }
-      if (auto ok = object(address, link, inner, depth, place); !ok) return ok;
+      MBK_TRY(object(address, link, inner, depth, place));
     }
     within_.pop_back();
     return {};
@@ -114,7 +114,7 @@ class Tree {
   }
 
   Result<void> contents(const ObjectHeader& header, Dataset& place, std::optional<Group>& table) {
-    if (auto ok = read_attributes(reading_, header, place.attributes); !ok) return ok;
+    MBK_TRY(read_attributes(reading_, header, place.attributes));
     if (is_dataset(header)) return read_value(reading_, header, place.value, table);
     place.value.data = Unread{"neither a group nor a dataset"};
     return {};
@@ -148,9 +148,8 @@ class Tree {
   Result<const std::vector<Link>*> links_of(std::uint64_t address, const ObjectHeader& header) {
     const auto known = links_.find(address);
     if (known != links_.end()) return &known->second;
-    auto links = read_links(reading_.file, header);
-    if (!links) return tl::unexpected(links.error());
-    return &links_.emplace(address, std::move(*links)).first->second;
+    auto links = MBK_TRY(read_links(reading_.file, header));
+    return &links_.emplace(address, std::move(links)).first->second;
   }
 
   static std::uint64_t bytes_of(const Dataset& dataset) {
@@ -169,7 +168,7 @@ class Tree {
       for (std::size_t i = 0; i < open.addresses.size(); ++i) {
         const auto found = paths_.find(open.addresses[i]);
         if (found == paths_.end()) continue;  // null, or an object without a link
-        if (auto ok = reading_.file.budget.keep(1, found->second.size()); !ok) return ok;
+        MBK_TRY(reading_.file.budget.keep(1, found->second.size()));
         open.place->paths[i] = found->second;
       }
     }
@@ -192,10 +191,9 @@ bool looks_like_hdf5(std::span<const std::byte> file) {
 }
 
 Result<Group> read(std::span<const std::byte> file, const ReadLimits& limits) {
-  const auto superblock = read_superblock(file);
-  if (!superblock) return tl::unexpected(superblock.error());
-  Tree tree(*superblock, limits);
-  if (auto ok = tree.walk(); !ok) return tl::unexpected(ok.error());
+  const auto superblock = MBK_TRY(read_superblock(file));
+  Tree tree(superblock, limits);
+  MBK_TRY(tree.walk());
   return std::move(tree.root);
 }
 

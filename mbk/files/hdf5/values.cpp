@@ -41,8 +41,8 @@ Result<void> read_plain(Reading& reading, const Dataspace& space, const Datatype
         fmt::format("{} elements of {} bytes do not fit into {} bytes", space.count, type.size, bytes.size()));
   }
   Elements elements(reading.file, reading.heap, type);
-  if (auto ok = elements.allocate(space.count); !ok) return ok;
-  if (auto ok = elements.put(0, bytes.first(static_cast<std::size_t>(size))); !ok) return ok;
+  MBK_TRY(elements.allocate(space.count));
+  MBK_TRY(elements.put(0, bytes.first(static_cast<std::size_t>(size))));
   store(reading, place, table, space, type, elements);
   return {};
 }
@@ -99,18 +99,16 @@ Result<void> read_dense_attributes(Reading& reading, Cursor in, Attributes& all)
   const std::uint64_t tree = in.address();
   if (version != 0 || !in.ok()) return damaged("its attributes are broken");
   if (heap_address == kUndefined) return {};
-  auto heap = FractalHeap::open(file, heap_address);
-  if (!heap) return tl::unexpected(heap.error());
+  auto heap = MBK_TRY(FractalHeap::open(file, heap_address));
   return for_each_record(file, tree, [&](BTree2 kind, Cursor record) -> Result<void> {
     constexpr unsigned kShared = 2;
-    const Cursor id = file.cursor(record.take(heap->id_size()));
+    const Cursor id = file.cursor(record.take(heap.id_size()));
     const bool shared = (record.byte() & kShared) != 0;
     if (kind != BTree2::attribute_names || !record.ok()) return damaged("its attributes are broken");
     if (shared)
       return bad_data("its attributes are shared, which is not read", "write the file without shared messages");
-    const auto message = heap->object(file, id);
-    if (!message) return tl::unexpected(message.error());
-    return read_attribute(reading, *message, all);
+    const auto message = MBK_TRY(heap.object(file, id));
+    return read_attribute(reading, message, all);
   });
 }
 
@@ -130,26 +128,19 @@ struct Description {
 };
 
 Result<Description> describe(File& file, const ObjectHeader& header) {
-  const auto type_body = body_of(file, header, MessageType::datatype);
-  if (!type_body) return tl::unexpected(type_body.error());
-  const auto space_body = body_of(file, header, MessageType::dataspace);
-  if (!space_body) return tl::unexpected(space_body.error());
-  const auto layout_body = body_of(file, header, MessageType::layout);
-  if (!layout_body) return tl::unexpected(layout_body.error());
-  auto type = read_datatype(file.cursor(*type_body));
-  if (!type) return tl::unexpected(type.error());
-  auto space = read_dataspace(file.cursor(*space_body));
-  if (!space) return tl::unexpected(space.error());
-  auto layout = read_layout(file.cursor(*layout_body));
-  if (!layout) return tl::unexpected(layout.error());
+  const auto type_body = MBK_TRY(body_of(file, header, MessageType::datatype));
+  const auto space_body = MBK_TRY(body_of(file, header, MessageType::dataspace));
+  const auto layout_body = MBK_TRY(body_of(file, header, MessageType::layout));
+  auto type = MBK_TRY(read_datatype(file.cursor(type_body)));
+  auto space = MBK_TRY(read_dataspace(file.cursor(space_body)));
+  auto layout = MBK_TRY(read_layout(file.cursor(layout_body)));
   Result<Filters> filters = Filters{};
   if (header.find(MessageType::filters) != nullptr) {
-    const auto filters_body = body_of(file, header, MessageType::filters);
-    if (!filters_body) return tl::unexpected(filters_body.error());
-    filters = read_filters(file.cursor(*filters_body));
+    const auto filters_body = MBK_TRY(body_of(file, header, MessageType::filters));
+    filters = read_filters(file.cursor(filters_body));
     if (!filters) return tl::unexpected(filters.error());
   }
-  return Description{std::move(*type), std::move(*space), std::move(*layout), std::move(*filters)};
+  return Description{std::move(type), std::move(space), std::move(layout), std::move(*filters)};
 }
 
 /// Why the elements are not read, or "".
@@ -186,27 +177,25 @@ Result<void> read_attributes(Reading& reading, const ObjectHeader& header, Attri
 }
 
 Result<void> read_value(Reading& reading, const ObjectHeader& header, Value& place, std::optional<Group>& table) {
-  const auto dataset = describe(reading.file, header);
-  if (!dataset) return tl::unexpected(dataset.error());
-  const Layout& layout = dataset->layout;
-  if (std::string why = why_unread(*dataset, header); !why.empty()) {
-    leave(place, dataset->space, std::move(why));
+  const auto dataset = MBK_TRY(describe(reading.file, header));
+  const Layout& layout = dataset.layout;
+  if (std::string why = why_unread(dataset, header); !why.empty()) {
+    leave(place, dataset.space, std::move(why));
     return {};
   }
-  if (dataset->space.count == 0) return read_plain(reading, dataset->space, dataset->type, {}, place, table);
+  if (dataset.space.count == 0) return read_plain(reading, dataset.space, dataset.type, {}, place, table);
   if (layout.kind == Layout::Kind::compact) {
-    return read_plain(reading, dataset->space, dataset->type, layout.compact, place, table);
+    return read_plain(reading, dataset.space, dataset.type, layout.compact, place, table);
   }
   if (layout.kind == Layout::Kind::contiguous) {
     std::uint64_t size = layout.size;
-    if (size == kUndefined && !multiply(dataset->space.count, dataset->type.size, size)) size = kUndefined;
-    const auto block = reading.file.block(layout.address, size, "its data");
-    if (!block) return tl::unexpected(block.error());
-    return read_plain(reading, dataset->space, dataset->type, *block, place, table);
+    if (size == kUndefined && !multiply(dataset.space.count, dataset.type.size, size)) size = kUndefined;
+    const auto block = MBK_TRY(reading.file.block(layout.address, size, "its data"));
+    return read_plain(reading, dataset.space, dataset.type, block, place, table);
   }
-  Elements elements(reading.file, reading.heap, dataset->type);
-  if (auto ok = read_chunks(reading.file, layout.chunks, dataset->filters, dataset->space, elements); !ok) return ok;
-  store(reading, place, table, dataset->space, dataset->type, elements);
+  Elements elements(reading.file, reading.heap, dataset.type);
+  MBK_TRY(read_chunks(reading.file, layout.chunks, dataset.filters, dataset.space, elements));
+  store(reading, place, table, dataset.space, dataset.type, elements);
   return {};
 }
 

@@ -23,17 +23,17 @@ class Check {
  public:
   Result<void> group(const Group& group, const std::string& path) {
     paths_.insert(path);
-    if (auto ok = attributes(group.attributes, path); !ok) return ok;
+    MBK_TRY(attributes(group.attributes, path));
     for (const auto& [name, child] : group.groups) {
-      if (auto ok = link(name, path); !ok) return ok;
+      MBK_TRY(link(name, path));
       if (group.datasets.contains(name)) return bad_data("is both a group and a dataset", "", below(path, name));
-      if (auto ok = this->group(child, below(path, name)); !ok) return ok;
+      MBK_TRY(this->group(child, below(path, name)));
     }
     for (const auto& [name, dataset] : group.datasets) {
       const std::string full = below(path, name);
-      if (auto ok = link(name, path); !ok) return ok;
+      MBK_TRY(link(name, path));
       paths_.insert(full);
-      if (auto ok = attributes(dataset.attributes, full); !ok) return ok;
+      MBK_TRY(attributes(dataset.attributes, full));
       if (auto ok = value(dataset.value); !ok) return tl::unexpected(ok.error().in(full));
     }
     return {};
@@ -89,7 +89,7 @@ class Check {
     }
     const std::uint64_t expected = count_of(value.shape);
     if (const auto* numbers = std::get_if<Numbers>(&value.data)) {
-      if (auto ok = counted(static_cast<std::uint64_t>(numbers->values.size()), expected); !ok) return ok;
+      MBK_TRY(counted(static_cast<std::uint64_t>(numbers->values.size()), expected));
       if (const auto misfit = first_misfit(*numbers)) {
         return bad_data(fmt::format("{} does not fit the type that it should be stored as", *misfit));
       }
@@ -127,7 +127,7 @@ std::uint64_t count_of(const std::vector<std::uint64_t>& shape) {
 
 Result<void> check_writable(const Group& root) {
   Check check;
-  if (auto ok = check.group(root, "/"); !ok) return ok;
+  MBK_TRY(check.group(root, "/"));
   return check.references();
 }
 

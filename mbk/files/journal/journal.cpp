@@ -184,8 +184,8 @@ Result<Writer> Writer::create(const fs::path& file, const Header& header, std::u
       return tl::unexpected(writer.failure("cannot be written"));
     }
     writer.end_ = static_cast<std::int64_t>(kMagic.size());
-    if (auto ok = writer.write_block(kHeader, bytes_of(writer.header_)); !ok) return ok;
-    if (auto ok = writer.sync(); !ok) return ok;
+    MBK_TRY(writer.write_block(kHeader, bytes_of(writer.header_)));
+    MBK_TRY(writer.sync());
     return sync_folder(file);
   }();
   if (!begun) {
@@ -246,18 +246,18 @@ Result<void> Writer::write_block(std::uint32_t kind, std::span<const std::byte> 
 
 Result<void> Writer::append(std::span<const Tick> ticks) {
   if (blocks_ % kHeaderEvery == 0) {
-    if (auto ok = write_block(kHeader, bytes_of(header_)); !ok) return ok;
+    MBK_TRY(write_block(kHeader, bytes_of(header_)));
   }
   next_tick_ = ticks.front().number;
-  if (auto ok = write_block(kTicks, std::as_bytes(ticks)); !ok) return ok;
+  MBK_TRY(write_block(kTicks, std::as_bytes(ticks)));
   next_tick_ = ticks.back().number + 1;
   return {};
 }
 
 Result<void> Writer::end(const Ending& ending) {
   next_tick_ = std::max(next_tick_, ending.ticks);
-  if (auto ok = write_block(kHeader, bytes_of(header_)); !ok) return ok;
-  if (auto ok = write_block(kEnding, bytes_of(text_of(ending))); !ok) return ok;
+  MBK_TRY(write_block(kHeader, bytes_of(header_)));
+  MBK_TRY(write_block(kEnding, bytes_of(text_of(ending))));
   if (ftruncate(descriptor_, end_) != 0) return tl::unexpected(failure("cannot be closed"));  // gives the rest back
   return sync();
 }

@@ -106,12 +106,10 @@ Result<HandGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
   const std::string group = end_point ? own : "CALIBRATION";
   const std::string side(capitals_of(arm));
   const std::string first = end_point ? "L1_L" : side + "_L1", second = end_point ? "L2_L" : side + "_L2";
-  const auto link1 = length(parameters, group, first);
-  if (!link1) return tl::unexpected(link1.error());
-  const auto link2 = length(parameters, group, second);
-  if (!link2) return tl::unexpected(link2.error());
-  HandGeometry geometry{*link1, *link2, 0.0,
-                        fmt::format("{}:{} {:.6g} m, {} {:.6g} m", group, first, *link1, second, *link2)};
+  const auto link1 = MBK_TRY(length(parameters, group, first));
+  const auto link2 = MBK_TRY(length(parameters, group, second));
+  HandGeometry geometry{link1, link2, 0.0,
+                        fmt::format("{}:{} {:.6g} m, {} {:.6g} m", group, first, link1, second, link2)};
   if (end_point) return geometry;
   const std::string offset = side + "_PTR_ANTERIOR";
   const auto pointer = parameters.number(group, offset);

@@ -141,14 +141,12 @@ struct KinarmExam::Open {
   }
 
   Result<void> look_at_folder(Part& part) {
-    auto header = header_of(part);
-    if (!header) return tl::unexpected(header.error());
-    auto parameters = parameters_of(part);
-    if (!parameters) return tl::unexpected(parameters.error());
-    take_numbers(part, *parameters);
-    part.frames = static_cast<double>(header->frames);
-    part.events = header->events;
-    part.rate_hz = rate_of(*header, *parameters);
+    auto header = MBK_TRY(header_of(part));
+    auto parameters = MBK_TRY(parameters_of(part));
+    take_numbers(part, parameters);
+    part.frames = static_cast<double>(header.frames);
+    part.events = header.events;
+    part.rate_hz = rate_of(header, parameters);
     return {};
   }
 
@@ -161,18 +159,16 @@ struct KinarmExam::Open {
 
   [[nodiscard]] Result<KinarmHeader> header_of(const Part& part) const {
     const std::string name = fmt::format("{}{}/header.bin", kRaw, part.label);
-    const auto bytes = read(name);
-    if (!bytes) return tl::unexpected(bytes.error());
-    auto header = read_kinarm_header(bytes->bytes());
+    const auto bytes = MBK_TRY(read(name));
+    auto header = read_kinarm_header(bytes.bytes());
     return header ? header : tl::unexpected(header.error().in("header.bin"));
   }
 
   [[nodiscard]] Result<ExamParameters> parameters_of(const Part& part) const {
     const std::string name = fmt::format("{}{}/parameters.bin", kRaw, part.label);
     if (!archive.has(name)) return ExamParameters();
-    const auto bytes = read(name);
-    if (!bytes) return tl::unexpected(bytes.error());
-    auto parameters = read_kinarm_parameters(bytes->bytes());
+    const auto bytes = MBK_TRY(read(name));
+    auto parameters = read_kinarm_parameters(bytes.bytes());
     if (!parameters) return tl::unexpected(parameters.error().in("parameters.bin"));
     parameters->drop_unused();
     return parameters;
@@ -200,10 +196,9 @@ struct KinarmExam::Open {
 
   Result<void> read_common() {
     if (c3d) {
-      const auto bytes = read(std::string(kCommonC3d));
-      if (!bytes) return tl::unexpected(bytes.error());
-      if (!looks_like_c3d(bytes->bytes())) return bad_data("is no C3D file", "", std::string(kCommonC3d));
-      const auto parameters = decode_c3d_parameters(bytes->bytes());
+      const auto bytes = MBK_TRY(read(std::string(kCommonC3d)));
+      if (!looks_like_c3d(bytes.bytes())) return bad_data("is no C3D file", "", std::string(kCommonC3d));
+      const auto parameters = decode_c3d_parameters(bytes.bytes());
       if (!parameters) return tl::unexpected(parameters.error().in(kCommonC3d));
       common = ExamParameters::of(*parameters);
       common.remove_signals();
@@ -284,7 +279,7 @@ struct KinarmExam::Open {
   [[nodiscard]] Result<ExamTrial> load(const Trial& trial, Wanted wanted) const {
     std::uint64_t size = 0;
     for (const Part& part : trial.parts) size += part.size;
-    if (auto ok = check_memory(3 * size); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_memory(3 * size));
     std::vector<ExamTrial> parts;
     for (const Part& part : trial.parts) {
       auto one = c3d ? load_c3d(part, wanted) : load_folder(part, wanted);
@@ -301,13 +296,11 @@ struct KinarmExam::Open {
 
   [[nodiscard]] Result<ExamTrial> load_folder(const Part& part, Wanted wanted) const {
     ExamTrial trial;
-    auto header = header_of(part);
-    if (!header) return tl::unexpected(header.error());
-    auto parameters = parameters_of(part);
-    if (!parameters) return tl::unexpected(parameters.error());
-    trial.parameters = std::move(*parameters);
-    trial.frames = static_cast<double>(header->frames);
-    trial.rate_hz = rate_of(*header, trial.parameters);
+    auto header = MBK_TRY(header_of(part));
+    auto parameters = MBK_TRY(parameters_of(part));
+    trial.parameters = std::move(parameters);
+    trial.frames = static_cast<double>(header.frames);
+    trial.rate_hz = rate_of(header, trial.parameters);
     if (trial.rate_hz == 0.0) return bad_data("neither header.bin nor ANALOG:RATE says a rate");
     const auto said = trial.parameters.number("ANALOG", "RATE");
     const double analog_hz = said ? *said : common.number("ANALOG", "RATE").value_or(trial.rate_hz);
@@ -318,11 +311,11 @@ struct KinarmExam::Open {
       return bad_data("it says that it holds 0 frames", "nothing was recorded, or it is damaged");
     for (const std::string& member : part.members) {
       const std::string_view file = std::string_view(member).substr(member.rfind('/') + 1);
-      if (auto ok = load_member(member, file, wanted, *header, trial); !ok) {
+      if (auto ok = load_member(member, file, wanted, header, trial); !ok) {
         return tl::unexpected(ok.error().in(printable(std::string(file))));
       }
     }
-    if (wanted == everything) compare_with_header(*header, trial);
+    if (wanted == everything) compare_with_header(header, trial);
     return trial;
   }
 
@@ -333,26 +326,22 @@ struct KinarmExam::Open {
     const bool events = all && file == "examevents.bin", video = all && file == "videoack.bin";
     if ((signal || position) && !wanted(file.substr(0, file.rfind('.')))) return {};
     if (!signal && !position && !events && !video) return {};
-    const auto bytes = read(member);
-    if (!bytes) return tl::unexpected(bytes.error());
+    const auto bytes = MBK_TRY(read(member));
     if (signal) {
-      auto one = read_kinarm_signal(bytes->bytes());
-      if (!one) return tl::unexpected(one.error());
-      take(trial, std::move(one->label), std::move(one->unit), std::move(one->values));
+      auto one = MBK_TRY(read_kinarm_signal(bytes.bytes()));
+      take(trial, std::move(one.label), std::move(one.unit), std::move(one.values));
     } else if (position) {
-      auto one = read_kinarm_position(bytes->bytes());
-      if (!one) return tl::unexpected(one.error());
-      take(trial, one->label + ".x", "m", std::move(one->x));
-      take(trial, one->label + ".y", "m", std::move(one->y));
+      auto one = MBK_TRY(read_kinarm_position(bytes.bytes()));
+      take(trial, one.label + ".x", "m", std::move(one.x));
+      take(trial, one.label + ".y", "m", std::move(one.y));
     } else if (events) {
-      auto read_events = read_kinarm_events(bytes->bytes());
-      if (!read_events) return tl::unexpected(read_events.error());
-      if (header.events != std::ssize(*read_events)) {
+      auto read_events = MBK_TRY(read_kinarm_events(bytes.bytes()));
+      if (header.events != std::ssize(read_events)) {
         trial.notes.push_back(
-            fmt::format("header.bin counts {} events, examevents.bin holds {}", header.events, read_events->size()));
+            fmt::format("header.bin counts {} events, examevents.bin holds {}", header.events, read_events.size()));
       }
       std::size_t no_time = 0;
-      for (Event& event : *read_events) {
+      for (Event& event : read_events) {
         if (std::isfinite(event.time)) {
           trial.events.push_back(std::move(event));
         } else {
@@ -361,10 +350,9 @@ struct KinarmExam::Open {
       }
       if (no_time > 0) trial.notes.push_back(fmt::format("{} events have no time and were ignored", no_time));
     } else {
-      const auto delays = read_kinarm_video_delays(bytes->bytes());
-      if (!delays) return tl::unexpected(delays.error());
-      if (delays->size() > 0) {
-        Vector sorted = *delays;
+      const auto delays = MBK_TRY(read_kinarm_video_delays(bytes.bytes()));
+      if (delays.size() > 0) {
+        Vector sorted = delays;
         std::ranges::sort(sorted);
         trial.notes.push_back(fmt::format("{} video frames were acknowledged, {:.3g} ms after they were sent (median)",
                                           sorted.size(), 1e3 * sorted[sorted.size() / 2]));
@@ -401,20 +389,17 @@ struct KinarmExam::Open {
   }
 
   [[nodiscard]] Result<ExamTrial> load_c3d(const Part& part, Wanted wanted) const {
-    const auto bytes = read(part.members.front());
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (!looks_like_c3d(bytes->bytes())) return bad_data("is no C3D file");
-    const auto parameters = decode_c3d_parameters(bytes->bytes());
-    if (!parameters) return tl::unexpected(parameters.error());
-    auto contents = decode_c3d(bytes->bytes());
-    if (!contents) return tl::unexpected(contents.error());
+    const auto bytes = MBK_TRY(read(part.members.front()));
+    if (!looks_like_c3d(bytes.bytes())) return bad_data("is no C3D file");
+    const auto parameters = MBK_TRY(decode_c3d_parameters(bytes.bytes()));
+    auto contents = MBK_TRY(decode_c3d(bytes.bytes()));
     ExamTrial trial;
-    trial.parameters = ExamParameters::of(*parameters);
+    trial.parameters = ExamParameters::of(parameters);
     trial.frames = part.frames;
     trial.rate_hz = part.rate_hz;
-    trial.events = std::move(contents->events);
-    trial.notes = std::move(contents->notes);
-    for (Array& array : contents->arrays) {
+    trial.events = std::move(contents.events);
+    trial.notes = std::move(contents.notes);
+    for (Array& array : contents.arrays) {
       const bool needed = wanted == everything || wanted(array.name) || array.name.find("_Hand") != std::string::npos;
       if (!needed || array.obstacle) continue;  // the notes say so
       ExamSignal& signal = trial.signals.emplace_back();
@@ -528,48 +513,45 @@ struct KinarmExam::Open {
   }
 
   [[nodiscard]] Result<Contents> decode(const ExamChoice& choice) const {
-    const auto trial = chosen(choice.trial);
-    if (!trial) return tl::unexpected(trial.error());
-    auto loaded = load(**trial, everything);
-    if (!loaded) return tl::unexpected(loaded.error());
-    if (loaded->signals.empty()) {
+    const auto trial = MBK_TRY(chosen(choice.trial));
+    auto loaded = MBK_TRY(load(*trial, everything));
+    if (loaded.signals.empty()) {
       std::string why = "the trial holds no signal";
-      for (const std::string& note : loaded->notes) why += "; " + note;
+      for (const std::string& note : loaded.notes) why += "; " + note;
       return bad_data(std::move(why), "nothing was recorded, or it is damaged");
     }
-    const std::vector<Arm> arms = arms_of(*loaded);
-    const auto arm = chosen_arm(arms, choice);
-    if (!arm) return tl::unexpected(arm.error());
+    const std::vector<Arm> arms = arms_of(loaded);
+    const auto arm = MBK_TRY(chosen_arm(arms, choice));
 
     Contents contents;
     contents.format = c3d ? "KINARM exam (C3D)" : "KINARM exam";
     contents.table = true;
     contents.notes = notes;
-    contents.notes.insert(contents.notes.end(), (*trial)->notes.begin(), (*trial)->notes.end());
-    for (std::string& note : loaded->notes) contents.notes.push_back(std::move(note));
+    contents.notes.insert(contents.notes.end(), trial->notes.begin(), trial->notes.end());
+    for (std::string& note : loaded.notes) contents.notes.push_back(std::move(note));
     if (arms.empty()) {
       contents.notes.emplace_back(
           "the joints of no arm were recorded, so that no hand is computed; a hand that was "
           "resampled is no measure of velocity");
     } else if (arms.size() == 2) {
       contents.notes.push_back(
-          *arm ? fmt::format("both arms were recorded; the {} one is taken, as asked",
-                             **arm == Arm::right ? "right" : "left")
-               : "both arms were recorded, and none is taken; --side right or --side left takes one");
+          arm ? fmt::format("both arms were recorded; the {} one is taken, as asked",
+                            *arm == Arm::right ? "right" : "left")
+              : "both arms were recorded, and none is taken; --side right or --side left takes one");
     }
     for (const Arm one : arms) {
-      if (!*arm || one == **arm) take_arm(one, *arm == one, *loaded, contents);
+      if (!arm || one == *arm) take_arm(one, arm == one, loaded, contents);
     }
     std::vector<Array> computed = std::exchange(contents.arrays, {});
-    for (ExamSignal& signal : loaded->signals) {
-      std::string means = *arm ? channel_of(signal.name, **arm) : std::string();
+    for (ExamSignal& signal : loaded.signals) {
+      std::string means = arm ? channel_of(signal.name, *arm) : std::string();
       put(contents, std::move(signal.name), std::move(signal.unit), signal.rate_hz, std::move(signal.values),
           std::move(means));
     }
     for (Array& array : computed) contents.arrays.push_back(std::move(array));
-    contents.events = std::move(loaded->events);
-    contents.metadata["trial"] = (*trial)->name.name;
-    loaded->parameters.describe(contents.metadata, contents.notes);
+    contents.events = std::move(loaded.events);
+    contents.metadata["trial"] = trial->name.name;
+    loaded.parameters.describe(contents.metadata, contents.notes);
     return contents;
   }
 
@@ -595,15 +577,14 @@ bool KinarmExam::is_exam(const ZipArchive& archive) {
 }
 
 Result<KinarmExam> KinarmExam::open(std::shared_ptr<const Buffer> file) {
-  auto archive = ZipArchive::open(file->bytes());
-  if (!archive) return tl::unexpected(archive.error());
-  if (!is_exam(*archive)) return bad_data("the zip archive is no KINARM exam: it holds no raw/common");
-  auto open = std::make_unique<Open>(std::move(*archive));
+  auto archive = MBK_TRY(ZipArchive::open(file->bytes()));
+  if (!is_exam(archive)) return bad_data("the zip archive is no KINARM exam: it holds no raw/common");
+  auto open = std::make_unique<Open>(std::move(archive));
   open->bytes_of_archive = std::move(file);
   open->c3d = open->archive.has(kCommonC3d);
-  if (auto ok = open->read_common(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(open->read_common());
   std::vector<Part> parts;
-  if (auto ok = open->find_parts(parts); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(open->find_parts(parts));
   open->order(std::move(parts));
   return KinarmExam(std::move(open));
 }

@@ -170,7 +170,7 @@ Result<KinarmSignal> read_kinarm_signal(std::span<const std::byte> bytes) {
   signal.unit = cursor.text("unit");
   const std::size_t count = cursor.count("count of samples", kWord);
   if (cursor.failed()) return cursor.failure();
-  if (auto ok = check_memory(count * sizeof(double)); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_memory(count * sizeof(double)));
   signal.values.resize(static_cast<Index>(count));
   if (is_status(signal.label)) {
     for (double& value : signal.values) value = static_cast<std::uint32_t>(cursor.whole("sample"));
@@ -188,7 +188,7 @@ Result<KinarmPosition> read_kinarm_position(std::span<const std::byte> bytes) {
   static_cast<void>(cursor.text("description"));
   const std::size_t count = cursor.count("count of samples", 2 * kWord);
   if (cursor.failed()) return cursor.failure();
-  if (auto ok = check_memory(2 * count * sizeof(double)); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_memory(2 * count * sizeof(double)));
   position.x.resize(static_cast<Index>(count));
   position.y.resize(static_cast<Index>(count));
   for (Index i = 0; i < position.x.size(); ++i) {

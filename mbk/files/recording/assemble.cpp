@@ -189,7 +189,7 @@ class Assembler {
 
   Result<Recording> run() {
     name_robot_log(contents_);
-    if (auto ok = maps_time() ? Result<void>() : name_time(contents_); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(maps_time() ? Result<void>() : name_time(contents_));
     recording_.notes = contents_.notes;
     recording_.metadata = contents_.metadata;
     recording_.events = contents_.events;
@@ -202,27 +202,26 @@ class Assembler {
           "name its columns with --channels");
     }
     if (leaves_names(options_)) {
-      if (auto ok = recognise(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(recognise());
       if (maps_time()) std::erase_if(signals_, [](const Signal& signal) { return is_time(signal.kind); });
     }
     if (!options_.channels.empty()) {
-      if (auto ok = follow_map(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(follow_map());
     }
     note_aside();
-    if (auto ok = choose_clock(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = check(); !ok) return tl::unexpected(ok.error());
-    if (auto ok = name_joints(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(choose_clock());
+    MBK_TRY(check());
+    MBK_TRY(name_joints());
     note_times();
     follow_metadata();
     extract();
     if (clock_ != nullptr && recording_.time.size() == 0) {
-      if (auto ok = settle_clock(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(settle_clock());
     }
     if (clock_ == nullptr) unwrap_time(recording_);
-    if (auto ok = settle_time(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(settle_time());
     if (clock_ == nullptr) {
-      if (auto ok = check_unit_of_time(recording_, options_.rate || states_time_); !ok)
-        return tl::unexpected(ok.error());
+      MBK_TRY(check_unit_of_time(recording_, options_.rate || states_time_));
     }
     find_updates(recording_);
     return options_.own_samples ? at_own_samples(std::move(recording_), options_.commands) : std::move(recording_);
@@ -241,13 +240,11 @@ class Assembler {
   // ---- which signals ----
 
   Result<void> recognise() {
-    auto matched = match_joints(contents_, options_.joints, options_.clock);
-    if (!matched) return tl::unexpected(matched.error());
-    if (!matched->empty()) recording_.notes.push_back(std::move(*matched));
-    const auto logs = find_logs();
-    if (!logs) return tl::unexpected(logs.error());
-    if (*logs != nullptr) return take_logs(**logs);
-    if (auto ok = take_names(); !ok) return ok;
+    auto matched = MBK_TRY(match_joints(contents_, options_.joints, options_.clock));
+    if (!matched.empty()) recording_.notes.push_back(std::move(matched));
+    const auto logs = MBK_TRY(find_logs());
+    if (logs != nullptr) return take_logs(*logs);
+    MBK_TRY(take_names());
     if (std::ranges::any_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) return {};
     if (!options_.channels.empty()) return {};  // the map names them
     for (const Array& array : contents_.arrays) {
@@ -298,7 +295,7 @@ class Assembler {
   Result<const Array*> find_logs() const {
     if (contents_.table) return nullptr;
     const std::string wanted = options_.variable.empty() ? "logs" : options_.variable;
-    if (auto ok = refuse_damaged_source("--variable", wanted); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(refuse_damaged_source("--variable", wanted));
     const Array* named = find(contents_, wanted);
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
@@ -403,18 +400,17 @@ class Assembler {
       meanings.push_back(name.kinds);
       candidates.push_back({&array, std::move(name)});
     }
-    if (auto ok = refuse_damaged(); !ok) return ok;
+    MBK_TRY(refuse_damaged());
     const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
     for (const Candidate& candidate : candidates) {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
       if (kind == nullptr) {
         aside_.push_back(candidate.array->name);
       } else if (is_requested(*kind)) {
-        const auto unit = unit_said(*kind, *candidate.array, candidate.name.unit);
-        if (!unit) return tl::unexpected(unit.error());
+        const auto unit = MBK_TRY(unit_said(*kind, *candidate.array, candidate.name.unit));
         const Array& array = *candidate.array;
         const bool negate = turned(array) == 1;
-        signals_.push_back({kind, vector_of(array), *unit, negate, array.name, (negate ? "-" : "") + array.name});
+        signals_.push_back({kind, vector_of(array), unit, negate, array.name, (negate ? "-" : "") + array.name});
       }
     }
     drop_second_names();
@@ -522,12 +518,11 @@ class Assembler {
         return bad_usage(fmt::format("unknown channel '{}'", entry.channel),
                          fmt::format("did you mean '{}'?", nearest_channel_name(entry.channel)));
       }
-      const auto found = resolve(entry);
-      if (!found) return tl::unexpected(found.error());
-      const Line* const line = &found->line;
-      Signal signal{kind,         *line,         nullptr,
-                    entry.negate, entry.source,  (entry.negate ? "-" : "") + entry.source,
-                    found->gain,  found->offset, found->is_scaled,
+      const auto found = MBK_TRY(resolve(entry));
+      const Line* const line = &found.line;
+      Signal signal{kind,         *line,        nullptr,
+                    entry.negate, entry.source, (entry.negate ? "-" : "") + entry.source,
+                    found.gain,   found.offset, found.is_scaled,
                     true};
       states_time_ = states_time_ || (is_time(kind) && !entry.unit.empty());
       if (!entry.unit.empty()) {
@@ -537,9 +532,8 @@ class Assembler {
                           fmt::format("possible are {}", unit_names(kind->measures)));
         }
       } else if (!line->array->unit.empty() && (signal.is_plain() || in_unit_of(*kind, *line->array))) {
-        const auto unit = unit_said(*kind, *line->array, nullptr);
-        if (!unit) return tl::unexpected(unit.error());
-        signal.unit = *unit;
+        const auto unit = MBK_TRY(unit_said(*kind, *line->array, nullptr));
+        signal.unit = unit;
       } else if (const ColumnName name = parse_column_name(line->array->name);
                  (is_named(*line) || counted_source(entry.source)) && name.unit != nullptr &&
                  kind->accepts(*name.unit)) {
@@ -554,9 +548,8 @@ class Assembler {
                                                line->array->name, in_last_brackets(line->array->name), kind->name,
                                                kind->default_unit().empty() ? "no unit" : kind->default_unit()));
       } else if (signal.is_plain()) {
-        const auto unit = unit_for_all(*kind, *line->array);
-        if (!unit) return tl::unexpected(unit.error());
-        signal.unit = *unit;
+        const auto unit = MBK_TRY(unit_for_all(*kind, *line->array));
+        signal.unit = unit;
       }
       if (!signal.is_plain()) note_arithmetic(signal);
       signals_.push_back(std::move(signal));
@@ -661,9 +654,8 @@ class Assembler {
                       fmt::format("say which in --channels, as in time={} or time={}", shortest_source(array),
                                   shortest_source(*other)));
     }
-    const auto unit = unit_said(*time, array, parse_column_name(leaf(array.name)).unit);
-    if (!unit) return tl::unexpected(unit.error());
-    signals_.push_back({time, vector_of(array), *unit, false, array.name, array.name});
+    const auto unit = MBK_TRY(unit_said(*time, array, parse_column_name(leaf(array.name)).unit));
+    signals_.push_back({time, vector_of(array), unit, false, array.name, array.name});
     recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
     return {};
   }
@@ -715,7 +707,7 @@ class Assembler {
       return decimated(entry, at, asked);
     }
     if (const Array* array = find(contents_, entry.source)) {
-      if (auto ok = refuse_repeated(entry); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(refuse_repeated(entry));
       if (array->obstacle) return tl::unexpected(array->obstacle->in(fmt::format("channel {}", entry.channel)));
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(
@@ -729,8 +721,7 @@ class Assembler {
     }
     if (const auto line = sliced_line(entry)) return *line;
     if (const auto line = counted_line(entry)) return *line;
-    if (auto ok = refuse_damaged_source("channel " + entry.channel, entry.source); !ok)
-      return tl::unexpected(ok.error());
+    MBK_TRY(refuse_damaged_source("channel " + entry.channel, entry.source));
     for (const Array& array : contents_.arrays) {  // "tt.force" of an object tt
       if (array.obstacle && !array.name.empty() && with_dots(entry.source).starts_with(with_dots(array.name) + ".")) {
         return tl::unexpected(array.obstacle->in(fmt::format("channel {}", entry.channel)));
@@ -756,9 +747,8 @@ class Assembler {
       }
       return vector_of(contents_.arrays[static_cast<std::size_t>(number - 1)]);
     }
-    const auto matrix = numbered_matrix(entry);
-    if (!matrix) return tl::unexpected(matrix.error());
-    return line_of(entry, **matrix, number);
+    const auto matrix = MBK_TRY(numbered_matrix(entry));
+    return line_of(entry, *matrix, number);
   }
 
   /// Columns that the reader numbered because their name repeats: "'EMG#1' (column 3), 'EMG#2' (column 7)" for EMG.
@@ -837,8 +827,7 @@ class Assembler {
     if (contents_.table || !counted) return std::nullopt;
     const Array* const array = find(contents_, counted->name);
     if (array == nullptr) {
-      if (auto ok = refuse_damaged_source("channel " + entry.channel, counted->name); !ok)
-        return tl::unexpected(ok.error());
+      MBK_TRY(refuse_damaged_source("channel " + entry.channel, counted->name));
       return bad_data(
           fmt::format("channel {}: there is no '{}'; {}", entry.channel, counted->name, inventory(contents_)));
     }
@@ -894,7 +883,7 @@ class Assembler {
   Result<const Array*> numbered_matrix(const ChannelSource& entry) const {
     if (!options_.variable.empty()) {
       if (const Array* named = find(contents_, options_.variable)) return named;
-      if (auto ok = refuse_damaged_source("--variable", options_.variable); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(refuse_damaged_source("--variable", options_.variable));
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
     if (const Array* logs = find(contents_, "logs")) return logs;
@@ -930,7 +919,7 @@ class Assembler {
     for (const Signal& signal : signals_) {
       if (signal.line.array->obstacle)
         return tl::unexpected(signal.line.array->obstacle->in(fmt::format("channel {}", signal.kind->name)));
-      if (auto ok = check_scale(signal); !ok) return ok;
+      MBK_TRY(check_scale(signal));
     }
     if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
       return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
@@ -944,7 +933,7 @@ class Assembler {
             fmt::format("{} and {} both are {}", place_of(signals_[j]), place_of(signal), signal.kind->name),
             fmt::format("say which, as in --channels {}", map_of_signals()));
       }
-      if (auto ok = check_rates(first, signal); !ok) return ok;
+      MBK_TRY(check_rates(first, signal));
       if (clock_of(signal) == clock_of(first) && signal.line.size() != first.line.size()) {
         return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
                                     first.line.size(), signal.kind->name, signal.source, signal.line.size()),
@@ -1062,11 +1051,10 @@ class Assembler {
       const Clock& own = clock_of(signal) >= 0 ? contents_.clocks[static_cast<std::size_t>(clock_of(signal))] : *clock_;
       signals.push_back({signal.kind->name, &own, &recording_.channels[channel++].values});
     }
-    auto common = put_on_clock(*clock_, signals);
-    if (!common) return tl::unexpected(common.error());
-    recording_.time = std::move(common->time);
+    auto common = MBK_TRY(put_on_clock(*clock_, signals));
+    recording_.time = std::move(common.time);
     recording_.time_origin = {"time", clock_->name, "s"};
-    for (std::string& note : common->notes) recording_.notes.push_back(std::move(note));
+    for (std::string& note : common.notes) recording_.notes.push_back(std::move(note));
     // Those that no stream was recorded at; a single clock leaves them as they are.
     if (std::ranges::any_of(signals, [&](const auto& signal) { return !same_stamps(*signal.clock, *clock_); })) {
       std::erase_if(recording_.events, [](const Event& event) { return !std::isfinite(event.time); });
@@ -1088,7 +1076,7 @@ class Assembler {
       if (!signal.mapped && !signal.joint.empty()) continue;  // matched by name where the robot is known
       const std::string& array = signal.line.array->name;
       const std::string_view named = !signal.joint.empty() ? signal.joint : contents_.table ? array : leaf(array);
-      if (auto ok = check_joint(*signal.kind, options_.joints, named, signal.source); !ok) return ok;
+      MBK_TRY(check_joint(*signal.kind, options_.joints, named, signal.source));
       const std::size_t k = joint_index(*signal.kind);
       if (!signal.joint.empty() && k < options_.joints.size()) signal.joint = options_.joints[k];  // as the user says
     }
@@ -1317,7 +1305,7 @@ class Assembler {
       return {};
     }
     if (recording_.time.size() < 2) return {};
-    if (auto ok = check_said_rate(); !ok) return ok;
+    MBK_TRY(check_said_rate());
     if (!options_.rate || (clock_ == nullptr && !states_time_ && take_rate(recording_, options_.rate->value)))
       return {};
     const double own = inspect(recording_).rate_hz;

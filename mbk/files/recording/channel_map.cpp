@@ -126,12 +126,11 @@ Result<std::vector<ChannelSource>> parse_channel_map(std::string_view text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     std::size_t end = begin;
     while (end < text.size() && text[end] != ',') end += std::max<std::size_t>(brackets_ahead(text.substr(end)), 1);
-    auto entry = parse_entry(trimmed(text.substr(begin, end - begin)));
-    if (!entry) return tl::unexpected(entry.error());
-    if (std::ranges::find(map, entry->channel, &ChannelSource::channel) != map.end()) {
-      return bad_usage(fmt::format("channel {} is named twice", entry->channel), "name each channel once");
+    auto entry = MBK_TRY(parse_entry(trimmed(text.substr(begin, end - begin))));
+    if (std::ranges::find(map, entry.channel, &ChannelSource::channel) != map.end()) {
+      return bad_usage(fmt::format("channel {} is named twice", entry.channel), "name each channel once");
     }
-    map.push_back(std::move(*entry));
+    map.push_back(std::move(entry));
     begin = end + 1;
   }
   return map;

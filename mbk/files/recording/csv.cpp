@@ -107,16 +107,14 @@ class Table {
     contents.table = true;
     line_end_ = text.line_end();
     take_comments(text, contents);
-    auto head = find_table(text);
-    if (!head) return tl::unexpected(head.error());
-    head_ = std::move(*head);
+    head_ = MBK_TRY(find_table(text));
     take_preamble();
     CsvLines lines(text);
     std::optional<CsvLine> line = lines.next();
     if (head_.first_row == 0) return no_numbers(text, lines, line);
     while (line && line->number < head_.first_row) line = lines.next();
     if (!text.status()) return text.status();
-    if (auto ok = find_columns(*line); !ok) return ok;
+    MBK_TRY(find_columns(*line));
     make_room(text);
 
     const auto among_rows = [this](const CsvLine& comment) {
@@ -134,7 +132,7 @@ class Table {
       }
       const auto next = lines.next(among_rows);
       if (!text.status()) return text.status();
-      if (auto ok = add(*line, !next, text.so_far().data() + text.so_far().size()); !ok) return ok;
+      MBK_TRY(add(*line, !next, text.so_far().data() + text.so_far().size()));
       line = next;
     }
     if (!text.status()) return text.status();
@@ -213,8 +211,8 @@ class Table {
     }
     if (!complete || (trailing_ && !trailing && !last)) return wrong_count(line, row.count);
     if (row.odd) {
-      if (auto ok = refuse_header(line); !ok) return ok;
-      if (auto ok = take_odd(line); !ok) return ok;
+      MBK_TRY(refuse_header(line));
+      MBK_TRY(take_odd(line));
     }
     if (!line.terminated && !trailing) {
       contents.notes.push_back(fmt::format(
@@ -386,7 +384,7 @@ class Table {
     for (std::size_t c = 0; c < odd_.size(); ++c) {
       Odd& one = odd_[c];
       if (one.kind == Odd::comma) {
-        if (auto ok = take_comma(line, c); !ok) return ok;
+        MBK_TRY(take_comma(line, c));
       } else if (one.kind == Odd::time) {
         one.value = seconds(kinds_[c], *one.instant);
       } else if (one.kind == Odd::words && !kinds_[c].obstacle) {
@@ -453,7 +451,7 @@ class Table {
     for (std::size_t c = 0; c < columns_; ++c) {
       Array& array = contents.arrays[c];
       if (!head_.names.empty()) array.name = printable(head_.names[c]);
-      if (auto ok = settle_unit(c); !ok) return ok;
+      MBK_TRY(settle_unit(c));
       if (kinds_[c].obstacle) {
         array.obstacle = std::move(kinds_[c].obstacle);
         if (first == nullptr) first = &*array.obstacle;
@@ -550,7 +548,7 @@ class Table {
 
 Result<Contents> decode_text(CsvText text) {
   Table table;
-  if (auto ok = table.read(text); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(table.read(text));
   return std::move(table.contents);
 }
 

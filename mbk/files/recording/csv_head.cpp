@@ -197,9 +197,9 @@ class HeadFinder {
       reading_ = choose();
     }
     head_.separator = reading_.separator;
-    if (auto ok = find_rows(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(find_rows());
     if (head_.first_row > 0 && head_.names.empty()) {
-      if (auto ok = check_headless(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(check_headless());
     }
     note();
     return std::move(head_);

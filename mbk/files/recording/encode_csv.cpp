@@ -59,9 +59,9 @@ void append_number(std::string& text, double value) {
 
 Result<std::string> encode_csv(const Recording& recording) {
   std::string text;
-  if (auto ok = append_comments(text, recording); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(append_comments(text, recording));
   const std::vector<const Channel*> channels = in_order(recording.channels);
-  if (auto ok = append_header(text, channels); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(append_header(text, channels));
   for (Index k = 0; k < recording.samples(); ++k) {
     append_number(text, recording.time[k]);
     for (const Channel* const channel : channels) {

@@ -88,9 +88,8 @@ std::string user_block() {
 }  // namespace
 
 Result<std::string> encode_mat_hdf5(const Recording& recording) {
-  const auto variables = mat_variables(recording);
-  if (!variables) return tl::unexpected(variables.error());
-  return encode_mat_hdf5(*variables);
+  const auto variables = MBK_TRY(mat_variables(recording));
+  return encode_mat_hdf5(variables);
 }
 
 Result<std::string> encode_mat_hdf5(const std::vector<MatVariable>& variables) {

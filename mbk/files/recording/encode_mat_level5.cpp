@@ -101,9 +101,8 @@ Result<std::string> encode_mat_level5(const Recording& recording) {
     return bad_data(fmt::format("{} samples are too many for a MAT v5 file", recording.samples()),
                     "write it as MAT v7.3 or HDF5");
   }
-  const auto variables = mat_variables(recording);
-  if (!variables) return tl::unexpected(variables.error());
-  return encode_mat_level5(*variables);
+  const auto variables = MBK_TRY(mat_variables(recording));
+  return encode_mat_level5(variables);
 }
 
 Result<std::string> encode_mat_level5(const std::vector<MatVariable>& variables) {

@@ -80,13 +80,13 @@ class McapEncoder {
 
   Result<std::string> run() {
     settle_stamps();
-    if (auto ok = add_metadata(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_metadata());
     sort_channels();
-    if (auto ok = add_topics(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_topics());
     for (Index k = 0; k < recording_.samples(); ++k) {
-      if (auto ok = add_sample(k); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(add_sample(k));
     }
-    if (auto ok = add_events(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_events());
     return writer_.finish();
   }
 
@@ -113,10 +113,9 @@ class McapEncoder {
   }
 
   Result<void> add_metadata() {
-    auto metadata = metadata_with_units(recording_);
-    if (!metadata) return tl::unexpected(metadata.error());
+    auto metadata = MBK_TRY(metadata_with_units(recording_));
     writer_.add_metadata(kMcapLayoutRecord, {{"format", std::string(kLayout)}});
-    if (!metadata->empty()) writer_.add_metadata(kMcapMetadataRecord, *metadata);
+    if (!metadata.empty()) writer_.add_metadata(kMcapMetadataRecord, metadata);
     return {};
   }
 
@@ -193,7 +192,7 @@ class McapEncoder {
       message.add_header(stamp, force_.front()->frame);
       add_values(message, force_, k);
       for (int rest = 0; rest < 4; ++rest) message.add(0.0);  // force.z, torque
-      if (auto ok = writer_.add_message(wrench_topic_, stamp, message.bytes()); !ok) return ok;
+      MBK_TRY(writer_.add_message(wrench_topic_, stamp, message.bytes()));
     }
     if (!hand_.empty()) {
       CdrMessage message;
@@ -201,7 +200,7 @@ class McapEncoder {
       add_values(message, hand_, k);
       for (int rest = 0; rest < 4; ++rest) message.add(0.0);  // position.z, orientation.x, .y, .z
       message.add(1.0);                                       // orientation.w
-      if (auto ok = writer_.add_message(pose_topic_, stamp, message.bytes()); !ok) return ok;
+      MBK_TRY(writer_.add_message(pose_topic_, stamp, message.bytes()));
     }
     if (!joints_.empty() || !torques_.empty()) {
       CdrMessage message;
@@ -212,7 +211,7 @@ class McapEncoder {
       add_sequence(message, joints_, k);
       message.add(std::uint32_t{0});
       add_sequence(message, torques_, k);
-      if (auto ok = writer_.add_message(joints_topic_, stamp, message.bytes()); !ok) return ok;
+      MBK_TRY(writer_.add_message(joints_topic_, stamp, message.bytes()));
     }
     CdrMessage message;
     message.add(time);
@@ -226,7 +225,7 @@ class McapEncoder {
       message.add(event.time);
       message.add(event.value);
       message.add(event.name);
-      if (auto ok = writer_.add_message(events_topic_, stamp_of(event.time), message.bytes()); !ok) return ok;
+      MBK_TRY(writer_.add_message(events_topic_, stamp_of(event.time), message.bytes()));
     }
     return {};
   }

@@ -99,17 +99,15 @@ constexpr std::string_view kExports =
 
 template <Result<Contents> (*Decode)(std::span<const std::byte>)>
 Result<Contents> whole(OpenFile& file) {
-  const auto bytes = file.take();
-  if (!bytes) return tl::unexpected(bytes.error());
-  return Decode((*bytes)->bytes());
+  const auto bytes = MBK_TRY(file.take());
+  return Decode(bytes->bytes());
 }
 
 template <Result<Contents> (*Decode)(FileInPassing&)>
 Result<Contents> in_passing(OpenFile& file) {
-  auto passing = file.in_passing();
-  if (!passing) return tl::unexpected(passing.error());
-  if (auto ok = passing->read_on(); !ok) return tl::unexpected(ok.error());
-  return Decode(*passing);
+  auto passing = MBK_TRY(file.in_passing());
+  MBK_TRY(passing.read_on());
+  return Decode(passing);
 }
 
 Result<Contents> decode_mat(OpenFile& file) {
@@ -119,49 +117,41 @@ Result<Contents> decode_mat(OpenFile& file) {
                     "copy the file again from where it was recorded");
   }
   if (looks_like_mat_level4(file.begin_bytes())) return whole<decode_mat_level4>(file);
-  auto bytes = file.take();
-  if (!bytes) return tl::unexpected(bytes.error());
-  return decode_mat_level5(std::move(*bytes));  // which keeps of it what it needs
+  auto bytes = MBK_TRY(file.take());
+  return decode_mat_level5(std::move(bytes));  // which keeps of it what it needs
 }
 
 Result<Contents> decode_xdf_file(OpenFile& file) {
   if (!looks_like_gzip(file.begin_bytes())) return whole<decode_xdf>(file);
-  auto packed = file.take();
-  if (!packed) return tl::unexpected(packed.error());
-  const auto unpacked = gunzip((*packed)->bytes());
-  if (!unpacked) return tl::unexpected(unpacked.error());
-  packed->reset();
-  return decode_xdf(unpacked->bytes());
+  auto packed = MBK_TRY(file.take());
+  const auto unpacked = MBK_TRY(gunzip(packed->bytes()));
+  packed.reset();
+  return decode_xdf(unpacked.bytes());
 }
 
 Result<Contents> decode_numpy(OpenFile& file) {
-  const auto bytes = file.take();
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (looks_like_npy((*bytes)->bytes())) return decode_npy((*bytes)->bytes());
-  const auto archive = ZipArchive::open((*bytes)->bytes());
-  if (!archive) return tl::unexpected(archive.error());
-  return decode_npz(*archive);
+  const auto bytes = MBK_TRY(file.take());
+  if (looks_like_npy(bytes->bytes())) return decode_npy(bytes->bytes());
+  const auto archive = MBK_TRY(ZipArchive::open(bytes->bytes()));
+  return decode_npz(archive);
 }
 
 Result<std::shared_ptr<const OpenTrials>> open_exam(OpenFile& file) {
-  const auto bytes = file.take();
-  if (!bytes) return tl::unexpected(bytes.error());
-  return exam_trials(*bytes, file.sha256());
+  const auto bytes = MBK_TRY(file.take());
+  return exam_trials(bytes, file.sha256());
 }
 
 /// Of a file that is decoded at once and may hold several records.
 template <Result<std::vector<NamedContents>> (*Decode)(std::span<const std::byte>)>
 Result<std::shared_ptr<const OpenTrials>> all_records(OpenFile& file) {
-  const auto bytes = file.take();
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto records = Decode((*bytes)->bytes());
-  if (!records) return tl::unexpected(records.error());
-  return decoded_trials(std::move(*records), file.sha256());
+  const auto bytes = MBK_TRY(file.take());
+  auto records = MBK_TRY(Decode(bytes->bytes()));
+  return decoded_trials(std::move(records), file.sha256());
 }
 
 /// Text that is no table may be text of another kind, of which that is to be said rather than where it breaks off.
 Result<Contents> decode_table(OpenFile& file) {
-  if (auto ok = check_memory(file.size()); !ok) return tl::unexpected(ok.error());  // what its numbers take at most
+  MBK_TRY(check_memory(file.size()));  // what its numbers take at most
   auto table = looks_like_utf16(file.begin_bytes()) ? whole<decode_csv>(file) : in_passing<decode_csv>(file);
   if (table) return table;
   if (const auto likely = likely_format(file.begin_bytes())) return not_read(*likely);
@@ -220,9 +210,8 @@ Result<const FileFormat*> format_of(OpenFile& file) {
     if (format.looks_like != nullptr && format.looks_like(file)) return &format;
   }
   if (ZipArchive::looks_like_zip(file.begin_bytes())) {
-    auto bytes = file.bytes();
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (auto archive = ZipArchive::open((*bytes)->bytes()); !archive) return tl::unexpected(archive.error());
+    auto bytes = MBK_TRY(file.bytes());
+    MBK_TRY(ZipArchive::open(bytes->bytes()));
   }
   if (const auto likely = likely_format(file.begin_bytes())) return tl::unexpected(not_read(*likely).value());
   constexpr std::size_t kShown = 8;

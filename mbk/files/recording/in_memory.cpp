@@ -109,7 +109,7 @@ Result<Recording> InMemory::read(const ReadOptions& options) const {
   if (recording_ && without_options(options)) {
     return options.own_samples ? at_own_samples(*recording_, options.commands) : *recording_;
   }
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_options(options));
   auto recording = assemble(contents(), options);
   if (recording && recording_) recording->sources = recording_->sources;
   return recording;

@@ -98,15 +98,14 @@ Result<Buffer> inflate_exactly(
   Inflater inflater(stream);
   std::byte first[8];
   if (inflater.fill(first, sizeof first) != sizeof first) return damaged(inflater);
-  const auto claimed = claimed_size(first);
-  if (!claimed) return tl::unexpected(claimed.error());
-  if (*claimed > largest_claim(stream.size())) {
-    return bad_data(fmt::format("{} compressed bytes claim to hold {} bytes", stream.size(), *claimed), kRemedy);
+  const auto claimed = MBK_TRY(claimed_size(first));
+  if (claimed > largest_claim(stream.size())) {
+    return bad_data(fmt::format("{} compressed bytes claim to hold {} bytes", stream.size(), claimed), kRemedy);
   }
 
-  const auto size = static_cast<std::size_t>(*claimed);
+  const auto size = static_cast<std::size_t>(claimed);
   // What comes out and the numbers that are made of it stand side by side.
-  if (auto ok = check_memory(2 * *claimed); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_memory(2 * claimed));
   if (size <= kFirstGuess + kUsualRatio * stream.size()) return inflate_at_once(stream, size);
   Buffer buffer(std::min(size, std::max(kFirstGuess, 4 * stream.size())));
   std::memcpy(buffer.data.get(), first, sizeof first);

@@ -156,9 +156,8 @@ class Decoder {
   Result<void> top_level(Elements elements) {
     while (!elements.at_end()) {
       const std::size_t offset = elements.offset;
-      const auto element = elements.next(fmt::format("the variable at byte {}", offset));
-      if (!element) return tl::unexpected(element.error());
-      if (auto done = variable(*element); !done) {
+      const auto element = MBK_TRY(elements.next(fmt::format("the variable at byte {}", offset)));
+      if (auto done = variable(element); !done) {
         return tl::unexpected(done.error().in(name_.empty() ? fmt::format("variable at byte {}", offset)
                                                             : fmt::format("variable '{}'", name_)));
       }
@@ -173,14 +172,13 @@ class Decoder {
     if (element.type != kCompressed) return damaged(fmt::format("element type {} is not a variable", element.type));
     contents.format = "MAT v7";
     const bool swapped = element.data.swapped;
-    auto inflated =
+    auto inflated = MBK_TRY(
         inflate_exactly(element.data.bytes, [swapped](std::span<const std::byte, 8> tag) -> Result<std::uint64_t> {
           const ByteView view{tag, swapped};
           if (view.at<std::uint32_t>(0) != kMatrix) return damaged("compressed data does not hold a variable");
           return std::uint64_t{view.at<std::uint32_t>(4)} + 8;
-        });
-    if (!inflated) return tl::unexpected(inflated.error());
-    const std::shared_ptr<Buffer> file = std::exchange(bytes_, std::make_shared<Buffer>(std::move(*inflated)));
+        }));
+    const std::shared_ptr<Buffer> file = std::exchange(bytes_, std::make_shared<Buffer>(std::move(inflated)));
     auto done = matrix({bytes_->bytes().subspan(8), swapped}, "", 0);
     bytes_ = file;
     return done;
@@ -191,38 +189,34 @@ class Decoder {
     if (body.size() == 0) return {};  // an empty field
     if (depth > kDeepest) return damaged("structures are nested too deeply");
     Elements elements{body};
-    const auto header = read_header(elements, outer);
-    if (!header) return tl::unexpected(header.error());
-    if (depth == 0) name_ = header->name;
-    if (header->name.empty()) return {};  // where MATLAB keeps the insides of its objects
-    return data(*header, elements, depth);
+    const auto header = MBK_TRY(read_header(elements, outer));
+    if (depth == 0) name_ = header.name;
+    if (header.name.empty()) return {};  // where MATLAB keeps the insides of its objects
+    return data(header, elements, depth);
   }
 
   static Result<Header> read_header(Elements& elements, const std::string& outer) {
-    const auto flags = elements.next("its array flags");
-    if (!flags) return tl::unexpected(flags.error());
-    if (flags->type != kUint32 || flags->data.size() != 8) return damaged("its array flags are broken");
+    const auto flags = MBK_TRY(elements.next("its array flags"));
+    if (flags.type != kUint32 || flags.data.size() != 8) return damaged("its array flags are broken");
     Header header;
-    header.array_class = flags->data.at<std::uint32_t>(0) & 0xFF;
-    header.complex = (flags->data.at<std::uint32_t>(0) & 0x0800) != 0;
+    header.array_class = flags.data.at<std::uint32_t>(0) & 0xFF;
+    header.complex = (flags.data.at<std::uint32_t>(0) & 0x0800) != 0;
 
     if (header.array_class != kOpaqueClass) {
-      const auto dimensions = elements.next("its dimensions");
-      if (!dimensions) return tl::unexpected(dimensions.error());
-      const bool whole = dimensions->type == kInt32 || dimensions->type == kUint32;  // some programs write the other
-      if (!whole || dimensions->data.size() < 8 || dimensions->data.size() % 4 != 0) {
+      const auto dimensions = MBK_TRY(elements.next("its dimensions"));
+      const bool whole = dimensions.type == kInt32 || dimensions.type == kUint32;  // some programs write the other
+      if (!whole || dimensions.data.size() < 8 || dimensions.data.size() % 4 != 0) {
         return damaged("its dimensions are broken");
       }
-      for (std::size_t i = 0; i < dimensions->data.size(); i += 4) {
-        const auto d = dimensions->data.at<std::int32_t>(i);
+      for (std::size_t i = 0; i < dimensions.data.size(); i += 4) {
+        const auto d = dimensions.data.at<std::int32_t>(i);
         if (d < 0) return damaged(fmt::format("dimension {} is negative", d));
         header.dimensions.push_back(static_cast<std::uint64_t>(d));
       }
     }
-    const auto name = elements.next("its name");
-    if (!name) return tl::unexpected(name.error());
-    if (size_of(name->type) != 1 && name->type != kUtf8) return damaged("its name is broken");
-    header.name = outer.empty() ? printable(name->data.padded_text()) : outer;
+    const auto name = MBK_TRY(elements.next("its name"));
+    if (size_of(name.type) != 1 && name.type != kUtf8) return damaged("its name is broken");
+    header.name = outer.empty() ? printable(name.data.padded_text()) : outer;
     return header;
   }
 
@@ -232,26 +226,23 @@ class Decoder {
         return structure(header, elements, depth);
       case kOpaqueClass: {
         const auto system = elements.next("its type system");
-        const auto type = system ? elements.next("its class name") : system;
-        if (!type) return tl::unexpected(type.error());
-        const std::string name = printable(type->data.padded_text());
+        const auto type = MBK_TRY(system ? elements.next("its class name") : system);
+        const std::string name = printable(type.data.padded_text());
         if (name == "function_handle") return aside(header, "a function handle");
         list_object(contents, header.name, name);
         return {};
       }
       case kObjectClass: {  // of a class of before 2008: a structure with a name
-        const auto type = elements.next("its class name");
-        if (!type) return tl::unexpected(type.error());
+        const auto type = MBK_TRY(elements.next("its class name"));
         contents.notes.push_back(fmt::format("variable '{}' is an object of class '{}' and was read as a structure",
-                                             header.name, printable(type->data.padded_text())));
+                                             header.name, printable(type.data.padded_text())));
         return structure(header, elements, depth);
       }
       case kCellClass:
         return cells(header, elements, depth);
       case kCharClass: {
-        auto lines = lines_of_text(header, elements);
-        if (!lines) return tl::unexpected(lines.error());
-        return text(header, std::move(*lines), "text in a way that is not read");
+        auto lines = MBK_TRY(lines_of_text(header, elements));
+        return text(header, std::move(lines), "text in a way that is not read");
       }
       case kSparseClass:
         return aside(header, "a sparse matrix");
@@ -283,13 +274,12 @@ class Decoder {
   /// The rows of a char array, without the blanks that make them equally long; nothing where they are not read.
   static Result<std::optional<std::vector<std::string>>> lines_of_text(const Header& header, Elements& elements) {
     using Lines = std::optional<std::vector<std::string>>;
-    const auto units = elements.next("its text");
-    if (!units) return tl::unexpected(units.error());
-    const bool wide = units->type == kUint16 || units->type == kUtf16;
+    const auto units = MBK_TRY(elements.next("its text"));
+    const bool wide = units.type == kUint16 || units.type == kUtf16;
     const std::size_t each = wide ? 2 : 1;
-    const std::size_t stored = units->data.size() / each;
+    const std::size_t stored = units.data.size() / each;
     const auto count = header.count();
-    if (!wide && units->type != kInt8 && units->type != kUint8 && units->type != kUtf8) return Lines();
+    if (!wide && units.type != kInt8 && units.type != kUint8 && units.type != kUtf8) return Lines();
     if (header.dimensions.size() != 2 || header.dimensions[0] > kMaxLines) return Lines();
     if (stored == 0 && count && *count > 0) {  // some programs leave blanks out
       if (*count > kMaxLines) return Lines();
@@ -298,10 +288,10 @@ class Decoder {
                                             std::string(single ? static_cast<std::size_t>(*count) : 0, ' ')));
     }
     // In UTF-8 a character may have several bytes, and only a single row says where it ends.
-    const bool fits = units->data.size() % each == 0 && count == stored;
-    if (!fits && !(units->type == kUtf8 && header.dimensions[0] == 1 && count < stored)) {
+    const bool fits = units.data.size() % each == 0 && count == stored;
+    if (!fits && !(units.type == kUtf8 && header.dimensions[0] == 1 && count < stored)) {
       return damaged(fmt::format("dimensions {} do not match {} stored bytes of text",
-                                 fmt::join(header.dimensions, "×"), units->data.size()));
+                                 fmt::join(header.dimensions, "×"), units.data.size()));
     }
     if (stored == 0) return Lines({std::string()});
     const auto rows = static_cast<std::size_t>(header.dimensions[0]);
@@ -311,9 +301,9 @@ class Decoder {
       std::string line8;
       for (std::size_t i = row; i < stored; i += rows) {
         if (wide) {
-          line16 += units->data.at<char16_t>(2 * i);
+          line16 += units.data.at<char16_t>(2 * i);
         } else {
-          line8 += units->data.at<char>(i);
+          line8 += units.data.at<char>(i);
         }
       }
       std::string line = wide ? utf8_from_utf16(line16) : std::move(line8);
@@ -327,17 +317,15 @@ class Decoder {
   Result<void> cells(const Header& header, const Elements& elements, int depth) {
     const auto count = header.count();
     if (!count || *count > kMaxLines) return aside(header, "a large cell array");
-    auto lines = lines_of_cells(header, elements, *count);
-    if (!lines) return tl::unexpected(lines.error());
-    if (*lines) return text(header, (*lines)->empty() ? std::nullopt : std::move(*lines), "an empty cell array");
+    auto lines = MBK_TRY(lines_of_cells(header, elements, *count));
+    if (lines) return text(header, lines->empty() ? std::nullopt : std::move(lines), "an empty cell array");
     if (*count > kMaxElements) return aside(header, "a large cell array");
     const std::size_t texts = contents.texts.size();
     Elements rest = elements;
     for (std::uint64_t k = 0; k < *count; ++k) {
-      const auto cell = rest.next("a cell");
-      if (!cell) return tl::unexpected(cell.error());
-      if (cell->type != kMatrix) return damaged(fmt::format("cell {} is not an array", k + 1));
-      if (auto done = matrix(cell->data, fmt::format("{}{{{}}}", header.name, k + 1), depth + 1); !done) return done;
+      const auto cell = MBK_TRY(rest.next("a cell"));
+      if (cell.type != kMatrix) return damaged(fmt::format("cell {} is not an array", k + 1));
+      MBK_TRY(matrix(cell.data, fmt::format("{}{{{}}}", header.name, k + 1), depth + 1));
     }
     if (contents.texts.size() > texts) {
       contents.notes.push_back(fmt::format("texts in the cell array '{}' were ignored", header.name));
@@ -352,30 +340,26 @@ class Decoder {
     using Lines = std::optional<std::vector<std::string>>;
     std::vector<std::string> lines;
     for (std::uint64_t k = 0; k < count; ++k) {
-      const auto cell = elements.next("a cell");
-      if (!cell) return tl::unexpected(cell.error());
-      if (cell->type != kMatrix || cell->data.size() == 0) return Lines();
-      Elements inner{cell->data};
-      const auto inner_header = read_header(inner, header.name);
-      if (!inner_header) return tl::unexpected(inner_header.error());
-      if (inner_header->array_class != kCharClass) return Lines();
-      auto line = lines_of_text(*inner_header, inner);
-      if (!line) return tl::unexpected(line.error());
-      if (!*line || (*line)->size() != 1) return Lines();
-      lines.push_back(in_one_line((*line)->front()));
+      const auto cell = MBK_TRY(elements.next("a cell"));
+      if (cell.type != kMatrix || cell.data.size() == 0) return Lines();
+      Elements inner{cell.data};
+      const auto inner_header = MBK_TRY(read_header(inner, header.name));
+      if (inner_header.array_class != kCharClass) return Lines();
+      auto line = MBK_TRY(lines_of_text(inner_header, inner));
+      if (!line || line->size() != 1) return Lines();
+      lines.push_back(in_one_line(line->front()));
     }
     return Lines(std::move(lines));
   }
 
   Result<void> numbers(const Header& header, Elements& elements) {
-    const auto real = elements.next("its data");
-    if (!real) return tl::unexpected(real.error());
-    const std::size_t each = size_of(real->type);
+    const auto real = MBK_TRY(elements.next("its data"));
+    const std::size_t each = size_of(real.type);
     const auto count = header.count();
-    if (each == 0) return damaged(fmt::format("data type {} is not numeric", real->type));
-    if (!count || real->data.size() % each != 0 || real->data.size() / each != *count) {
+    if (each == 0) return damaged(fmt::format("data type {} is not numeric", real.type));
+    if (!count || real.data.size() % each != 0 || real.data.size() / each != *count) {
       return damaged(fmt::format("dimensions {} do not match {} stored bytes of {} each",
-                                 fmt::join(header.dimensions, "×"), real->data.size(), each));
+                                 fmt::join(header.dimensions, "×"), real.data.size(), each));
     }
     if (header.complex) return aside(header, "complex");
     const auto squeezed = without_ones(header.dimensions);
@@ -394,14 +378,14 @@ class Decoder {
     array.name = header.name;
     if (header.dimensions.size() > 2) array.shape = header.dimensions;
     const auto rows = static_cast<Index>(size[0]), columns = static_cast<Index>(size[1]);
-    if (double* const at = where_they_stand(*real); at != nullptr) {
+    if (double* const at = where_they_stand(real); at != nullptr) {
       array.values = SharedMatrix(at, rows, columns, bytes_);
       return {};
     }
     array.values.resize(rows, columns);
-    copy_doubles(*real, static_cast<std::size_t>(*count), array.values.data());
-    if (real->type == kInt64) put_rests<std::int64_t>(*real, array);
-    if (real->type == kUint64) put_rests<std::uint64_t>(*real, array);
+    copy_doubles(real, static_cast<std::size_t>(*count), array.values.data());
+    if (real.type == kInt64) put_rests<std::int64_t>(real, array);
+    if (real.type == kUint64) put_rests<std::uint64_t>(real, array);
     return {};
   }
 
@@ -415,16 +399,15 @@ class Decoder {
 
   Result<void> structure(const Header& header, Elements& elements, int depth) {
     const auto width_element = elements.next("its field name length");
-    const auto names = width_element ? elements.next("its field names") : width_element;
-    if (!names) return tl::unexpected(names.error());
+    const auto names = MBK_TRY(width_element ? elements.next("its field names") : width_element);
     if (width_element->data.size() != 4) return damaged("its field name length is broken");
     const auto width = width_element->data.at<std::int32_t>(0);
-    if (width <= 0 || names->data.size() % static_cast<std::size_t>(width) != 0) {
+    if (width <= 0 || names.data.size() % static_cast<std::size_t>(width) != 0) {
       return damaged("its field names are broken");
     }
     std::vector<std::string> fields, originals;
-    for (std::size_t i = 0; i < names->data.size(); i += static_cast<std::size_t>(width)) {
-      std::string field = printable(names->data.part(i, static_cast<std::size_t>(width)).padded_text());
+    for (std::size_t i = 0; i < names.data.size(); i += static_cast<std::size_t>(width)) {
+      std::string field = printable(names.data.part(i, static_cast<std::size_t>(width)).padded_text());
       const auto same = std::ranges::count(originals, field);
       originals.push_back(field);
       if (same > 0) {
@@ -439,12 +422,11 @@ class Decoder {
     if (!count || *count > kMaxElements) return aside(header, "a large structure array");
     for (std::uint64_t k = 0; k < *count; ++k) {
       for (const std::string& field : fields) {
-        const auto element = elements.next("a field");
-        if (!element) return tl::unexpected(element.error());
-        if (element->type != kMatrix) return damaged(fmt::format("field '{}' is not an array", field));
+        const auto element = MBK_TRY(elements.next("a field"));
+        if (element.type != kMatrix) return damaged(fmt::format("field '{}' is not an array", field));
         const std::string full = *count == 1 ? fmt::format("{}.{}", header.name, field)
                                              : fmt::format("{}({}).{}", header.name, k + 1, field);
-        if (auto done = matrix(element->data, full, depth + 1); !done) return done;
+        MBK_TRY(matrix(element.data, full, depth + 1));
       }
     }
     return {};
@@ -462,7 +444,7 @@ Result<Contents> decoded(std::span<const std::byte> file, std::shared_ptr<Buffer
   const ByteView view{file, little != (std::endian::native == std::endian::little)};
   Decoder decoder(std::move(bytes));
   decoder.contents.format = "MAT v5";
-  if (auto done = decoder.top_level({view, kHeaderSize}); !done) return tl::unexpected(done.error());
+  MBK_TRY(decoder.top_level({view, kHeaderSize}));
   give_rates(decoder.contents);
   return std::move(decoder.contents);
 }

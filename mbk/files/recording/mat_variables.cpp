@@ -46,8 +46,7 @@ MatVariable::Structure structure_of(const std::vector<Event>& events) {
 }
 
 Result<std::vector<MatVariable>> mat_variables(const Recording& recording) {
-  const auto metadata = metadata_to_write(recording);
-  if (!metadata) return tl::unexpected(metadata.error());
+  const auto metadata = MBK_TRY(metadata_to_write(recording));
   std::vector<MatVariable> variables;
   if (fits_logs(recording)) {
     variables.push_back({"logs", logs_of(recording)});
@@ -60,9 +59,9 @@ Result<std::vector<MatVariable>> mat_variables(const Recording& recording) {
       variables.push_back({channel->name, Matrix(channel->values)});
     }
   }
-  if (!metadata->empty()) {
+  if (!metadata.empty()) {
     MatVariable::Structure fields;
-    for (const auto& [key, value] : *metadata) fields.push_back({key, value});
+    for (const auto& [key, value] : metadata) fields.push_back({key, value});
     variables.push_back({"metadata", std::move(fields)});
   }
   if (!recording.events.empty()) variables.push_back({"events", structure_of(recording.events)});

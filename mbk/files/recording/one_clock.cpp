@@ -80,7 +80,7 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
   if (std::ranges::all_of(signals, [&](const ClockedSignal& signal) { return same_stamps(*signal.clock, chosen); })) {
     return CommonClock{chosen.time, {}};
   }
-  if (auto ok = check_rises(chosen); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_rises(chosen));
   double begin = chosen.time[0], end = chosen.time[chosen.time.size() - 1];
   for (const ClockedSignal& signal : signals) {
     if (same_stamps(*signal.clock, chosen)) continue;
@@ -88,7 +88,7 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
     if (time.size() == 0) {
       return bad_data(fmt::format("'{}' has no samples", signal.clock->name), "name a channel of another stream");
     }
-    if (auto ok = check_rises(*signal.clock); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_rises(*signal.clock));
     begin = std::max(begin, time[0]);
     end = std::min(end, time[time.size() - 1]);
   }

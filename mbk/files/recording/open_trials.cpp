@@ -26,11 +26,10 @@ class ExamTrials : public OpenTrials {
                                        bool needs_arm) const override {
     ExamChoice choice{options.trial, std::nullopt, needs_arm};
     if (!options.arm.empty()) choice.arm = options.arm == "left" ? Arm::left : Arm::right;
-    auto contents = exam_.decode(choice);
-    if (!contents) return tl::unexpected(contents.error());
-    SourceFile source{file.string(), contents->format, sha256_};
+    auto contents = MBK_TRY(exam_.decode(choice));
+    SourceFile source{file.string(), contents.format, sha256_};
     if (trials().size() > 1) source.trial = options.trial;
-    return Decoded{std::move(*contents), std::move(source)};
+    return Decoded{std::move(contents), std::move(source)};
   }
 
  private:
@@ -53,11 +52,10 @@ class DecodedTrials : public OpenTrials {
     if (!options.arm.empty()) {
       return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
     }
-    const auto record = this->record(options.trial);
-    if (!record) return tl::unexpected(record.error());
-    SourceFile source{file.string(), (*record)->contents.format, sha256_};
+    const auto record = MBK_TRY(this->record(options.trial));
+    SourceFile source{file.string(), record->contents.format, sha256_};
     if (records_.size() > 1) source.trial = options.trial;
-    return Decoded{(*record)->contents, std::move(source)};
+    return Decoded{record->contents, std::move(source)};
   }
 
  private:
@@ -89,14 +87,11 @@ class BidsTrials : public OpenTrials {
     if (!options.arm.empty()) {
       return bad_usage(fmt::format("--side {}: a data set tells no arms apart", options.arm), "leave --side out");
     }
-    const auto run = this->run(options.trial);
-    if (!run) return tl::unexpected(run.error());
-    auto contents = read_bids_run((*run)->motion);
-    if (!contents) return tl::unexpected(contents.error());
-    const auto bytes = read_file((*run)->motion);
-    if (!bytes) return tl::unexpected(bytes.error());
-    SourceFile source{(*run)->motion.string(), contents->format, sha256(bytes->bytes())};
-    return Decoded{std::move(*contents), std::move(source)};
+    const auto run = MBK_TRY(this->run(options.trial));
+    auto contents = MBK_TRY(read_bids_run(run->motion));
+    const auto bytes = MBK_TRY(read_file(run->motion));
+    SourceFile source{run->motion.string(), contents.format, sha256(bytes.bytes())};
+    return Decoded{std::move(contents), std::move(source)};
   }
 
  private:
@@ -121,9 +116,8 @@ class BidsTrials : public OpenTrials {
 }  // namespace
 
 Result<std::shared_ptr<const OpenTrials>> exam_trials(std::shared_ptr<const Buffer> file, std::string sha256) {
-  auto exam = KinarmExam::open(std::move(file));
-  if (!exam) return tl::unexpected(exam.error());
-  return std::make_shared<const ExamTrials>(std::move(*exam), std::move(sha256));
+  auto exam = MBK_TRY(KinarmExam::open(std::move(file)));
+  return std::make_shared<const ExamTrials>(std::move(exam), std::move(sha256));
 }
 
 std::shared_ptr<const OpenTrials> decoded_trials(std::vector<NamedContents> records, std::string sha256) {
@@ -131,9 +125,8 @@ std::shared_ptr<const OpenTrials> decoded_trials(std::vector<NamedContents> reco
 }
 
 Result<std::shared_ptr<const OpenTrials>> bids_trials(const std::filesystem::path& folder) {
-  auto runs = find_bids_runs(folder);
-  if (!runs) return tl::unexpected(runs.error());
-  return std::make_shared<const BidsTrials>(std::move(*runs));
+  auto runs = MBK_TRY(find_bids_runs(folder));
+  return std::make_shared<const BidsTrials>(std::move(runs));
 }
 
 }  // namespace mbk::recording

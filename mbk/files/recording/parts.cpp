@@ -33,9 +33,8 @@ Result<Part> parse_part(const std::filesystem::path& file) {
 Result<std::vector<Part>> ordered(const std::vector<std::filesystem::path>& files) {
   std::vector<Part> parts;
   for (const auto& file : files) {
-    auto part = parse_part(file);
-    if (!part) return tl::unexpected(part.error());
-    parts.push_back(std::move(*part));
+    auto part = MBK_TRY(parse_part(file));
+    parts.push_back(std::move(part));
   }
   std::ranges::sort(parts, {}, &Part::number);
   for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -133,33 +132,31 @@ Result<double> common_rate(const Recording& before, const Recording& part, const
 
 Result<Recording> read_parts(std::vector<std::filesystem::path> files, const ReadOptions& options) {
   if (files.empty()) return bad_usage("no file is named", "name the parts of the recording");
-  const auto parts = ordered(files);
-  if (!parts) return tl::unexpected(parts.error());
+  const auto parts = MBK_TRY(ordered(files));
 
-  auto joined = read(parts->front().file, options);
+  auto joined = read(parts.front().file, options);
   if (!joined) return joined;
-  for (std::size_t i = 1; i < parts->size(); ++i) {
-    const std::string name = (*parts)[i].file.string();
-    auto part = read((*parts)[i].file, options);
-    if (!part) return part;
-    if (auto ok = check_same_channels(*joined, *part); !ok) return tl::unexpected(ok.error().in(name));
-    if (part->time_from_rate) {
-      const auto rate = common_rate(*joined, *part, options);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::string name = parts[i].file.string();
+    auto part = MBK_TRY(read(parts[i].file, options));
+    if (auto ok = check_same_channels(*joined, part); !ok) return tl::unexpected(ok.error().in(name));
+    if (part.time_from_rate) {
+      const auto rate = common_rate(*joined, part, options);
       if (!rate) return tl::unexpected(rate.error().in(name));
       const auto offset = static_cast<double>(joined->samples());
-      const auto last = static_cast<double>(part->samples() - 1);
-      part->time = Vector::LinSpaced(part->samples(), offset, offset + last) / *rate;
-      for (Event& event : part->events) event.time += offset / *rate;
+      const auto last = static_cast<double>(part.samples() - 1);
+      part.time = Vector::LinSpaced(part.samples(), offset, offset + last) / *rate;
+      for (Event& event : part.events) event.time += offset / *rate;
     }
-    if (part->time_zero != 0.0 && joined->time_zero != 0.0) {
-      const double later = part->time_zero - joined->time_zero;
-      part->time.array() += later;
-      for (Event& event : part->events) event.time += later;
+    if (part.time_zero != 0.0 && joined->time_zero != 0.0) {
+      const double later = part.time_zero - joined->time_zero;
+      part.time.array() += later;
+      for (Event& event : part.events) event.time += later;
     }
-    if (auto ok = check_time_runs_on(*joined, *part); !ok) return tl::unexpected(ok.error().in(name));
-    append(*joined, std::move(*part));
+    if (auto ok = check_time_runs_on(*joined, part); !ok) return tl::unexpected(ok.error().in(name));
+    append(*joined, std::move(part));
   }
-  if (parts->size() > 1) joined->notes.push_back(fmt::format("{} parts were joined", parts->size()));
+  if (parts.size() > 1) joined->notes.push_back(fmt::format("{} parts were joined", parts.size()));
   return joined;
 }
 

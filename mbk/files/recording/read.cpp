@@ -48,23 +48,17 @@ class RecordingFile {
     auto made = std::make_shared<RecordingFile>();
     made->path_ = path;
     if (may_be_bids(path)) {
-      auto trials = bids_trials(path);
-      if (!trials) return tl::unexpected(trials.error());
-      made->trials_ = std::move(*trials);
+      made->trials_ = MBK_TRY(bids_trials(path));
       return made;
     }
-    auto file = OpenFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    const auto format = format_of(*file);
-    if (!format) return tl::unexpected(format.error());
-    made->format_ = *format;
-    made->begin_ = file->begin();
-    if ((*format)->open != nullptr) {
-      auto trials = (*format)->open(*file);
-      if (!trials) return tl::unexpected(trials.error());
-      made->trials_ = std::move(*trials);
+    auto file = MBK_TRY(OpenFile::open(path));
+    const auto format = MBK_TRY(format_of(file));
+    made->format_ = format;
+    made->begin_ = file.begin();
+    if (format->open != nullptr) {
+      made->trials_ = MBK_TRY(format->open(file));
     } else {
-      made->file_.emplace(std::move(*file));
+      made->file_.emplace(std::move(file));
     }
     return made;
   }
@@ -91,11 +85,10 @@ class RecordingFile {
       return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
     }
     const std::scoped_lock lock(reading_);
-    auto contents = format_->decode(*file_);
-    if (!contents) return tl::unexpected(contents.error());
-    take_annotations(*contents);
-    SourceFile source{path_.string(), contents->format, file_->sha256(), options.trial};
-    return Decoded{std::move(*contents), std::move(source)};
+    auto contents = MBK_TRY(format_->decode(*file_));
+    take_annotations(contents);
+    SourceFile source{path_.string(), contents.format, file_->sha256(), options.trial};
+    return Decoded{std::move(contents), std::move(source)};
   }
 
  private:
@@ -192,31 +185,27 @@ Result<Recording> read(const RecordingFile& file, const ReadOptions& options) {
   const std::string place =
       options.trial.empty() ? file.path().string() : fmt::format("{}, trial {}", file.path().string(), options.trial);
   return with_file(place, [&]() -> Result<Recording> {
-    auto decoded = file.decode(options, leaves_names(options));
-    if (!decoded) return tl::unexpected(decoded.error());
-    return assemble_file(std::move(*decoded), options);
+    auto decoded = MBK_TRY(file.decode(options, leaves_names(options)));
+    return assemble_file(std::move(decoded), options);
   });
 }
 
 Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options) {
-  const auto opened = open(file);
-  if (!opened) return tl::unexpected(opened.error());
-  return read(**opened, options);
+  const auto opened = MBK_TRY(open(file));
+  return read(*opened, options);
 }
 
 Result<FileContents> list_contents(const RecordingFile& file, const ReadOptions& options) {
   return with_file(file.path(), [&]() -> Result<FileContents> {
-    auto decoded = file.decode(options, false);
-    if (!decoded) return tl::unexpected(decoded.error());
-    return listed(std::move(*decoded));
+    auto decoded = MBK_TRY(file.decode(options, false));
+    return listed(std::move(decoded));
   });
 }
 
 Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& options) {
   return with_file(file.path(), [&]() -> Result<Contents> {
-    auto decoded = file.decode(options, false);
-    if (!decoded) return tl::unexpected(decoded.error());
-    Contents& contents = decoded->contents;
+    auto decoded = MBK_TRY(file.decode(options, false));
+    Contents& contents = decoded.contents;
     note_rounded(contents);
     for (const Array& array : contents.arrays) {
       if (!array.is_block()) continue;

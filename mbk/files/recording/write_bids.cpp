@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 
 Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, std::string_view name, bool overwrite,
                             Readers readers) {
-  const auto run = parse_bids_name(name);
-  if (!run) return tl::unexpected(run.error());
+  const auto run = MBK_TRY(parse_bids_name(name));
   if (auto ok = check_writable(recording); !ok) return tl::unexpected(ok.error().in(folder.string()));
   std::error_code code;
   if (fs::exists(folder, code)) {
@@ -36,7 +35,7 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
     if (!stream) return std::nullopt;
     return std::string{std::istreambuf_iterator<char>(stream), {}};
   };
-  const auto files = encode_bids(recording, *run, existing);
+  const auto files = encode_bids(recording, run, existing);
   if (!files) return tl::unexpected(files.error().in(folder.string()));
   const fs::path motion = folder / files->back().path;
   if (!overwrite && fs::exists(motion, code)) {
@@ -49,7 +48,7 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
                     motion.parent_path().string());
   }
   for (const BidsFile& file : *files) {
-    if (auto ok = write_file(folder / file.path, true, file.text, readers); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(write_file(folder / file.path, true, file.text, readers));
   }
   return motion;
 }

@@ -233,9 +233,8 @@ Result<std::string> encode(const Contents& contents, Format format, std::vector<
     return bad_usage("an MCAP file holds channels that are recognised, and here is none",
                      "name channels with --channels, or let the name end with .h5, .mat or .csv");
   }
-  const auto variables = variables_of(contents, said);
-  if (!variables) return tl::unexpected(variables.error());
-  return format == Format::mat5 ? encode_mat_level5(*variables) : encode_mat_hdf5(*variables);
+  const auto variables = MBK_TRY(variables_of(contents, said));
+  return format == Format::mat5 ? encode_mat_level5(variables) : encode_mat_hdf5(variables);
 }
 
 }  // namespace
@@ -249,7 +248,7 @@ Result<std::vector<std::string>> write_contents(const Contents& contents, const 
   std::vector<std::string> said;
   const auto bytes = encode(contents, format, said);
   if (!bytes) return tl::unexpected(bytes.error().in(file.string()));
-  if (auto ok = write_file(file, overwrite, *bytes, readers); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(write_file(file, overwrite, *bytes, readers));
   return said;
 }
 

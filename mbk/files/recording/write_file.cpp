@@ -115,7 +115,7 @@ Result<void> not_begun(const fs::path& file, const Temporary& temporary, int cod
 }
 
 Result<void> write_as(const fs::path& file, bool overwrite, std::string_view text, const Mode& mode) {
-  if (auto ok = check_name(file, overwrite); !ok) return ok;
+  MBK_TRY(check_name(file, overwrite));
   const Temporary temporary{temporary_name(file)};
   if (const int error = write_new(temporary.path, text, mode); error != 0) return not_begun(file, temporary, error);
   if (const int error = give_name(temporary.path, file, overwrite); error != 0) return cannot_write(file, error);
@@ -164,7 +164,7 @@ Result<void> write_file(const fs::path& file, bool overwrite, std::string_view t
 }
 
 Result<void> can_write_file(const fs::path& file, bool overwrite) {
-  if (auto ok = check_name(file, overwrite); !ok) return ok;
+  MBK_TRY(check_name(file, overwrite));
   const Temporary temporary{temporary_name(file)};
   if (const int error = write_new(temporary.path, {}, {0600}); error != 0) return not_begun(file, temporary, error);
   return {};

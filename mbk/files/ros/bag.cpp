@@ -66,17 +66,16 @@ class BagDecoder {
   BagDecoder(ForwardBytes& bytes, std::uint64_t size) : bytes_(bytes), size_(size), topics_(size) {}
 
   Result<Contents> run() {
-    const auto magic = bytes_.take(kBagMagic.size());
-    if (!magic) return tl::unexpected(magic.error());
-    const std::string begin(reinterpret_cast<const char*>(magic->data()), magic->size());
+    const auto magic = MBK_TRY(bytes_.take(kBagMagic.size()));
+    const std::string begin(reinterpret_cast<const char*>(magic.data()), magic.size());
     if (begin != kBagMagic) {
       return bad_data(fmt::format("bags of the version '{}' are not read", begin.substr(kAnyMagic.size())),
                       "bring it to version 2.0 with 'rosbag fix'");
     }
     while (!cut_ && bytes_.position() < size_) {
-      if (auto ok = take_record(bytes_, size_ - bytes_.position(), false); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(take_record(bytes_, size_ - bytes_.position(), false));
     }
-    if (auto rest = bytes_.skip(size_ - bytes_.position()); !rest) return tl::unexpected(rest.error());
+    MBK_TRY(bytes_.skip(size_ - bytes_.position()));
     Contents contents = topics_.contents("ROS 1 bag", false);
     for (std::string& note : notes_) contents.notes.push_back(std::move(note));
     return contents;
@@ -98,11 +97,10 @@ class BagDecoder {
 
   /// A length; nothing where the bytes end before it.
   static Result<std::optional<std::uint32_t>> take_length(ForwardBytes& from) {
-    const auto bytes = from.take(sizeof(std::uint32_t));
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (bytes->size() < sizeof(std::uint32_t)) return std::nullopt;
+    const auto bytes = MBK_TRY(from.take(sizeof(std::uint32_t)));
+    if (bytes.size() < sizeof(std::uint32_t)) return std::nullopt;
     std::uint32_t length = 0;
-    std::memcpy(&length, bytes->data(), sizeof length);
+    std::memcpy(&length, bytes.data(), sizeof length);
     return length;
   }
 
@@ -111,40 +109,36 @@ class BagDecoder {
   Result<void> take_record(ForwardBytes& from, std::uint64_t left, bool in_chunk) {
     constexpr std::uint64_t kLengths = 2 * sizeof(std::uint32_t);
     const std::uint64_t at = bytes_.position();
-    const auto header_size = take_length(from);
-    if (!header_size) return tl::unexpected(header_size.error());
-    if (!*header_size || left < kLengths || **header_size > left - kLengths) return ends_within(at, in_chunk);
-    if (**header_size > kLargestHeader) return odd("bag");
-    const auto header = from.take(**header_size);
-    if (!header) return tl::unexpected(header.error());
-    if (header->size() < **header_size) return odd("chunk");
-    const auto pairs = Pairs::of(*header);
+    const auto header_size = MBK_TRY(take_length(from));
+    if (!header_size || left < kLengths || *header_size > left - kLengths) return ends_within(at, in_chunk);
+    if (*header_size > kLargestHeader) return odd("bag");
+    const auto header = MBK_TRY(from.take(*header_size));
+    if (header.size() < *header_size) return odd("chunk");
+    const auto pairs = Pairs::of(header);
     if (!pairs) return odd("bag");
-    const auto size = take_length(from);
-    if (!size) return tl::unexpected(size.error());
-    if (!*size || **size > left - kLengths - **header_size) return ends_within(at, in_chunk);
+    const auto size = MBK_TRY(take_length(from));
+    if (!size || *size > left - kLengths - *header_size) return ends_within(at, in_chunk);
     switch (static_cast<Operation>(pairs->number<std::uint8_t>("op").value_or(0))) {
       case Operation::message:
-        return take_message(from, *pairs, **size);
+        return take_message(from, *pairs, *size);
       case Operation::connection:
-        return take_connection(from, *pairs, **size);
+        return take_connection(from, *pairs, *size);
       case Operation::chunk:
         if (in_chunk) break;
-        return take_chunk(*pairs, **size);
+        return take_chunk(*pairs, *size);
       case Operation::bag:
-        if (auto ok = take_bag_header(*pairs); !ok) return ok;
+        MBK_TRY(take_bag_header(*pairs));
         break;
       case Operation::index:
       case Operation::chunk_info:
         break;
     }
-    return leave_out(from, **size);
+    return leave_out(from, *size);
   }
 
   Result<void> leave_out(ForwardBytes& from, std::uint64_t length) const {
-    const auto all = from.skip(length);
-    if (!all) return tl::unexpected(all.error());
-    if (!*all) return odd("chunk");
+    const auto all = MBK_TRY(from.skip(length));
+    if (!all) return odd("chunk");
     return {};
   }
 
@@ -162,9 +156,8 @@ class BagDecoder {
   Result<void> take_connection(ForwardBytes& from, const Pairs& pairs, std::uint32_t size) {
     const auto id = pairs.number<std::uint32_t>("conn");
     if (!id || size > kLargestHeader) return odd("connection");
-    const auto data = from.take(size);
-    if (!data) return tl::unexpected(data.error());
-    const auto said = data->size() == size ? Pairs::of(*data) : std::nullopt;
+    const auto data = MBK_TRY(from.take(size));
+    const auto said = data.size() == size ? Pairs::of(data) : std::nullopt;
     if (!said) return odd("connection");
     topics_.add(*id, {pairs.text("topic"), said->text("type"), "ros1", "ros1msg", said->text("message_definition")});
     return {};
@@ -178,11 +171,10 @@ class BagDecoder {
       topics_.leave_out(*connection);
       return leave_out(from, size);
     }
-    const auto message = from.take(size);
-    if (!message) return tl::unexpected(message.error());
-    if (message->size() < size) return odd("message");
+    const auto message = MBK_TRY(from.take(size));
+    if (message.size() < size) return odd("message");
     const std::uint64_t seconds = *time & 0xFFFFFFFFU, nanoseconds = *time >> 32;
-    return topics_.message(*connection, seconds * kNanoseconds + nanoseconds, *message);
+    return topics_.message(*connection, seconds * kNanoseconds + nanoseconds, message);
   }
 
   Result<void> take_chunk(const Pairs& pairs, std::uint32_t packed_size) {

@@ -32,9 +32,7 @@ class Unpacking : public ForwardBytes {
   /// Whether there are packed bytes in `in_`; more are fetched where all were used.
   [[nodiscard]] Result<bool> has_input() {
     if (!in_.empty()) return true;
-    const auto more = packed_->take(kPiece);
-    if (!more) return tl::unexpected(more.error());
-    in_ = *more;
+    in_ = MBK_TRY(packed_->take(kPiece));
     return !in_.empty();
   }
   std::span<const std::byte> in_;  // NOLINT: of the classes below
@@ -48,10 +46,9 @@ class Unpacking : public ForwardBytes {
     }
     while (end_ - begin_ < count && !ended_) {
       if (room_.size() - end_ < kPiece) room_.resize(std::max(2 * room_.size(), end_ + kPiece));
-      const auto made = unpack(std::span(room_).subspan(end_));
-      if (!made) return tl::unexpected(made.error());
-      ended_ = *made == 0;
-      end_ += *made;
+      const auto made = MBK_TRY(unpack(std::span(room_).subspan(end_)));
+      ended_ = made == 0;
+      end_ += made;
     }
     const auto bytes = std::span<const std::byte>(room_).subspan(begin_, std::min(count, end_ - begin_));
     begin_ += bytes.size();
@@ -74,15 +71,14 @@ class Zstd : public Unpacking {
   Result<std::size_t> unpack(std::span<std::byte> out) override {
     ZSTD_outBuffer made{out.data(), out.size(), 0};
     for (;;) {
-      const auto input = has_input();
-      if (!input) return tl::unexpected(input.error());
+      const auto input = MBK_TRY(has_input());
       ZSTD_inBuffer used{in_.data(), in_.size(), 0};
       const std::size_t left = ZSTD_decompressStream(stream_.get(), &made, &used);
       if (ZSTD_isError(left) != 0) return broken("zstd", ZSTD_getErrorName(left));
       in_ = in_.subspan(used.pos);
       if (used.pos > 0 || made.pos > 0) within_ = left != 0;
       if (made.pos > 0) return made.pos;
-      if (*input) continue;
+      if (input) continue;
       if (within_) return broken("zstd", "it ends too early");
       return 0;
     }
@@ -106,15 +102,14 @@ class Lz4 : public Unpacking {
  private:
   Result<std::size_t> unpack(std::span<std::byte> out) override {
     for (;;) {
-      const auto input = has_input();
-      if (!input) return tl::unexpected(input.error());
+      const auto input = MBK_TRY(has_input());
       std::size_t made = out.size(), used = in_.size();
       const std::size_t left = LZ4F_decompress(stream_.get(), out.data(), &made, in_.data(), &used, nullptr);
       if (LZ4F_isError(left) != 0) return broken("lz4", LZ4F_getErrorName(left));
       in_ = in_.subspan(used);
       if (used > 0 || made > 0) within_ = left != 0;
       if (made > 0) return made;
-      if (*input) continue;
+      if (input) continue;
       if (within_) return broken("lz4", "it ends too early");
       return 0;
     }
@@ -143,8 +138,7 @@ class Bz2 : public Unpacking {
     stream_.avail_out = static_cast<unsigned>(std::min<std::size_t>(out.size(), 1U << 30));
     const unsigned room = stream_.avail_out;
     while (stream_.avail_out == room) {
-      const auto input = has_input();
-      if (!input) return tl::unexpected(input.error());
+      const auto input = MBK_TRY(has_input());
       // The library takes its input as text that it could change, and does not.
       stream_.next_in = const_cast<char*>(reinterpret_cast<const char*>(in_.data()));  // NOLINT
       stream_.avail_in = static_cast<unsigned>(in_.size());
@@ -153,7 +147,7 @@ class Bz2 : public Unpacking {
       ended_ = state == BZ_STREAM_END;
       if (ended_) break;
       if (state != BZ_OK) return broken("bz2", fmt::format("error {}", state));
-      if (!*input && stream_.avail_out == room) return broken("bz2", "it ends too early");
+      if (!input && stream_.avail_out == room) return broken("bz2", "it ends too early");
     }
     return room - stream_.avail_out;
   }
@@ -174,10 +168,9 @@ Result<std::span<const std::byte>> ForwardBytes::take(std::size_t count) {
 
 Result<bool> ForwardBytes::skip(std::uint64_t count) {
   while (count > 0) {
-    const auto bytes = take(static_cast<std::size_t>(std::min<std::uint64_t>(count, kPiece)));
-    if (!bytes) return tl::unexpected(bytes.error());
-    if (bytes->empty()) return false;
-    count -= bytes->size();
+    const auto bytes = MBK_TRY(take(static_cast<std::size_t>(std::min<std::uint64_t>(count, kPiece))));
+    if (bytes.empty()) return false;
+    count -= bytes.size();
   }
   return true;
 }
@@ -192,7 +185,7 @@ Result<std::span<const std::byte>> PassingBytes::next(std::size_t count) {
   file_->forget(begin);
   count = std::min(count, file_->size() - begin);
   while (file_->text().size() - begin < count) {
-    if (auto ok = file_->read_on(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(file_->read_on());
   }
   return std::as_bytes(std::span(file_->text().substr(begin, count)));
 }

@@ -84,12 +84,11 @@ class McapDecoder {
   McapDecoder(ForwardBytes& bytes, std::uint64_t size) : bytes_(bytes), size_(size), topics_(size) {}
 
   Result<Contents> run() {
-    const auto magic = bytes_.take(kMcapMagic.size());
-    if (!magic) return tl::unexpected(magic.error());
+    MBK_TRY(bytes_.take(kMcapMagic.size()));
     while (!ended_) {
-      if (auto ok = take_record(bytes_, size_ - bytes_.position(), false); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(take_record(bytes_, size_ - bytes_.position(), false));
     }
-    if (auto rest = bytes_.skip(size_ - bytes_.position()); !rest) return tl::unexpected(rest.error());
+    MBK_TRY(bytes_.skip(size_ - bytes_.position()));
     Contents contents = topics_.contents("MCAP", own_);
     for (auto& [key, value] : metadata_) contents.metadata.insert_or_assign(key, std::move(value));
     if (!strange_metadata_.empty()) {
@@ -118,16 +117,15 @@ class McapDecoder {
   Result<void> take_record(ForwardBytes& from, std::uint64_t left, bool in_chunk) {
     const std::uint64_t at = bytes_.position();
     const std::uint32_t crc = bytes_.crc();
-    const auto header = from.take(kRecordHeader);
-    if (!header) return tl::unexpected(header.error());
-    if (header->size() < kRecordHeader) {
+    const auto header = MBK_TRY(from.take(kRecordHeader));
+    if (header.size() < kRecordHeader) {
       if (in_chunk) return odd("chunk");
       cut_short(at);
       return {};
     }
-    const auto kind = static_cast<McapRecord>((*header)[0]);
+    const auto kind = static_cast<McapRecord>(header[0]);
     std::uint64_t length = 0;
-    std::memcpy(&length, header->data() + 1, sizeof length);
+    std::memcpy(&length, header.data() + 1, sizeof length);
     if (left < kRecordHeader || length > left - kRecordHeader) {
       if (in_chunk) return odd("chunk");
       cut_short(at);
@@ -139,19 +137,17 @@ class McapDecoder {
     const bool describes = kind == McapRecord::schema || kind == McapRecord::channel ||
                            (kind == McapRecord::metadata && !in_chunk) || (kind == McapRecord::data_end && !in_chunk);
     if (!describes || length > kLargestRecord) return leave_out(from, length);
-    const auto record = from.take(static_cast<std::size_t>(length));
-    if (!record) return tl::unexpected(record.error());
-    if (record->size() < length) return odd("last");
-    if (kind == McapRecord::schema) return take_schema(McapFields(*record));
-    if (kind == McapRecord::channel) return take_channel(McapFields(*record));
-    if (kind == McapRecord::metadata) return take_metadata(McapFields(*record));
-    return take_data_end(McapFields(*record), crc);
+    const auto record = MBK_TRY(from.take(static_cast<std::size_t>(length)));
+    if (record.size() < length) return odd("last");
+    if (kind == McapRecord::schema) return take_schema(McapFields(record));
+    if (kind == McapRecord::channel) return take_channel(McapFields(record));
+    if (kind == McapRecord::metadata) return take_metadata(McapFields(record));
+    return take_data_end(McapFields(record), crc);
   }
 
   static Result<void> leave_out(ForwardBytes& from, std::uint64_t length) {
-    const auto all = from.skip(length);
-    if (!all) return tl::unexpected(all.error());
-    if (!*all) return bad_data("a chunk ends within a record", std::string(kCopyAgain));
+    const auto all = MBK_TRY(from.skip(length));
+    if (!all) return bad_data("a chunk ends within a record", std::string(kCopyAgain));
     return {};
   }
 
@@ -195,10 +191,9 @@ class McapDecoder {
 
   Result<void> take_message(ForwardBytes& from, std::uint64_t length) {
     if (length < kMessageHeader) return odd("message");
-    const auto header = from.take(kMessageHeader);
-    if (!header) return tl::unexpected(header.error());
-    if (header->size() < kMessageHeader) return odd("message");
-    McapFields fields(*header);
+    const auto header = MBK_TRY(from.take(kMessageHeader));
+    if (header.size() < kMessageHeader) return odd("message");
+    McapFields fields(header);
     const auto channel = fields.number<std::uint16_t>();
     fields.number<std::uint32_t>();
     const auto log_time = fields.number<std::uint64_t>();
@@ -207,35 +202,31 @@ class McapDecoder {
       topics_.leave_out(channel);
       return leave_out(from, length);
     }
-    const auto message = from.take(static_cast<std::size_t>(length));
-    if (!message) return tl::unexpected(message.error());
-    if (message->size() < length) return odd("message");
-    return topics_.message(channel, log_time, *message);
+    const auto message = MBK_TRY(from.take(static_cast<std::size_t>(length)));
+    if (message.size() < length) return odd("message");
+    return topics_.message(channel, log_time, message);
   }
 
   Result<void> take_chunk(std::uint64_t length) {
     PartOfBytes chunk(bytes_, length);
     const std::string where = place();
-    const auto header = chunk.take(32);
-    if (!header) return tl::unexpected(header.error());
-    McapFields fields(*header);
+    const auto header = MBK_TRY(chunk.take(32));
+    McapFields fields(header);
     fields.number<std::uint64_t>();
     fields.number<std::uint64_t>();
     const auto size = fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
     const auto name_size = fields.number<std::uint32_t>();
     if (fields.failed() || name_size > 64) return odd("chunk");
-    const auto name = chunk.take(name_size);
-    if (!name) return tl::unexpected(name.error());
-    const std::string called(reinterpret_cast<const char*>(name->data()), name->size());
+    const auto name = MBK_TRY(chunk.take(name_size));
+    const std::string called(reinterpret_cast<const char*>(name.data()), name.size());
     const auto packing = packing_called(called);
     if (!packing) {
       return bad_data(fmt::format("a chunk is packed by '{}', which is not read", called),
                       "pack it by zstd, lz4 or not at all ('mcap compress')", where);
     }
-    const auto record_size = chunk.take(sizeof(std::uint64_t));
-    if (!record_size) return tl::unexpected(record_size.error());
-    McapFields rest(*record_size);
+    const auto record_size = MBK_TRY(chunk.take(sizeof(std::uint64_t)));
+    McapFields rest(record_size);
     const auto packed_size = rest.number<std::uint64_t>();
     if (rest.failed() || packed_size != chunk.left()) return odd("chunk");
 
@@ -267,18 +258,16 @@ class McapDecoder {
 
   Result<void> take_footer(std::uint64_t length) {
     if (length < kFooter) return odd("footer");
-    if (auto ok = leave_out(bytes_, kFooter - 4); !ok) return ok;
+    MBK_TRY(leave_out(bytes_, kFooter - 4));
     const std::uint32_t crc = bytes_.crc();
-    const auto sum = bytes_.take(4);
-    if (!sum) return tl::unexpected(sum.error());
-    const auto said = McapFields(*sum).number<std::uint32_t>();
+    const auto sum = MBK_TRY(bytes_.take(4));
+    const auto said = McapFields(sum).number<std::uint32_t>();
     if (said != 0 && in_summary_ && said != crc) {
       return bad_data("the summary does not have the checksum that the file says", std::string(kCopyAgain));
     }
-    if (auto ok = leave_out(bytes_, length - kFooter); !ok) return ok;
-    const auto magic = bytes_.take(kMcapMagic.size());
-    if (!magic) return tl::unexpected(magic.error());
-    if (std::string_view(reinterpret_cast<const char*>(magic->data()), magic->size()) != kMcapMagic) {
+    MBK_TRY(leave_out(bytes_, length - kFooter));
+    const auto magic = MBK_TRY(bytes_.take(kMcapMagic.size()));
+    if (std::string_view(reinterpret_cast<const char*>(magic.data()), magic.size()) != kMcapMagic) {
       notes_.emplace_back("the file does not end as an MCAP file does; all of its records were read");
     }
     ended_ = true;

@@ -148,7 +148,7 @@ Result<void> McapWriter::close_chunk() {
 }
 
 Result<std::string> McapWriter::finish() {
-  if (auto ok = close_chunk(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(close_chunk());
   file_ += record(McapRecord::data_end, raw_number(crc_of(0, file_)));
 
   const std::uint64_t summary = file_.size();

@@ -97,7 +97,7 @@ class Parser {
   }
 
   Result<MessageDefinition> run() {
-    if (auto ok = parse(root_, ""); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(parse(root_, ""));
     return std::move(definition_);
   }
 
@@ -156,11 +156,10 @@ class Parser {
       // A constant of text may hold a #, which is of no matter here.
       line = bare(line.substr(0, line.find('#')));
       if (line.empty()) continue;
-      auto field = parse_field(line, package);
-      if (!field) return tl::unexpected(field.error());
-      if (!*field) continue;
+      auto field = MBK_TRY(parse_field(line, package));
+      if (!field) continue;
       if (++fields_ > kMostFields) return bad_data(fmt::format("there are more than {} fields", kMostFields));
-      fields.push_back(std::move(**field));
+      fields.push_back(std::move(*field));
     }
     return fields;
   }
@@ -203,10 +202,9 @@ class Parser {
       return field;
     }
     if (bounded) return odd();
-    const auto message = parse(plain, package);
-    if (!message) return tl::unexpected(message.error());
+    const auto message = MBK_TRY(parse(plain, package));
     field.type = FieldType::message;
-    field.message = *message;
+    field.message = message;
     return field;
   }
 

@@ -274,7 +274,7 @@ Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std:
 Result<void> Topics::count(std::size_t numbers) {
   constexpr std::uint64_t kOften = std::uint64_t{1} << 22;
   if (numbers_ / kOften != (numbers_ + numbers) / kOften) {
-    if (auto ok = check_memory(2 * kOften * sizeof(double)); !ok) return ok;
+    MBK_TRY(check_memory(2 * kOften * sizeof(double)));
   }
   numbers_ += numbers;
   if (numbers_ <= most_numbers_) return {};

@@ -57,9 +57,7 @@ class ViconDecoder {
         line = lines_.next();
         continue;
       }
-      auto next = section(*line);
-      if (!next) return tl::unexpected(next.error());
-      line = *next;
+      line = MBK_TRY(section(*line));
     }
     leave_out(above_.size());
     if (!left_out_.empty()) {
@@ -127,8 +125,8 @@ class ViconDecoder {
         line.reset();
         break;
       }
-      if (auto ok = add_row(rows, *line, separator, section.names.size()); !ok) return tl::unexpected(ok.error());
-      if (auto ok = steps.add(rows, *line); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(add_row(rows, *line, separator, section.names.size()));
+      MBK_TRY(steps.add(rows, *line));
     }
     if (line && !is_empty_row(line->text) && !begins_frames(labels_of(line->text, separator)) && rows.count() == 0) {
       return bad_data("no row of numbers stands below its units", std::string(kWriteAgain), line_place(line->number));
@@ -289,7 +287,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
       contents.notes.push_back(note_of_cut(*line));
       break;
     }
-    if (auto ok = add_row(rows, *line, separator, columns); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_row(rows, *line, separator, columns));
   }
   if (rows.count() == 0) return bad_data("no frame stands behind the header", "nothing was recorded");
   compare_counts(positive_number(said["total exported frames"]), rows.count(), "frames", contents);
@@ -367,8 +365,7 @@ Result<Contents> decode_qualisys(std::span<const std::byte> file) {
       return bad_data(fmt::format("{} cells where its {} markers need {}", cells.size(), markers.size(), columns),
                       std::string(kWriteAgain), line_place(line->number));
     }
-    if (auto ok = rows.add(*line, cells, line->text.find(',') != line->text.npos); !ok)
-      return tl::unexpected(ok.error());
+    MBK_TRY(rows.add(*line, cells, line->text.find(',') != line->text.npos));
   }
   compare_counts(positive_number(value("NO_OF_FRAMES")), rows.count(), "frames", contents);
   const double rate = positive_number(value("FREQUENCY")).value_or(0.0);

@@ -53,9 +53,9 @@ class DelsysDecoder {
   Result<Contents> run() {
     contents_.format = "Delsys CSV";
     contents_.table = true;
-    if (auto ok = read_header(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(read_header());
     TextRows rows(labels_.size(), bytes_);
-    if (auto ok = read_rows(rows); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(read_rows(rows));
     group(rows);
     take(rows);
     if (above_ > 0) {
@@ -93,7 +93,7 @@ class DelsysDecoder {
         contents_.notes.push_back(note_of_cut(*line));
         break;
       }
-      if (auto ok = add_row(rows, *line, separator_, labels_.size()); !ok) return ok;
+      MBK_TRY(add_row(rows, *line, separator_, labels_.size()));
     }
     if (rows.count() == 0) return bad_data("no sample stands below its names", "nothing was recorded");
     return {};

@@ -110,17 +110,15 @@ class Reader {
         continue;
       }
       if (text.starts_with(kBegin)) {
-        if (auto ok = file_header(*line); !ok) return ok;
+        MBK_TRY(file_header(*line));
         line = next_line();
         continue;
       }
       if (!is_row(text) && !is_labels(text)) {
-        if (auto ok = segment_header(*line); !ok) return ok;
+        MBK_TRY(segment_header(*line));
         line = next_line();
       }
-      auto next = rows(line);
-      if (!next) return tl::unexpected(next.error());
-      line = *next;
+      line = MBK_TRY(rows(line));
     }
     std::erase_if(segments, [](const Segment& one) { return one.rows.count() == 0; });
     if (segments.empty()) return bad_data("no sample stands behind its header", "nothing was recorded");
@@ -234,12 +232,11 @@ class Reader {
                       line ? line_place(line->number) : "");
     }
     if (line && is_row(line->text)) {
-      if (auto ok = begin_segment(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(begin_segment());
     }
     for (; line && is_row(line->text); line = next_line()) {
-      auto more = add_row(*line);
-      if (!more) return tl::unexpected(more.error());
-      if (!*more) return std::nullopt;
+      auto more = MBK_TRY(add_row(*line));
+      if (!more) return std::nullopt;
     }
     return line;
   }
@@ -301,10 +298,10 @@ class Reader {
     }
     segment->style.decimal = style_.decimal;
     if (begins_anew(*segment, cells.front())) {
-      if (auto ok = begin_segment(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(begin_segment());
       segment = &segments.back();
     }
-    if (auto ok = segment->rows.add(line, cells, style_.decimal == ','); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(segment->rows.add(line, cells, style_.decimal == ','));
     segment->commented += commented ? 1 : 0;
     return true;
   }
@@ -559,7 +556,7 @@ bool looks_like_lvm(std::string_view text) {
 
 Result<std::vector<NamedContents>> decode_lvm(std::span<const std::byte> file) {
   lvm::Reader reader(file);
-  if (auto ok = reader.read(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(reader.read());
   std::vector<NamedContents> records;
   const auto all = lvm::records_of(reader.segments);
   if (all.size() > 1024 + file.size() / 256) {

@@ -50,9 +50,8 @@ Result<Npy> parse(std::span<const std::byte> file) {
   if (file.size() < begin) return bad_data("the NumPy array ends in its header", std::string(kAgain));
   const std::uint64_t length = major == 1 ? view.at<std::uint16_t>(kLength) : view.at<std::uint32_t>(kLength);
   if (!view.holds(begin, length)) return bad_data("the NumPy array ends in its header", std::string(kAgain));
-  auto header = parse_npy_header(view.part(begin, static_cast<std::size_t>(length)).text());
-  if (!header) return tl::unexpected(header.error());
-  return Npy{std::move(*header), file.subspan(begin + static_cast<std::size_t>(length))};
+  auto header = MBK_TRY(parse_npy_header(view.part(begin, static_cast<std::size_t>(length)).text()));
+  return Npy{std::move(header), file.subspan(begin + static_cast<std::size_t>(length))};
 }
 
 /// Numbers of the stored type, one after the other.
@@ -141,7 +140,7 @@ class NpyDecoder {
     std::vector<std::uint64_t> sizes = header.shape;
     if (sizes.size() > 2) std::erase(sizes, std::uint64_t{1});
     for (const NpyField& field : header.fields) {
-      if (auto ok = take(field, header, sizes, elements, npy->data, name); !ok) return ok;
+      MBK_TRY(take(field, header, sizes, elements, npy->data, name));
     }
     return {};
   }
@@ -184,7 +183,7 @@ class NpyDecoder {
     if (rows > (std::uint64_t{1} << 40) || columns > (std::uint64_t{1} << 40)) {
       return bad_data(fmt::format("it is said to be {}×{}", rows, columns), std::string(kAgain), place(name));
     }
-    if (auto ok = check_memory(8 * rows * columns); !ok) return ok;
+    MBK_TRY(check_memory(8 * rows * columns));
     const ByteView view{data, field.big_endian != (std::endian::native == std::endian::big)};
     Matrix values(static_cast<Index>(rows), static_cast<Index>(columns));
     if (time) {
@@ -210,7 +209,7 @@ class NpyDecoder {
   /// An array of more than two dimensions, in the order of the file.
   Result<void> take_block(const NpyField& field, const NpyHeader& header, std::uint64_t elements,
                           std::span<const std::byte> data, Read read, std::string name) {
-    if (auto ok = check_memory(8 * elements); !ok) return ok;
+    MBK_TRY(check_memory(8 * elements));
     const ByteView view{data, field.big_endian != (std::endian::native == std::endian::big)};
     Matrix values(static_cast<Index>(elements), 1);
     for (Index k = 0; k < values.rows(); ++k) {
@@ -329,7 +328,7 @@ bool looks_like_npz(const ZipArchive& archive) {
 Result<Contents> decode_npy(std::span<const std::byte> file) {
   Contents contents;
   contents.format = "NumPy";
-  if (auto ok = NpyDecoder(contents).add(file, ""); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(NpyDecoder(contents).add(file, ""));
   const auto usable = [](const Array& array) { return !array.obstacle; };
   if (std::ranges::none_of(contents.arrays, usable)) {
     if (!contents.arrays.empty()) return tl::unexpected(*contents.arrays.front().obstacle);
@@ -352,14 +351,12 @@ Result<Contents> decode_npz(const ZipArchive& archive) {
       contents.notes.push_back(fmt::format("'{}' in the archive is no NumPy array; ignored", printable(member.name)));
       continue;
     }
-    const auto bytes = archive.read(member.name);
-    if (!bytes) return tl::unexpected(bytes.error());
+    const auto bytes = MBK_TRY(archive.read(member.name));
     const std::string name = printable(member.name.substr(0, member.name.size() - kEnd.size()));
-    if (!looks_like_npy(bytes->bytes())) {
+    if (!looks_like_npy(bytes.bytes())) {
       return bad_data("it does not begin as a NumPy array does", std::string(kAgain), fmt::format("array '{}'", name));
     }
-    if (auto ok = NpyDecoder(contents).add(bytes->bytes(), name.empty() ? "array" : name); !ok)
-      return tl::unexpected(ok.error());
+    MBK_TRY(NpyDecoder(contents).add(bytes.bytes(), name.empty() ? "array" : name));
   }
   give_rates(contents);
   return contents;

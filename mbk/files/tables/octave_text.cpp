@@ -49,7 +49,7 @@ class OctaveDecoder {
         line_ = lines_.next();
         continue;
       }
-      if (auto ok = variable(printable(std::string(*name)), 0); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(variable(printable(std::string(*name)), 0));
     }
     give_rates(contents_);
     return std::move(contents_);
@@ -100,23 +100,21 @@ class OctaveDecoder {
       if (line_ && said(*line_, "ndims")) {  // more than two dimensions stand in a line of their own
         const auto sizes = lines_.next();
         for (const std::string_view word : words(sizes ? sizes->text : std::string_view())) {
-          const auto length = whole(name, word);
-          if (!length) return tl::unexpected(length.error());
-          number = std::min(number * std::min<std::uint64_t>(*length, lines_.left() + 1), lines_.left() + 1);
+          const auto length = MBK_TRY(whole(name, word));
+          number = std::min(number * std::min<std::uint64_t>(length, lines_.left() + 1), lines_.left() + 1);
         }
         break;
       }
       const auto value = line_ ? said(*line_, key) : std::nullopt;
       if (!value) return cut(name);
-      const auto length = whole(name, *value);
-      if (!length) return tl::unexpected(length.error());
-      number = std::min(number * std::min<std::uint64_t>(*length, lines_.left() + 1), lines_.left() + 1);
+      const auto length = MBK_TRY(whole(name, *value));
+      number = std::min(number * std::min<std::uint64_t>(length, lines_.left() + 1), lines_.left() + 1);
     }
     line_ = lines_.next();
     for (std::uint64_t k = 0; k < number; ++k) {
       while (line_ && !said(*line_, "name")) line_ = lines_.next();
       if (!line_) return cut(name);
-      if (auto ok = variable(name, depth + 1); !ok) return ok;
+      MBK_TRY(variable(name, depth + 1));
     }
     return {};
   }
@@ -189,19 +187,17 @@ class OctaveDecoder {
     if (said(*line_, "ndims")) return array(name);
     const auto rows_said = said(*line_, "rows");
     if (!rows_said) return cut(name);
-    const auto rows = whole(name, *rows_said);
-    if (!rows) return tl::unexpected(rows.error());
-    const auto columns = count(name, "columns");
-    if (!columns) return tl::unexpected(columns.error());
-    if (auto ok = check_size(name, *rows, *columns); !ok) return ok;
-    Matrix values(static_cast<Index>(*rows), static_cast<Index>(*columns));
+    const auto rows = MBK_TRY(whole(name, *rows_said));
+    const auto columns = MBK_TRY(count(name, "columns"));
+    MBK_TRY(check_size(name, rows, columns));
+    Matrix values(static_cast<Index>(rows), static_cast<Index>(columns));
     Rests rests;
-    for (Index r = 0; r < (*columns > 0 ? values.rows() : 0); ++r) {
+    for (Index r = 0; r < (columns > 0 ? values.rows() : 0); ++r) {
       line_ = lines_.next_filled();
       if (!line_) return cut(name);
       const auto found = words(line_->text);
-      if (found.size() != *columns) {
-        return bad_data(fmt::format("{} numbers where {} are expected", found.size(), *columns), "save it again",
+      if (found.size() != columns) {
+        return bad_data(fmt::format("{} numbers where {} are expected", found.size(), columns), "save it again",
                         fmt::format("line {}, variable '{}'", line_->number, name));
       }
       for (Index c = 0; c < values.cols(); ++c) {
@@ -223,25 +219,23 @@ class OctaveDecoder {
 
   /// "# ndims: 2", the dimensions, and then one number a line, column by column.
   Result<void> array(const std::string& name) {
-    const auto dimensions = whole(name, *said(*line_, "ndims"));
-    if (!dimensions) return tl::unexpected(dimensions.error());
+    const auto dimensions = MBK_TRY(whole(name, *said(*line_, "ndims")));
     line_ = lines_.next_filled();
     if (!line_) return cut(name);
     const auto sizes = words(line_->text);
     std::vector<std::uint64_t> lengths;
     for (const std::string_view word : sizes) {
-      const auto length = whole(name, word);
-      if (!length) return tl::unexpected(length.error());
-      lengths.push_back(*length);
+      const auto length = MBK_TRY(whole(name, word));
+      lengths.push_back(length);
     }
-    if (lengths.size() != *dimensions || lengths.size() < 2) return cut(name);
+    if (lengths.size() != dimensions || lengths.size() < 2) return cut(name);
     const std::vector<std::uint64_t> sides = lengths;
     std::uint64_t others = 1;
     for (std::size_t d = 1; d < sides.size(); ++d) {
       if (sides[d] != 0 && others > lines_.left() / sides[d]) return cut(name);
       others *= sides[d];
     }
-    if (auto ok = check_size(name, sides[0], others); !ok) return ok;
+    MBK_TRY(check_size(name, sides[0], others));
     if (sides.size() > 2) {  // those of 1 count for nothing; of more than two others only slices are signals
       std::erase(lengths, std::uint64_t{1});
       if (lengths.size() > 2) lengths = {sides[0] * others};
@@ -296,12 +290,10 @@ class OctaveDecoder {
   }
 
   Result<void> texts(const std::string& name) {
-    const auto elements = count(name, "elements");
-    if (!elements) return tl::unexpected(elements.error());
+    const auto elements = MBK_TRY(count(name, "elements"));
     Text text{name, {}};
-    for (std::uint64_t k = 0; k < *elements; ++k) {
-      const auto length = count(name, "length");
-      if (!length) return tl::unexpected(length.error());
+    for (std::uint64_t k = 0; k < elements; ++k) {
+      MBK_TRY(count(name, "length"));
       line_ = lines_.next();
       if (!line_) return cut(name);
       text.lines.push_back(printable(std::string(line_->text)));
@@ -319,13 +311,12 @@ class OctaveDecoder {
     }
     const auto fields_said = line_ ? said(*line_, "length") : std::nullopt;
     if (!fields_said) return cut(name);
-    const auto fields = whole(name, *fields_said);
-    if (!fields) return tl::unexpected(fields.error());
-    for (std::uint64_t k = 0; k < *fields; ++k) {
+    const auto fields = MBK_TRY(whole(name, *fields_said));
+    for (std::uint64_t k = 0; k < fields; ++k) {
       while (line_ && !said(*line_, "name")) line_ = lines_.next();
       if (!line_) return cut(name);
       const std::string field = fmt::format("{}.{}", name, printable(std::string(*said(*line_, "name"))));
-      if (auto ok = variable(field, depth + 1); !ok) return ok;
+      MBK_TRY(variable(field, depth + 1));
     }
     return {};
   }

@@ -64,7 +64,7 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
       return bad_data(fmt::format("{} numbers where there are {} labels", cells.size(), labels.size()),
                       std::string(kWriteAgain), line_place(line->number));
     }
-    if (auto ok = rows.add(*line, cells); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(rows.add(*line, cells));
   }
   if (rows.count() == 0) return bad_data("no line of numbers stands behind the labels", "nothing was recorded");
   const auto said = [&](const char* today, const char* old) -> std::optional<double> {
@@ -178,7 +178,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
     return bad_data(fmt::format("it names {} markers", markers.size()), std::string(kWriteAgain),
                     line_place(names->number));
   }
-  if (auto ok = check_axes(*axes, separator, markers, contents); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_axes(*axes, separator, markers, contents));
   TextRows rows(columns, file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
     if (is_empty_row(line->text)) continue;
@@ -193,7 +193,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
       contents.notes.push_back(note_of_cut(*line));
       break;
     }
-    if (auto ok = rows.add(*line, cells); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(rows.add(*line, cells));
   }
   if (rows.count() == 0) return bad_data("no frame stands behind the header", "nothing was recorded");
   compare_counts(positive_number(header["numframes"]), rows.count(), "frames", contents);

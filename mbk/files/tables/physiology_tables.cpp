@@ -112,19 +112,18 @@ class AcqKnowledge {
   Result<Contents> run() {
     contents_.format = "AcqKnowledge text";
     contents_.table = true;
-    auto first = read_header();
-    if (!first) return tl::unexpected(first.error());
+    auto first = MBK_TRY(read_header());
     const std::size_t columns = names_.size() + (time_ != nullptr ? 1 : 0);
     TextRows rows(columns, bytes_);
     bool second_has_point = false;
-    for (std::optional<TextLine> line = *first; line; line = lines_.next_filled()) {
+    for (std::optional<TextLine> line = first; line; line = lines_.next_filled()) {
       if (is_cut(*line, split(line->text, separator_).size(), columns)) {
         contents_.notes.push_back(note_of_cut(*line));
         break;
       }
       if (rows.count() == 1)
         second_has_point = line->text.find_first_of(separator_ == ',' ? "." : ".,") != line->text.npos;
-      if (auto ok = add_row(rows, *line, separator_, columns); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(add_row(rows, *line, separator_, columns));
     }
     // Without a column of time nothing but the digits tells the counts from the first sample.
     if (counts_.empty() && is_first_digits_ && rows.count() > 1) {
@@ -250,16 +249,16 @@ class LabChart {
     for (auto line = lines_.next_filled(); line; line = lines_.next_filled()) {
       const std::string_view key = key_of(line->text);
       if (key.empty()) {
-        if (auto ok = add(*line); !ok) return tl::unexpected(ok.error());
+        MBK_TRY(add(*line));
         continue;
       }
       if (rows_) {
-        if (auto ok = end_block(); !ok) return tl::unexpected(ok.error());
+        MBK_TRY(end_block());
       }
-      if (auto ok = take_statement(key, *line); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(take_statement(key, *line));
     }
     if (rows_) {
-      if (auto ok = end_block(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(end_block());
     }
     if (records_.empty()) return bad_data("no sample stands below its header", "nothing was recorded");
     for (std::size_t k = 0; k < records_.size() && records_.size() > 1; ++k) {
@@ -337,7 +336,7 @@ class LabChart {
     }
     if (!rows_) {
       while (cells.size() > titles_.size() && is_blank(cells.back())) cells.pop_back();
-      if (auto ok = begin_block(line, cells.size()); !ok) return ok;
+      MBK_TRY(begin_block(line, cells.size()));
       numeric_ = extra_ > 0 && number_of(cells.front(), true).has_value();
     }
     const std::size_t columns = titles_.size() + extra_;
@@ -354,7 +353,7 @@ class LabChart {
     numbers.insert(numbers.end(), cells.begin() + static_cast<std::ptrdiff_t>(extra_), cells.end());
     const bool commas = separator_ != ',' &&
                         std::ranges::any_of(numbers, [](std::string_view cell) { return cell.find(',') != cell.npos; });
-    if (auto ok = rows_->add(line, numbers, commas); !ok) return ok;
+    MBK_TRY(rows_->add(line, numbers, commas));
     if (!said.empty()) {
       const std::size_t last = rows_->count() - 1;
       contents_.events.push_back(
@@ -420,12 +419,11 @@ class Spike2 {
       } else if (channels_.empty()) {
         continue;  // INFORMATION, SUMMARY
       } else if (is_word(line->text, labels, "START")) {
-        if (auto ok = start(*line, labels); !ok) return tl::unexpected(ok.error());
-      } else if (auto ok = add(*line, labels); !ok) {
-        return tl::unexpected(ok.error());
-      }
+        MBK_TRY(start(*line, labels));
+      } else
+        MBK_TRY(add(*line, labels));
     }
-    if (auto ok = take(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(take());
     return std::move(contents_);
   }
 

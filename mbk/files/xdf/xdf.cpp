@@ -409,9 +409,8 @@ class Decoder {
 }  // namespace
 
 Result<Contents> decode_xdf(std::span<const std::byte> file) {
-  auto parsed = parse_xdf(file);
-  if (!parsed) return tl::unexpected(parsed.error());
-  return Decoder(std::move(*parsed)).run();
+  auto parsed = MBK_TRY(parse_xdf(file));
+  return Decoder(std::move(parsed)).run();
 }
 
 }  // namespace mbk::recording

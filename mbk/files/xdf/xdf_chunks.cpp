@@ -159,7 +159,7 @@ class Parser {
       place = resume;
     }
     say_what_was_lost();
-    if (auto ok = fill(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(fill());
     return std::move(file_);
   }
 
@@ -343,7 +343,7 @@ class Parser {
       const std::uint64_t columns = 3 + (stream.value == XdfValue::string ? 0 : stream.channels.size());
       numbers += static_cast<std::uint64_t>(counts_[s]) * columns;
     }
-    if (auto ok = check_memory(numbers * sizeof(double)); !ok) return ok;
+    MBK_TRY(check_memory(numbers * sizeof(double)));
     for (std::size_t s = 0; s < file_.streams.size(); ++s) {
       XdfStream& stream = file_.streams[s];
       stream.stamps.resize(counts_[s]);

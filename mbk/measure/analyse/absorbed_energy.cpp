@@ -181,9 +181,8 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
   }
   exchange.reference = channels_of(recording, kReferenceChannels, trial.axes);
   exchange.clock = &recording.time;
-  auto window = window_of(trial, exchange);
-  if (!window) return tl::unexpected(window.error());
-  exchange.window = *window;
+  auto window = MBK_TRY(window_of(trial, exchange));
+  exchange.window = window;
 
   exchange.unbroken.resize(static_cast<std::size_t>(samples - 1));
   const double longest = 1.5 / trial.recording_rate;
@@ -198,9 +197,7 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
   passing.let_go_before(samples);
   exchange.smoothing = {trial.preparation.smoothing_order, trial.preparation.smoothing_window};
   exchange.rate = Hertz(trial.recording_rate);
-  if (const auto weights = dsp::savitzky_golay_weights(exchange.smoothing, 1); !weights) {
-    return tl::unexpected(weights.error());
-  }
+  MBK_TRY(dsp::savitzky_golay_weights(exchange.smoothing, 1));
   return exchange;
 }
 
@@ -431,10 +428,9 @@ Vector centre_of(const impedance::Model& model, const Exchange& exchange) {
 
 Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& trial, const EnergyOptions& options,
                                const impedance::Model* model) {
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
-  auto made = exchange_of(recording, trial);
-  if (!made) return tl::unexpected(made.error());
-  const auto exchange = std::make_shared<const Exchange>(std::move(*made));
+  MBK_TRY(check_options(options));
+  auto made = MBK_TRY(exchange_of(recording, trial));
+  const auto exchange = std::make_shared<const Exchange>(std::move(made));
   std::optional<Curl> curl;
   if (model != nullptr && trial.axes == 2 && model->K.rows() == 2 && model->K.allFinite()) {
     curl = Curl{impedance::antisymmetric_part(model->K), centre_of(*model, *exchange)};
@@ -445,7 +441,7 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
   auto curve = std::async(when, [&exchange, &curl] { return curve_of(*exchange, curl); });
   Intervals intervals(*exchange);
   const auto [parts, blocks] = divide(exchange, intervals, trial, options.block_s);
-  if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_motion(blocks));
 
   Energy energy;
   energy.account = account_of(blocks, has_perturbations(trial), options.first_share, options.replicates, options.seed);
@@ -469,7 +465,7 @@ Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& 
 
 Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings, std::span<const PreparedTrial> trials,
                                     const EnergyOptions& options) {
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_options(options));
   if (recordings.empty() || recordings.size() != trials.size()) {
     return bad_usage(
         fmt::format("{} recordings and {} trials do not belong together", recordings.size(), trials.size()));
@@ -481,16 +477,15 @@ Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings
       return bad_data("its axes or units are not those of the first file, so energies cannot be pooled",
                       "take it by itself", trials[k].sources.empty() ? "" : trials[k].sources.front().label());
     }
-    auto made = exchange_of(*recordings[k], trials[k]);
-    if (!made) return tl::unexpected(made.error());
-    const auto exchange = std::make_shared<const Exchange>(std::move(*made));
+    auto made = MBK_TRY(exchange_of(*recordings[k], trials[k]));
+    const auto exchange = std::make_shared<const Exchange>(std::move(made));
     Intervals intervals(*exchange);
     const bool own = has_perturbations(trials[k]);
     perturbations = perturbations && own;
     std::vector<EnergyBlock> more = divide(exchange, intervals, trials[k], options.block_s).blocks;
     std::ranges::move(more, std::back_inserter(blocks));
   }
-  if (auto ok = check_motion(blocks); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_motion(blocks));
   return account_of(blocks, perturbations, options.first_share, options.replicates, options.seed);
 }
 

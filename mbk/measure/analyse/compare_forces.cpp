@@ -35,9 +35,9 @@ Result<void> check(const std::vector<ForcePair>& segments) {
       }
       return {};
     };
-    if (auto ok = finite("the estimated force along axis", pair.estimated); !ok) return ok;
-    if (auto ok = finite("the measured force along axis", pair.measured); !ok) return ok;
-    if (auto ok = finite("the velocity of joint", pair.joint_velocity); !ok) return ok;
+    MBK_TRY(finite("the estimated force along axis", pair.estimated));
+    MBK_TRY(finite("the measured force along axis", pair.measured));
+    MBK_TRY(finite("the velocity of joint", pair.joint_velocity));
     rows += pair.estimated.rows();
   }
   if (rows < 2) return bad_data(fmt::format("{} rows are too few to compare forces", rows), "choose a longer window");
@@ -146,14 +146,14 @@ Lag lag_of(const std::vector<ForcePair>& segments, Index axis, Index longest) {
 
 Result<ForceComparison> compare_forces(const std::vector<ForcePair>& segments, double sample_time,
                                        const ForceComparisonOptions& options) {
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
   if (auto ok = not_negative({{"speed that counts as rest", options.rest_speed, ""},
                               {"window about a reversal", options.reversal_window, "s"},
                               {"longest lag", options.longest_lag, "s"}});
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = check(segments); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(segments));
 
   const Index axes = segments.front().measured.cols();
   const auto in_rows = [&](double seconds) { return static_cast<Index>(std::llround(seconds / sample_time)); };

@@ -167,9 +167,8 @@ Result<TransferFunctionFindings> describe(const TransferFunctionIdentification& 
   TransferFunctionFindings findings;
   findings.response = frequency_response(found.model, found.covariance, frequencies_of(found, false));
   if (admittance_to) {
-    auto inverse = inverted(found, *admittance_to);
-    if (!inverse) return tl::unexpected(inverse.error());
-    findings.inverse = std::move(*inverse);
+    auto inverse = MBK_TRY(inverted(found, *admittance_to));
+    findings.inverse = std::move(inverse);
   }
   Index samples = 0;
   std::vector<const SimulatedOutput*> shown;  // one after the other: of several recordings with one clock the first

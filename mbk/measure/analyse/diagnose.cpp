@@ -162,7 +162,7 @@ Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& tr
   const Matrix position = recorded(recording, kPositionChannels, trial.axes);
   const Matrix force = recorded(recording, kForceChannels, trial.axes);
   const std::vector<Rows> all = rows_of(trial), held_out = rows_of(trial, Purpose::validation);
-  if (auto ok = check_origin(position, force, trial, all); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_origin(position, force, trial, all));
 
   Diagnostics result;
   const double handle = identification.handle_mass;
@@ -176,12 +176,10 @@ Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& tr
     residual = trial.force_hand_on_robot - predicted_force(trial, identification.model, handle);
     result.autocorrelation = autocorrelation_of(residual, all, trial.sample_time);
   }
-  auto spectra = trial_spectra(position, force, trial, residual, all);
-  if (!spectra) return tl::unexpected(spectra.error());
-  result.spectra = std::move(*spectra);
-  auto filters = filter_response(trial);
-  if (!filters) return tl::unexpected(filters.error());
-  result.filters = std::move(*filters);
+  auto spectra = MBK_TRY(trial_spectra(position, force, trial, residual, all));
+  result.spectra = std::move(spectra);
+  auto filters = MBK_TRY(filter_response(trial));
+  result.filters = std::move(filters);
   if (other_acceleration != nullptr) result.acceleration = agreement_of(trial, *other_acceleration, all);
   result.double_integral = double_integral_of(trial, all);
   add_recording(recording, position, force, result);

@@ -67,24 +67,22 @@ Result<Spectra> trial_spectra(const Matrix& position, const Matrix& force, const
     recorded.push_back(std::move(piece));
     if (residual.size() > 0) left.emplace_back(residual.middleRows(one.begin, one.size()));
   }
-  const auto cross = dsp::cross_spectra(recorded, Hertz(trial.recording_rate), segment * every);
-  if (!cross) return tl::unexpected(cross.error());
+  const auto cross = MBK_TRY(dsp::cross_spectra(recorded, Hertz(trial.recording_rate), segment * every));
 
   const Preparation& how = trial.preparation;
   const double top = std::max(kBeyondBand * how.band_high.value, how.cutoff ? 2.0 * how.cutoff->value : 0.0);
   Index lines = 0;
-  while (lines < cross->frequency.size() && (lines < 3 || cross->frequency[lines] <= top)) ++lines;
+  while (lines < cross.frequency.size() && (lines < 3 || cross.frequency[lines] <= top)) ++lines;
   Spectra result;
-  result.frequency = cross->frequency.head(lines);
-  result.position = powers(*cross, 0, n, lines);
-  result.force = powers(*cross, n, n, lines);
-  result.coherence = dsp::multiple_coherence(*cross, n).topRows(lines);
-  result.coherence_significant = dsp::significant_coherence(cross->independent_segments, n);
-  result.segments = cross->segments;
+  result.frequency = cross.frequency.head(lines);
+  result.position = powers(cross, 0, n, lines);
+  result.force = powers(cross, n, n, lines);
+  result.coherence = dsp::multiple_coherence(cross, n).topRows(lines);
+  result.coherence_significant = dsp::significant_coherence(cross.independent_segments, n);
+  result.segments = cross.segments;
   if (left.empty()) return result;
-  const auto rest = dsp::cross_spectra(left, Hertz(1.0 / trial.sample_time), segment);
-  if (!rest) return tl::unexpected(rest.error());
-  result.residual = powers(*rest, 0, n, lines);
+  const auto rest = MBK_TRY(dsp::cross_spectra(left, Hertz(1.0 / trial.sample_time), segment));
+  result.residual = powers(rest, 0, n, lines);
   return result;
 }
 
@@ -100,17 +98,15 @@ Result<FilterResponse> filter_response(const PreparedTrial& trial) {
   }
   Vector lowpass = Vector::Ones(kFilterPoints);
   if (how.cutoff) {
-    const auto cascade = dsp::butterworth_lowpass(kLowpassOrder, *how.cutoff, rate);
-    if (!cascade) return tl::unexpected(cascade.error());
+    const auto cascade = MBK_TRY(dsp::butterworth_lowpass(kLowpassOrder, *how.cutoff, rate));
     for (Index k = 0; k < kFilterPoints; ++k) {
-      lowpass[k] = std::pow(dsp::gain(*cascade, Hertz(result.frequency[k]), rate), 2);  // forward and backward
+      lowpass[k] = std::pow(dsp::gain(cascade, Hertz(result.frequency[k]), rate), 2);  // forward and backward
     }
   }
   const std::array<Vector*, 3> gains = {&result.smoothing, &result.first, &result.second};
   for (int derivative = 0; derivative < 3; ++derivative) {
-    const auto response = dsp::savitzky_golay_response(smoothing, derivative, result.frequency, rate);
-    if (!response) return tl::unexpected(response.error());
-    *gains[static_cast<std::size_t>(derivative)] = response->cwiseProduct(lowpass);
+    const auto response = MBK_TRY(dsp::savitzky_golay_response(smoothing, derivative, result.frequency, rate));
+    *gains[static_cast<std::size_t>(derivative)] = response.cwiseProduct(lowpass);
   }
   result.first_ideal = 2.0 * std::numbers::pi * result.frequency;
   result.second_ideal = result.first_ideal.cwiseAbs2();

@@ -343,9 +343,8 @@ Result<std::vector<ModelPassivity>> model_passivities(std::initializer_list<cons
   std::vector<ModelPassivity> passivities;
   for (const Identification* id : models) {
     if (id == nullptr || !id->model.M.allFinite() || id->structure == Structure::mass_spring) continue;
-    auto model = model_passivity(*id, band);
-    if (!model) return tl::unexpected(model.error());
-    passivities.push_back(std::move(*model));
+    auto model = MBK_TRY(model_passivity(*id, band));
+    passivities.push_back(std::move(model));
   }
   return passivities;
 }

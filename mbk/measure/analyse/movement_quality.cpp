@@ -45,7 +45,7 @@ std::optional<double> force_angle(const Matrix& force, const Matrix& position) {
 
 Result<double> spectral_arc_length(const Vector& speed, Hertz rate) {
   using namespace movement_detail;
-  if (auto ok = check_speed(speed); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_speed(speed));
   if (!(rate.value >= 2.0 * kTopFrequency)) {
     return bad_data(fmt::format("{:.4g} Hz do not show a spectrum up to {:.0f} Hz", rate.value, kTopFrequency),
                     "record at 20 Hz or more");
@@ -74,7 +74,7 @@ Result<double> spectral_arc_length(const Vector& speed, Hertz rate) {
 
 Result<double> log_dimensionless_jerk(const Vector& speed, Hertz rate) {
   using namespace movement_detail;
-  if (auto ok = check_speed(speed); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_speed(speed));
   const double T = 1.0 / rate.value, duration = T * static_cast<double>(speed.size());
   const double peak = speed.maxCoeff();
   double squares = 0.0;
@@ -150,12 +150,10 @@ Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& f
   }
   constexpr int kOrder = 4;
   const dsp::SavitzkyGolay filter{kOrder, dsp::savitzky_golay_window(kOrder, Hertz(options.cutoff_hz), rate)};
-  const auto smooth = dsp::savitzky_golay(filter, 0, position, rate);
-  if (!smooth) return tl::unexpected(smooth.error());
-  const auto velocity = dsp::savitzky_golay(filter, 1, position, rate);
-  if (!velocity) return tl::unexpected(velocity.error());
-  const Vector speed = velocity->rowwise().norm();
-  const double extent = (smooth->colwise().maxCoeff() - smooth->colwise().minCoeff()).norm();
+  const auto smooth = MBK_TRY(dsp::savitzky_golay(filter, 0, position, rate));
+  const auto velocity = MBK_TRY(dsp::savitzky_golay(filter, 1, position, rate));
+  const Vector speed = velocity.rowwise().norm();
+  const double extent = (smooth.colwise().maxCoeff() - smooth.colwise().minCoeff()).norm();
   if (!(extent > 0.0)) return bad_data("the hand never moves", "record a movement");
   const Index lost = filter.half_window();
 
@@ -167,16 +165,14 @@ Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& f
   found.rest_speed = options.rest_share * speed.maxCoeff();
   for (const numeric::RowRange& range : find_reaches(speed, rate, options)) {
     const Vector own = speed.segment(range.begin, range.size());
-    const Matrix way = smooth->middleRows(range.begin, range.size());
+    const Matrix way = smooth.middleRows(range.begin, range.size());
     Reach reach;
     reach.begin_s = static_cast<double>(range.begin + lost) / rate.value;
     reach.end_s = static_cast<double>(range.end + lost) / rate.value;
-    const auto sparc = spectral_arc_length(own, rate);
-    if (!sparc) return tl::unexpected(sparc.error());
-    const auto ldlj = log_dimensionless_jerk(own, rate);
-    if (!ldlj) return tl::unexpected(ldlj.error());
-    reach.sparc = *sparc;
-    reach.ldlj = *ldlj;
+    const auto sparc = MBK_TRY(spectral_arc_length(own, rate));
+    const auto ldlj = MBK_TRY(log_dimensionless_jerk(own, rate));
+    reach.sparc = sparc;
+    reach.ldlj = ldlj;
     reach.peaks = count_peaks(own);
     reach.mean_speed = own.mean();
     reach.peak_speed = own.maxCoeff();

@@ -83,7 +83,7 @@ Result<Summary> summarise(const std::vector<Identification>& identifications) {
   }
   const Identification& first = *kept.front();
   for (const Identification* one : kept) {
-    if (auto ok = check_alike(first, *one); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_alike(first, *one));
   }
   const auto count = static_cast<double>(kept.size());
   const double t = numeric::student_quantile(0.975, static_cast<int>(kept.size()) - 1);

@@ -109,17 +109,16 @@ Matrix covariance_of(const numeric::LinearFit& fit, const Matrix& Z, const Matri
 Result<VoltageFit> fit_voltage(const Data& data, const std::vector<Index>& axes, bool continuous) {
   const Matrix force = data.force(Eigen::all, axes), voltage = data.voltage(Eigen::all, axes);
   const Matrix Z = regressors(data, force);
-  const auto fit = numeric::fit_least_squares(Z, voltage);
-  if (!fit) return tl::unexpected(fit.error());
+  const auto fit = MBK_TRY(numeric::fit_least_squares(Z, voltage));
   VoltageFit result;
   const Index n = force.cols();
-  result.rank = fit->rank;
-  result.condition = fit->condition;
-  if (fit->rank < Z.cols()) return result;
-  result.C = fit->coefficients.topRows(n).transpose();
-  result.zeros = fit->coefficients.bottomRows(data.runs()).transpose();
-  result.residual = voltage - Z * fit->coefficients;
-  result.covariance = covariance_of(*fit, Z, result.residual, data, continuous);
+  result.rank = fit.rank;
+  result.condition = fit.condition;
+  if (fit.rank < Z.cols()) return result;
+  result.C = fit.coefficients.topRows(n).transpose();
+  result.zeros = fit.coefficients.bottomRows(data.runs()).transpose();
+  result.residual = voltage - Z * fit.coefficients;
+  result.covariance = covariance_of(fit, Z, result.residual, data, continuous);
   return result;
 }
 
@@ -293,7 +292,7 @@ class Calibrator {
       : runs_(runs), options_(options) {}
 
   Result<SensorCalibration> run() {
-    if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check());
     result_.continuous = runs_.front().interval.has_value();
     if (result_.continuous && options_.longest_delay > 0.0) result_.delay = find_delay(runs_, options_);
     data_ = gather(runs_, result_.delay, std::abs(result_.delay), options_.hac_lag_s);
@@ -306,7 +305,7 @@ class Calibrator {
         if (std::ranges::find(result_.notes, note) == result_.notes.end()) result_.notes.push_back(note);
       }
     }
-    if (auto ok = fit(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(fit());
     for (Index i = 0; i < n(); ++i) judge(i);
     compare_zeros();
     return std::move(result_);
@@ -375,30 +374,28 @@ class Calibrator {
     residual_.resize(data_.rows(), axes);
     covariance_ = Matrix::Zero(axes * p, axes * p);
     if (options_.crosstalk && axes > 1) {
-      const auto whole = fit_voltage(data_, all, result_.continuous);
-      if (!whole) return tl::unexpected(whole.error());
+      const auto whole = MBK_TRY(fit_voltage(data_, all, result_.continuous));
       constexpr double kNearlyOneLine = 30.0;
-      if (whole->rank < p || !(whole->condition < 1e6)) {
+      if (whole.rank < p || !(whole.condition < 1e6)) {
         return fail(ErrorKind::not_usable,
                     "the loads lie on one line, so that crosstalk is not distinguishable from the slopes",
                     "load each axis separately, or fit each axis alone with --axes 1", runs_.front().source.label());
       }
-      if (whole->condition > kNearlyOneLine) {
+      if (whole.condition > kNearlyOneLine) {
         warn(SensorWarningCode::loads_nearly_collinear,
-             fmt::format("the loads are nearly on one line (condition {:.0f})", whole->condition),
+             fmt::format("the loads are nearly on one line (condition {:.0f})", whole.condition),
              "load each axis separately too");
       }
-      C_ = whole->C;
-      zeros_ = whole->zeros;
-      residual_ = whole->residual;
-      covariance_ = whole->covariance;
+      C_ = whole.C;
+      zeros_ = whole.zeros;
+      residual_ = whole.residual;
+      covariance_ = whole.covariance;
     } else {
       for (Index i = 0; i < axes; ++i) {
-        const auto one = fit_voltage(data_, {i}, result_.continuous);
-        if (!one) return tl::unexpected(one.error());
-        C_(i, i) = one->C(0, 0);
-        zeros_.row(i) = one->zeros;
-        residual_.col(i) = one->residual;
+        const auto one = MBK_TRY(fit_voltage(data_, {i}, result_.continuous));
+        C_(i, i) = one.C(0, 0);
+        zeros_.row(i) = one.zeros;
+        residual_.col(i) = one.residual;
         const Index at = i * p;
         // [C_ii, a_i1 … a_iR] among [C_i1 … C_in, a_i1 … a_iR]
         std::vector<Index> places{at + i};
@@ -406,12 +403,12 @@ class Calibrator {
         for (Index a = 0; a < std::ssize(places); ++a) {
           for (Index b = 0; b < std::ssize(places); ++b) {
             covariance_(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)]) =
-                one->covariance(a, b);
+                one.covariance(a, b);
           }
         }
       }
     }
-    if (auto ok = follows(); !ok) return ok;
+    MBK_TRY(follows());
     invert();
     return {};
   }
@@ -656,10 +653,9 @@ Result<void> turn_into_link(const Recording& recording, SensorRun& run) {
     return bad_data("the sensor turns with the last link, and one axis of the force alone cannot be turned",
                     "name both axes, or pass --sensor-frame base");
   }
-  const auto theta = columns(recording, {"joint_2"});
-  if (!theta) return tl::unexpected(theta.error());
+  const auto theta = MBK_TRY(columns(recording, {"joint_2"}));
   for (Index i = 0; i < run.force.rows(); ++i) {
-    run.force.row(i) = run.force.row(i) * robot::link_axes((*theta)(i, 0));  // (Rᵀ f)ᵀ = fᵀ R
+    run.force.row(i) = run.force.row(i) * robot::link_axes(theta(i, 0));  // (Rᵀ f)ᵀ = fᵀ R
   }
   run.notes.emplace_back("the force was turned into the axes of the last link with joint_2 (eq. E.4)");
   return {};

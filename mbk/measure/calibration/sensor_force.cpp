@@ -107,14 +107,12 @@ void put(Recording& recording, const std::string& name, Vector values) {
 }  // namespace
 
 Result<Recording> force_from_voltage(Recording recording, const SensorUse& use) {
-  if (auto ok = check(use); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(use));
   const SensorCalibration& calibration = use.calibration;
-  const auto voltage = voltages_of(recording, calibration);
-  if (!voltage) return tl::unexpected(voltage.error());
-  const auto zero = zero_of(recording, *voltage, use);
-  if (!zero) return tl::unexpected(zero.error());
+  const auto voltage = MBK_TRY(voltages_of(recording, calibration));
+  const auto zero = MBK_TRY(zero_of(recording, voltage, use));
   const double arm = use.lever_arm ? *calibration.lever_arm / *use.lever_arm : 1.0;
-  Matrix force = (voltage->rowwise() - zero->transpose()) * (arm * calibration.slope).transpose();
+  Matrix force = (voltage.rowwise() - zero.transpose()) * (arm * calibration.slope).transpose();
 
   std::vector<std::string>& notes = recording.notes;
   std::vector<std::string> names, zeros;
@@ -122,7 +120,7 @@ Result<Recording> force_from_voltage(Recording recording, const SensorUse& use) 
   for (Index k = 0; k < force.cols(); ++k) {
     const std::string& axis = calibration.axes[static_cast<std::size_t>(k)].name;
     names.push_back("force_" + axis);
-    zeros.push_back(fmt::format("{:.5g}", (*zero)[k]));
+    zeros.push_back(fmt::format("{:.5g}", zero[k]));
     replaced = replaced || recording.find(names.back()) != nullptr;
   }
   notes.push_back(fmt::format(
@@ -150,7 +148,7 @@ Result<Recording> force_from_voltage(Recording recording, const SensorUse& use) 
   const bool link = use.frame == SensorFrame::link ||
                     (use.frame == SensorFrame::automatic && recording.find("joint_2") != nullptr && force.cols() > 1);
   if (link) {
-    if (auto ok = turn_to_base(recording, force); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(turn_to_base(recording, force));
     notes.emplace_back("the force was turned from the axes of the last link into the base frame (eq. E.4)");
   }
   for (Index k = 0; k < force.cols(); ++k) put(recording, names[static_cast<std::size_t>(k)], force.col(k));

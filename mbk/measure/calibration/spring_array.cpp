@@ -190,7 +190,7 @@ Result<Vector2d> equilibrium(const SpringArray& array, const Vector2d& start, do
                             kMillimetres * place.x(), kMillimetres * place.y(), force.norm()),
                 "begin nearer to where it is expected");
   }
-  if (auto ok = check_equilibrium(array, place, disc_rotation); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_equilibrium(array, place, disc_rotation));
   return place;
 }
 
@@ -258,20 +258,19 @@ Result<SpringField> spring_field(const SpringArray& array, const Vector2d& start
   if (!(radius > 0.0 && std::isfinite(radius))) {
     return bad_usage(fmt::format("a circle of radius {:g} mm is none", kMillimetres * radius));
   }
-  const auto place = equilibrium(array, start, disc_rotation);
-  if (!place) return tl::unexpected(place.error());
+  const auto place = MBK_TRY(equilibrium(array, start, disc_rotation));
   SpringField field;
   field.springs = array.springs();
   field.disc_rotation = disc_rotation;
-  field.equilibrium = *place;
-  field.residual = array.force(*place, disc_rotation).norm();
-  field.moment = array.moment(*place, disc_rotation);
-  field.K = array.stiffness(*place, disc_rotation);
+  field.equilibrium = place;
+  field.residual = array.force(place, disc_rotation).norm();
+  field.moment = array.moment(place, disc_rotation);
+  field.K = array.stiffness(place, disc_rotation);
   for (std::size_t i = 0; i < field.springs.size(); ++i) {
-    field.lengths.push_back(array.length(i, *place, disc_rotation));
-    field.tensions.push_back(array.tension(i, *place, disc_rotation));
+    field.lengths.push_back(array.length(i, place, disc_rotation));
+    field.tensions.push_back(array.tension(i, place, disc_rotation));
   }
-  field.linearisation = linearisation(array, *place, radius, disc_rotation);
+  field.linearisation = linearisation(array, place, radius, disc_rotation);
   return field;
 }
 

@@ -51,12 +51,11 @@ Result<SpringLine> line_through(const Stretch& stretch, double from) {
   const double middle = s.mean();
   Matrix Z(s.size(), 2);
   Z << (s.array() - middle).matrix(), Vector::Ones(s.size());
-  const auto fit = numeric::fit_least_squares(Z, T);
-  if (!fit) return tl::unexpected(fit.error());
-  const Vector residual = T - Z * fit->coefficients;
-  const Matrix V = covariance(*fit, Z, residual, ranges, std::min(stretch.lags, s.size() / 4));
+  const auto fit = MBK_TRY(numeric::fit_least_squares(Z, T));
+  const Vector residual = T - Z * fit.coefficients;
+  const Matrix V = covariance(fit, Z, residual, ranges, std::min(stretch.lags, s.size() / 4));
   SpringLine line;
-  const double k = fit->coefficients(0, 0), c = fit->coefficients(1, 0);
+  const double k = fit.coefficients(0, 0), c = fit.coefficients(1, 0);
   line.stiffness = k;
   line.stiffness_error = std::sqrt(V(0, 0));
   line.rest = middle - c / k;
@@ -64,8 +63,8 @@ Result<SpringLine> line_through(const Stretch& stretch, double from) {
   line.rest_error = std::sqrt(by.dot(V * by));
   line.r_squared = 1.0 - residual.squaredNorm() / (T.array() - T.mean()).matrix().squaredNorm();
   line.rmse = numeric::root_mean_square(residual);
-  line.tension_from = (Z * fit->coefficients).minCoeff();
-  line.tension_to = (Z * fit->coefficients).maxCoeff();
+  line.tension_from = (Z * fit.coefficients).minCoeff();
+  line.tension_to = (Z * fit.coefficients).maxCoeff();
   line.samples = s.size();
   return line;
 }
@@ -223,7 +222,7 @@ double hook_tension(const HookFit& fit, double s) {
 
 Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& position, const Vector& reaction,
                                            const StretchOptions& options) {
-  if (auto ok = check(time, position, reaction, options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(time, position, reaction, options));
   // T = |F| on the side of the stretch: the spring pulls one way for most of it.
   const double side = reaction.mean() > 0.0 ? -1.0 : 1.0;
   Stretch stretch{side * position, -side * reaction, 0};
@@ -231,21 +230,20 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
   stretch.lags = std::min(static_cast<Index>(std::llround(options.hac_lag_s / interval)), time.size() / 4);
   SpringConstant constant;
   constant.hac_lag_s = static_cast<double>(stretch.lags) * interval;
-  const auto whole = line_through(stretch, stretch.s.minCoeff());
-  if (!whole) return tl::unexpected(whole.error());
-  constant.whole = *whole;
-  if (!(whole->stiffness > 0.0)) {
+  const auto whole = MBK_TRY(line_through(stretch, stretch.s.minCoeff()));
+  constant.whole = whole;
+  if (!(whole.stiffness > 0.0)) {
     return fail(ErrorKind::not_usable, "the force pushes the way that the spring is stretched, and a spring pulls back",
                 "turn the sign of the force, as in --channels x=2,F=-3");
   }
-  if (!(whole->r_squared >= kMinFit)) {
+  if (!(whole.r_squared >= kMinFit)) {
     return fail(ErrorKind::not_usable,
                 fmt::format("a line explains {:.0f} % of the tension's variance, and a spring's at least {:.0f} %",
-                            100.0 * whole->r_squared, 100.0 * kMinFit),
+                            100.0 * whole.r_squared, 100.0 * kMinFit),
                 "name the channels of position and force; stretch slowly, and further");
   }
   const auto hooks = fit_hooks(stretch);
-  if (!hooks || !(hooks->deflection > kSeen * hooks->deflection_error) || !(hooks->rmse < whole->rmse)) {
+  if (!hooks || !(hooks->deflection > kSeen * hooks->deflection_error) || !(hooks->rmse < whole.rmse)) {
     constant.whole.rest *= side;
     constant.straight = constant.whole;
     constant.rule =
@@ -269,9 +267,8 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
                             kMillimetres * (end - begin)),
                 "stretch the spring further");
   }
-  const auto straight = line_through(stretch, from);
-  if (!straight) return tl::unexpected(straight.error());
-  constant.straight = *straight;
+  const auto straight = MBK_TRY(line_through(stretch, from));
+  constant.straight = straight;
   for (SpringLine* line : {&constant.straight, &constant.whole}) line->rest *= side;
   constant.hooks->rest *= side;
   return constant;

@@ -235,7 +235,7 @@ Vector2d facing_hole(const Vector2d& eye, const Vector2d& frame_centre) {
 }
 
 Result<SpringDesign> design_springs(const SpringRequest& request) {
-  if (auto ok = check(request); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(request));
   std::vector<Place> places;
   for (std::size_t i = 0; i < request.eyes.size(); ++i) {
     Place place = place_of(request, i);
@@ -256,12 +256,10 @@ Result<SpringDesign> design_springs(const SpringRequest& request) {
     best_z = solution->z;
   }
   if (best == nullptr) return out_of_reach(request, all, choices, target);
-  const auto array = SpringArray::create(springs_of(*best, best_z));
-  if (!array) return tl::unexpected(array.error());
-  auto field = spring_field(*array, request.equilibrium, request.travel);
-  if (!field) return tl::unexpected(field.error());
+  const auto array = MBK_TRY(SpringArray::create(springs_of(*best, best_z)));
+  auto field = MBK_TRY(spring_field(array, request.equilibrium, request.travel));
   SpringDesign design;
-  design.field = std::move(*field);
+  design.field = std::move(field);
   for (const Place* place : *best) design.eyes.push_back(place->eye);
   design.target_K = request.K;
   design.target_equilibrium = request.equilibrium;

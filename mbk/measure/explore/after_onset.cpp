@@ -59,10 +59,10 @@ Result<Response> response_after(const ExplorationTrial& trial, const Onset& onse
   const Hertz rate(1.0 / trial.sample_time);
   Matrix smooth;  // row k is sample first + half + k
   for (int derivative = 2; derivative >= 0; --derivative) {
-    const auto part = dsp::savitzky_golay(lengths.filter, derivative, derivative > 0 ? both.leftCols(n) : both, rate);
-    if (!part) return tl::unexpected(part.error());
-    smooth.conservativeResize(part->rows(), smooth.cols() + part->cols());
-    smooth.rightCols(part->cols()) = *part;
+    const auto part =
+        MBK_TRY(dsp::savitzky_golay(lengths.filter, derivative, derivative > 0 ? both.leftCols(n) : both, rate));
+    smooth.conservativeResize(part.rows(), smooth.cols() + part.cols());
+    smooth.rightCols(part.cols()) = part;
   }
   // Windows of the first rows end before the onset.
   const Vector mean = smooth.topRows(lengths.baseline).colwise().mean();
@@ -214,10 +214,9 @@ Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials,
     for (const Onset& onset : reference_onsets(trial.reference, own.before())) {
       ++seen;
       if (onset.sample < own.before() || onset.sample + own.window > trial.samples()) continue;
-      auto response = response_after(trial, onset, own);
-      if (!response) return tl::unexpected(response.error());
-      if (response->before > kRest * response->way) continue;
-      responses.push_back(std::move(*response));
+      auto response = MBK_TRY(response_after(trial, onset, own));
+      if (response.before > kRest * response.way) continue;
+      responses.push_back(std::move(response));
     }
   }
   found.onsets = static_cast<Index>(responses.size());

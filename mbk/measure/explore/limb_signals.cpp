@@ -26,13 +26,11 @@ constexpr dsp::SavitzkyGolay kStencil{.order = 8, .window = 9};
 /// [x ẋ ẍ −F r] of one trial behind the low-pass.
 Result<Matrix> filtered(const ExplorationTrial& trial, Index every) {
   const Hertz rate(1.0 / trial.sample_time);
-  const auto velocity = dsp::savitzky_golay(kStencil, 1, trial.input, rate);
-  if (!velocity) return tl::unexpected(velocity.error());
-  const auto acceleration = dsp::savitzky_golay(kStencil, 2, trial.input, rate);
-  if (!acceleration) return tl::unexpected(acceleration.error());
-  const Index n = trial.axes, lost = kStencil.half_window(), rows = velocity->rows();
+  const auto velocity = MBK_TRY(dsp::savitzky_golay(kStencil, 1, trial.input, rate));
+  const auto acceleration = MBK_TRY(dsp::savitzky_golay(kStencil, 2, trial.input, rate));
+  const Index n = trial.axes, lost = kStencil.half_window(), rows = velocity.rows();
   Matrix all(rows, 4 * n + trial.reference.cols());
-  all << trial.input.middleRows(lost, rows), *velocity, *acceleration, trial.output.middleRows(lost, rows),
+  all << trial.input.middleRows(lost, rows), velocity, acceleration, trial.output.middleRows(lost, rows),
       trial.reference.size() > 0 ? trial.reference.middleRows(lost, rows) : Matrix(rows, 0);
   return dsp::decimate(all, rate, every);
 }
@@ -99,19 +97,18 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
     referenced = referenced && trial.reference.size() > 0;
   }
   for (const ExplorationTrial& trial : trials) {
-    auto part = filtered(trial, signals.every);
-    if (!part) return tl::unexpected(part.error());
+    auto part = MBK_TRY(filtered(trial, signals.every));
     const Index ends = signals.every > 1 ? kEnds : 0;
-    if (part->rows() <= 2 * ends) return bad_data("a trial is too short for the low-pass", "record longer");
+    if (part.rows() <= 2 * ends) return bad_data("a trial is too short for the low-pass", "record longer");
     signals.first_sample = kStencil.half_window() + ends * signals.every;
-    *part = part->middleRows(ends, part->rows() - 2 * ends).eval();
-    const Index rows = part->rows();
+    part = part.middleRows(ends, part.rows() - 2 * ends).eval();
+    const Index rows = part.rows();
     const Index split = std::clamp<Index>(trial.split / signals.every - ends, 0, rows);
     signals.pieces.push_back({total, total + rows});
     if (split > 0) signals.identification.push_back({total, total + split});
     if (split < rows) signals.validation.push_back({total + split, total + rows});
     total += rows;
-    parts.push_back(std::move(*part));
+    parts.push_back(std::move(part));
   }
   signals.position.resize(total, n);
   signals.velocity.resize(total, n);

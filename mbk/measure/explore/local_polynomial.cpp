@@ -98,7 +98,7 @@ LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, const Vector& s
 
 Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const ExplorationTrial> trials,
                                                             const LocalPolynomialOptions& options) {
-  if (auto ok = check_alike(trials); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_alike(trials));
   if (!(options.bandwidth_hz > 0.0 && options.max_frequency_hz > 0.0)) {
     return bad_usage("bandwidth and highest frequency must be above 0");
   }

@@ -157,9 +157,8 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const ExplorationTrial> tri
                                                          : "to the earliest voluntary reaction");
   const SampleWindow window = in_samples(found.from_s, found.to_s, T);
   for (const TrialRamp& one : ramps) found.plateaus.push_back(displaced(one, window));
-  auto fit = regress_stiffness(found.plateaus);
-  if (!fit) return tl::unexpected(fit.error());
-  found.fit = std::move(*fit);
+  auto fit = MBK_TRY(regress_stiffness(found.plateaus));
+  found.fit = std::move(fit);
   found.motion_share = motion_share(ramps, window);
   return found;
 }

@@ -115,25 +115,22 @@ Result<ReachStiffness> reach_stiffness(std::span<const ExplorationTrial> trials,
                     "are predicted",
                     1e3 * how.from, 1e3 * how.to, 1e3 * how.prediction.future));
   }
-  auto all = reaches_of(trials, options.trigger, how);
-  if (!all) return tl::unexpected(all.error());
+  auto all = MBK_TRY(reaches_of(trials, options.trigger, how));
   const double sample_time = trials.front().sample_time;
-  auto own_past = servo_displacement_stiffness(all->undisturbed, all->displaced, sample_time, how);
-  if (!own_past) return tl::unexpected(own_past.error());
+  auto own_past = MBK_TRY(servo_displacement_stiffness(all.undisturbed, all.displaced, sample_time, how));
   how.prediction.max_components = 0;
-  auto mean_reach = servo_displacement_stiffness(all->undisturbed, all->displaced, sample_time, how);
-  if (!mean_reach) return tl::unexpected(mean_reach.error());
+  auto mean_reach = MBK_TRY(servo_displacement_stiffness(all.undisturbed, all.displaced, sample_time, how));
   ReachStiffness found;
   found.axes = trials.front().axes;
   found.trigger = options.trigger;
   found.from_s = how.from;
   found.to_s = how.to;
-  found.undisturbed = static_cast<int>(all->undisturbed.size());
-  found.left_out = all->left_out;
-  found.own_past = std::move(own_past->by);
-  found.mean_reach = std::move(mean_reach->by);
-  found.usable = own_past->verdict.usable;
-  for (Warning& warning : own_past->verdict.warnings) warnings.push_back(std::move(warning));
+  found.undisturbed = static_cast<int>(all.undisturbed.size());
+  found.left_out = all.left_out;
+  found.own_past = std::move(own_past.by);
+  found.mean_reach = std::move(mean_reach.by);
+  found.usable = own_past.verdict.usable;
+  for (Warning& warning : own_past.verdict.warnings) warnings.push_back(std::move(warning));
   return found;
 }
 

@@ -461,14 +461,13 @@ Cx odd_distortion_near(Index k, const std::vector<Index>& odd, const std::vector
 
 Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationTrial> trials,
                                                     const PeriodicOptions& options) {
-  if (auto ok = check_alike(trials); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_alike(trials));
   const bool by_reference = all_have_reference(trials);
-  const auto period = period_of(trials, options, by_reference);
-  if (!period) return tl::unexpected(period.error());
+  const auto period = MBK_TRY(period_of(trials, options, by_reference));
   const ExplorationTrial& first = trials.front();
-  Sizes sizes{first.output.cols(), first.input.cols(), *period, 0, first.sample_time};
-  const double period_s = static_cast<double>(*period) * first.sample_time;
-  sizes.lines = std::min<Index>((*period - 1) / 2,
+  Sizes sizes{first.output.cols(), first.input.cols(), period, 0, first.sample_time};
+  const double period_s = static_cast<double>(period) * first.sample_time;
+  sizes.lines = std::min<Index>((period - 1) / 2,
                                 static_cast<Index>(std::floor(options.max_frequency_hz * period_s * (1.0 + 1e-12))));
   if (sizes.lines < 1) {
     return bad_usage(

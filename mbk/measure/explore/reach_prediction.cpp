@@ -94,8 +94,7 @@ Result<ReachPrediction> ReachPrediction::create(std::span<const RecordedReach> u
   PastAndFuture data{Matrix(n, made.lags_ * made.axes_), {}};
   for (Index i = 0; i < n; ++i) {
     const RecordedReach& reach = undisturbed[static_cast<std::size_t>(i)];
-    auto past = made.past_of(reach);
-    if (!past) return tl::unexpected(past.error());
+    auto past = MBK_TRY(made.past_of(reach));
     if (reach.trigger + made.future_ > reach.position.rows()) {
       return bad_data(fmt::format("an undisturbed reach ends {} samples behind its trigger, and {} are needed",
                                   reach.position.rows() - reach.trigger, made.future_),
@@ -108,7 +107,7 @@ Result<ReachPrediction> ReachPrediction::create(std::span<const RecordedReach> u
     const Vector future = made.future_of(reach);
     if (!future.allFinite()) return bad_data("a place or force of a reach is not finite");
     if (data.future.size() == 0) data.future.resize(n, future.size());
-    data.past.row(i) = past->transpose();
+    data.past.row(i) = past.transpose();
     data.future.row(i) = future.transpose();
   }
 
@@ -136,9 +135,8 @@ Result<ReachPrediction> ReachPrediction::create(std::span<const RecordedReach> u
 }
 
 Result<ReachPrediction::Predicted> ReachPrediction::predict(const RecordedReach& reach) const {
-  const auto past = past_of(reach);
-  if (!past) return tl::unexpected(past.error());
-  const Vector future = mean_future_ + weights_ * (directions_.transpose() * (*past - mean_past_));
+  const auto past = MBK_TRY(past_of(reach));
+  const Vector future = mean_future_ + weights_ * (directions_.transpose() * (past - mean_past_));
   Predicted predicted;
   const auto rows_of = [&](Index first) -> Matrix {
     return future.segment(first * axes_, future_ * axes_).reshaped(axes_, future_).transpose();

@@ -54,17 +54,16 @@ Result<CourseRows> course_rows(const LimbSignals& signals, const CourseVariable&
       const Matrix explained = signals.explained(rows, Eigen::all);
       all.rightCols(3 * n) << explained.rightCols(n), explained.middleCols(n, n), explained.leftCols(n);
     }
-    const auto slow = dsp::decimate(all, Hertz(1.0 / signals.sample_time), every);
-    if (!slow) return tl::unexpected(slow.error());
+    const auto slow = MBK_TRY(dsp::decimate(all, Hertz(1.0 / signals.sample_time), every));
     Index first = -1;
     const auto close = [&](Index end) {
       if (first < 0) return;
-      parts.push_back(slow->middleRows(first, end - first));
+      parts.push_back(slow.middleRows(first, end - first));
       course.rows.ranges.push_back({total, total + end - first});
       total += end - first;
       first = -1;
     };
-    for (Index j = ends; j < slow->rows() - ends; ++j) {
+    for (Index j = ends; j < slow.rows() - ends; ++j) {
       const double value = mean_around(variable.values[k], signals.first_sample + j * samples, samples);
       if (!std::isfinite(value)) {
         close(j);
@@ -73,7 +72,7 @@ Result<CourseRows> course_rows(const LimbSignals& signals, const CourseVariable&
       if (first < 0) first = j;
       s.push_back(value);
     }
-    close(slow->rows() - ends);
+    close(slow.rows() - ends);
   }
   const Index p = 3 * n + 1;
   if (total < kRowsPerCoefficient * p) {
@@ -181,19 +180,18 @@ void set_courses(const VaryingFit& constants, const VaryingFit& fit, const Matri
 
 Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseVariable& variable, double band_hz) {
   using namespace time_course_detail;
-  const auto course = course_rows(signals, variable, band_hz);
-  if (!course) return tl::unexpected(course.error());
-  const VaryingRows& rows = course->rows;
+  const auto course = MBK_TRY(course_rows(signals, variable, band_hz));
+  const VaryingRows& rows = course.rows;
   const Index n = signals.axes, p = 3 * n + 1;
   TimeCourseEstimate found;
   found.axes = static_cast<int>(n);
   found.variable = variable.name;
   found.unit = variable.unit;
-  found.from = course->from;
-  found.to = course->to;
+  found.from = course.from;
+  found.to = course.to;
   found.repetitions = variable.repetitions;
   found.rows = rows.Z.rows();
-  found.rate_hz = 1.0 / course->sample_time;
+  found.rate_hz = 1.0 / course.sample_time;
   found.instruments = signals.explained.size() > 0;
 
   const VaryingModel constant{{0, {}}, p};

@@ -55,7 +55,7 @@ double partial_coherence(const Complex& S, Index inputs, Index i, Index j) {
 
 Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTrial> trials,
                                                  const WelchOptions& options) {
-  if (auto ok = check_alike(trials); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_alike(trials));
   const ExplorationTrial& first = trials.front();
   const Index inputs = first.input.cols(), outputs = first.output.cols();
   const bool by_reference = all_have_reference(trials);
@@ -63,13 +63,12 @@ Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTria
   for (const ExplorationTrial& trial : trials) pieces.push_back(side_by_side(trial, by_reference));
   const auto wanted = static_cast<Index>(std::llround(options.segment_s / first.sample_time));
   const Index segment = wanted - wanted % 2;
-  const auto spectra = dsp::cross_spectra(pieces, Hertz(1.0 / first.sample_time), segment);
-  if (!spectra) return tl::unexpected(spectra.error());
-  const double n = spectra->independent_segments, dof = n - static_cast<double>(inputs);
+  const auto spectra = MBK_TRY(dsp::cross_spectra(pieces, Hertz(1.0 / first.sample_time), segment));
+  const double n = spectra.independent_segments, dof = n - static_cast<double>(inputs);
   if (!(dof >= 1.0)) {
     return bad_data(
-        fmt::format("{} segment{} of {:g} s cannot show how sure a response of {} input{} is", spectra->segments,
-                    spectra->segments == 1 ? "" : "s", options.segment_s, inputs, inputs == 1 ? "" : "s"),
+        fmt::format("{} segment{} of {:g} s cannot show how sure a response of {} input{} is", spectra.segments,
+                    spectra.segments == 1 ? "" : "s", options.segment_s, inputs, inputs == 1 ? "" : "s"),
         "record longer, or average shorter segments by --segment");
   }
 
@@ -82,25 +81,25 @@ Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTria
   found.assumes = by_reference ? "noise that is unrelated to the reference and no leakage between lines"
                                : "noise on the output alone, unrelated to the input, and no leakage between lines";
   const Index last =
-      std::min<Index>(static_cast<Index>(spectra->density.size()) - 2,
-                      static_cast<Index>(std::floor(options.max_frequency_hz / spectra->frequency[1] * (1.0 + 1e-12))));
+      std::min<Index>(static_cast<Index>(spectra.density.size()) - 2,
+                      static_cast<Index>(std::floor(options.max_frequency_hz / spectra.frequency[1] * (1.0 + 1e-12))));
   if (last < 1) {
     return bad_usage(
         fmt::format("no line of {:g} s segments lies below {:g} Hz", options.segment_s, options.max_frequency_hz),
         "choose a longer --segment or a higher --max-frequency");
   }
-  found.frequency = spectra->frequency.segment(1, last);
+  found.frequency = spectra.frequency.segment(1, last);
   found.degrees_of_freedom = Vector::Constant(last, dof);
   found.multiple_coherence.resize(last, outputs);
   found.partial_coherence.resize(last, outputs * inputs);
   const Matrix multiple = [&] {
-    dsp::CrossSpectra without = *spectra;
+    dsp::CrossSpectra without = spectra;
     for (Complex& S : without.density) S = Complex(S.topLeftCorner(inputs + outputs, inputs + outputs));
     return dsp::multiple_coherence(without, inputs);
   }();
   found.multiple_coherence = multiple.middleRows(1, last);
   for (Index line = 1; line <= last; ++line) {
-    const Complex& S = spectra->density[static_cast<std::size_t>(line)];
+    const Complex& S = spectra.density[static_cast<std::size_t>(line)];
     const Index r = by_reference ? inputs + outputs : 0;
     const Complex Sur = S.block(0, r, inputs, inputs), Syr = S.block(inputs, r, outputs, inputs);
     const Complex Srr = S.block(r, r, inputs, inputs), Suu = S.topLeftCorner(inputs, inputs);

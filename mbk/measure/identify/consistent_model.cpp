@@ -111,12 +111,11 @@ Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, co
     if (part == 0) b -= handle_mass * Vector(Matrix::Identity(n, n).reshaped());
     program.cones.push_back({std::move(A), std::move(b)});
   }
-  auto solution = numeric::solve_cone_program(program);
-  if (!solution) return tl::unexpected(solution.error());
+  auto solution = MBK_TRY(numeric::solve_cone_program(program));
   ConsistentCoefficients result;
   result.tied = Vector(S * tied).reshaped(p, n);
-  result.coefficients = Vector(S * (tied + solution->x)).reshaped(p, n);
-  result.certificate = std::move(*solution);
+  result.coefficients = Vector(S * (tied + solution.x)).reshaped(p, n);
+  result.certificate = std::move(solution);
   return result;
 }
 

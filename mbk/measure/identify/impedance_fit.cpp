@@ -165,7 +165,7 @@ Result<void> Fitter::choose_handle_mass() {
 
 Result<void> Fitter::prepare() {
   if (r_.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
-  if (auto ok = choose_handle_mass(); !ok) return ok;
+  MBK_TRY(choose_handle_mass());
   S_ = structure_matrix(options_.structure, r_.axes());
   const Preparation& how = trials_.front().preparation;
   const bool pulses_by_default = how.mode == Mode::default_mode && how.protocol == Protocol::underdamped;
@@ -192,16 +192,14 @@ Result<void> Fitter::prepare() {
 Result<Estimate> Fitter::estimate(Method method, const std::vector<RowRange>& ranges, Index step) const {
   const SelectedRows Z(r_.Z, ranges, step), Y(r_.Y, ranges, step);
   if (method == Method::least_squares) {
-    auto fit = numeric::fit_least_squares(*Z, *Y, S_);
-    if (!fit) return tl::unexpected(fit.error());
-    return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse_gram), fit->rank};
+    auto fit = MBK_TRY(numeric::fit_least_squares(*Z, *Y, S_));
+    return Estimate{std::move(fit.coefficients), std::move(fit.structure), std::move(fit.inverse_gram), fit.rank};
   }
   const bool every_row = Y->rows() == samples_;
-  auto fit = every_row ? numeric::fit_instrumental_variables(instruments_->gram, r_.Z.cols(), samples_, S_)
-                       : numeric::fit_instrumental_variables(*Z, *SelectedRows(instruments_->columns(r_), ranges, step),
-                                                             *Y, S_);
-  if (!fit) return tl::unexpected(fit.error());
-  return Estimate{std::move(fit->coefficients), std::move(fit->structure), std::move(fit->inverse), fit->rank};
+  auto fit = MBK_TRY(every_row ? numeric::fit_instrumental_variables(instruments_->gram, r_.Z.cols(), samples_, S_)
+                               : numeric::fit_instrumental_variables(
+                                     *Z, *SelectedRows(instruments_->columns(r_), ranges, step), *Y, S_));
+  return Estimate{std::move(fit.coefficients), std::move(fit.structure), std::move(fit.inverse), fit.rank};
 }
 
 /// The coefficients of smallest norm explain the force too where the rank is short, but they are not the limb's.
@@ -280,15 +278,13 @@ void Fitter::describe(Identification& result) const {
 
 Result<void> Fitter::find_instruments() {
   if (instruments_) return {};
-  auto made = make_instruments(r_, trials_.front().reference_quantity, {ranges_, lags_, rows_by_cutoff()});
-  if (!made) return tl::unexpected(made.error());
-  instruments_ = std::move(*made);
+  instruments_ = MBK_TRY(make_instruments(r_, trials_.front().reference_quantity, {ranges_, lags_, rows_by_cutoff()}));
   return {};
 }
 
 Result<void> Fitter::find(Method method) {
   if (method == Method::instrumental_variables) {
-    if (auto ok = find_instruments(); !ok) return ok;
+    MBK_TRY(find_instruments());
   }
   const auto at = static_cast<std::size_t>(method);
   auto fit = estimate(method, r_.identification);
@@ -405,9 +401,8 @@ Result<Identification> Fitter::identify(Method method) {
     widen_by_curvature(tested.curvature, result);
   }
   if (options_.bootstrap > 0 && is_full(*fit)) {
-    auto replicates = resample(method);
-    if (!replicates) return tl::unexpected(replicates.error());
-    result.replicates = std::move(*replicates);
+    auto replicates = MBK_TRY(resample(method));
+    result.replicates = std::move(replicates);
   }
   if (!spread_) spread_ = spread_of(*SelectedRows(r_.Z, ranges_), *SelectedRows(r_.Y, ranges_));
   result.excitation = measure_excitation(*spread_, result.model, fit->rank);
@@ -416,11 +411,10 @@ Result<Identification> Fitter::identify(Method method) {
   if (options_.decimate_check) {
     // At least every other one: the rows may be decimated already.
     const auto step = std::max<Index>(2, static_cast<Index>(std::llround(1.0 / (100.0 * r_.sample_time))));
-    const auto coarse = estimate(method, ranges_, step);
-    if (!coarse) return tl::unexpected(coarse.error());
+    const auto coarse = MBK_TRY(estimate(method, ranges_, step));
     DecimationCheck decimation;
     decimation.rate_hz = 1.0 / (static_cast<double>(step) * r_.sample_time);
-    decimation.model = model_of(coarse->coefficients, r_.centre, handle_mass_);
+    decimation.model = model_of(coarse.coefficients, r_.centre, handle_mass_);
     decimation.largest_change = largest_relative_change(result.model, decimation.model);
     result.decimation = decimation;
   }
@@ -435,11 +429,10 @@ Result<Replicates> Fitter::resample(Method method) const {
   how.replicates = options_.bootstrap;
   how.seed = options_.seed;
   how.threads = options_.threads;
-  const auto drawn = numeric::block_bootstrap(r_.Z, instruments(method), r_.Y, S_, ranges_, how);
-  if (!drawn) return tl::unexpected(drawn.error());
-  Replicates result{Matrix(3 * n * n + n, drawn->coefficients.cols()), options_.block_s, drawn->blocks, how.seed};
-  for (Index k = 0; k < drawn->coefficients.cols(); ++k) {
-    const Matrix coefficients = Vector(S_ * drawn->coefficients.col(k)).reshaped(p, n);
+  const auto drawn = MBK_TRY(numeric::block_bootstrap(r_.Z, instruments(method), r_.Y, S_, ranges_, how));
+  Replicates result{Matrix(3 * n * n + n, drawn.coefficients.cols()), options_.block_s, drawn.blocks, how.seed};
+  for (Index k = 0; k < drawn.coefficients.cols(); ++k) {
+    const Matrix coefficients = Vector(S_ * drawn.coefficients.col(k)).reshaped(p, n);
     result.models.col(k) = impedance::stacked(model_of(coefficients, r_.centre, handle_mass_));
   }
   return result;
@@ -530,27 +523,25 @@ std::vector<std::string> parameter_names(int axes) {
 }
 
 Result<Identification> identify_impedance(const std::vector<PreparedTrial>& trials, const Options& options) {
-  if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_options(trials, options));
   Fitter fitter(trials, options);
-  if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(fitter.prepare());
   const Method method = options.method.value_or(Method::least_squares);
-  if (auto ok = fitter.find(method); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(fitter.find(method));
   return fitter.identify(method);
 }
 
 Result<Comparison> compare_methods(const std::vector<PreparedTrial>& trials, const Options& options) {
-  if (auto ok = check_options(trials, options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_options(trials, options));
   Fitter fitter(trials, options);
-  if (auto ok = fitter.prepare(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = fitter.find_instruments(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(fitter.prepare());
+  MBK_TRY(fitter.find_instruments());
   for (const Method method : {Method::least_squares, Method::instrumental_variables}) {
-    if (auto ok = fitter.find(method); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(fitter.find(method));
   }
-  auto ls = fitter.identify(Method::least_squares);
-  if (!ls) return tl::unexpected(ls.error());
-  auto iv = fitter.identify(Method::instrumental_variables);
-  if (!iv) return tl::unexpected(iv.error());
-  Comparison both{std::move(*ls), std::move(*iv), fitter.compare()};
+  auto ls = MBK_TRY(fitter.identify(Method::least_squares));
+  auto iv = MBK_TRY(fitter.identify(Method::instrumental_variables));
+  Comparison both{std::move(ls), std::move(iv), fitter.compare()};
   warn_of_closed_loop(both.instrumental_variables, both.disagreement, both.least_squares);
   return both;
 }

@@ -589,12 +589,11 @@ bool Fitter::stand_together(const Search& a, const Search& b) const {
 template <class Make>
 Result<std::vector<Fitter::Search>> Fitter::each_of(const std::vector<Start>& starts, Make&& make) const {
   std::vector<Search> searches(starts.size());
-  const auto ran = numeric::parallel_for(static_cast<int>(starts.size()), options_.threads, [&](int i) -> Result<void> {
+  MBK_TRY(numeric::parallel_for(static_cast<int>(starts.size()), options_.threads, [&](int i) -> Result<void> {
     const auto k = static_cast<std::size_t>(i);
     searches[k] = make(k);
     return {};
-  });
-  if (!ran) return tl::unexpected(ran.error());
+  }));
   return searches;
 }
 
@@ -603,12 +602,11 @@ Result<std::vector<Fitter::Search>> Fitter::settled(const std::vector<Start>& st
                                                     const Vector& noise) const {
   auto searches = each_of(starts, [&](std::size_t k) { return settled(starts[k], sharp[k], noise); });
   if (!searches) return searches;
-  const auto refined = go_on_as_one(
+  MBK_TRY(go_on_as_one(
       *searches, [this](const Search& a, const Search& b) { return stand_together(a, b); },
       [this](Search& search) {
         if (search.start.converged) descend(search, kDynamics, options_.max_iterations, kRefinements);
-      });
-  if (!refined) return tl::unexpected(refined.error());
+      }));
   return searches;
 }
 
@@ -621,8 +619,7 @@ Result<std::vector<Fitter::Search>> Fitter::with_noise(std::vector<Search> searc
   const auto are_same = [](const Search& a, const Search& b) {
     return a.start.converged == b.start.converged && std::abs(a.squares - b.squares) <= kSame * b.squares;
   };
-  const auto ran = go_on_as_one(searches, are_same, [this](Search& search) { add_noise(search); });
-  if (!ran) return tl::unexpected(ran.error());
+  MBK_TRY(go_on_as_one(searches, are_same, [this](Search& search) { add_noise(search); }));
   return searches;
 }
 
@@ -766,11 +763,9 @@ void Fitter::take_covariance(const Model& at, PredictionErrorFit& made) const {
 }
 
 Result<PredictionErrorFit> Fitter::run() {
-  const auto step = common_step(experiments_);
-  if (!step) return tl::unexpected(step.error());
-  step_ = *step;
+  step_ = MBK_TRY(common_step(experiments_));
   for (const SignalPair& pair : experiments_) samples_ += pair.output.size();
-  if (auto ok = check_experiments(experiments_, continuous_options()); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_experiments(experiments_, continuous_options()));
   const Vector& given = options_.start_denominator;
   if (given.size() > 0 && given.size() != n_) {
     return bad_usage(fmt::format("a start with {} poles for a model with {}", given.size(), n_));
@@ -787,11 +782,10 @@ Result<PredictionErrorFit> Fitter::run() {
   if (!rich.allFinite()) rich.setZero();
   const std::vector<Start> first = starts(rich);
   constexpr int kSharpened = 12;
-  const auto sharp = each_of(first, [&](std::size_t k) { return sharpened(first[k], kSharpened); });
-  if (!sharp) return tl::unexpected(sharp.error());
-  auto found = settled(first, *sharp, Vector());
+  const auto sharp = MBK_TRY(each_of(first, [&](std::size_t k) { return sharpened(first[k], kSharpened); }));
+  auto found = settled(first, sharp, Vector());
   if (found && options_.noise_model) {
-    auto coloured = settled(first, *sharp, stabilised(rich.head(high)));
+    auto coloured = settled(first, sharp, stabilised(rich.head(high)));
     if (coloured) coloured = with_noise(std::move(*coloured), std::move(*found));
     found = std::move(coloured);
   }

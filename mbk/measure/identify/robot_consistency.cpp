@@ -241,13 +241,12 @@ Result<Vector> NearestRobot::inside(const DefiniteProgram& program) const {
     A.conservativeResize(Eigen::NoChange, v_ + 1);
     A.col(v_) = one.reference.reshaped();
   }
-  const auto found = numeric::solve_definite_program(wider);
-  if (!found) return tl::unexpected(found.error());
-  if (!(found->value < 0.0)) {
+  const auto found = MBK_TRY(numeric::solve_definite_program(wider));
+  if (!(found.value < 0.0)) {
     return bad_data("no robot that can exist has the values that --fix keeps",
                     "leave --fix out, or correct those values in the description of the robot");
   }
-  return Vector(found->x.head(v_));
+  return Vector(found.x.head(v_));
 }
 
 Result<ConsistentParameters> NearestRobot::find() {

@@ -183,19 +183,17 @@ Result<void> RobotFitter::solve() {
     }
     Vector free;
     if (by_instruments()) {
-      auto fit = numeric::fit_instrumental_variables(Z, stacked(rows_.R, kept_, rate, sigma_), Y);
-      if (!fit) return tl::unexpected(fit.error());
-      if (fit->rank < Z.cols()) {
+      auto fit = MBK_TRY(numeric::fit_instrumental_variables(Z, stacked(rows_.R, kept_, rate, sigma_), Y));
+      if (fit.rank < Z.cols()) {
         return bad_data("the instruments do not identify the coefficients",
                         "use --method wls, or another --motion-cutoff");
       }
-      free = fit->free;
-      bread_ = fit->inverse;
+      free = fit.free;
+      bread_ = fit.inverse;
     } else {
-      auto fit = numeric::fit_least_squares(Z, Y);
-      if (!fit) return tl::unexpected(fit.error());
-      free = fit->free;
-      bread_ = fit->inverse_gram;
+      auto fit = MBK_TRY(numeric::fit_least_squares(Z, Y));
+      free = fit.free;
+      bread_ = fit.inverse_gram;
     }
     theta_ = fixed_;
     for (std::size_t k = 0; k < kept_.size(); ++k) theta_[kept_[k]] = free[static_cast<Index>(k)];
@@ -364,20 +362,19 @@ FreeFit RobotFitter::free_fit() const {
 /// Puts a robot that can exist in the place of the free one, and remembers what that was.
 Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
   const FreeFit free = free_fit();
-  const auto nearest = nearest_robot(free);
-  if (!nearest) return tl::unexpected(nearest.error());
-  theta_ = nearest->parameters;
+  const auto nearest = MBK_TRY(nearest_robot(free));
+  theta_ = nearest.parameters;
   residuals_ = residuals(rows_);
   ConsistentRobot made;
   std::vector<std::pair<double, std::string>> pressing;
-  for (std::size_t k = 0; k < nearest->conditions.size(); ++k) {
-    const robot::PhysicalCondition& condition = nearest->conditions[k];
+  for (std::size_t k = 0; k < nearest.conditions.size(); ++k) {
+    const robot::PhysicalCondition& condition = nearest.conditions[k];
     // Half a standard deviation of the residual, squared and halved: what one coefficient gains by chance.
     constexpr double kPresses = 0.125;
-    const double pressure = nearest->solution.pressure[k];
+    const double pressure = nearest.solution.pressure[k];
     if (pressure > kPresses) pressing.emplace_back(-pressure, condition.name);
     if (!condition.pseudo_inertia) continue;
-    const Eigen::Matrix4d J = nearest->solution.matrices[k];
+    const Eigen::Matrix4d J = nearest.solution.matrices[k];
     made.bodies.push_back({condition.name, robot::body_of(J), numeric::symmetric_eigenvalues(J)[0]});
   }
   std::ranges::sort(pressing);
@@ -398,10 +395,10 @@ Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
   const Index kept = base.size();
   const Matrix spread = free.triangle * covariance_.topLeftCorner(kept, kept) * free.triangle.transpose();
   loss_by_chance_ = 0.5 * spread.trace() + kDeviations * std::sqrt(0.5 * spread.squaredNorm());
-  made.loss = nearest->solution.value;
-  made.gap = std::max(nearest->solution.last_change, 0.0);
-  made.newton_steps = nearest->solution.steps;
-  for (const std::string& link : nearest->replaced) {
+  made.loss = nearest.solution.value;
+  made.gap = std::max(nearest.solution.last_change, 0.0);
+  made.newton_steps = nearest.solution.steps;
+  for (const std::string& link : nearest.replaced) {
     found.notes.push_back(
         fmt::format("the description states no body that can exist for {}: one near to it, or a ball, "
                     "stands in where the data do not decide",
@@ -533,8 +530,8 @@ void warn(RobotIdentification& found, double loss_by_chance) {
 }
 
 Result<RobotFit> RobotFitter::fit() {
-  if (auto ok = prepare(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = solve(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(prepare());
+  MBK_TRY(solve());
   take_covariance();
   RobotFit made;
   made.delay_correction = delay_correction_;
@@ -567,7 +564,7 @@ Result<RobotFit> RobotFitter::fit() {
   if (options_.consistent) {
     std::vector<TorqueFit> of_free = std::move(found.fit);
     found.fit.clear();
-    if (auto ok = make_consistent(found); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(make_consistent(found));
     found.model.parameters = theta_;
     judge(found);
     compare(found.fit, std::move(of_free), *found.consistent);

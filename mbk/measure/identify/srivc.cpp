@@ -967,7 +967,7 @@ void Fitter::take_covariance(const Search& best, ContinuousFit& made) const {
 }
 
 Result<ContinuousFit> Fitter::run() {
-  if (auto ok = check(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check());
   for (const SignalPair& pair : experiments_) {
     if (!pair.step) {
       stretched_.emplace_back();
@@ -987,12 +987,11 @@ Result<ContinuousFit> Fitter::run() {
 
   const std::vector<double> poles = start_poles();
   std::vector<Search> searches(poles.size());
-  const auto ran = numeric::parallel_for(static_cast<int>(poles.size()), options_.threads, [&](int i) -> Result<void> {
+  MBK_TRY(numeric::parallel_for(static_cast<int>(poles.size()), options_.threads, [&](int i) -> Result<void> {
     const auto k = static_cast<std::size_t>(i);
     searches[k] = search(poles[k]);
     return {};
-  });
-  if (!ran) return tl::unexpected(ran.error());
+  }));
   const auto better = [](const Search& a, const Search& b) {
     if (a.start.converged != b.start.converged) return a.start.converged;
     return a.rank < b.rank;

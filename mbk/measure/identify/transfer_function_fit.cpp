@@ -299,7 +299,7 @@ Result<Fit> Identifier::choose_delay(Index poles, Index zeros) {
     return variance;
   };
   for (Index k = 0; k <= samples; k += every) {
-    if (auto ok = look(static_cast<double>(k) * step); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(look(static_cast<double>(k) * step));
   }
   if (discrete()) {
     delay_ = best;
@@ -395,10 +395,9 @@ Result<Fit> Identifier::choose_order() {
   std::vector<Fit> fits;
   std::vector<double> delays;
   for (const auto& [poles, zeros] : orders) {
-    auto made = choose_delay(poles, zeros);
-    if (!made) return tl::unexpected(made.error());
-    found_.orders.push_back(criteria(*made, poles, zeros));
-    fits.push_back(std::move(*made));
+    auto made = MBK_TRY(choose_delay(poles, zeros));
+    found_.orders.push_back(criteria(made, poles, zeros));
+    fits.push_back(std::move(made));
     delays.push_back(delay_);
   }
   double least = std::numeric_limits<double>::infinity();
@@ -619,14 +618,13 @@ void Identifier::warn() {
 /// In discrete time everything counts in samples of one clock.
 Result<void> Identifier::check_clock() const {
   if (!discrete()) return {};
-  const auto step = common_step(experiments_, held_out_);
-  if (!step) return tl::unexpected(step.error());
-  const double samples = delay_ / *step;
+  const auto step = MBK_TRY(common_step(experiments_, held_out_));
+  const double samples = delay_ / step;
   constexpr double kWhole = 1e-3;
   if (options_.find_delay || std::abs(samples - std::round(samples)) <= kWhole) return {};
-  return bad_usage(fmt::format("a delay of {:g} s is no whole number of samples of {:.6g} ms", delay_, 1e3 * *step),
-                   fmt::format("give {:.6g} or {:.6g} s, or take --method srivc", std::floor(samples) * *step,
-                               std::ceil(samples) * *step));
+  return bad_usage(fmt::format("a delay of {:g} s is no whole number of samples of {:.6g} ms", delay_, 1e3 * step),
+                   fmt::format("give {:.6g} or {:.6g} s, or take --method srivc", std::floor(samples) * step,
+                               std::ceil(samples) * step));
 }
 
 /// A jump of a held input has no place of its own between samples that are unevenly spaced.
@@ -646,13 +644,12 @@ Result<TransferFunctionIdentification> Identifier::run() {
   if (!(options_.delay >= 0.0) || !std::isfinite(options_.delay)) {
     return bad_usage(fmt::format("a delay of {} s is not possible", options_.delay), "give 0 or more seconds");
   }
-  if (auto ok = check_clock(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_hold(); !ok) return tl::unexpected(ok.error());
-  auto fit = choose_order();
-  if (!fit) return tl::unexpected(fit.error());
-  describe(*fit);
-  test(*fit);
-  simulate(*fit);
+  MBK_TRY(check_clock());
+  MBK_TRY(check_hold());
+  auto fit = MBK_TRY(choose_order());
+  describe(fit);
+  test(fit);
+  simulate(fit);
   warn();
   return std::move(found_);
 }

@@ -51,14 +51,13 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
     forces.col(axis) = channel.values.segment(made->first, length);
     if (sensed) forces.col(axes + axis) = made->sensor_force.col(axis).segment(made->first, length);
   }
-  const auto filtered = preprocess::filter_values(forces, made->filters, rate, options.preprocess.padding);
-  if (!filtered) return tl::unexpected(filtered.error());
+  const auto filtered = MBK_TRY(preprocess::filter_values(forces, made->filters, rate, options.preprocess.padding));
   // A recording is smoothed only: whoever measures it has the low-pass still before him, for force and motion alike.
   preprocess::FilterPlan smoothing = made->filters;
   smoothing.cutoff.reset();
-  const auto smoothed = preprocess::filter_values(forces.leftCols(axes), smoothing, rate, options.preprocess.padding);
-  if (!smoothed) return tl::unexpected(smoothed.error());
-  const Index first = made->first + made->filters.smoothing.half_window(), rows = filtered->rows();
+  const auto smoothed =
+      MBK_TRY(preprocess::filter_values(forces.leftCols(axes), smoothing, rate, options.preprocess.padding));
+  const Index first = made->first + made->filters.smoothing.half_window(), rows = filtered.rows();
 
   ComputedForce computed;
   computed.summary.source = options.preprocess.force_source;
@@ -68,15 +67,14 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
     computed.summary.axes.push_back(options.preprocess.robot->mechanism->hand_axis_name(axis));
   }
   if (options.preprocess.robot->mechanism->hand_turns()) computed.summary.unit = "N·m";
-  computed.summary.rms = rms(filtered->leftCols(axes));
-  computed.summary.peak = filtered->leftCols(axes).cwiseAbs().colwise().maxCoeff().transpose();
+  computed.summary.rms = rms(filtered.leftCols(axes));
+  computed.summary.peak = filtered.leftCols(axes).cwiseAbs().colwise().maxCoeff().transpose();
   if (!sure) computed.summary.standard_error = rms(made->standard_error.middleRows(first, rows));
   if (sensed) {
-    auto comparison = analyse::compare_forces(
-        {{filtered->leftCols(axes), filtered->rightCols(axes), made->joint_velocity.middleRows(first, rows)}},
-        1.0 / rate.value);
-    if (!comparison) return tl::unexpected(comparison.error());
-    computed.summary.comparison = std::move(*comparison);
+    auto comparison = MBK_TRY(analyse::compare_forces(
+        {{filtered.leftCols(axes), filtered.rightCols(axes), made->joint_velocity.middleRows(first, rows)}},
+        1.0 / rate.value));
+    computed.summary.comparison = std::move(comparison);
   }
   computed.recording = std::move(made->recording);
   computed.summary.sources = computed.recording.sources;
@@ -86,7 +84,7 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
   std::vector<Channel>& channels = computed.recording.channels;
   for (Index axis = 0; axis < axes; ++axis) {
     const std::string& name = names[static_cast<std::size_t>(axis)];
-    std::ranges::find(channels, name, &Channel::name)->values = smoothed->col(axis);
+    std::ranges::find(channels, name, &Channel::name)->values = smoothed.col(axis);
     if (sensed) channels.push_back({"sensor_" + name, unit, "base", made->sensor_force.col(axis).segment(first, rows)});
     if (!sure)
       channels.push_back({name_of_error(name), unit, "base", made->standard_error.col(axis).segment(first, rows)});
@@ -98,9 +96,8 @@ Result<ComputedForce> compute(const Recording& recording, const Options& options
 
 Result<ComputedForce> compute_force(const Recording& recording, const Options& options) {
   if (!options.resample) return compute(recording, options);
-  const auto even = preprocess::resample(recording, *options.resample);
-  if (!even) return tl::unexpected(even.error());
-  return compute(*even, options);
+  const auto even = MBK_TRY(preprocess::resample(recording, *options.resample));
+  return compute(even, options);
 }
 
 }  // namespace mbk::measurement

@@ -44,23 +44,21 @@ Result<Recording> with_signals(const Recording& recording, const ExploredSignals
   Recording one = recording;
   one.channels.clear();
   const auto add = [&](const std::string& name, const char* as, double sign) -> Result<void> {
-    auto channel = named_channel(recording, name);
-    if (!channel) return tl::unexpected(channel.error());
-    channel->name = as;
-    channel->unit.clear();
-    channel->values *= sign;
-    one.channels.push_back(std::move(*channel));
+    auto channel = MBK_TRY(named_channel(recording, name));
+    channel.name = as;
+    channel.unit.clear();
+    channel.values *= sign;
+    one.channels.push_back(std::move(channel));
     return {};
   };
-  if (auto ok = add(signals.input, "position", signals.input_sign); !ok) return tl::unexpected(ok.error());
-  if (auto ok = add(signals.output, "reaction", -signals.output_sign); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(add(signals.input, "position", signals.input_sign));
+  MBK_TRY(add(signals.output, "reaction", -signals.output_sign));
   if (!signals.reference.empty()) {
-    if (auto ok = add(signals.reference, "reference", 1.0); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add(signals.reference, "reference", 1.0));
   }
   if (!schedule.empty()) {
-    auto channel = named_channel(recording, schedule);
-    if (!channel) return tl::unexpected(channel.error());
-    if (one.find(channel->name) == nullptr) one.channels.push_back(std::move(*channel));
+    auto channel = MBK_TRY(named_channel(recording, schedule));
+    if (one.find(channel.name) == nullptr) one.channels.push_back(std::move(channel));
   }
   return one;
 }
@@ -68,12 +66,11 @@ Result<Recording> with_signals(const Recording& recording, const ExploredSignals
 Result<ExplorationTrial> explored_trial(const Recording& recording, const ExploreOptions& options) {
   if (options.signals) {
     const ExploredSignals& signals = *options.signals;
-    const auto one = with_signals(recording, signals, options.schedule);
-    if (!one) return tl::unexpected(one.error());
+    const auto one = MBK_TRY(with_signals(recording, signals, options.schedule));
     ExploreOptions rest = options;
     rest.signals.reset();
     rest.preprocess.axes = 1;
-    auto trial = explored_trial(*one, rest);
+    auto trial = explored_trial(one, rest);
     if (!trial) {
       return tl::unexpected(trial.error().in(fmt::format("'position' is the input {}, 'reaction' the output {}",
                                                          signals.input_name, signals.output_name)));
@@ -86,28 +83,27 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
   auto even = preprocess::reclocked(recording, recorded, options.resample);
   if (!even) return tl::unexpected(even.error());
   if (options.force_delay != 0.0) {
-    auto in_time = preprocess::undo_force_delay(even->recording ? *even->recording : recording, options.force_delay);
-    if (!in_time) return tl::unexpected(in_time.error());
-    even->recording = std::move(*in_time);
+    auto in_time =
+        MBK_TRY(preprocess::undo_force_delay(even->recording ? *even->recording : recording, options.force_delay));
+    even->recording = std::move(in_time);
   }
   if (options.force_rotation != 0.0) {
-    auto turned = preprocess::turn_force(even->recording ? *even->recording : recording, options.force_rotation);
-    if (!turned) return tl::unexpected(turned.error());
-    even->recording = std::move(*turned);
+    auto turned =
+        MBK_TRY(preprocess::turn_force(even->recording ? *even->recording : recording, options.force_rotation));
+    even->recording = std::move(turned);
   }
   const Recording& source = even->recording ? *even->recording : recording;
   auto trial = preprocess::exploration_trial_of(source, even->recording ? recording::inspect(source) : recorded,
                                                 options.preprocess);
   if (trial && even->warning) trial->warnings.push_back(std::move(*even->warning));
   if (trial && !options.schedule.empty()) {
-    const auto channel = named_channel(source, options.schedule);
-    if (!channel) return tl::unexpected(channel.error());
-    trial->scheduling = channel->values.segment(std::llround(trial->from_s / trial->sample_time), trial->samples());
+    const auto channel = MBK_TRY(named_channel(source, options.schedule));
+    trial->scheduling = channel.values.segment(std::llround(trial->from_s / trial->sample_time), trial->samples());
     if (!trial->scheduling.allFinite()) {
-      return bad_data(fmt::format("'{}' is not finite everywhere in the analysed interval", channel->name),
+      return bad_data(fmt::format("'{}' is not finite everywhere in the analysed interval", channel.name),
                       "choose the interval with --from and --to");
     }
-    trial->scheduling_label = {options.schedule_name.empty() ? channel->name : options.schedule_name, channel->unit};
+    trial->scheduling_label = {options.schedule_name.empty() ? channel.name : options.schedule_name, channel.unit};
   }
   return trial;
 }
@@ -130,9 +126,8 @@ Result<void> add_responses_in_time(std::span<const ExplorationTrial> trials, con
     return {};
   }
   if (course_wanted) {
-    const auto variable = course_variable(trials, !options.schedule.empty(), options.align);
-    if (!variable) return tl::unexpected(variable.error());
-    if (auto course = explore::time_course(*signals, *variable, moved_up_to(trials))) {
+    const auto variable = MBK_TRY(course_variable(trials, !options.schedule.empty(), options.align));
+    if (auto course = explore::time_course(*signals, variable, moved_up_to(trials))) {
       found.time_course = std::move(*course);
     } else {
       found.notes.push_back("no change over time: " + course.error().line());
@@ -165,9 +160,8 @@ Result<std::vector<ExplorationTrial>> named_trials(std::span<const Recording> re
                                                    const ExploreOptions& options) {
   std::vector<ExplorationTrial> trials;
   for (const Recording& recording : recordings) {
-    auto trial = named_trial(recording, options);
-    if (!trial) return tl::unexpected(trial.error());
-    trials.push_back(std::move(*trial));
+    auto trial = MBK_TRY(named_trial(recording, options));
+    trials.push_back(std::move(trial));
   }
   if (trials.empty()) return bad_usage("there is no recording to explore");
   return trials;
@@ -234,9 +228,8 @@ void add_ellipse(StiffnessRegression& fit) {
 
 Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings, const ExploreOptions& options,
                                            std::vector<Warning>& warnings) {
-  const auto whole = whole_trials(recordings, options);
-  if (!whole) return tl::unexpected(whole.error());
-  auto found = explore::plateau_stiffness(*whole, options.plateau);
+  const auto whole = MBK_TRY(whole_trials(recordings, options));
+  auto found = explore::plateau_stiffness(whole, options.plateau);
   if (!found) return tl::unexpected(found.error().in("ramps and holds"));
   add_ellipse(found->fit);
   for (Warning& warning : explore::judge_plateaus(*found)) warnings.push_back(std::move(warning));
@@ -244,27 +237,22 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings
 }
 
 Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings, const ExploreOptions& options) {
-  const auto trials = named_trials(recordings, options);
-  if (!trials) return tl::unexpected(trials.error());
-  const auto signals = explore::limb_signals(*trials);
-  if (!signals) return tl::unexpected(signals.error());
-  const auto variable = course_variable(*trials, !options.schedule.empty(), options.align);
-  if (!variable) return tl::unexpected(variable.error());
-  return explore::time_course(*signals, *variable, moved_up_to(*trials));
+  const auto trials = MBK_TRY(named_trials(recordings, options));
+  const auto signals = MBK_TRY(explore::limb_signals(trials));
+  const auto variable = MBK_TRY(course_variable(trials, !options.schedule.empty(), options.align));
+  return explore::time_course(signals, variable, moved_up_to(trials));
 }
 
 Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, const ExploreOptions& options) {
   if (!options.after_onset_s) return bad_usage("how long after the onset is not said");
-  const auto trials = named_trials(recordings, options);
-  if (!trials) return tl::unexpected(trials.error());
-  return explore::after_onset(*trials, *options.after_onset_s);
+  const auto trials = MBK_TRY(named_trials(recordings, options));
+  return explore::after_onset(trials, *options.after_onset_s);
 }
 
 Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options) {
   const bool reaches = !recordings.empty() && are_reaches(recordings, options);
-  const auto named = reaches ? whole_trials(recordings, options) : named_trials(recordings, options);
-  if (!named) return tl::unexpected(named.error());
-  const std::vector<ExplorationTrial>& trials = *named;
+  const auto named = MBK_TRY(reaches ? whole_trials(recordings, options) : named_trials(recordings, options));
+  const std::vector<ExplorationTrial>& trials = named;
   Exploration found;
   for (const ExplorationTrial& trial : trials) {
     found.recordings.push_back({trial.source, trial.recording_duration, 1.0 / trial.sample_time, trial.from_s,
@@ -276,23 +264,21 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
   found.motion = trials.front().motion;
   found.other_signals = options.signals.has_value();
   if (reaches) {
-    if (auto ok = add_reaches(trials, options, found); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_reaches(trials, options, found));
     return found;
   }
   if (options.after_onset_s) {
-    auto after_onset = explore::after_onset(trials, *options.after_onset_s);
-    if (!after_onset) return tl::unexpected(after_onset.error());
-    found.after_onset = std::move(*after_onset);
+    auto after_onset = MBK_TRY(explore::after_onset(trials, *options.after_onset_s));
+    found.after_onset = std::move(after_onset);
   }
   if (wanted(options, ExplorationPart::frequency_response)) {
-    auto response = explore::frequency_response(trials, options.frequency_response);
-    if (!response) return tl::unexpected(response.error());
-    for (Warning& warning : explore::warnings_of(*response)) found.warnings.push_back(std::move(warning));
-    found.frequency_response = std::move(*response);
+    auto response = MBK_TRY(explore::frequency_response(trials, options.frequency_response));
+    for (Warning& warning : explore::warnings_of(response)) found.warnings.push_back(std::move(warning));
+    found.frequency_response = std::move(response);
   }
-  if (auto ok = add_responses_in_time(trials, options, found); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(add_responses_in_time(trials, options, found));
   if (wanted(options, ExplorationPart::ramp_and_hold)) {
-    if (auto ok = add_plateaus(recordings, trials, options, found); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_plateaus(recordings, trials, options, found));
   }
   return found;
 }

@@ -56,11 +56,9 @@ Rows rows_of(const PreparedTrial& trial) {
 }
 
 Result<Rows> rows_with(const Recording& recording, double delay, const preprocess::Options& options) {
-  auto in_time = preprocess::undo_force_delay(recording, delay);
-  if (!in_time) return tl::unexpected(in_time.error());
-  const auto trial = preprocess::prepare(*in_time, recording::inspect(*in_time), options);
-  if (!trial) return tl::unexpected(trial.error());
-  return rows_of(*trial);
+  auto in_time = MBK_TRY(preprocess::undo_force_delay(recording, delay));
+  const auto trial = MBK_TRY(preprocess::prepare(in_time, recording::inspect(in_time), options));
+  return rows_of(trial);
 }
 
 /// Of the force, by the mass alone, in the axis that it explains least of.
@@ -109,26 +107,23 @@ Result<MeasuredDelay> find_sensor_delay(const Recording& recording, double mass,
   found.sources = recording.sources;
   bool stays = false;
   for (int step = 0; step < kMostSteps && !stays; ++step) {
-    const auto rows = rows_with(recording, found.delay, how);
-    if (!rows) return tl::unexpected(rows.error());
-    const Index axes = rows->Z.cols() - 2;
-    const auto fit = numeric::fit_least_squares(rows->Z, rows->Y);
-    if (!fit) return tl::unexpected(fit.error());
-    if (fit->rank < rows->Z.cols() || fit->coefficients(0, 0) == 0.0) {
+    const auto rows = MBK_TRY(rows_with(recording, found.delay, how));
+    const Index axes = rows.Z.cols() - 2;
+    const auto fit = MBK_TRY(numeric::fit_least_squares(rows.Z, rows.Y));
+    if (fit.rank < rows.Z.cols() || fit.coefficients(0, 0) == 0.0) {
       return bad_data("the mass does not move, so that it tells nothing of the force",
                       "move it about, at several frequencies");
     }
-    const auto lags = static_cast<Index>(std::llround(kCorrelation / rows->sample_time));
-    const Matrix V =
-        numeric::newey_west_covariance(*fit, rows->Z, rows->Y - rows->Z * fit->coefficients, rows->ranges, lags);
-    found.mass = fit->coefficients(0, 0);
+    const auto lags = static_cast<Index>(std::llround(kCorrelation / rows.sample_time));
+    const Matrix V = numeric::newey_west_covariance(fit, rows.Z, rows.Y - rows.Z * fit.coefficients, rows.ranges, lags);
+    found.mass = fit.coefficients(0, 0);
     found.mass_error = std::sqrt(V(0, 0));
-    const double correction = -fit->coefficients(1, 0) / found.mass;
+    const double correction = -fit.coefficients(1, 0) / found.mass;
     found.delay_error = std::sqrt(V(1, 1)) / std::abs(found.mass);
-    Matrix of_mass = fit->coefficients;
+    Matrix of_mass = fit.coefficients;
     of_mass(1, 0) = 0.0;
-    found.vaf = vaf_of(*rows, of_mass, axes);
-    found.duration = static_cast<double>(rows->Y.rows()) / static_cast<double>(axes) * rows->sample_time;
+    found.vaf = vaf_of(rows, of_mass, axes);
+    found.duration = static_cast<double>(rows.Y.rows()) / static_cast<double>(axes) * rows.sample_time;
     stays = std::abs(correction) < kStays;
     found.delay += correction;
     if (!(std::abs(found.delay) < kLongestDelay)) break;

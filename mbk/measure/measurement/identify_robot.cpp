@@ -31,9 +31,8 @@ Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> rec
     return trial;
   };
   for (const Recording& recording : recordings) {
-    auto trial = prepare(recording);
-    if (!trial) return tl::unexpected(trial.error());
-    trials.push_back(std::move(*trial));
+    auto trial = MBK_TRY(prepare(recording));
+    trials.push_back(std::move(trial));
   }
   // One band and one spacing of the rows for all: those of the recording that moves fastest.
   const auto cutoff_of = [](const PreparedDynamics& trial) {
@@ -46,9 +45,7 @@ Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> rec
     if (cutoff_of(trials[k]) == how.cutoff->value && trials[k].preparation.every == how.every) continue;
     options.signals.cutoff = how.cutoff;
     options.signals.every = how.every;
-    auto trial = prepare(recordings[k]);
-    if (!trial) return tl::unexpected(trial.error());
-    trials[k] = std::move(*trial);
+    trials[k] = MBK_TRY(prepare(recordings[k]));
     trials[k].preparation.cutoff_rule = how.cutoff_rule;
   }
   return trials;
@@ -58,9 +55,8 @@ Result<std::vector<PreparedDynamics>> prepare_all(std::span<const Recording> rec
 Result<std::vector<Recording>> even(std::span<const Recording> recordings, Hertz rate) {
   std::vector<Recording> all;
   for (const Recording& recording : recordings) {
-    auto resampled = preprocess::resample(recording, rate);
-    if (!resampled) return tl::unexpected(resampled.error());
-    all.push_back(std::move(*resampled));
+    auto resampled = MBK_TRY(preprocess::resample(recording, rate));
+    all.push_back(std::move(resampled));
   }
   return all;
 }
@@ -72,26 +68,23 @@ struct Prepared {
 
 Result<Prepared> prepare_both(std::span<const Recording> recordings, std::span<const Recording> held_out,
                               const robot::DynamicModel& model, const preprocess::DynamicsOptions& options) {
-  auto trials = prepare_all(recordings, model, options);
-  if (!trials) return tl::unexpected(trials.error());
+  auto trials = MBK_TRY(prepare_all(recordings, model, options));
   preprocess::DynamicsOptions judged = options;
-  if (const Preparation& how = trials->front().preparation; how.cutoff) {
+  if (const Preparation& how = trials.front().preparation; how.cutoff) {
     judged.signals.cutoff = how.cutoff;
     judged.signals.every = how.every;
   }
   judged.signals.window = {};
-  if (trials->front().motion_cutoff > 0.0) judged.motion_cutoff = Hertz(trials->front().motion_cutoff);
-  auto others = prepare_all(held_out, model, judged);
-  if (!others) return tl::unexpected(others.error());
-  return Prepared{std::move(*trials), std::move(*others)};
+  if (trials.front().motion_cutoff > 0.0) judged.motion_cutoff = Hertz(trials.front().motion_cutoff);
+  auto others = MBK_TRY(prepare_all(held_out, model, judged));
+  return Prepared{std::move(trials), std::move(others)};
 }
 
 /// The pipeline with everything given.
 Result<identify::RobotFit> fit_once(std::span<const Recording> recordings, std::span<const Recording> held_out,
                                     const robot::DynamicModel& model, const RobotOptions& options) {
-  const auto both = prepare_both(recordings, held_out, model, options.preprocess);
-  if (!both) return tl::unexpected(both.error());
-  return identify::fit_robot(both->trials, both->held_out, model, options.fit);
+  const auto both = MBK_TRY(prepare_both(recordings, held_out, model, options.preprocess));
+  return identify::fit_robot(both.trials, both.held_out, model, options.fit);
 }
 
 /// With the delay found where it is wanted.
@@ -100,12 +93,11 @@ Result<RobotIdentification> fit_delay(std::span<const Recording> recordings, std
   constexpr int kMaxPasses = 8;
   constexpr double kSettled = 1e-5;  // [s], a hundredth of a sample at 1 kHz
   for (int pass = 1;; ++pass) {
-    auto made = fit_once(recordings, held_out, model, options);
-    if (!made) return tl::unexpected(made.error());
-    if (!options.fit.delay || std::abs(made->delay_correction) < kSettled || pass == kMaxPasses) {
-      return std::move(made->identification);
+    auto made = MBK_TRY(fit_once(recordings, held_out, model, options));
+    if (!options.fit.delay || std::abs(made.delay_correction) < kSettled || pass == kMaxPasses) {
+      return std::move(made.identification);
     }
-    model.delay = std::clamp(model.delay + made->delay_correction, -0.2, 0.2);
+    model.delay = std::clamp(model.delay + made.delay_correction, -0.2, 0.2);
   }
 }
 
@@ -251,11 +243,9 @@ Result<RobotIdentification> identify_robot(std::span<const Recording> recordings
   all.preprocess.instruments = options.fit.method == RobotMethod::instrumental_variables;
   if (options.resample) {
     all.resample.reset();
-    const auto trials = even(recordings, *options.resample);
-    if (!trials) return tl::unexpected(trials.error());
-    const auto others = even(held_out, *options.resample);
-    if (!others) return tl::unexpected(others.error());
-    return identify_robot(*trials, *others, model, all);
+    const auto trials = MBK_TRY(even(recordings, *options.resample));
+    const auto others = MBK_TRY(even(held_out, *options.resample));
+    return identify_robot(trials, others, model, all);
   }
   if (!options.stribeck_velocity || !model.drive.stribeck) {
     auto found = fit_delay(recordings, held_out, model, all);

@@ -182,7 +182,7 @@ Result<void> Preparer::decimate() {
   take_rate_of_model();
   for (auto* const pairs : {&experiments, &held_out}) {
     for (SignalPair& pair : *pairs) {
-      if (auto ok = thin_out(pair); !ok) return ok;
+      MBK_TRY(thin_out(pair));
     }
   }
   return {};
@@ -209,26 +209,24 @@ Result<Index> Preparer::every(const SignalPair& pair) const {
 }
 
 Result<void> Preparer::thin_out(SignalPair& pair) {
-  const auto every_one = every(pair);
-  if (!every_one) return tl::unexpected(every_one.error());
-  if (*every_one == 1) return {};
+  const auto every_one = MBK_TRY(every(pair));
+  if (every_one == 1) return {};
   if (options_.fit.hold == InputHold::zero) {
     return bad_usage("an input that was decimated behind a low-pass is not held between samples any more",
                      "leave --sample-rate out, or take --hold first");
   }
   const Hertz rate(1.0 / *pair.step);
-  const Index begin = pair.first % *every_one;
+  const Index begin = pair.first % every_one;
   Matrix signals(pair.time.size(), pair.reference.size() > 0 ? 3 : 2);
   signals.leftCols(2) << pair.input, pair.output;
   if (pair.reference.size() > 0) signals.col(2) = pair.reference;
-  const auto thin = dsp::decimate(signals, rate, *every_one, begin);
-  if (!thin) return tl::unexpected(thin.error());
-  pair.time = Vector(pair.time(Eigen::seqN(begin, thin->rows(), *every_one)));
-  pair.input = thin->col(0);
-  pair.output = thin->col(1);
-  if (pair.reference.size() > 0) pair.reference = thin->col(2);
-  pair.first /= *every_one;
-  *pair.step *= static_cast<double>(*every_one);
+  const auto thin = MBK_TRY(dsp::decimate(signals, rate, every_one, begin));
+  pair.time = Vector(pair.time(Eigen::seqN(begin, thin.rows(), every_one)));
+  pair.input = thin.col(0);
+  pair.output = thin.col(1);
+  if (pair.reference.size() > 0) pair.reference = thin.col(2);
+  pair.first /= every_one;
+  *pair.step *= static_cast<double>(every_one);
   recorded_rate_hz = rate.value;
   return {};
 }
@@ -340,16 +338,13 @@ Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_bac
     if (recording.time[i] > recording.time[i - 1]) continue;
     return bad_data(fmt::format("time does not increase at sample {}", i + 1), "cut the file there");
   }
-  const auto input = channel_of(recording, options_.input), output = channel_of(recording, options_.output);
-  if (!input) return tl::unexpected(input.error());
-  if (!output) return tl::unexpected(output.error());
+  const auto input = MBK_TRY(channel_of(recording, options_.input));
+  const auto output = MBK_TRY(channel_of(recording, options_.output));
   if (!options_.reference.empty()) {
-    if (auto reference = channel_of(recording, options_.reference); !reference) {
-      return tl::unexpected(reference.error());
-    }
+    MBK_TRY(channel_of(recording, options_.reference));
   }
-  input_unit = (*input)->unit;
-  output_unit = (*output)->unit;
+  input_unit = input->unit;
+  output_unit = (output)->unit;
   const auto [pieces, even] = pieces_of(recording.time);
   const double last = recording.time[n - 1] - recording.time[0];
   const double behind = last + last / static_cast<double>(n - 1);
@@ -367,7 +362,7 @@ Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_bac
   for (const Block block : blocks(recording, from, split, to, asked)) {
     for (const Piece piece : pieces) {
       auto& into = block.held_out ? held_out : experiments;
-      if (auto ok = cut(recording, piece, even, block.from, block.to, into); !ok) return ok;
+      MBK_TRY(cut(recording, piece, even, block.from, block.to, into));
     }
   }
   return {};
@@ -386,10 +381,10 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
     return added;
   };
   for (const Recording& recording : recordings) {
-    if (auto ok = add(recording, false); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add(recording, false));
   }
   for (const Recording& recording : held_out) {
-    if (auto ok = add(recording, true); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add(recording, true));
   }
   if (prepared.experiments.empty()) {
     return bad_data(options.fit.find_delay || options.fit.delay > 0.0
@@ -398,7 +393,7 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
                     "choose a longer window");
   }
   prepared.note_left_out();
-  if (auto ok = prepared.decimate(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(prepared.decimate());
   auto found = identify::identify_transfer_function(prepared.experiments, prepared.held_out, prepared.fit());
   if (!found) return found;
   found->input = options.input;

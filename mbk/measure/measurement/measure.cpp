@@ -114,28 +114,22 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
     source.clock = clock_across_missed_ticks(recording, source.recorded);
   }
   if (source.clock || options.preprocess.mode == Mode::default_mode) {
-    auto even = preprocess::reclocked(recording, source.recorded, source.clock);
-    if (!even) return tl::unexpected(even.error());
-    source.even = std::move(even->recording);
-    source.jitter = std::move(even->warning);
+    auto even = MBK_TRY(preprocess::reclocked(recording, source.recorded, source.clock));
+    source.even = std::move(even.recording);
+    source.jitter = std::move(even.warning);
   }
   if (options.force_delay != 0.0) {
-    auto in_time = preprocess::undo_force_delay(source.recording(), options.force_delay);
-    if (!in_time) return tl::unexpected(in_time.error());
-    source.even = std::move(*in_time);
+    source.even = MBK_TRY(preprocess::undo_force_delay(source.recording(), options.force_delay));
   }
   if (options.force_rotation != 0.0) {
-    auto turned = preprocess::turn_force(source.recording(), options.force_rotation);
-    if (!turned) return tl::unexpected(turned.error());
-    source.even = std::move(*turned);
+    source.even = MBK_TRY(preprocess::turn_force(source.recording(), options.force_rotation));
   }
   if (options.preprocess.force_source == ForceSource::sensor) return source;
   if (!options.preprocess.robot) return bad_usage("a computed force needs a robot", "name it with --robot");
   const Inspection inspection = source.even ? recording::inspect(*source.even) : source.recorded;
   auto computed =
-      preprocess::virtual_force(source.recording(), inspection, *options.preprocess.robot, options.preprocess);
-  if (!computed) return tl::unexpected(computed.error());
-  source.computed = std::move(*computed);
+      MBK_TRY(preprocess::virtual_force(source.recording(), inspection, *options.preprocess.robot, options.preprocess));
+  source.computed = std::move(computed);
   return source;
 }
 
@@ -252,10 +246,9 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
     }
     if (by_instruments) return tl::unexpected(both.error());
   }
-  auto alone = identify::identify_impedance(trials, options);
-  if (!alone) return tl::unexpected(alone.error());
+  auto alone = MBK_TRY(identify::identify_impedance(trials, options));
   if (trials.front().preparation.mode == Mode::default_mode && !known) {
-    alone->warnings.push_back(
+    alone.warnings.push_back(
         {WarningCode::no_reference,
          "no reference was recorded: whether the limb itself moved the robot, which biases least squares, cannot be "
          "judged",
@@ -263,7 +256,7 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
          "same"});
   }
   Measurement measured;
-  measured.identification = std::move(*alone);
+  measured.identification = std::move(alone);
   return measured;
 }
 
@@ -279,9 +272,8 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
   const impedance::Model& model = measured.identification.model;
   const bool known = model.axes() == 2 && model.K.allFinite();
   for (std::size_t k = 0; k < sources.size(); ++k) {
-    auto energy = analyse::absorbed_energy(sources[k].counted(), trials[k], {}, known ? &model : nullptr);
-    if (!energy) return tl::unexpected(energy.error());
-    measured.energies.push_back(std::move(*energy));
+    auto energy = MBK_TRY(analyse::absorbed_energy(sources[k].counted(), trials[k], {}, known ? &model : nullptr));
+    measured.energies.push_back(std::move(energy));
   }
   if (sources.size() == 1) return measured.energies.front().account;
   return analyse::pooled_energy(recordings_of(sources), trials);
@@ -313,18 +305,16 @@ Result<void> add_consistent_model(const std::vector<PreparedTrial>& trials, Meas
 Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std::vector<PreparedTrial>& trials,
                                   const analyse::LineSpectra& spectra, const Options& options, Measurement& measured) {
   const auto [first, other] = both_methods(measured);
-  auto energy = account_for_energy(sources, trials, measured);
-  if (!energy) return tl::unexpected(energy.error());
+  auto energy = MBK_TRY(account_for_energy(sources, trials, measured));
   Passivity passivity;
   passivity.band = analyse::coherent_band(trials);
   PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
   for (const PreparedTrial& trial : trials) recording::let_go(trial);
   if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
-  auto models = analyse::model_passivities({first, other}, band);
-  if (!models) return tl::unexpected(models.error());
-  passivity.models = std::move(*models);
+  auto models = MBK_TRY(analyse::model_passivities({first, other}, band));
+  passivity.models = std::move(models);
   passivity.trial =
-      analyse::trial_passivity(measured.identification, std::move(*energy), analyse::energy_lines(spectra));
+      analyse::trial_passivity(measured.identification, std::move(energy), analyse::energy_lines(spectra));
   if (!passivity.trial) {
     for (Energy& one : measured.energies) {
       one.account.verdict = Verdict::undecided;
@@ -362,15 +352,11 @@ Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::
     for (const Segment& segment : trial->segments) pairs.push_back(force_pair(source, trials[k], *trial, segment));
     by_sensor.push_back(std::move(*trial));
   }
-  auto comparison = analyse::compare_forces(pairs, trials.front().sample_time);
-  if (!comparison) return tl::unexpected(comparison.error());
-  measured.force_comparison = std::move(*comparison);
+  measured.force_comparison = MBK_TRY(analyse::compare_forces(pairs, trials.front().sample_time));
   identify::Options how = options.identify;
   how.bootstrap = 0;
   how.method = measured.identification.method;
-  auto identified = identify::identify_impedance(by_sensor, how);
-  if (!identified) return tl::unexpected(identified.error());
-  measured.by_sensor = std::move(*identified);
+  measured.by_sensor = MBK_TRY(identify::identify_impedance(by_sensor, how));
   return {};
 }
 
@@ -467,21 +453,18 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     if (const auto fit = analyse::test_lines(spectra, trials, *id)) analyse::warn_of_lines(*fit, *id);
   }
   if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
-    auto findings = analyse::analyse_ellipses(measured.identification);
-    if (!findings) return tl::unexpected(findings.error());
-    measured.findings = std::move(*findings);
+    auto findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
+    measured.findings = std::move(findings);
   }
   if (measured.identification.replicates) {
-    auto bootstrap = analyse::bootstrap_findings(measured.identification);
-    if (!bootstrap) return tl::unexpected(bootstrap.error());
-    measured.bootstrap = std::move(*bootstrap);
+    auto bootstrap = MBK_TRY(analyse::bootstrap_findings(measured.identification));
+    measured.bootstrap = std::move(bootstrap);
   }
-  if (auto ok = compare_with_sensor(sources, trials, options, measured); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(compare_with_sensor(sources, trials, options, measured));
   if (options.preprocess.force_source == ForceSource::virtual_sensor) warn_of_changed_robot(measured);
   if (options.joint_domain) {
-    auto joints = at_joints(sources, trials, measured.identification);
-    if (!joints) return tl::unexpected(joints.error());
-    measured.joints = std::move(*joints);
+    auto joints = MBK_TRY(at_joints(sources, trials, measured.identification));
+    measured.joints = std::move(joints);
   }
   if (auto ok = add_consistent_model(trials, measured); !ok) return sources[0].in_file(ok.error());
   for (const PreparedTrial& trial : trials) recording::let_go(trial);
@@ -518,24 +501,19 @@ Result<Diagnostics> diagnose(const Source& source, const PreparedTrial& trial, c
 }  // namespace
 
 Result<Measurement> measure(std::span<const Recording> recordings, const Options& options) {
-  const auto sources = make_ready(recordings, options);
-  if (!sources) return tl::unexpected(sources.error());
-  const auto trials = prepare_all(*sources, options);
-  if (!trials) return tl::unexpected(trials.error());
-  return measure_prepared(*sources, *trials, options);
+  const auto sources = MBK_TRY(make_ready(recordings, options));
+  const auto trials = MBK_TRY(prepare_all(sources, options));
+  return measure_prepared(sources, trials, options);
 }
 
 Result<Examined> examine(std::span<const Recording> recordings, const Options& options) {
-  const auto sources = make_ready(recordings, options);
-  if (!sources) return tl::unexpected(sources.error());
-  const auto trials = prepare_all(*sources, options);
-  if (!trials) return tl::unexpected(trials.error());
-  auto measured = measure_prepared(*sources, *trials, options);
-  if (!measured) return tl::unexpected(measured.error());
-  Examined examined{std::move(*measured), {}};
-  for (std::size_t k = 0; k < sources->size(); ++k) {
-    auto diagnostics = diagnose((*sources)[k], (*trials)[k], examined.measured.identification, options);
-    if (!diagnostics) return (*sources)[k].in_file(diagnostics.error());
+  const auto sources = MBK_TRY(make_ready(recordings, options));
+  const auto trials = MBK_TRY(prepare_all(sources, options));
+  auto measured = MBK_TRY(measure_prepared(sources, trials, options));
+  Examined examined{std::move(measured), {}};
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    auto diagnostics = diagnose(sources[k], trials[k], examined.measured.identification, options);
+    if (!diagnostics) return sources[k].in_file(diagnostics.error());
     examined.diagnostics.push_back(std::move(*diagnostics));
   }
   return examined;

@@ -59,15 +59,11 @@ Result<MovementQuality> movement_quality(const Recording& recording, const Movem
     return bad_data(fmt::format("channel '{}' is missing", kPositionChannels.name(axes, 0)), "name it with --channels");
   }
   const preprocess::Clock clock(source->time, Hertz(inspection.rate_hz));
-  if (auto ok = preprocess::check_missing(clock, inspection.missing, options.window); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  const auto plan = preprocess::default_windows(Protocol::free, {}, clock, options.window);
-  if (!plan) return tl::unexpected(plan.error());
-  if (auto ok = preprocess::check_clock(clock, inspection, *plan, warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = preprocess::check_finite(clock, signals, *plan, recording.warnings); !ok)
-    return tl::unexpected(ok.error());
-  const preprocess::Cut& cut = plan->cuts.front();
+  MBK_TRY(preprocess::check_missing(clock, inspection.missing, options.window));
+  const auto plan = MBK_TRY(preprocess::default_windows(Protocol::free, {}, clock, options.window));
+  MBK_TRY(preprocess::check_clock(clock, inspection, plan, warnings));
+  MBK_TRY(preprocess::check_finite(clock, signals, plan, recording.warnings));
+  const preprocess::Cut& cut = plan.cuts.front();
   const Index rows = cut.end - cut.begin;
   const Matrix target =
       is_place(*source, axes) ? rows_where_finite(*source, kReferenceChannels, axes, cut.begin, rows) : Matrix();

@@ -23,12 +23,11 @@ Result<dsp::Spectrum> spectrum_of(const Columns& signals, const std::vector<Cut>
   for (const Cut& cut : cuts) {
     for (Index axis = 0; axis < signals.cols(); ++axis) {
       const auto signal = signals.col(axis).segment(cut.begin, cut.end - cut.begin);
-      auto spectrum = dsp::welch(signal, sample_rate, resolution, recording::let_go_behind(signal));
-      if (!spectrum) return tl::unexpected(spectrum.error());
+      auto spectrum = MBK_TRY(dsp::welch(signal, sample_rate, resolution, recording::let_go_behind(signal)));
       if (sum.density.size() == 0) {
-        sum = std::move(*spectrum);
+        sum = std::move(spectrum);
       } else {
-        sum.density += spectrum->density;
+        sum.density += spectrum.density;
       }
     }
   }
@@ -42,29 +41,25 @@ Hertz limit_of(Hertz sample_rate) {
 }  // namespace
 
 Result<Band> excited_band(const Columns& motion, const std::vector<Cut>& cuts, Hertz sample_rate) {
-  const auto position = spectrum_of(motion, cuts, sample_rate);
-  if (!position) return tl::unexpected(position.error());
-  dsp::Spectrum velocity = *position;
+  const auto position = MBK_TRY(spectrum_of(motion, cuts, sample_rate));
+  dsp::Spectrum velocity = position;
   velocity.density.array() *= (2.0 * std::numbers::pi * velocity.frequency.array()).square();
   const Hertz limit = limit_of(sample_rate);
-  return Band{dsp::power_quantile(*position, 0.05, limit), dsp::power_quantile(velocity, 0.95, limit)};
+  return Band{dsp::power_quantile(position, 0.05, limit), dsp::power_quantile(velocity, 0.95, limit)};
 }
 
 Result<Hertz> band_top(const Columns& signals, const std::vector<Cut>& cuts, Hertz sample_rate) {
-  const auto spectrum = spectrum_of(signals, cuts, sample_rate);
-  if (!spectrum) return tl::unexpected(spectrum.error());
-  return dsp::power_quantile(*spectrum, 0.95, limit_of(sample_rate));
+  const auto spectrum = MBK_TRY(spectrum_of(signals, cuts, sample_rate));
+  return dsp::power_quantile(spectrum, 0.95, limit_of(sample_rate));
 }
 
 Result<Hertz> motion_top(const Vector& position, const std::vector<Cut>& cuts, Hertz sample_rate, Hertz limit) {
-  const auto spectrum = spectrum_of(position, cuts, sample_rate, 1.0);
-  if (!spectrum) return tl::unexpected(spectrum.error());
-  const auto excited = excited_band(position, cuts, sample_rate);
-  if (!excited) return tl::unexpected(excited.error());
-  const Vector& f = spectrum->frequency;
-  const Vector density = spectrum->density.array() * f.array().pow(4);
+  const auto spectrum = MBK_TRY(spectrum_of(position, cuts, sample_rate, 1.0));
+  const auto excited = MBK_TRY(excited_band(position, cuts, sample_rate));
+  const Vector& f = spectrum.frequency;
+  const Vector density = spectrum.density.array() * f.array().pow(4);
   const auto above = [&f](Hertz edge) { return std::ranges::upper_bound(f, edge.value) - f.begin(); };
-  const Index begin = above(excited->high), end = above(limit);
+  const Index begin = above(excited.high), end = above(limit);
   constexpr Index kMin = 5;
   if (end - begin < kMin) return limit;
   const double floor = numeric::upper_median({density.begin() + begin, density.begin() + end});

@@ -37,49 +37,47 @@ bool moves(const Matrix& reference) {
 Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const Inspection& inspection,
                                               const Options& options) {
   const Index samples = recording.samples();
-  if (auto ok = check_length(samples, inspection); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_length(samples, inspection));
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
-  if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());
-  const auto signals = select_signals(recording, options.axes, false);
-  if (!signals) return tl::unexpected(signals.error());
+  MBK_TRY(check_missing(clock, inspection.missing, options.window));
+  const auto signals = MBK_TRY(select_signals(recording, options.axes, false));
 
   ExplorationTrial trial;
-  trial.axes = signals->axes;
-  trial.motion = signals->motion;
-  const ProtocolFinding found = detect_protocol(signals->reference);
+  trial.axes = signals.axes;
+  trial.motion = signals.motion;
+  const ProtocolFinding found = detect_protocol(signals.reference);
   trial.protocol = options.protocol.value_or(found.protocol);
   trial.protocol_rule = options.protocol ? "given" : found.rule;
-  if (trial.protocol == Protocol::sinusoidal && signals->reference.size() == 0) {
+  if (trial.protocol == Protocol::sinusoidal && signals.reference.size() == 0) {
     return bad_data(fmt::format("protocol 'sinusoidal' needs the reference, channel '{}', which is missing",
                                 kReferenceChannels.name(trial.axes, 0)),
                     "name it with --channels, or use --protocol free");
   }
   if (trial.protocol != Protocol::free) {
-    if (auto ok = check_reference(clock, *signals, options.window); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_reference(clock, signals, options.window));
   }
   const Protocol windows = trial.protocol == Protocol::sinusoidal ? Protocol::sinusoidal : Protocol::free;
-  const auto plan = default_windows(windows, signals->reference, clock, options.window);
-  if (!plan) return tl::unexpected(plan.error());
-  if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_finite(clock, *signals, *plan, recording.warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
-  warn_of_small_motion(*signals, *plan, trial.warnings);
+  const auto plan = MBK_TRY(default_windows(windows, signals.reference, clock, options.window));
+  MBK_TRY(check_clock(clock, inspection, plan, trial.warnings));
+  MBK_TRY(check_finite(clock, signals, plan, recording.warnings));
+  MBK_TRY(check_alive(signals, plan));
+  warn_of_small_motion(signals, plan, trial.warnings);
 
-  const Cut& cut = plan->cuts.front();
+  const Cut& cut = plan.cuts.front();
   const Index rows = cut.end - cut.begin;
   if (rows < kFewestSamples) {
     return bad_data(fmt::format("{} samples of the analysed interval are too few", rows), "choose a longer interval");
   }
   trial.sample_time = 1.0 / rate.value;
   trial.from_s = clock.seconds(cut.begin);
-  trial.input = signals->position.middle_rows(cut.begin, rows);
-  trial.output = -signals->force_hand_on_robot.middle_rows(cut.begin, rows);
-  if (signals->reference.size() > 0) {
-    Matrix reference = signals->reference.middle_rows(cut.begin, rows);
+  trial.input = signals.position.middle_rows(cut.begin, rows);
+  trial.output = -signals.force_hand_on_robot.middle_rows(cut.begin, rows);
+  if (signals.reference.size() > 0) {
+    Matrix reference = signals.reference.middle_rows(cut.begin, rows);
     if (reference.allFinite() && moves(reference)) {
       trial.reference = std::move(reference);
-      trial.reference_quantity = signals->reference_quantity;
+      trial.reference_quantity = signals.reference_quantity;
     }
   }
   trial.input_labels = labels_of(recording, kPositionChannels, trial.axes, "");
@@ -91,7 +89,7 @@ Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const 
       break;
     }
   }
-  trial.window_rule = plan->rule;
+  trial.window_rule = plan.rule;
   if (!recording.sources.empty()) trial.source = recording.sources.front();
   trial.recording_duration = inspection.duration + inspection.interval_median;
   for (Event event : recording.events) {

@@ -35,9 +35,8 @@ FilterPlan with_choices(FilterPlan plan, const Options& options) {
 Result<dsp::FilterChain> chain_of(const FilterPlan& filters, const dsp::Padding& padding, Hertz rate) {
   dsp::FilterChain chain{filters.smoothing, {}, padding};
   if (filters.cutoff) {
-    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, *filters.cutoff, rate);
-    if (!lowpass) return tl::unexpected(lowpass.error());
-    chain.lowpass = std::move(*lowpass);
+    auto lowpass = MBK_TRY(dsp::butterworth_lowpass(kLowpassOrder, *filters.cutoff, rate));
+    chain.lowpass = std::move(lowpass);
   }
   return chain;
 }
@@ -85,10 +84,9 @@ Result<Index> filtered_rows(const Cut& cut, const FilterPlan& filters, Index tri
 
 Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim, Hertz rate,
                         const dsp::Padding& padding, bool with_reference, std::span<double* const> to) {
-  if (const auto rows = filtered_rows(cut, filters, trim, padding); !rows) return tl::unexpected(rows.error());
+  MBK_TRY(filtered_rows(cut, filters, trim, padding));
   const Index n = signals.position.cols(), length = cut.end - cut.begin;
-  const auto chain = chain_of(filters, padding, rate);
-  if (!chain) return tl::unexpected(chain.error());
+  const auto chain = MBK_TRY(chain_of(filters, padding, rate));
   std::vector<dsp::Column> columns;
   std::vector<const Columns*> quantities = {&signals.position, &signals.force_hand_on_robot, &signals.acceleration};
   if (with_reference) quantities.push_back(&signals.reference);
@@ -118,20 +116,19 @@ Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan
   const auto passed = [&](Index first, Index end) {
     for (const dsp::Column& column : columns) recording::let_go(column.segment(first, end - first));
   };
-  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every, passed, to);
+  return dsp::smooth_then_lowpass(chain, columns, outputs, rate, filters.every, passed, to);
 }
 
 Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,
                              const dsp::Padding& padding) {
-  const auto chain = chain_of(filters, padding, rate);
-  if (!chain) return tl::unexpected(chain.error());
+  const auto chain = MBK_TRY(chain_of(filters, padding, rate));
   std::vector<dsp::Column> columns;
   std::vector<dsp::FilterOutput> outputs;
   for (Index k = 0; k < signals.cols(); ++k) {
     columns.emplace_back(signals.col(k).data(), signals.rows());
     outputs.push_back({k, 0});
   }
-  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate);
+  return dsp::smooth_then_lowpass(chain, columns, outputs, rate);
 }
 
 }  // namespace mbk::preprocess

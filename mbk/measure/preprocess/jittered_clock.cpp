@@ -97,11 +97,10 @@ Result<EvenRecording> on_even_clock(const Recording& recording, const Inspection
                           jitter + ", but the position moves as if sampled evenly: the samples are taken as even",
                           "compare with --resample HZ; record with a steadier clock"}};
   }
-  auto even = resample(recording, rate);
-  if (!even) return tl::unexpected(even.error());
+  auto even = MBK_TRY(resample(recording, rate));
   const bool shown = evidence.slope - 1.96 * evidence.standard_error > 0.5;
   return EvenRecording{
-      std::move(*even),
+      std::move(even),
       {WarningCode::clock_jitter,
        fmt::format("{}, and the samples were put on an even clock of {:.6g} Hz by straight lines between them: {}",
                    jitter, rate.value,
@@ -112,14 +111,12 @@ Result<EvenRecording> on_even_clock(const Recording& recording, const Inspection
 
 Result<Reclocked> reclocked(const Recording& recording, const Inspection& inspection, std::optional<Hertz> rate) {
   if (rate) {
-    auto resampled = resample(recording, *rate);
-    if (!resampled) return tl::unexpected(resampled.error());
-    return Reclocked{std::move(*resampled), std::nullopt};
+    auto resampled = MBK_TRY(resample(recording, *rate));
+    return Reclocked{std::move(resampled), std::nullopt};
   }
   if (!jitters_only(inspection)) return Reclocked{};
-  auto even = on_even_clock(recording, inspection);
-  if (!even) return tl::unexpected(even.error());
-  return Reclocked{std::move(even->recording), std::move(even->warning)};
+  auto even = MBK_TRY(on_even_clock(recording, inspection));
+  return Reclocked{std::move(even.recording), std::move(even.warning)};
 }
 
 }  // namespace mbk::preprocess

@@ -176,7 +176,7 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
   const JointChannels positions(recording, mechanism, "joint_"), torques(recording, mechanism, "torque_"),
       references(recording, mechanism, "reference_joint_");
   for (const JointChannels* channels : {&positions, &torques}) {
-    if (auto ok = channels->check(static_cast<int>(n)); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(channels->check(static_cast<int>(n)));
   }
   // Unnamed channels may be counted beside named ones only if the named ones are in the robot's order.
   const auto count_alike = [&](const JointChannels& a, const JointChannels& b) {
@@ -193,14 +193,10 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
     const bool slides = mechanism.slides(joint);
     const Channel* position = positions.of(joint);
     if (n == 1 && position == nullptr) position = recording.find("position");
-    if (auto ok = check_unit(recording, position, positions.numbered(joint), slides ? "m" : "rad"); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(check_unit(recording, position, positions.numbered(joint), slides ? "m" : "rad"));
     signals.position.col(joint) = position->values;
     const Channel* const torque = torques.of(joint);
-    if (auto ok = check_unit(recording, torque, torques.numbered(joint), slides ? "N" : "N.m"); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(check_unit(recording, torque, torques.numbered(joint), slides ? "N" : "N.m"));
     signals.torque.col(joint) = torque->values;
     const Channel* const reference = references.of(joint);
     joint_references.push_back(reference != nullptr ? reference->name : "");
@@ -246,8 +242,8 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
                                     at(cut.begin + where)),
                         "choose a window without it with --from and --to, or mend the recording");
       };
-      if (auto ok = bad(signals.position, "joint"); !ok) return ok;
-      if (auto ok = bad(signals.torque, "torque"); !ok) return ok;
+      MBK_TRY(bad(signals.position, "joint"));
+      MBK_TRY(bad(signals.torque, "torque"));
     }
     for (Index i = cut.begin; i < cut.end; ++i) {
       const robot::JointVector q = signals.position.row(i).transpose();
@@ -323,9 +319,7 @@ Result<robot::JointMotion> smooth_motion(const Eigen::Ref<const Matrix>& positio
   robot::JointMotion motion;
   int derivative = 0;
   for (Matrix* part : {&motion.position, &motion.velocity, &motion.acceleration}) {
-    auto smoothed = dsp::savitzky_golay(smoothing, derivative++, position, rate);
-    if (!smoothed) return tl::unexpected(smoothed.error());
-    *part = std::move(*smoothed);
+    *part = MBK_TRY(dsp::savitzky_golay(smoothing, derivative++, position, rate));
   }
   return motion;
 }
@@ -334,22 +328,19 @@ Result<SmoothedJoints> smooth_joints(const JointSignals& signals, const robot::M
                                      const dsp::SavitzkyGolay& smoothing, Hertz rate, double delay) {
   const Index length = cut.end - cut.begin;
   SmoothedJoints joints;
-  auto motion = smooth_motion(signals.position.middleRows(cut.begin, length), smoothing, rate);
-  if (!motion) return tl::unexpected(motion.error());
-  joints.motion = std::move(*motion);
+  auto motion = MBK_TRY(smooth_motion(signals.position.middleRows(cut.begin, length), smoothing, rate));
+  joints.motion = std::move(motion);
   const Matrix recorded = signals.torque.middleRows(cut.begin, length);
-  auto torque = dsp::savitzky_golay(smoothing, 0, recorded, rate);
-  if (!torque) return tl::unexpected(torque.error());
-  auto torque_rate = dsp::savitzky_golay(smoothing, 1, recorded, rate);
-  if (!torque_rate) return tl::unexpected(torque_rate.error());
-  joints.torque = std::move(*torque);
-  joints.torque_rate = std::move(*torque_rate);
+  auto torque = MBK_TRY(dsp::savitzky_golay(smoothing, 0, recorded, rate));
+  auto torque_rate = MBK_TRY(dsp::savitzky_golay(smoothing, 1, recorded, rate));
+  joints.torque = std::move(torque);
+  joints.torque_rate = std::move(torque_rate);
   shift(joints.torque, joints.torque_rate, 1.0 / rate.value, delay);
 
   if (signals.hand_acceleration.size() > 0) {
-    auto hand = dsp::savitzky_golay(smoothing, 0, signals.hand_acceleration.middleRows(cut.begin, length), rate);
-    if (!hand) return tl::unexpected(hand.error());
-    for (Index i = 0; i < hand->rows(); ++i) {
+    auto hand =
+        MBK_TRY(dsp::savitzky_golay(smoothing, 0, signals.hand_acceleration.middleRows(cut.begin, length), rate));
+    for (Index i = 0; i < hand.rows(); ++i) {
       const robot::JointVector q = joints.motion.position.row(i).transpose(),
                                v = joints.motion.velocity.row(i).transpose();
       const auto from_joints = robot::hand_from_joints(mechanism, q);
@@ -358,7 +349,7 @@ Result<SmoothedJoints> smooth_joints(const JointSignals& signals, const robot::M
             from_joints.error().in(fmt::format("sample {}", cut.begin + smoothing.half_window() + i)));
       }
       joints.motion.acceleration.row(i) =
-          (from_joints->transpose() * (hand->row(i).transpose() - mechanism.jacobian_rate(q, v) * v)).transpose();
+          (from_joints->transpose() * (hand.row(i).transpose() - mechanism.jacobian_rate(q, v) * v)).transpose();
     }
   }
   return joints;

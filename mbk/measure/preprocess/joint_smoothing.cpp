@@ -38,9 +38,8 @@ Result<int> window_for_dry_friction(const dsp::SavitzkyGolay& plan, double noise
   while (shortest < longest) {
     const int middle = (shortest + (longest - shortest) / 2) | 1;
     const int tried = middle < longest ? middle : shortest;
-    const auto weights = dsp::savitzky_golay_weights({plan.order, tried}, 1);
-    if (!weights) return tl::unexpected(weights.error());
-    if (weights->norm() <= most) {
+    const auto weights = MBK_TRY(dsp::savitzky_golay_weights({plan.order, tried}, 1));
+    if (weights.norm() <= most) {
       longest = tried;
     } else {
       shortest = tried + 2;
@@ -56,9 +55,8 @@ Result<dsp::SavitzkyGolay> smoothing_of_joints(const dsp::SavitzkyGolay& plan, c
                                                Hertz rate) {
   if (!drive.coulomb && !drive.stribeck) return plan;
   const double turn = drive.smoothing > 0.0 ? drive.smoothing : 0.05 * usual_velocity(position, cuts, plan, rate);
-  const auto window = window_for_dry_friction(plan, position_noise(position, cuts).maxCoeff(), turn, rate);
-  if (!window) return tl::unexpected(window.error());
-  return dsp::SavitzkyGolay{plan.order, *window};
+  const auto window = MBK_TRY(window_for_dry_friction(plan, position_noise(position, cuts).maxCoeff(), turn, rate));
+  return dsp::SavitzkyGolay{plan.order, window};
 }
 
 }  // namespace mbk::preprocess

@@ -107,13 +107,13 @@ void take_every(const Eigen::Ref<const Vector>& samples, Index first, Index ever
 
 Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options,
                               const VirtualForce* computed) {
-  if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_choices(options));
   const bool published = options.mode == Mode::reference;
   const Index samples = recording.samples();
-  if (auto ok = check_length(samples, inspection); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_length(samples, inspection));
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
-  if (auto ok = check_missing(clock, inspection.missing, options.window); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_missing(clock, inspection.missing, options.window));
 
   PreparedTrial trial;
   trial.sources = recording.sources;
@@ -132,64 +132,58 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
                                         : AccelerationSource::derivative) == AccelerationSource::sensor;
 
   how.force_source = options.force_source;
-  auto signals = select_signals(recording, options.axes, how.acceleration_from_sensor);
-  if (!signals) return tl::unexpected(signals.error());
+  auto signals = MBK_TRY(select_signals(recording, options.axes, how.acceleration_from_sensor));
   if (computed != nullptr && computed->sensitivity.size() > 0) {
-    signals->force_sensitivity = computed->sensitivity;
+    signals.force_sensitivity = computed->sensitivity;
     trial.robot_covariance = options.robot->covariance;
   }
-  trial.axes = signals->axes;
-  trial.motion = signals->motion;
+  trial.axes = signals.axes;
+  trial.motion = signals.motion;
 
-  const ProtocolFinding found = detect_protocol(signals->reference);
+  const ProtocolFinding found = detect_protocol(signals.reference);
   how.protocol = options.protocol.value_or(found.protocol);
   how.protocol_rule = options.protocol ? "given" : found.rule;
-  if (how.protocol != Protocol::free && signals->reference.size() == 0) {
+  if (how.protocol != Protocol::free && signals.reference.size() == 0) {
     return bad_data(fmt::format("protocol '{}' needs the reference, channel '{}', which is missing",
                                 word_of(how.protocol), kReferenceChannels.name(trial.axes, 0)),
                     "name it with --channels, or use --protocol free");
   }
 
   if (how.protocol != Protocol::free) {
-    if (auto ok = check_reference(clock, *signals, options.window); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_reference(clock, signals, options.window));
   }
 
   FilterPlan filters = reference_filters(options);
-  auto plan = published ? reference_windows(how.protocol, signals->reference, clock, options.window,
-                                            filters.smoothing.half_window())
-                        : default_windows(how.protocol, signals->reference, clock, options.window);
-  if (!plan) return tl::unexpected(plan.error());
-  const std::vector<Cut> whole = plan->cuts;
-  if (auto ok = heed_exclusions(recording, clock, how, *plan, trial.warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_clock(clock, inspection, *plan, trial.warnings); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  auto plan = MBK_TRY(published ? reference_windows(how.protocol, signals.reference, clock, options.window,
+                                                    filters.smoothing.half_window())
+                                : default_windows(how.protocol, signals.reference, clock, options.window));
+  const std::vector<Cut> whole = plan.cuts;
+  MBK_TRY(heed_exclusions(recording, clock, how, plan, trial.warnings));
+  MBK_TRY(check_clock(clock, inspection, plan, trial.warnings));
   recording::let_go(recording.time);
-  if (auto ok = check_finite(clock, *signals, *plan, recording.warnings); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_alive(*signals, *plan); !ok) return tl::unexpected(ok.error());
-  warn_of_small_motion(*signals, *plan, trial.warnings);
+  MBK_TRY(check_finite(clock, signals, plan, recording.warnings));
+  MBK_TRY(check_alive(signals, plan));
+  warn_of_small_motion(signals, plan, trial.warnings);
 
   const bool by_reference = how.protocol == Protocol::sinusoidal;
-  const auto band = by_reference ? excited_band(signals->reference, whole, rate)  // known where the limb is not
-                                 : excited_band(signals->position, plan->cuts, rate);
-  if (!band) return tl::unexpected(band.error());
+  const auto band = MBK_TRY(by_reference ? excited_band(signals.reference, whole, rate)  // known where the limb is not
+                                         : excited_band(signals.position, plan.cuts, rate));
   if (!published) {
     Index shortest = samples;
-    for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
-    filters = improved_filters(options, *band, rate, shortest);
+    for (const Cut& cut : plan.cuts) shortest = std::min(shortest, cut.end - cut.begin);
+    filters = improved_filters(options, band, rate, shortest);
   }
 
-  const bool with_reference = options.instruments && signals->reference.size() > 0;
+  const bool with_reference = options.instruments && signals.reference.size() > 0;
   Index total = 0;
   std::vector<Index> rows_of_cuts;
-  for (const Cut& cut : plan->cuts) {
-    const auto rows = filtered_rows(cut, filters, plan->trim, options.padding);
-    if (!rows) return tl::unexpected(rows.error());
-    rows_of_cuts.push_back(*rows);
-    total += *rows;
+  for (const Cut& cut : plan.cuts) {
+    const auto rows = MBK_TRY(filtered_rows(cut, filters, plan.trim, options.padding));
+    rows_of_cuts.push_back(rows);
+    total += rows;
   }
 
-  const Index n = trial.axes, lost = filters.smoothing.half_window() + plan->trim;
+  const Index n = trial.axes, lost = filters.smoothing.half_window() + plan.trim;
   const Index every = filters.every;
   trial.recording_rate = rate.value;
   trial.sample_time = static_cast<double>(every) / rate.value;
@@ -197,22 +191,20 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   for (Matrix* signal : {&trial.position, &trial.velocity, &trial.acceleration, &trial.force_hand_on_robot}) {
     signal->resize(total, n);
   }
-  if (signals->reference.size() > 0) trial.reference.resize(total, n);
+  if (signals.reference.size() > 0) trial.reference.resize(total, n);
   if (with_reference) trial.reference_motion.resize(total, 3 * n);
-  trial.force_sensitivity.resize(signals->force_sensitivity.size() > 0 ? total : 0, signals->force_sensitivity.cols());
-  trial.reference_quantity = signals->reference_quantity;
+  trial.force_sensitivity.resize(signals.force_sensitivity.size() > 0 ? total : 0, signals.force_sensitivity.cols());
+  trial.reference_quantity = signals.reference_quantity;
   Index row = 0;
-  for (std::size_t k = 0; k < plan->cuts.size(); ++k) {
-    const Cut& cut = plan->cuts[k];
+  for (std::size_t k = 0; k < plan.cuts.size(); ++k) {
+    const Cut& cut = plan.cuts[k];
     const Index rows = rows_of_cuts[k], first = cut.begin + lost;
     const auto to = columns_from(row, {&trial.position, &trial.velocity, &trial.acceleration,
                                        &trial.force_hand_on_robot, &trial.reference_motion, &trial.force_sensitivity});
-    if (auto ok = filter_cut(*signals, cut, filters, plan->trim, rate, options.padding, with_reference, to); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(filter_cut(signals, cut, filters, plan.trim, rate, options.padding, with_reference, to));
     take_every(recording.time, first, every, trial.time.segment(row, rows));
     for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
-      take_every(signals->reference.col(axis), first, every, trial.reference.col(axis).segment(row, rows));
+      take_every(signals.reference.col(axis), first, every, trial.reference.col(axis).segment(row, rows));
     }
     append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;
@@ -221,21 +213,21 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   if (samples > recording::kLong) recording::DiskPages().take(trial);
   if (trial.segments.empty()) return bad_data("no sample is left after filtering", "record longer");
   if (how.protocol == Protocol::underdamped) {
-    trial.force_variance_at_rest = variance_at_rest(*signals, *plan, filters, rate, options.padding);
+    trial.force_variance_at_rest = variance_at_rest(signals, plan, filters, rate, options.padding);
   }
 
-  how.window_rule = plan->rule;
+  how.window_rule = plan.rule;
   how.from_s = trial.time[trial.segments.front().begin];
   how.to_s = trial.time[trial.segments.back().end - 1];
-  how.split_s = plan->split_s;
+  how.split_s = plan.split_s;
   how.perturbations = static_cast<int>(how.protocol == Protocol::underdamped ? trial.segments.size() : 1);
   how.smoothing_order = filters.smoothing.order;
   how.smoothing_window = filters.smoothing.window;
   how.cutoff = filters.cutoff;
   how.cutoff_rule = filters.rule;
   how.every = every;
-  how.band_low = band->low;
-  how.band_high = band->high;
+  how.band_low = band.low;
+  how.band_high = band.high;
   return trial;
 }
 

@@ -40,31 +40,26 @@ class Maker {
 
   Result<void> prepare() {
     if (!filters_.cutoff) return {};
-    auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, *filters_.cutoff, rate_);
-    if (!lowpass) return tl::unexpected(lowpass.error());
-    lowpass_ = std::move(*lowpass);
+    lowpass_ = MBK_TRY(dsp::butterworth_lowpass(kLowpassOrder, *filters_.cutoff, rate_));
     return {};
   }
 
   /// [τ τ̇ W₁ … W_n] of a cut, then W₁ … W_n of the instruments and of the smoothed motion where they are wanted.
   Result<Matrix> columns(const Cut& cut, PreparedDynamics& made) const {
-    auto joints = smooth_joints(signals_, *model_.mechanism, cut, filters_.smoothing, rate_, model_.delay);
-    if (!joints) return tl::unexpected(joints.error());
-    still(joints->motion, made.stands);
-    std::vector<Matrix> blocks = model_.regressors(joints->motion);
+    auto joints = MBK_TRY(smooth_joints(signals_, *model_.mechanism, cut, filters_.smoothing, rate_, model_.delay));
+    still(joints.motion, made.stands);
+    std::vector<Matrix> blocks = model_.regressors(joints.motion);
     if (options_.instruments) {
-      auto motion = instrument_motion(cut, joints->motion, made);
-      if (!motion) return tl::unexpected(motion.error());
-      still(*motion, made.stands);
-      for (Matrix& block : model_.regressors(*motion)) blocks.push_back(std::move(block));
-      auto smooth = low_passed(joints->motion, made.smoothed_cutoff);
-      if (!smooth) return tl::unexpected(smooth.error());
-      for (Matrix& block : model_.regressors(*smooth)) blocks.push_back(std::move(block));
+      auto motion = MBK_TRY(instrument_motion(cut, joints.motion, made));
+      still(motion, made.stands);
+      for (Matrix& block : model_.regressors(motion)) blocks.push_back(std::move(block));
+      auto smooth = MBK_TRY(low_passed(joints.motion, made.smoothed_cutoff));
+      for (Matrix& block : model_.regressors(smooth)) blocks.push_back(std::move(block));
     }
     const Index n = model_.mechanism->joints(), p = blocks.front().cols();
-    Matrix all(joints->torque.rows(), 2 * n + static_cast<Index>(blocks.size()) * p);
-    all.leftCols(n) = joints->torque;
-    all.middleCols(n, n) = joints->torque_rate;
+    Matrix all(joints.torque.rows(), 2 * n + static_cast<Index>(blocks.size()) * p);
+    all.leftCols(n) = joints.torque;
+    all.middleCols(n, n) = joints.torque_rate;
     for (std::size_t k = 0; k < blocks.size(); ++k) all.middleCols(2 * n + static_cast<Index>(k) * p, p) = blocks[k];
     return through(lowpass_, all);
   }
@@ -72,9 +67,8 @@ class Maker {
  private:
   Result<Matrix> through(const dsp::SectionCascade& filter, const Matrix& all) const {
     if (filter.empty()) return decimated(all);
-    auto filtered = dsp::filter_zero_phase(filter, all, options_.signals.padding);
-    if (!filtered) return filtered;
-    return decimated(*filtered);
+    auto filtered = MBK_TRY(dsp::filter_zero_phase(filter, all, options_.signals.padding));
+    return decimated(filtered);
   }
 
   [[nodiscard]] Matrix decimated(const Matrix& all) const {
@@ -111,12 +105,9 @@ class Maker {
   }
 
   [[nodiscard]] Result<robot::JointMotion> low_passed(robot::JointMotion motion, double cutoff) const {
-    const auto lowpass = dsp::butterworth_lowpass(kLowpassOrder, Hertz(cutoff), rate_);
-    if (!lowpass) return tl::unexpected(lowpass.error());
+    const auto lowpass = MBK_TRY(dsp::butterworth_lowpass(kLowpassOrder, Hertz(cutoff), rate_));
     for (Matrix* part : {&motion.position, &motion.velocity, &motion.acceleration}) {
-      auto filtered = dsp::filter_zero_phase(*lowpass, *part, options_.signals.padding);
-      if (!filtered) return tl::unexpected(filtered.error());
-      *part = std::move(*filtered);
+      *part = MBK_TRY(dsp::filter_zero_phase(lowpass, *part, options_.signals.padding));
     }
     return motion;
   }
@@ -146,7 +137,7 @@ void leave_out_held_joints(PreparedDynamics& made) {
 
 Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Inspection& inspection,
                                           const robot::DynamicModel& model, const DynamicsOptions& options) {
-  if (auto ok = check_choices(options.signals); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_choices(options.signals));
   if (!(std::abs(model.delay) < 1.0)) {
     return bad_usage(fmt::format("a motor delay of {:g} s is not below 1 s", model.delay));
   }
@@ -156,10 +147,8 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   }
   const Hertz rate(inspection.rate_hz);
   const Clock clock(recording.time, rate);
-  if (auto ok = check_missing(clock, inspection.missing, options.signals.window); !ok)
-    return tl::unexpected(ok.error());
-  const auto signals = select_joint_signals(recording, *model.mechanism, false);
-  if (!signals) return tl::unexpected(signals.error());
+  MBK_TRY(check_missing(clock, inspection.missing, options.signals.window));
+  const auto signals = MBK_TRY(select_joint_signals(recording, *model.mechanism, false));
 
   PreparedDynamics made;
   made.sources = recording.sources;
@@ -167,54 +156,45 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   made.warnings = recording.warnings;
   made.recording_rate = rate.value;
   made.recording_duration = inspection.duration + inspection.interval_median;
-  const auto plan = default_windows(Protocol::free, {}, clock, options.signals.window);
-  if (!plan) return tl::unexpected(plan.error());
-  if (auto ok = check_clock(clock, inspection, *plan, made.warnings); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  if (auto ok = check_joint_signals(*signals, *model.mechanism, clock, *plan, made.notes); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  made.stands = standing_joints(*signals, *plan);
-  const auto band = excited_band(signals->position, plan->cuts, rate);
-  if (!band) return tl::unexpected(band.error());
+  const auto plan = MBK_TRY(default_windows(Protocol::free, {}, clock, options.signals.window));
+  MBK_TRY(check_clock(clock, inspection, plan, made.warnings));
+  MBK_TRY(check_joint_signals(signals, *model.mechanism, clock, plan, made.notes));
+  made.stands = standing_joints(signals, plan);
+  const auto band = MBK_TRY(excited_band(signals.position, plan.cuts, rate));
   Index shortest = recording.samples();
-  for (const Cut& cut : plan->cuts) shortest = std::min(shortest, cut.end - cut.begin);
-  FilterPlan filters = improved_filters(options.signals, *band, rate, shortest);
+  for (const Cut& cut : plan.cuts) shortest = std::min(shortest, cut.end - cut.begin);
+  FilterPlan filters = improved_filters(options.signals, band, rate, shortest);
   if (filters.cutoff && !options.signals.smoothing_window) {
-    const auto smoothing = smoothing_of_joints(filters.smoothing, signals->position, plan->cuts, model.drive, rate);
-    if (!smoothing) return tl::unexpected(smoothing.error());
-    filters.smoothing = *smoothing;
+    const auto smoothing =
+        MBK_TRY(smoothing_of_joints(filters.smoothing, signals.position, plan.cuts, model.drive, rate));
+    filters.smoothing = smoothing;
   }
 
   if (options.instruments) {
-    made.instrument_motion = signals->joint_reference.size() > 0  ? InstrumentMotion::joint_reference
-                             : signals->hand_reference.size() > 0 ? InstrumentMotion::hand_reference
-                                                                  : InstrumentMotion::smoothed;
+    made.instrument_motion = signals.joint_reference.size() > 0  ? InstrumentMotion::joint_reference
+                             : signals.hand_reference.size() > 0 ? InstrumentMotion::hand_reference
+                                                                 : InstrumentMotion::smoothed;
     if (options.motion_cutoff) made.instrument_motion = InstrumentMotion::smoothed;
     if (made.instrument_motion == InstrumentMotion::smoothed) {
-      const auto top = band_top(signals->torque, plan->cuts, rate);
-      if (!top) return tl::unexpected(top.error());
-      made.motion_cutoff = options.motion_cutoff.value_or(Hertz(top->value / kPassed)).value;
+      const auto top = MBK_TRY(band_top(signals.torque, plan.cuts, rate));
+      made.motion_cutoff = options.motion_cutoff.value_or(Hertz(top.value / kPassed)).value;
     }
     const Hertz limit = filters.cutoff.value_or(Hertz(0.1 * rate.value));
-    for (Index joint = 0; joint < signals->position.cols(); ++joint) {
-      const auto top = motion_top(signals->position.col(joint), plan->cuts, rate, limit);
-      if (!top) return tl::unexpected(top.error());
+    for (Index joint = 0; joint < signals.position.cols(); ++joint) {
+      const auto top = MBK_TRY(motion_top(signals.position.col(joint), plan.cuts, rate, limit));
       // One for all joints: what shakes the links moves them against each other, and must not be let through by one
       // alone.
-      made.smoothed_cutoff = joint == 0 ? top->value : std::min(made.smoothed_cutoff, top->value);
+      made.smoothed_cutoff = joint == 0 ? top.value : std::min(made.smoothed_cutoff, top.value);
     }
   }
-  Maker maker(*signals, model, options, filters, rate);
-  if (auto ok = maker.prepare(); !ok) return tl::unexpected(ok.error());
+  Maker maker(signals, model, options, filters, rate);
+  MBK_TRY(maker.prepare());
   std::vector<Matrix> pieces;
   Index total = 0;
-  for (const Cut& cut : plan->cuts) {
-    auto piece = maker.columns(cut, made);
-    if (!piece) return tl::unexpected(piece.error());
-    total += piece->rows();
-    pieces.push_back(std::move(*piece));
+  for (const Cut& cut : plan.cuts) {
+    auto piece = MBK_TRY(maker.columns(cut, made));
+    total += piece.rows();
+    pieces.push_back(std::move(piece));
   }
 
   const Index n = model.mechanism->joints(), every = filters.every, lost = filters.smoothing.half_window();
@@ -223,7 +203,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   made.time.resize(total);
   Index row = 0;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const Cut& cut = plan->cuts[k];
+    const Cut& cut = plan.cuts[k];
     const Index rows = pieces[k].rows(), first = cut.begin + lost;
     all.middleRows(row, rows) = pieces[k];
     made.time.segment(row, rows) = recording.time(Eigen::seqN(first, rows, every)).array() - recording.time[0];
@@ -244,16 +224,16 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
 
   Preparation& how = made.preparation;
   how.protocol_rule = "a robot by itself";
-  how.window_rule = plan->rule;
+  how.window_rule = plan.rule;
   how.from_s = made.time[made.segments.front().begin];
   how.to_s = made.time[made.segments.back().end - 1];
-  how.split_s = plan->split_s;
+  how.split_s = plan.split_s;
   how.smoothing_order = filters.smoothing.order;
   how.smoothing_window = filters.smoothing.window;
   how.cutoff = filters.cutoff;
   how.cutoff_rule = filters.rule;
-  how.band_low = band->low;
-  how.band_high = band->high;
+  how.band_low = band.low;
+  how.band_high = band.high;
   how.every = every;
   return made;
 }

@@ -112,7 +112,7 @@ Result<void> check_clock(const Clock& clock, const Inspection& inspection, const
       const auto here = intervals.head(size);
       if (!(here > 0.0).all() || has_gap(inspection, begin - 1, end - 1)) {
         for (Index i = begin; i < end; ++i) {
-          if (auto ok = check_step(clock, inspection, i); !ok) return ok;
+          MBK_TRY(check_step(clock, inspection, i));
         }
       }
       sum += (here - median).square().sum();

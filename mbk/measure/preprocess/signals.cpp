@@ -53,21 +53,18 @@ Result<Signals> select_signals(const Recording& recording, int axes, bool accele
   const bool one_axis = recording.find("position") != nullptr || recording.find("reaction") != nullptr;
   signals.axes = axes != 0 ? axes : (one_axis ? 1 : 2);
   const auto take = [&](const QuantityChannels& quantity, Columns& target) -> Result<void> {
-    auto columns = require(recording, quantity, signals.axes);
-    if (!columns) return tl::unexpected(columns.error());
-    target = std::move(*columns);
+    target = MBK_TRY(require(recording, quantity, signals.axes));
     return {};
   };
-  if (auto ok = take(kPositionChannels, signals.position); !ok) return tl::unexpected(ok.error());
-  if (auto ok = take(kForceChannels, signals.force_hand_on_robot); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(take(kPositionChannels, signals.position));
+  MBK_TRY(take(kForceChannels, signals.force_hand_on_robot));
   if (acceleration_from_sensor) {
-    if (auto ok = take(kAccelerationChannels, signals.acceleration); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(take(kAccelerationChannels, signals.acceleration));
   }
   signals.reference = channels_of(recording, kReferenceChannels, signals.axes);
   signals.reference_quantity = reference_quantity(recording, signals.axes);
-  const auto motion = motion_of(recording, signals.axes);
-  if (!motion) return tl::unexpected(motion.error());
-  signals.motion = *motion;
+  const auto motion = MBK_TRY(motion_of(recording, signals.axes));
+  signals.motion = motion;
   return signals;
 }
 

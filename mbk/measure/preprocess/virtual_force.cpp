@@ -106,7 +106,7 @@ double damping_of_tenth(const robot::DynamicModel& model, const robot::JointMoti
 
 Result<VirtualForce> virtual_force(const Recording& recording, const Inspection& inspection,
                                    const robot::DynamicModel& model, const Options& options) {
-  if (auto ok = check_choices(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_choices(options));
   const robot::Mechanism& mechanism = *model.mechanism;
   const Index samples = recording.samples(), n = mechanism.joints(), axes = mechanism.hand_axes();
   constexpr Index kMin = 100;
@@ -120,51 +120,45 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
       options.acceleration.value_or(published && options.procedure == Procedure::chapter5
                                         ? AccelerationSource::sensor
                                         : AccelerationSource::derivative) == AccelerationSource::sensor;
-  const auto signals = select_joint_signals(recording, mechanism, accelerometer);
-  if (!signals) return tl::unexpected(signals.error());
+  const auto signals = MBK_TRY(select_joint_signals(recording, mechanism, accelerometer));
   const WindowLimits limits =
       published ? WindowLimits{} : WindowLimits{options.window.from_s, std::nullopt, options.window.to_s};
-  const auto plan = default_windows(Protocol::free, {}, clock, limits);
-  if (!plan) return tl::unexpected(plan.error());
+  const auto plan = MBK_TRY(default_windows(Protocol::free, {}, clock, limits));
   std::vector<Warning> warnings;
-  if (auto ok = check_missing(clock, inspection.missing, limits); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_clock(clock, inspection, *plan, warnings); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(check_missing(clock, inspection.missing, limits));
+  MBK_TRY(check_clock(clock, inspection, plan, warnings));
   std::vector<std::string> notes;
-  if (auto ok = check_joint_signals(*signals, mechanism, clock, *plan, notes); !ok) return tl::unexpected(ok.error());
-  const Cut cut = plan->cuts.front();
+  MBK_TRY(check_joint_signals(signals, mechanism, clock, plan, notes));
+  const Cut cut = plan.cuts.front();
   FilterPlan filters = reference_filters(options);
   if (!published) {
-    const auto band = excited_band(signals->position, plan->cuts, rate);
-    if (!band) return tl::unexpected(band.error());
-    filters = improved_filters(options, *band, rate, cut.end - cut.begin);
+    const auto band = MBK_TRY(excited_band(signals.position, plan.cuts, rate));
+    filters = improved_filters(options, band, rate, cut.end - cut.begin);
   }
   dsp::SavitzkyGolay smoothing = filters.smoothing;
   if (filters.cutoff && !published && !options.smoothing_window) {
-    const auto shorter = smoothing_of_joints(filters.smoothing, signals->position, plan->cuts, model.drive, rate);
-    if (!shorter) return tl::unexpected(shorter.error());
-    smoothing = *shorter;
+    const auto shorter =
+        MBK_TRY(smoothing_of_joints(filters.smoothing, signals.position, plan.cuts, model.drive, rate));
+    smoothing = shorter;
   }
-  const auto joints = smooth_joints(*signals, mechanism, cut, smoothing, rate, model.delay);
-  if (!joints) return tl::unexpected(joints.error());
+  const auto joints = MBK_TRY(smooth_joints(signals, mechanism, cut, smoothing, rate, model.delay));
 
   VirtualForce made;
   made.first = cut.begin + smoothing.half_window();
-  const Index rows = joints->torque.rows();
+  const Index rows = joints.torque.rows();
   made.last = made.first + rows;
   made.filters = filters;
   const bool observed = options.force_source == ForceSource::observer;
   const bool sure = observed || model.covariance.size() == 0 || model.covariance.isZero(0.0);
-  const std::vector<Matrix> W = model.regressors(joints->motion);
+  const std::vector<Matrix> W = model.regressors(joints.motion);
   const Index p = model.parameters.size();
   Matrix of_model(rows, n);
   for (Index joint = 0; joint < n; ++joint) of_model.col(joint) = W[static_cast<std::size_t>(joint)] * model.parameters;
-  const Matrix missing = of_model - joints->torque;
+  const Matrix missing = of_model - joints.torque;
   Matrix force(rows, axes), sensitivity(sure ? 0 : rows, axes * p), error(sure ? 0 : rows, axes);
   Matrix of_sample(n, p);
   for (Index i = 0; i < rows; ++i) {
-    const auto hand = robot::hand_from_joints(mechanism, joints->motion.position.row(i).transpose());
+    const auto hand = robot::hand_from_joints(mechanism, joints.motion.position.row(i).transpose());
     if (!hand) {
       const Index sample = made.first + i;
       return tl::unexpected(hand.error().in(fmt::format("sample {} ({:.6f} s)", sample + 1, clock.seconds(sample))));
@@ -178,19 +172,17 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
   }
   if (observed) {
     const Index length = cut.end - cut.begin;
-    const auto forces = robot::observe_force(model, signals->position.middleRows(cut.begin, length),
-                                             signals->torque.middleRows(cut.begin, length), {}, 1.0 / rate.value);
-    if (!forces) return tl::unexpected(forces.error());
-    made.lag = forces->lag;
-    force = forces->force_hand_on_robot.middleRows(smoothing.half_window(), rows);
+    const auto forces =
+        MBK_TRY(robot::observe_force(model, signals.position.middleRows(cut.begin, length),
+                                     signals.torque.middleRows(cut.begin, length), {}, 1.0 / rate.value));
+    made.lag = forces.lag;
+    force = forces.force_hand_on_robot.middleRows(smoothing.half_window(), rows);
   }
-  if (auto ok = check_torque_unit(force, joints->torque, of_model, mechanism.slides(0)); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(check_torque_unit(force, joints.torque, of_model, mechanism.slides(0)));
 
   made.recording = recording;
   const Matrix whole = held(force, made.first, samples);
-  made.joint_velocity = held(joints->motion.velocity, made.first, samples);
+  made.joint_velocity = held(joints.motion.velocity, made.first, samples);
   if (!sure) {
     made.sensitivity = held(sensitivity, made.first, samples);
     made.standard_error = held(error, made.first, samples);
@@ -213,7 +205,7 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
     if (place.size() == 0) {
       place.resize(samples, axes);
       for (Index i = 0; i < samples; ++i) {
-        place.row(i) = mechanism.hand_position(signals->position.row(i).transpose()).transpose();
+        place.row(i) = mechanism.hand_position(signals.position.row(i).transpose()).transpose();
       }
     }
     put(made.recording, hand, turns ? "rad" : "m", place.col(axis));
@@ -226,13 +218,13 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
           : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
                         "(virtual sensor), q̈ {}",
                         accelerometer ? "from the accelerometer" : "from the joints"));
-  if (const double damping = damping_of_tenth(model, joints->motion, W); damping > 0.0) {
+  if (const double damping = damping_of_tenth(model, joints.motion, W); damping > 0.0) {
     made.recording.notes.push_back(
         fmt::format("friction of the robot that is 10 % less than when it was identified, as where it is warmer, makes "
                     "the damping up to {:.2g} {} too small, and nothing shows it",
                     damping, turns ? "N·m·s/rad" : "N·s/m"));
   }
-  if (auto assumed = assumed_of_hand(mechanism, joints->motion.position.row(0).transpose()); !assumed.empty()) {
+  if (auto assumed = assumed_of_hand(mechanism, joints.motion.position.row(0).transpose()); !assumed.empty()) {
     made.recording.notes.push_back(std::move(assumed));
   }
   made.recording.notes.insert(made.recording.notes.end(), notes.begin(), notes.end());

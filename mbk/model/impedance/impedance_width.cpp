@@ -35,11 +35,9 @@ Result<Width> impedance_width(const Matrix& first, const Matrix& second) {
     return bad_data(fmt::format("matrices of {}×{} and {}×{} cannot be compared", first.rows(), first.cols(),
                                 second.rows(), second.cols()));
   }
-  const auto A = positive_definite(first, "first");
-  if (!A) return tl::unexpected(A.error());
-  const auto B = positive_definite(second, "second");
-  if (!B) return tl::unexpected(B.error());
-  const auto [values, vectors] = numeric::generalized_symmetric_eigen(*B, *A);
+  const auto A = MBK_TRY(positive_definite(first, "first"));
+  const auto B = MBK_TRY(positive_definite(second, "second"));
+  const auto [values, vectors] = numeric::generalized_symmetric_eigen(B, A);
   const Index n = first.rows();
   Width width;
   width.ratios = values;

@@ -27,7 +27,7 @@ std::set<int> harmonics(const Multisine& signal) {
 }  // namespace
 
 Result<double> peak_norm(const AxisPair& pair) {
-  if (const auto same = check_period(pair.first, pair.second); !same) return tl::unexpected(same.error());
+  MBK_TRY(check_period(pair.first, pair.second));
   const int samples = 64 * std::max(*harmonics(pair.first).rbegin(), *harmonics(pair.second).rbegin());
   const auto norm = [&](double t) { return std::hypot(pair.first.at(t).value, pair.second.at(t).value); };
   std::vector<double> times, values;
@@ -52,7 +52,7 @@ Result<AxisPair> interleaved(const Multisine& signal) {
 }
 
 Result<std::array<AxisPair, 2>> hadamard_experiments(const Multisine& first, const Multisine& second) {
-  if (const auto same = check_period(first, second); !same) return tl::unexpected(same.error());
+  MBK_TRY(check_period(first, second));
   if (harmonics(first) != harmonics(second)) {
     return bad_usage("the axes have different harmonics", "give both the same, or interleave them");
   }

@@ -53,11 +53,11 @@ Result<Multisine> multiplied(const Multisine& signal, const OptimalPowerOptions&
 
 Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmonics,
                                    const OptimalPowerOptions& options) {
-  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check(options));
   const auto n = static_cast<Index>(harmonics.size());
   std::vector<Multisine::Line> lines;
   for (const int k : harmonics) lines.push_back({k, 1.0, 0.0});
-  if (const auto valid = Multisine::create(period, lines); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(Multisine::create(period, lines));
   if (n < 2) return bad_usage("one line cannot tell M from K", "give at least two lines");
   if (!(options.floor >= 0.0 && options.floor * static_cast<double>(n) < 1.0)) {
     return bad_usage(fmt::format("floor {} at each of {} lines is not from 0 to below 1 in all", options.floor, n));
@@ -109,7 +109,7 @@ Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmon
 }
 
 Result<Multisine> limited_signal(const Multisine& position, const OptimalPowerOptions& options) {
-  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check(options));
   return multiplied(position, options, false);
 }
 
@@ -119,18 +119,15 @@ Result<Multisine> optimal_multisine(double period, const std::vector<int>& harmo
   if (!(limit.value > 0.0 && std::isfinite(limit.value))) {
     return bad_usage(fmt::format("limit {} of the signal is not above 0", limit.value));
   }
-  const auto power = optimal_power(period, harmonics, options);
-  if (!power) return tl::unexpected(power.error());
+  const auto power = MBK_TRY(optimal_power(period, harmonics, options));
   std::vector<Multisine::Line> lines;
   for (std::size_t i = 0; i < harmonics.size(); ++i) {
-    lines.push_back({harmonics[i], std::sqrt(2.0 * power->shares[static_cast<Index>(i)]), 0.0});
+    lines.push_back({harmonics[i], std::sqrt(2.0 * power.shares[static_cast<Index>(i)]), 0.0});
   }
-  const auto flat = Multisine::create(period, std::move(lines));
-  if (!flat) return tl::unexpected(flat.error());
-  const auto limited = with_low_crest_phases(*flat, phases);
-  if (!limited) return tl::unexpected(limited.error());
-  const double reached = limit.measure == SignalLimit::Measure::rms ? limited->root_mean_square() : limited->peak();
-  return multiplied(limited->scaled(limit.value / reached), options, true);
+  const auto flat = MBK_TRY(Multisine::create(period, std::move(lines)));
+  const auto limited = MBK_TRY(with_low_crest_phases(flat, phases));
+  const double reached = limit.measure == SignalLimit::Measure::rms ? limited.root_mean_square() : limited.peak();
+  return multiplied(limited.scaled(limit.value / reached), options, true);
 }
 
 }  // namespace mbk::perturbation

@@ -18,10 +18,10 @@ Result<void> check_ramps(const RampAndHold::Options& o) {
     if (value > 0.0 && std::isfinite(value)) return {};
     return bad_usage(fmt::format("{} {}{} is not above 0", what, value, unit));
   };
-  if (auto ok = positive("amplitude of the ramps", o.amplitude, ""); !ok) return ok;
-  if (auto ok = positive("duration of a ramp", o.ramp, " s"); !ok) return ok;
-  if (auto ok = positive("duration of the hold", o.hold, " s"); !ok) return ok;
-  if (auto ok = positive("duration of the way back", o.way_back, " s"); !ok) return ok;
+  MBK_TRY(positive("amplitude of the ramps", o.amplitude, ""));
+  MBK_TRY(positive("duration of a ramp", o.ramp, " s"));
+  MBK_TRY(positive("duration of the hold", o.hold, " s"));
+  MBK_TRY(positive("duration of the way back", o.way_back, " s"));
   if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
   if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
   if (o.repetitions > RampAndHold::kMaxRamps / o.directions) {
@@ -43,7 +43,7 @@ RampAndHold::RampAndHold(const Options& options)
       back_({options.amplitude, 0.0, 0.0}, {0.0, 0.0, 0.0}, options.way_back) {}
 
 Result<RampAndHold> RampAndHold::create(const Options& options) {
-  if (auto ok = check_ramps(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_ramps(options));
   RampAndHold schedule(options);
   numeric::Random random(options.seed);
   double rest = options.quiet;

@@ -38,9 +38,8 @@ double sinc(double x) {
 }  // namespace
 
 Result<RandomBinary> RandomBinary::create(const RandomBinaryOptions& options, double duration) {
-  if (const auto valid = check(options, duration); !valid) return tl::unexpected(valid.error());
-  const auto filter = UnderdampedFilter::create(options.damping_ratio, options.natural_frequency);
-  if (!filter) return tl::unexpected(filter.error());
+  MBK_TRY(check(options, duration));
+  const auto filter = MBK_TRY(UnderdampedFilter::create(options.damping_ratio, options.natural_frequency));
 
   constexpr double kRounding = 1e-9;  // of the ratio of two times
   const double ratio = duration / options.switching_time;
@@ -59,12 +58,12 @@ Result<RandomBinary> RandomBinary::create(const RandomBinaryOptions& options, do
     for (std::size_t i = 0; i < count; ++i) signs.push_back(random.below(2) == 0 ? 1.0 : -1.0);
   }
 
-  RandomBinary sequence(options, *filter);
+  RandomBinary sequence(options, filter);
   Jet<double> state{0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < count; ++i) {
     const double input = options.amplitude * signs[i];
     sequence.intervals_.push_back({input, state.value, state.first});
-    state = filter->response(state.value, state.first, input, sequence.start_of(i + 1) - sequence.start_of(i));
+    state = filter.response(state.value, state.first, input, sequence.start_of(i + 1) - sequence.start_of(i));
   }
   return sequence;
 }

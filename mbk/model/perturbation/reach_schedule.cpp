@@ -41,8 +41,8 @@ Result<void> check(const ReachSchedule::Options& o) {
       !ok) {
     return ok;
   }
-  if (auto ok = not_negative({{"quiet time", o.quiet, "s"}}); !ok) return ok;
-  if (auto ok = check_counts(o); !ok) return ok;
+  MBK_TRY(not_negative({{"quiet time", o.quiet, "s"}}));
+  MBK_TRY(check_counts(o));
   if (!o.reach.allFinite() || !(o.trigger < o.reach.norm())) {
     return bad_usage(
         fmt::format("the trigger after {:g} m is not before the target, {:g} m away", o.trigger, o.reach.norm()));
@@ -93,7 +93,7 @@ ReachSchedule::ReachSchedule(const Options& options, std::vector<Reach> reaches)
 }
 
 Result<ReachSchedule> ReachSchedule::create(const Options& options) {
-  if (auto ok = reach_schedule::check(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(reach_schedule::check(options));
   ReachSchedule schedule(options, reach_schedule::ordered(options));
   if (schedule.to_trigger_ + schedule.displaced_for() > options.interval) {
     return bad_usage(fmt::format("a displacement of {:g} s lasts beyond the interval of {:g} s",

@@ -62,7 +62,7 @@ std::string_view unit(Quantity quantity, Space space) {
 
 Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity quantity, Space space, double duration,
                                      double moving_in) {
-  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check_duration(duration));
   if (!(moving_in > 0.0 && moving_in <= duration)) {
     return bad_usage(
         fmt::format("moving-in time {} s is not above 0 and at most the duration {} s", moving_in, duration));
@@ -79,13 +79,13 @@ Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantit
     return bad_usage(fmt::format("tail {} s is shorter than the way back {} s", tail, options.return_duration));
   }
   const double duration = schedule->pulses().back().offset + tail;
-  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check_duration(duration));
   return with_countable_cycles(Schedule(*std::move(schedule), quantity, space, duration));
 }
 
 Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, double angle, Quantity quantity,
                                          double duration, Space space) {
-  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check_duration(duration));
   if (!std::isfinite(angle)) return bad_usage(fmt::format("angle {} rad is not finite", angle));
   auto sequence = RandomBinary::create(options, duration);
   if (!sequence) return tl::unexpected(sequence.error());
@@ -97,7 +97,7 @@ Result<Schedule> Schedule::ramps(const RampAndHold::Options& options, double tai
   if (!schedule) return tl::unexpected(schedule.error());
   if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is below 0", tail));
   const double duration = schedule->end() + tail;
-  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check_duration(duration));
   return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, space, duration));
 }
 
@@ -106,12 +106,12 @@ Result<Schedule> Schedule::reaches(const ReachSchedule::Options& options, double
   if (!schedule) return tl::unexpected(schedule.error());
   if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is below 0", tail));
   const double duration = schedule->end() + tail;
-  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check_duration(duration));
   return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, Space::hand, duration));
 }
 
 Result<Schedule> Schedule::rest(double duration) {
-  if (const auto valid = check_duration(duration); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check_duration(duration));
   return Schedule(Rest{}, Quantity::position, Space::hand, duration);
 }
 

@@ -21,19 +21,17 @@ constexpr std::uint64_t kGrid = 1;
 Result<std::vector<double>> relative_amplitudes(const MultisinePlan& plan) {
   std::vector<double> amplitudes(plan.harmonics.size(), 1.0);
   if (!plan.optimal_power) return amplitudes;
-  const auto power = optimal_power(plan.period, plan.harmonics, *plan.optimal_power);
-  if (!power) return tl::unexpected(power.error());
+  const auto power = MBK_TRY(optimal_power(plan.period, plan.harmonics, *plan.optimal_power));
   for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-    amplitudes[k] = std::sqrt(power->shares[static_cast<Index>(k)]);
+    amplitudes[k] = std::sqrt(power.shares[static_cast<Index>(k)]);
   }
   return amplitudes;
 }
 
 /// One axis with its phases, its size still open.
 Result<Multisine> sines(const MultisinePlan& plan, std::uint64_t seed, std::uint32_t axis) {
-  const auto amplitudes = relative_amplitudes(plan);
-  if (!amplitudes) return tl::unexpected(amplitudes.error());
-  return Multisine::with_random_phases(plan.period, plan.harmonics, *amplitudes, seed, kPhases + axis);
+  const auto amplitudes = MBK_TRY(relative_amplitudes(plan));
+  return Multisine::with_random_phases(plan.period, plan.harmonics, amplitudes, seed, kPhases + axis);
 }
 
 Result<Multisine> with_phases(const MultisinePlan& plan, const Multisine& signal, std::uint64_t seed) {
@@ -60,17 +58,14 @@ Result<AxisPair> both_axes(const MultisinePlan& plan, std::uint64_t seed) {
 Result<Schedule> schedule_of(const MultisinePlan& given, std::uint64_t schedule_seed) {
   MultisinePlan plan = given;
   if (plan.odd_grid) {
-    auto lines = odd_grid(plan.odd_grid->highest, plan.odd_grid->group, kGrid);
-    if (!lines) return tl::unexpected(lines.error());
-    plan.harmonics = std::move(*lines);
+    plan.harmonics = MBK_TRY(odd_grid(plan.odd_grid->highest, plan.odd_grid->group, kGrid));
   }
   const std::uint64_t seed = plan.phase_seed.value_or(schedule_seed);
   auto pair = both_axes(plan, seed);
   if (!pair) return tl::unexpected(pair.error());
-  const auto first = with_phases(plan, pair->first, seed), second = with_phases(plan, pair->second, seed + 1);
-  if (!first) return tl::unexpected(first.error());
-  if (!second) return tl::unexpected(second.error());
-  pair = AxisPair{first->scaled(plan.peak / first->peak()), second->scaled(plan.peak / second->peak())};
+  const auto first = MBK_TRY(with_phases(plan, pair->first, seed));
+  const auto second = MBK_TRY(with_phases(plan, pair->second, seed + 1));
+  pair = AxisPair{first.scaled(plan.peak / first.peak()), second.scaled(plan.peak / second.peak())};
   if (plan.axes == MultisinePlan::Axes::hadamard_second) pair->second = pair->second.scaled(-1.0);
   return Schedule::multisine(pair->first, pair->second, plan.quantity, plan.space, plan.duration, plan.moving_in);
 }

@@ -39,9 +39,8 @@ Result<void> check(const PulseSchedule::Options& o) {
 
 Result<UnderdampedPulse> UnderdampedPulse::create(double amplitude, double damping_ratio, RadPerSec natural_frequency) {
   if (!std::isfinite(amplitude)) return bad_usage(fmt::format("pulse amplitude {} is not finite", amplitude));
-  const auto filter = UnderdampedFilter::create(damping_ratio, natural_frequency);
-  if (!filter) return tl::unexpected(filter.error());
-  return UnderdampedPulse(amplitude, *filter);
+  const auto filter = MBK_TRY(UnderdampedFilter::create(damping_ratio, natural_frequency));
+  return UnderdampedPulse(amplitude, filter);
 }
 
 Jet<double> UnderdampedPulse::at(double t) const {
@@ -50,11 +49,11 @@ Jet<double> UnderdampedPulse::at(double t) const {
 }
 
 Result<PulseSchedule> PulseSchedule::create(const Options& options) {
-  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
-  const auto shape = UnderdampedPulse::create(options.amplitude, options.damping_ratio, options.natural_frequency);
-  if (!shape) return tl::unexpected(shape.error());
+  MBK_TRY(check(options));
+  const auto shape =
+      MBK_TRY(UnderdampedPulse::create(options.amplitude, options.damping_ratio, options.natural_frequency));
 
-  PulseSchedule schedule(options, *shape);
+  PulseSchedule schedule(options, shape);
   numeric::Random random(options.seed);
   double end = options.quiet;
   for (const int direction : shuffled_directions(options.directions, options.repetitions, random)) {

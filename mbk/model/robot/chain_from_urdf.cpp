@@ -253,7 +253,7 @@ Result<void> gather(const Link& link, const KDL::Frame& from_body, const std::st
                                     [&](const auto& one) { return one->name == joint->child_link_name; });
     if (child == link->child_links.end()) continue;
     const KDL::Frame there = from_body * frame(joint->parent_to_joint_origin_transform);
-    if (auto ok = gather(*child, there, beyond, body); !ok) return ok;
+    MBK_TRY(gather(*child, there, beyond, body));
   }
   return {};
 }
@@ -340,8 +340,8 @@ Result<void> check_readings(const SerialChain::Options& options, std::size_t joi
     if (given == 0 || given == joints) return {};
     return bad_usage(fmt::format("{} {} for {} joints", given, what, joints), "give one for each joint that moves");
   };
-  if (auto ok = fits(options.zero.size(), "zeros"); !ok) return ok;
-  if (auto ok = fits(options.sign.size(), "signs"); !ok) return ok;
+  MBK_TRY(fits(options.zero.size(), "zeros"));
+  MBK_TRY(fits(options.sign.size(), "signs"));
   if (!std::all_of(options.zero.begin(), options.zero.end(), [](double zero) { return std::isfinite(zero); })) {
     return bad_usage("the zero of a joint is not finite", "give numbers");
   }
@@ -354,38 +354,34 @@ Result<void> check_readings(const SerialChain::Options& options, std::size_t joi
 }  // namespace
 
 Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Options& options) {
-  if (auto ok = check_options(options); !ok) return tl::unexpected(ok.error());
-  const auto parsed = parse(urdf);
-  if (!parsed) return tl::unexpected(parsed.error());
-  const Model& model = *parsed;
+  MBK_TRY(check_options(options));
+  const auto parsed = MBK_TRY(parse(urdf));
+  const Model& model = parsed;
   const auto base =
-      options.base_link.empty() ? Result<Link>(model->getRoot()) : find_link(model, options.base_link, "base");
-  if (!base) return tl::unexpected(base.error());
-  const auto tip = options.tip_link.empty() ? only_leaf(model, *base) : find_link(model, options.tip_link, "tip");
-  if (!tip) return tl::unexpected(tip.error());
-  const auto joints = way(*base, *tip);
-  if (!joints) return tl::unexpected(joints.error());
+      MBK_TRY(options.base_link.empty() ? Result<Link>(model->getRoot()) : find_link(model, options.base_link, "base"));
+  const auto tip =
+      MBK_TRY(options.tip_link.empty() ? only_leaf(model, base) : find_link(model, options.tip_link, "tip"));
+  const auto joints = MBK_TRY(way(base, tip));
 
   std::vector<JointOfTree> moving;
-  std::copy_if(joints->begin(), joints->end(), std::back_inserter(moving),
+  std::copy_if(joints.begin(), joints.end(), std::back_inserter(moving),
                [](const JointOfTree& joint) { return joint->type != urdf::Joint::FIXED; });
   if (moving.empty() || moving.size() > kMaxJoints) {
-    return bad_data(
-        fmt::format("{} joints move between link '{}' and link '{}'", moving.size(), (*base)->name, (*tip)->name),
-        fmt::format("1 to {} are supported", kMaxJoints));
+    return bad_data(fmt::format("{} joints move between link '{}' and link '{}'", moving.size(), base->name, tip->name),
+                    fmt::format("1 to {} are supported", kMaxJoints));
   }
-  if (auto ok = check_readings(options, moving.size()); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_readings(options, moving.size()));
 
   ChainParts parts;
-  parts.base_link = (*base)->name;
-  parts.tip_link = (*tip)->name;
+  parts.base_link = base->name;
+  parts.tip_link = tip->name;
   parts.gravity = vector(options.gravity);
   for (const SerialChain::Axis axis : options.hand_axes) parts.hand_axes.push_back(static_cast<int>(axis));
   for (int axis = 0; axis < 3; ++axis) {
     if (std::ranges::find(parts.hand_axes, axis) == parts.hand_axes.end()) parts.other_axes.push_back(axis);
   }
   KDL::Frame from_body;  // of the link that is reached, from the last body that moves
-  for (const JointOfTree& joint : *joints) {
+  for (const JointOfTree& joint : joints) {
     const KDL::Frame origin = from_body * frame(joint->parent_to_joint_origin_transform);
     if (!finite(origin)) {
       return bad_data(fmt::format("<origin> of joint '{}' holds a number that is not finite", joint->name),
@@ -393,7 +389,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
     }
     from_body = origin;
     if (joint->type == urdf::Joint::FIXED) continue;
-    if (auto ok = check_kind(*joint); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_kind(*joint));
     const std::size_t i = parts.joints.size();
     const double zero = options.zero.empty() ? 0.0 : options.zero[i];
     const int sign = options.sign.empty() ? 1 : options.sign[i];
@@ -410,9 +406,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
 
     const std::string beyond = i + 1 < moving.size() ? moving[i + 1]->name : std::string();
     Gathered body;
-    if (auto ok = gather(model->getLink(told->link), KDL::Frame(), beyond, body); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(gather(model->getLink(told->link), KDL::Frame(), beyond, body));
     if (!body.stated) {
       return bad_data(fmt::format("link '{}' moves but has no <inertial>", told->link),
                       "give it one; where its numbers are going to be identified, any will do, also 0");

@@ -18,9 +18,7 @@ double ticks_late(double memory) {
 }  // namespace
 
 Result<MomentumObserver> MomentumObserver::create(const DynamicModel& model, double gain, double sample_time) {
-  if (auto ok = above_zero({{"observer gain", gain, "1/s"}, {"sample time", sample_time, "s"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(above_zero({{"observer gain", gain, "1/s"}, {"sample time", sample_time, "s"}}));
   const auto coefficients = static_cast<Index>(model.coefficients().size());
   if (model.parameters.size() != coefficients) {
     return bad_data(fmt::format("the model of the robot has {} parameters, and its equations have {} coefficients",
@@ -96,11 +94,9 @@ double MomentumObserver::lag() const {
 
 Result<EncoderMomentumObserver> EncoderMomentumObserver::create(const DynamicModel& model, const Options& options,
                                                                 double sample_time) {
-  auto observer = MomentumObserver::create(model, options.gain, sample_time);
-  if (!observer) return tl::unexpected(observer.error());
-  const auto velocity = VelocityEstimate::create(sample_time, options.velocity_cutoff);
-  if (!velocity) return tl::unexpected(velocity.error());
-  return EncoderMomentumObserver(std::move(*observer), *velocity, sample_time);
+  auto observer = MBK_TRY(MomentumObserver::create(model, options.gain, sample_time));
+  const auto velocity = MBK_TRY(VelocityEstimate::create(sample_time, options.velocity_cutoff));
+  return EncoderMomentumObserver(std::move(observer), velocity, sample_time);
 }
 
 const ObservedForce& EncoderMomentumObserver::step(const JointVector& position, const JointVector& torque) noexcept {

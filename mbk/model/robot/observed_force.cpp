@@ -30,15 +30,13 @@ Result<ObservedForces> observe_force(const DynamicModel& model, const Matrix& po
                                 position.cols(), position.rows(), torque.cols(), torque.rows(), n, n == 1 ? "" : "s"),
                     "give joint and torque channels of every joint");
   }
-  if (auto ok = check_finite("joint", position); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_finite("torque", torque); !ok) return tl::unexpected(ok.error());
-  auto observer = EncoderMomentumObserver::create(model, options, sample_time);
-  if (!observer) return tl::unexpected(observer.error());
+  MBK_TRY(check_finite("joint", position));
+  MBK_TRY(check_finite("torque", torque));
+  auto observer = MBK_TRY(EncoderMomentumObserver::create(model, options, sample_time));
 
-  ObservedForces all{Matrix(position.rows(), n), Matrix(position.rows(), model.mechanism->hand_axes()),
-                     observer->lag()};
+  ObservedForces all{Matrix(position.rows(), n), Matrix(position.rows(), model.mechanism->hand_axes()), observer.lag()};
   for (Index i = 0; i < position.rows(); ++i) {
-    const ObservedForce& now = observer->step(position.row(i).transpose(), torque.row(i).transpose());
+    const ObservedForce& now = observer.step(position.row(i).transpose(), torque.row(i).transpose());
     if (!now.force_hand_on_robot.allFinite()) {
       const auto L = hand_from_joints(*model.mechanism, position.row(i).transpose());
       return tl::unexpected(

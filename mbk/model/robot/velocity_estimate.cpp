@@ -7,9 +7,7 @@
 namespace mbk::robot {
 
 Result<VelocityEstimate> VelocityEstimate::create(double sample_time, Hertz cutoff) {
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}, {"velocity cutoff", cutoff.value, "Hz"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}, {"velocity cutoff", cutoff.value, "Hz"}}));
   return VelocityEstimate(sample_time, std::exp(-RadPerSec(cutoff).value * sample_time));
 }
 

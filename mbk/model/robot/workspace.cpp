@@ -137,9 +137,8 @@ double enclosed_area(const std::vector<Vector2d>& closed_line) {
 
 Result<Workspace> workspace(const Geometry& geometry) {
   constexpr int kPoints = 7200;  // chords of 0.07°: the area to 10⁻⁶ of itself
-  auto outline = boundary(geometry, kPoints);
-  if (!outline) return tl::unexpected(outline.error());
-  Workspace space{geometry, std::move(*outline), {}, {}, 0.0};
+  auto outline = MBK_TRY(boundary(geometry, kPoints));
+  Workspace space{geometry, std::move(outline), {}, {}, 0.0};
   space.low = space.high = space.outline.front();
   for (const Vector2d& place : space.outline) {
     space.low = space.low.cwiseMin(place);
@@ -150,12 +149,10 @@ Result<Workspace> workspace(const Geometry& geometry) {
 }
 
 Result<Posture> posture(const PlanarRobot& robot, const Vector2d& hand) {
-  const auto theta = check_hand(robot.geometry, hand);
-  if (!theta) return tl::unexpected(theta.error());
-  const auto inertia = robot.inertia_at_hand(*theta);
-  if (!inertia) return tl::unexpected(inertia.error());
-  const Matrix2d J = jacobian(robot.geometry, *theta);
-  return Posture{hand, *theta, J, std::abs(J.determinant()), margins(robot.geometry.limits, *theta), *inertia};
+  const auto theta = MBK_TRY(check_hand(robot.geometry, hand));
+  const auto inertia = MBK_TRY(robot.inertia_at_hand(theta));
+  const Matrix2d J = jacobian(robot.geometry, theta);
+  return Posture{hand, theta, J, std::abs(J.determinant()), margins(robot.geometry.limits, theta), inertia};
 }
 
 }  // namespace mbk::robot

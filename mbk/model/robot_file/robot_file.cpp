@@ -198,10 +198,9 @@ Result<RobotDescription> described(const config::Document& document, const FindU
     if (kind == Kind::one_axis) return read_one_axis(s);
     const std::string name = s.required_text("file");
     if (name.empty()) return tl::unexpected(s.error("file", "no URDF is named", "write file = \"robot.urdf\""));
-    auto urdf = find_urdf(name);
-    if (!urdf) return tl::unexpected(urdf.error());
-    auto read = read_urdf(s, *urdf);
-    description.urdf = std::move(urdf->text);
+    auto urdf = MBK_TRY(find_urdf(name));
+    auto read = read_urdf(s, urdf);
+    description.urdf = std::move(urdf.text);
     return read;
   }();
   if (!bodies) return tl::unexpected(bodies.error());
@@ -210,7 +209,7 @@ Result<RobotDescription> described(const config::Document& document, const FindU
   bodies->add_drives(drives);
   read_values(drive, *bodies->mechanism, bodies->drives_elsewhere, drives);
   const double delay = drive.number("motor_delay_ms", 0.0, config::at_least(0));
-  if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(document.finish());
 
   description.impossible = bodies->impossible;
   robot::DynamicModel& model = description.model;
@@ -229,9 +228,8 @@ Result<RobotDescription> described(const config::Document& document, const FindU
 }
 
 Result<RobotDescription> parsed(std::string_view toml, std::string_view where, const FindUrdf& find_urdf) {
-  const auto document = config::Document::parse(toml, where);
-  if (!document) return tl::unexpected(document.error());
-  auto description = described(*document, find_urdf);
+  const auto document = MBK_TRY(config::Document::parse(toml, where));
+  auto description = described(document, find_urdf);
   if (!description) return tl::unexpected(description.error());
   description->toml = toml;
   description->source = where;
@@ -245,9 +243,8 @@ Result<RobotDescription> read_robot_description(const std::filesystem::path& fil
     return parsed("[robot]\nkind = \"urdf\"\nfile = \"robot.urdf\"\n", file.string(),
                   [&](const std::string& /*name*/) { return urdf_of(file); });
   }
-  const auto toml = text_of(file);
-  if (!toml) return tl::unexpected(toml.error());
-  return parsed(*toml, file.string(), [&](const std::string& name) { return urdf_of(file.parent_path() / name); });
+  const auto toml = MBK_TRY(text_of(file));
+  return parsed(toml, file.string(), [&](const std::string& name) { return urdf_of(file.parent_path() / name); });
 }
 
 Result<RobotDescription> parse_robot_description(std::string_view toml, std::string_view urdf, std::string_view where) {

@@ -20,7 +20,7 @@ Result<void> check(const AccelerometerOptions<Axes>& o) {
     numbers.push_back({"bias of the accelerometer", o.bias[axis], "m/s²"});
     gains.push_back({"1 + gain error of the accelerometer", 1.0 + o.gain_error[axis], ""});
   }
-  if (auto ok = finite(numbers); !ok) return ok;
+  MBK_TRY(finite(numbers));
   return above_zero(gains);
 }
 
@@ -39,8 +39,8 @@ AxisMatrix<Axes> turned(double misalignment) {
 template <int Axes>
 Result<Accelerometer<Axes>> Accelerometer<Axes>::create(const Options& options, double sample_time,
                                                         std::uint64_t seed) {
-  if (auto ok = check(options); !ok) return tl::unexpected(ok.error());
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(options));
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
   dsp::SectionCascade filter;
   if (options.bandwidth.value > 0.0) {
     auto lowpass = dsp::butterworth_lowpass(1, options.bandwidth, Hertz(1.0 / sample_time));

@@ -60,9 +60,9 @@ Result<void> check(const typename ClosedLoop<Axes>::Options& options) {
       positive.push_back({"motor inertia", motors[joint], "kg·m²"});
     }
   }
-  if (auto ok = not_negative(at_least_zero); !ok) return ok;
-  if (auto ok = above_zero(positive); !ok) return ok;
-  if (auto ok = check_links(options.robot.inertia, motors); !ok) return ok;
+  MBK_TRY(not_negative(at_least_zero));
+  MBK_TRY(above_zero(positive));
+  MBK_TRY(check_links(options.robot.inertia, motors));
   if (options.steps_per_tick < 1) return bad_usage(fmt::format("{} steps per tick", options.steps_per_tick));
   return {};
 }
@@ -87,10 +87,9 @@ participant::HandState<Axes> hand_of(const TrueState<Axes>& state) {
 template <int Axes>
 Result<ClosedLoop<Axes>> ClosedLoop<Axes>::create(const Options& options, const Values& home,
                                                   participant::Load<Axes>& load, double start_time) {
-  if (auto ok = check<Axes>(options); !ok) return tl::unexpected(ok.error());
-  const auto theta = joint_angles(options.robot.geometry, home);
-  if (!theta) return tl::unexpected(theta.error());
-  return ClosedLoop(options, *theta, load, start_time);
+  MBK_TRY(check<Axes>(options));
+  const auto theta = MBK_TRY(joint_angles(options.robot.geometry, home));
+  return ClosedLoop(options, theta, load, start_time);
 }
 
 template <int Axes>

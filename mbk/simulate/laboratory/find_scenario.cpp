@@ -25,9 +25,8 @@ Result<Scenario> find_scenario(const std::string& name_or_file, const std::strin
     if (!read) return tl::unexpected(read.error());
     text = std::move(*read);
   }
-  auto scenarios = read_scenarios(text, name_or_file);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  for (Scenario& one : *scenarios) {
+  auto scenarios = MBK_TRY(read_scenarios(text, name_or_file));
+  for (Scenario& one : scenarios) {
     if (trial.empty() || one.name == trial) return std::move(one);
   }
   return bad_usage(fmt::format("there is no trial '{}' in {}", trial, name_or_file), "see the [[trial]] names in it");

@@ -17,15 +17,13 @@ Result<void> check(const LoadCellOptions<Axes>& o) {
       !ok) {
     return ok;
   }
-  if (auto ok = above_zero({{"bandwidth of the load cell's coloured noise", o.coloured_bandwidth.value, "Hz"}}); !ok) {
-    return ok;
-  }
+  MBK_TRY(above_zero({{"bandwidth of the load cell's coloured noise", o.coloured_bandwidth.value, "Hz"}}));
   for (int i = 0; i < Axes; ++i) {
     std::vector<Choice> numbers;
     for (int k = 0; k < Axes; ++k) numbers.push_back({"gain of the load cell", o.gain(i, k), "N/N"});
     numbers.push_back({"offset of the load cell", o.offset[i], "N"});
     numbers.push_back({"drift of the load cell", o.drift_rate[i], "N/s"});
-    if (auto ok = finite(numbers); !ok) return ok;
+    MBK_TRY(finite(numbers));
   }
   return {};
 }
@@ -34,8 +32,8 @@ Result<void> check(const LoadCellOptions<Axes>& o) {
 
 template <int Axes>
 Result<LoadCell<Axes>> LoadCell<Axes>::create(const Options& options, double sample_time, std::uint64_t seed) {
-  if (auto ok = check(options); !ok) return tl::unexpected(ok.error());
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(options));
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
   return LoadCell(options, sample_time, seed);
 }
 

@@ -128,7 +128,7 @@ impedance::Model relaxed_arm_one_axis() {
 }
 
 Result<PrescribedMotion> PrescribedMotion::create(const PrescribedMotionOptions& options) {
-  if (const auto valid = check(options); !valid) return tl::unexpected(valid.error());
+  MBK_TRY(check(options));
   if (options.protocol == Protocol::sinusoidal) {
     auto axes = sines_in_circle(options);
     if (!axes) return tl::unexpected(axes.error());
@@ -185,12 +185,11 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
   if (!(rate.value > 0.0 && std::isfinite(rate.value))) {
     return bad_usage(fmt::format("sample rate {} Hz is not above 0", rate.value));
   }
-  if (const auto valid = check(options.sensors); !valid) return tl::unexpected(valid.error());
-  const auto motion = PrescribedMotion::create(options);
-  if (!motion) return tl::unexpected(motion.error());
+  MBK_TRY(check(options.sensors));
+  const auto motion = MBK_TRY(PrescribedMotion::create(options));
 
   const Index axes = options.limb.axes();
-  const auto samples = static_cast<Index>(std::llround(motion->duration() * rate.value));
+  const auto samples = static_cast<Index>(std::llround(motion.duration() * rate.value));
   const impedance::Model& limb = options.limb;
   const HandMatrix M = limb.M, B = limb.B, K = limb.K;
   const HandVector x0 = limb.x0;
@@ -199,11 +198,11 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
   recording.time.resize(samples);
   for (Index i = 0; i < samples; ++i) {
     const double t = static_cast<double>(i + 1) / rate.value;
-    const Jet<HandVector> x = motion->at(t);
+    const Jet<HandVector> x = motion.at(t);
     recording.time[i] = t;
     position.row(i) = x.value.transpose();
     acceleration.row(i) = x.second.transpose();
-    reference.row(i) = motion->reference(t, x.value).transpose();
+    reference.row(i) = motion.reference(t, x.value).transpose();
     force.row(i) = -(M * x.second + B * x.first + K * (x.value - x0)).transpose();
   }
 
@@ -230,7 +229,7 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
     WhiteNoise white(sensors.acceleration_noise, Random(options.seed, kAcceleration + axis));
     for (double& value : s) value += white.next();
   });
-  recording.events = motion->events();
+  recording.events = motion.events();
   recording.metadata = metadata(options);
   return recording;
 }

@@ -8,7 +8,7 @@ namespace {
 
 template <int Axes>
 Result<void> check(const SensorOptions<Axes>& o, double sample_time) {
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return ok;
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
   if (auto ok = not_negative({{"encoder resolution", o.encoder_resolution, "rad"}, {"jitter", o.clock.jitter, "s"}});
       !ok) {
     return ok;
@@ -92,7 +92,7 @@ SensorOptions<Axes> SensorOptions<Axes>::perfect() {
 template <int Axes>
 Result<SensorSuite<Axes>> SensorSuite<Axes>::create(const Options& options, const GeometryOf<Axes>& geometry,
                                                     double sample_time, std::uint64_t seed) {
-  if (auto ok = check(options, sample_time); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(options, sample_time));
   auto force = made_of<ForceSensor>(options.force, sample_time, seed);
   if (!force) return tl::unexpected(force.error());
   auto acceleration = made_of<AccelerationSensor>(options.acceleration, sample_time, seed);

@@ -10,12 +10,11 @@ namespace {
 template <int Axes>
 Result<Performance> run(const SimulatedTrial<Axes>& trial, const Scenario& scenario, const SimulateOptions& options,
                         perturbation::Schedule schedule) {
-  auto load = make_load(scenario, trial);
-  if (!load) return tl::unexpected(load.error());
+  auto load = MBK_TRY(make_load(scenario, trial));
   Experiment<Axes> experiment{trial.robot,   trial.home,    std::move(schedule), trial.control, trial.sensors,
                               scenario.rate, scenario.seed, options.progress,    /*watch=*/{}};
   if constexpr (Axes == 2) experiment.watch = options.watch;
-  return perform(experiment, **load);
+  return perform(experiment, *load);
 }
 
 /// The arm at the handle, where there is one.
@@ -44,10 +43,9 @@ bool has_will(const Scenario& scenario) {
 }  // namespace
 
 Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options) {
-  auto schedule = perturbation::make_schedule(scenario.perturbation, scenario.seed);
-  if (!schedule) return tl::unexpected(schedule.error());
-  auto performance = std::visit([&](const auto& trial) { return run(trial, scenario, options, std::move(*schedule)); },
-                                scenario.trial);
+  auto schedule = MBK_TRY(perturbation::make_schedule(scenario.perturbation, scenario.seed));
+  auto performance =
+      std::visit([&](const auto& trial) { return run(trial, scenario, options, std::move(schedule)); }, scenario.trial);
   if (!performance) return performance;
   performance->recording.metadata.merge(scenario_metadata(scenario));
   return performance;

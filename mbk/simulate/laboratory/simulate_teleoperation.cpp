@@ -90,7 +90,7 @@ Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participan
                                      participant::Load<1>& environment) {
   const double T = setup.sample_time;
   const std::array<Robot, 2> robots = {robot(setup.teleoperator, 0), robot(setup.teleoperator, 1)};
-  if (auto ok = check(setup, robots); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(setup, robots));
   const auto loop_of = [&](const Robot& robot, participant::Load<1>& load) {
     ClosedLoop<1>::Options options;
     options.robot.inertia.mass = robot.mass;
@@ -98,29 +98,25 @@ Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participan
     options.steps_per_tick = setup.steps_per_tick;
     return ClosedLoop<1>::create(options, AxisVector<1>(0.0), load);
   };
-  auto master = loop_of(robots[0], hand), slave = loop_of(robots[1], environment);
-  if (!master) return tl::unexpected(master.error());
-  if (!slave) return tl::unexpected(slave.error());
+  auto master = MBK_TRY(loop_of(robots[0], hand));
+  auto slave = MBK_TRY(loop_of(robots[1], environment));
   const auto line = [&](const char* delay, std::uint32_t stream) {
     PacketLineOptions options = setup.line;
     options.delay = value(setup.teleoperator, delay);
     return PacketLine::create(options, T, setup.seed, stream);
   };
-  auto to_slave = line("delay.to_slave", 1), to_master = line("delay.to_master", 2);
-  if (!to_slave) return tl::unexpected(to_slave.error());
-  if (!to_master) return tl::unexpected(to_master.error());
+  auto to_slave = MBK_TRY(line("delay.to_slave", 1));
+  auto to_master = MBK_TRY(line("delay.to_master", 2));
   std::optional<control::SeriesPassivityController> controller;
   if (setup.passivity_controller) {
-    auto created = control::SeriesPassivityController::create(T, *setup.passivity_controller);
-    if (!created) return tl::unexpected(created.error());
-    controller = *created;
+    controller = MBK_TRY(control::SeriesPassivityController::create(T, *setup.passivity_controller));
   }
 
   TeleoperationMotion motion;
   if (controller) motion.lowest_energy = 0.0;
   const auto ticks = static_cast<long>(std::lround(setup.duration / T));
   for (long n = 0; n < ticks; ++n) {
-    const Packet at_master = packet(*master), at_slave = packet(*slave);
+    const Packet at_master = packet(master), at_slave = packet(slave);
     motion.time.push_back(T * static_cast<double>(n));
     motion.master_position.push_back(at_master.position);
     motion.slave_position.push_back(at_slave.position);
@@ -131,20 +127,20 @@ Result<TeleoperationMotion> simulate(const TeleoperationSetup& setup, participan
       motion.ran_away = true;
       break;
     }
-    const double u_slave = robots[1].own.of(at_slave) + robots[1].other.of(to_slave->step(at_master));
-    double u_master = robots[0].own.of(at_master) + robots[0].other.of(to_master->step(at_slave));
+    const double u_slave = robots[1].own.of(at_slave) + robots[1].other.of(to_slave.step(at_master));
+    double u_master = robots[0].own.of(at_master) + robots[0].other.of(to_master.step(at_slave));
     if (controller) {
       u_master = -controller->step(at_master.position, -u_master);
       motion.lowest_energy = std::min(*motion.lowest_energy, controller->energy());
     }
     if (n == 0) u_master += setup.kick / T;
-    master->hold(AxisVector<1>(u_master), T);
-    slave->hold(AxisVector<1>(u_slave), T);
-    master->advance();
-    slave->advance();
+    master.hold(AxisVector<1>(u_master), T);
+    slave.hold(AxisVector<1>(u_slave), T);
+    master.advance();
+    slave.advance();
   }
-  motion.sent = to_slave->sent() + to_master->sent();
-  motion.lost = to_slave->lost() + to_master->lost();
+  motion.sent = to_slave.sent() + to_master.sent();
+  motion.lost = to_slave.lost() + to_master.lost();
   return motion;
 }
 
@@ -219,17 +215,15 @@ HeldBy held_by(const Termination& termination) {
 Result<HeldBy> held_by(const SimulatedArm& arm, double sample_time, std::uint64_t seed) {
   if (arm.kind == SimulatedArm::Kind::impedance) return held_by(arm.impedance);
   const bool rigid = arm.kind == SimulatedArm::Kind::rigid;
-  auto limb = participant::participant_limb(arm.participant);
-  if (!limb) return tl::unexpected(limb.error());
+  auto limb = MBK_TRY(participant::participant_limb(arm.participant));
   participant::ArmOptions options = rigid ? participant::rigid_arm_options() : participant::relaxed_arm_options();
-  options.limb = *limb;
+  options.limb = limb;
   options.seed = seed;
   if (!rigid) options.remnant.floor = 0.0;  // whether a motion dies out is seen without noise only
-  auto created = participant::Arm::create(options, sample_time);
-  if (!created) return tl::unexpected(created.error());
+  auto created = MBK_TRY(participant::Arm::create(options, sample_time));
   HeldBy held;
-  held.arm = std::make_unique<participant::Arm>(std::move(*created));
-  held.load = std::make_unique<AlongLine>(*held.arm, limb->equilibrium, arm.direction);
+  held.arm = std::make_unique<participant::Arm>(std::move(created));
+  held.load = std::make_unique<AlongLine>(*held.arm, limb.equilibrium, arm.direction);
   held.words = fmt::format("{} arm of participant {}, along {:g}°", rigid ? "rigid" : "relaxed", arm.participant,
                            arm.direction * 180.0 / std::numbers::pi);
   return held;
@@ -265,9 +259,8 @@ double furthest(const TeleoperationMotion& motion) {
 
 Result<TeleoperationRun> run(const TeleoperationSetup& setup, std::string what, const HeldBy& hand,
                              const HeldBy& environment) {
-  const auto motion = simulate(setup, *hand.load, *environment.load);
-  if (!motion) return tl::unexpected(motion.error());
-  const MotionVerdict verdict = judge(*motion);
+  const auto motion = MBK_TRY(simulate(setup, *hand.load, *environment.load));
+  const MotionVerdict verdict = judge(motion);
   TeleoperationRun result;
   result.what = what;
   result.hand = hand.words;
@@ -275,13 +268,13 @@ Result<TeleoperationRun> run(const TeleoperationSetup& setup, std::string what, 
   result.outcome = verdict.outcome;
   result.ratio = verdict.ratio;
   result.frequency = verdict.frequency;
-  result.duration = setup.sample_time * static_cast<double>(motion->time.size());
-  result.ran_away = motion->ran_away;
-  result.largest_position = furthest(*motion);
-  result.sent = motion->sent;
-  result.lost = motion->lost;
-  result.lowest_energy = motion->lowest_energy;
-  result.positions = positions(*motion, "Simulated positions: " + what);
+  result.duration = setup.sample_time * static_cast<double>(motion.time.size());
+  result.ran_away = motion.ran_away;
+  result.largest_position = furthest(motion);
+  result.sent = motion.sent;
+  result.lost = motion.lost;
+  result.lowest_energy = motion.lowest_energy;
+  result.positions = positions(motion, "Simulated positions: " + what);
   return result;
 }
 
@@ -295,10 +288,9 @@ Result<std::optional<TeleoperationRun>> run_against_worst(const TeleoperationSet
   if (!worst) return std::nullopt;
   TeleoperationSetup longer = setup;
   longer.duration = duration_to_show(*worst);
-  auto shown = run(longer, std::move(what), held_by(worst->at_port[0]), held_by(worst->at_port[1]));
-  if (!shown) return tl::unexpected(shown.error());
-  shown->worst = worst;
-  return std::optional(std::move(*shown));
+  auto shown = MBK_TRY(run(longer, std::move(what), held_by(worst->at_port[0]), held_by(worst->at_port[1])));
+  shown.worst = worst;
+  return std::optional(std::move(shown));
 }
 
 }  // namespace
@@ -333,9 +325,8 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
   constexpr double kLowest = 1e-2;  // [rad/s]
   simulation.grid = {RadPerSec(kLowest), RadPerSec(std::numbers::pi / plan.sample_time), kPoints};
   const auto sampled = [&](double shortage) -> Result<AbsoluteStability> {
-    const auto exact = lti::exact(shortage);
-    if (!exact) return tl::unexpected(exact.error());
-    return teleop::llewellyn_on_grid(setup.teleoperator, simulation.grid, design.operator_port, *exact,
+    const auto exact = MBK_TRY(lti::exact(shortage));
+    return teleop::llewellyn_on_grid(setup.teleoperator, simulation.grid, design.operator_port, exact,
                                      plan.sample_time);
   };
   if (auto passive = sampled(0.0)) {
@@ -344,27 +335,21 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
     simulation.notes.push_back("no criterion with sampling: " + passive.error().message);
   }
   if (a && simulation.sampled) {
-    auto with = sampled(*a);
-    if (!with) return tl::unexpected(with.error());
-    simulation.sampled_with_operator = std::move(*with);
+    simulation.sampled_with_operator = MBK_TRY(sampled(*a));
   }
 
-  const auto therapist = held_by(plan.therapist, plan.sample_time, plan.seed);
-  if (!therapist) return tl::unexpected(therapist.error());
-  const auto patient = held_by(plan.patient, plan.sample_time, plan.seed + 1);
-  if (!patient) return tl::unexpected(patient.error());
-  auto arms = run(setup, "the two arms", *therapist, *patient);
-  if (!arms) return tl::unexpected(arms.error());
-  simulation.runs.push_back(std::move(*arms));
+  const auto therapist = MBK_TRY(held_by(plan.therapist, plan.sample_time, plan.seed));
+  const auto patient = MBK_TRY(held_by(plan.patient, plan.sample_time, plan.seed + 1));
+  auto arms = MBK_TRY(run(setup, "the two arms", therapist, patient));
+  simulation.runs.push_back(std::move(arms));
   if (progress) progress(0.5);
 
   const auto add_worst = [&](const std::optional<AbsoluteStability>& stability, double shortage,
                              const char* what) -> Result<void> {
     if (!stability || stability->holds()) return {};
-    auto worst = run_against_worst(setup, *stability, design.operator_port, shortage, what);
-    if (!worst) return tl::unexpected(worst.error());
-    if (*worst) {
-      simulation.runs.push_back(std::move(**worst));
+    auto worst = MBK_TRY(run_against_worst(setup, *stability, design.operator_port, shortage, what));
+    if (worst) {
+      simulation.runs.push_back(std::move(*worst));
     } else {
       simulation.notes.push_back(fmt::format(
           "{}: none is constructed, because a pole decides, or only frequencies above {:.4g} rad/s, which a controller "
@@ -373,11 +358,9 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
     }
     return {};
   };
-  if (auto ok = add_worst(simulation.sampled, 0.0, "the worst passive pair"); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(add_worst(simulation.sampled, 0.0, "the worst passive pair"));
   if (a) {
-    if (auto ok = add_worst(simulation.sampled_with_operator, *a, "the worst pair with that operator"); !ok) {
-      return tl::unexpected(ok.error());
-    }
+    MBK_TRY(add_worst(simulation.sampled_with_operator, *a, "the worst pair with that operator"));
   }
   if (progress) progress(1.0);
   return simulation;

@@ -20,15 +20,13 @@ Result<std::unique_ptr<SimulatedDevice>> SimulatedDevice::create(const Scenario&
                      "take a planar robot; 'mbk simulate' "
                      "makes recordings of one-axis machines");
   }
-  auto load = make_load(scenario, *trial);
-  if (!load) return tl::unexpected(load.error());
+  auto load = MBK_TRY(make_load(scenario, *trial));
   const double sample_time = 1.0 / scenario.rate.value;
-  auto loop = ClosedLoop<2>::create(trial->robot, trial->home, **load, sample_time);
-  if (!loop) return tl::unexpected(loop.error());
-  auto sensors = SensorSuite<2>::create(trial->sensors, trial->robot.robot.geometry, sample_time, scenario.seed);
-  if (!sensors) return tl::unexpected(sensors.error());
+  auto loop = MBK_TRY(ClosedLoop<2>::create(trial->robot, trial->home, *load, sample_time));
+  auto sensors =
+      MBK_TRY(SensorSuite<2>::create(trial->sensors, trial->robot.robot.geometry, sample_time, scenario.seed));
   return std::unique_ptr<SimulatedDevice>(
-      new SimulatedDevice(scenario, std::move(*load), std::move(*loop), std::move(*sensors)));
+      new SimulatedDevice(scenario, std::move(load), std::move(loop), std::move(sensors)));
 }
 
 bool SimulatedDevice::read(device::State& state) noexcept {

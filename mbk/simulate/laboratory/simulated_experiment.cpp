@@ -179,12 +179,10 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
   }
   const double sample_time = 1.0 / experiment.rate.value;
   const GeometryOf<Axes>& geometry = experiment.robot.robot.geometry;
-  auto command = Control::create(experiment.control, experiment.schedule, geometry, experiment.home, sample_time);
-  if (!command) return tl::unexpected(command.error());
-  auto loop = ClosedLoop<Axes>::create(experiment.robot, experiment.home, load, sample_time);
-  if (!loop) return tl::unexpected(loop.error());
-  auto sensors = SensorSuite<Axes>::create(experiment.sensors, geometry, sample_time, experiment.seed);
-  if (!sensors) return tl::unexpected(sensors.error());
+  auto command =
+      MBK_TRY(Control::create(experiment.control, experiment.schedule, geometry, experiment.home, sample_time));
+  auto loop = MBK_TRY(ClosedLoop<Axes>::create(experiment.robot, experiment.home, load, sample_time));
+  auto sensors = MBK_TRY(SensorSuite<Axes>::create(experiment.sensors, geometry, sample_time, experiment.seed));
 
   const auto samples = static_cast<Index>(std::llround(experiment.schedule.duration() * experiment.rate.value));
   if (samples < 1) return bad_usage("the trial has no samples", "give it a duration");
@@ -194,8 +192,8 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
   Channels<Axes> channels(groups(experiment), samples);
   Truth<Axes> truth(experiment.home);
   for (Index i = 0; i < samples; ++i) {
-    const double t = loop->time(), interval = sensors->next_interval();
-    const TrueState<Axes>& state = loop->hold(command->torque(t, sensors->encoders(loop->motor_angle())), interval);
+    const double t = loop.time(), interval = sensors.next_interval();
+    const TrueState<Axes>& state = loop.hold(command.torque(t, sensors.encoders(loop.motor_angle())), interval);
     if (!state.position.allFinite() || !state.force_hand_on_robot.allFinite()) {
       return bad_data(fmt::format("the motion is not finite any more at {:.3f} s", t),
                       "lower the gains, or raise robot.steps_per_tick", "simulation");
@@ -204,19 +202,19 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
       return bad_data(fmt::format("the hand leaves the workspace at {:.3f} s: {}", t, ok.error().message),
                       "perturb it less, or choose another home", "simulation");
     }
-    const Sample<Axes> sample = {sensors->read(state), command->reference(t)};
+    const Sample<Axes> sample = {sensors.read(state), command.reference(t)};
     recording.time[i] = sample.time;
     channels.set(i, sample);
     result.energy_exchanged += std::abs(state.force_hand_on_robot.dot(state.velocity)) * interval;
-    truth.add(i, load, state, *command);
+    truth.add(i, load, state, command);
     if constexpr (Axes == 2) {
-      if (command->reaches() != nullptr && command->reaches()->triggered()) {
+      if (command.reaches() != nullptr && command.reaches()->triggered()) {
         recording.events.push_back({sample.time, "trigger", 0.0});
       }
     }
     if (experiment.watch) experiment.watch(state);
     result.energy_absorbed = state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
-    loop->advance();
+    loop.advance();
     if (i % 1000 == 0) {
       stop_where_unwanted();
       if (experiment.progress) experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
@@ -228,7 +226,7 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
 
   result.truth = truth.mean();
   recording.metadata = truth_metadata(result.truth, experiment.rate, result.energy_absorbed);
-  add_apparatus(experiment, *sensors, recording);
+  add_apparatus(experiment, sensors, recording);
   return result;
 }
 

@@ -29,9 +29,8 @@ class ScenarioSimulation : public protocol::Simulation {
   }
 
   [[nodiscard]] Result<std::unique_ptr<device::Device>> robot(const protocol::Trial& trial) const override {
-    auto made = SimulatedDevice::create(scenario(trial));
-    if (!made) return tl::unexpected(made.error());
-    return std::unique_ptr<device::Device>(std::move(*made));
+    auto made = MBK_TRY(SimulatedDevice::create(scenario(trial)));
+    return std::unique_ptr<device::Device>(std::move(made));
   }
 
   [[nodiscard]] std::map<std::string, std::string> metadata(const protocol::Trial& trial) const override {
@@ -58,9 +57,8 @@ Result<Scenario> scenario_of(const protocol::Trial& trial) {
 }
 
 Result<std::unique_ptr<SimulatedDevice>> simulated_robot(const protocol::Trial& trial) {
-  const auto scenario = scenario_of(trial);
-  if (!scenario) return tl::unexpected(scenario.error());
-  return SimulatedDevice::create(*scenario);
+  const auto scenario = MBK_TRY(scenario_of(trial));
+  return SimulatedDevice::create(scenario);
 }
 
 }  // namespace mbk::laboratory

@@ -10,13 +10,11 @@ Result<SpringRig> SpringRig::create(std::vector<Spring> springs, double mass, co
                                     double disc_zero, const Eigen::Vector2d& rest) {
   if (!(mass >= 0.0 && std::isfinite(mass))) return bad_usage(fmt::format("mass {:g} kg is below zero", mass));
   if (!damping.allFinite()) return bad_usage("the damping of the rig is not finite");
-  auto array = calibration::SpringArray::create(std::move(springs));
-  if (!array) return tl::unexpected(array.error());
-  const auto equilibrium = calibration::equilibrium(*array, rest);
-  if (!equilibrium) return tl::unexpected(equilibrium.error());
-  const impedance::Model at_rest{mass * Eigen::Matrix2d::Identity(), damping, array->stiffness(*equilibrium),
-                                 *equilibrium};
-  return SpringRig(std::move(*array), at_rest, disc_zero);
+  auto array = MBK_TRY(calibration::SpringArray::create(std::move(springs)));
+  const auto equilibrium = MBK_TRY(calibration::equilibrium(array, rest));
+  const impedance::Model at_rest{mass * Eigen::Matrix2d::Identity(), damping, array.stiffness(equilibrium),
+                                 equilibrium};
+  return SpringRig(std::move(array), at_rest, disc_zero);
 }
 
 SpringRig::SpringRig(calibration::SpringArray springs, const impedance::Model& at_rest, double disc_zero)

@@ -9,13 +9,13 @@ namespace {
 
 Result<void> check(const StrainGaugeOptions& o) {
   for (int i = 0; i < 2; ++i) {
-    if (auto ok = above_zero({{"magnitude of the strain gauge's slope", std::abs(o.slope[i]), "N/V"}}); !ok) return ok;
+    MBK_TRY(above_zero({{"magnitude of the strain gauge's slope", std::abs(o.slope[i]), "N/V"}}));
     if (auto ok = finite({{"offset of the strain gauge", o.offset[i], "N"},
                           {"assumed offset of the strain gauge", o.assumed_offset[i], "N"}});
         !ok) {
       return ok;
     }
-    if (auto ok = magnitude_below(1.0, {{"crosstalk of the strain gauge", o.crosstalk[i], "N/N"}}); !ok) return ok;
+    MBK_TRY(magnitude_below(1.0, {{"crosstalk of the strain gauge", o.crosstalk[i], "N/N"}}));
   }
   if (auto ok = above_zero({{"lever arm of the strain gauge's calibration", o.calibration_arm, "m"},
                             {"lever arm of the strain gauge", o.arm, "m"},
@@ -39,8 +39,8 @@ Result<void> check(const StrainGaugeOptions& o) {
 }  // namespace
 
 Result<StrainGauge> StrainGauge::create(const StrainGaugeOptions& options, double sample_time, std::uint64_t seed) {
-  if (auto ok = check(options); !ok) return tl::unexpected(ok.error());
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}}); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(options));
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
   dsp::SectionCascade filter;
   if (options.cutoff.value > 0.0) {
     auto lowpass = dsp::butterworth_lowpass(options.filter_order, options.cutoff, Hertz(1.0 / sample_time));

@@ -80,18 +80,16 @@ Result<TwoLinkArm::Options> participant_limb(int participant) {
   }
   const HandImpedance& hand = kParticipants[static_cast<std::size_t>(participant - 1)];
   TwoLinkArm::Options options;
-  const auto joints = joint_parameters(options.geometry,
-                                       {symmetric(hand.M), symmetric(hand.B), symmetric(hand.K), options.equilibrium});
-  if (!joints) return tl::unexpected(joints.error());
-  options.joints = *joints;
+  const auto joints = MBK_TRY(joint_parameters(
+      options.geometry, {symmetric(hand.M), symmetric(hand.B), symmetric(hand.K), options.equilibrium}));
+  options.joints = joints;
   return options;
 }
 
 Result<ArmOptions> participant_options(int participant) {
-  const auto limb = participant_limb(participant);
-  if (!limb) return tl::unexpected(limb.error());
+  const auto limb = MBK_TRY(participant_limb(participant));
   ArmOptions options = relaxed_arm_options();
-  options.limb = *limb;
+  options.limb = limb;
   return options;
 }
 
@@ -101,14 +99,11 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
     Result<Limb> operator()(const impedance::Model& model) const { return LinearLimb::create(model).map(as_limb); }
     static Limb as_limb(const Limb& limb) { return limb; }
   };
-  auto limb = std::visit(CreateLimb{}, options.limb);
-  if (!limb) return tl::unexpected(limb.error());
-  auto controller = IntermittentController::create(options.controller, sample_time, options.seed, kControllerStream);
-  if (!controller) return tl::unexpected(controller.error());
-  const auto cocontraction = Cocontraction::create(options.cocontraction, sample_time);
-  if (!cocontraction) return tl::unexpected(cocontraction.error());
-  const auto remnant = Remnant<2>::create(options.remnant, sample_time, options.seed, kRemnantStream);
-  if (!remnant) return tl::unexpected(remnant.error());
+  auto limb = MBK_TRY(std::visit(CreateLimb{}, options.limb));
+  auto controller =
+      MBK_TRY(IntermittentController::create(options.controller, sample_time, options.seed, kControllerStream));
+  const auto cocontraction = MBK_TRY(Cocontraction::create(options.cocontraction, sample_time));
+  const auto remnant = MBK_TRY(Remnant<2>::create(options.remnant, sample_time, options.seed, kRemnantStream));
   for (std::size_t k = 0; k < options.stiffness_schedule.size(); ++k) {
     const auto& [time, factor, damping_factor] = options.stiffness_schedule[k];
     if (auto ok =
@@ -122,9 +117,8 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
   }
   std::optional<Departures> departures;
   if (options.departures) {
-    auto made = Departures::create(*options.departures, rest_of(options), sample_time, options.seed, kDeparturesStream);
-    if (!made) return tl::unexpected(made.error());
-    departures = std::move(*made);
+    departures = MBK_TRY(
+        Departures::create(*options.departures, rest_of(options), sample_time, options.seed, kDeparturesStream));
   }
   std::optional<Reaching> reaching;
   if (options.reaching) {
@@ -132,13 +126,11 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
       return bad_usage("an arm that reaches cannot also hold a place, or have departures about one",
                        "leave out correction.position_gain and departures");
     }
-    if (auto ok = check_target(options); !ok) return tl::unexpected(ok.error());
-    auto made = Reaching::create(*options.reaching, options.seed, kReachingStream);
-    if (!made) return tl::unexpected(made.error());
-    reaching = std::move(*made);
+    MBK_TRY(check_target(options));
+    reaching = MBK_TRY(Reaching::create(*options.reaching, options.seed, kReachingStream));
   }
-  return Arm(std::move(*limb), std::move(*controller), *cocontraction, *remnant, std::move(departures),
-             std::move(reaching), options.stiffness_schedule);
+  return Arm(std::move(limb), std::move(controller), cocontraction, remnant, std::move(departures), std::move(reaching),
+             options.stiffness_schedule);
 }
 
 Arm::Arm(Limb limb, IntermittentController controller, const Cocontraction& cocontraction, const Remnant<2>& remnant,

@@ -20,12 +20,8 @@ HandState<2> between(const HandState<2>& a, const HandState<2>& b, double share)
 }  // namespace
 
 Result<CompliantGrip> CompliantGrip::create(const GripOptions& options, Arm arm) {
-  if (auto ok = above_zero({{"stiffness of the grip", options.stiffness, "N/m"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
-  if (auto ok = not_negative({{"damping ratio of the grip", options.damping_ratio, ""}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(above_zero({{"stiffness of the grip", options.stiffness, "N/m"}}));
+  MBK_TRY(not_negative({{"damping ratio of the grip", options.damping_ratio, ""}}));
   return CompliantGrip(options, std::move(arm));
 }
 

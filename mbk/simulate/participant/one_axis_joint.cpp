@@ -15,9 +15,7 @@ Result<StretchReflex> StretchReflex::create(const Options& options, double sampl
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = not_negative({{"reflex gain", options.gain, "N·m·s/rad"}, {"reflex delay", options.delay, "s"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(not_negative({{"reflex gain", options.gain, "N·m·s/rad"}, {"reflex delay", options.delay, "s"}}));
   if (options.delay > 10.0) return bad_usage(fmt::format("reflex delay {:g} s is above 10 s", options.delay));
   if (options.natural_frequency.value * sample_time * std::max(1.0, 2.0 * options.damping_ratio) >= 1.0) {
     return bad_usage(fmt::format("a reflex of {:g} rad/s is too fast for ticks of {:g} s",
@@ -53,20 +51,16 @@ double StretchReflex::step(double velocity) {
 }
 
 Result<OneAxisJoint> OneAxisJoint::create(const Options& options, double sample_time) {
-  if (auto ok = above_zero({{"inertia of the joint", options.inertia, "kg·m²"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(above_zero({{"inertia of the joint", options.inertia, "kg·m²"}}));
   if (auto ok = not_negative({{"viscosity of the joint", options.viscosity, "N·m·s/rad"},
                               {"stiffness of the joint", options.stiffness, "N·m/rad"}});
       !ok) {
     return tl::unexpected(ok.error());
   }
   if (!std::isfinite(options.rest)) return bad_usage("the resting angle of the joint must be finite");
-  auto reflex = StretchReflex::create(options.reflex, sample_time);
-  if (!reflex) return tl::unexpected(reflex.error());
-  const auto remnant = Remnant<1>::create(options.remnant, sample_time, options.seed);
-  if (!remnant) return tl::unexpected(remnant.error());
-  return OneAxisJoint(options, std::move(*reflex), *remnant);
+  auto reflex = MBK_TRY(StretchReflex::create(options.reflex, sample_time));
+  const auto remnant = MBK_TRY(Remnant<1>::create(options.remnant, sample_time, options.seed));
+  return OneAxisJoint(options, std::move(reflex), remnant);
 }
 
 OneAxisJoint::OneAxisJoint(const Options& options, StretchReflex reflex, const Remnant<1>& remnant)

@@ -51,7 +51,7 @@ Reaching::Reaching(const Options& options)
 
 Result<Reaching> Reaching::create(const Options& options, std::uint64_t seed, std::uint32_t stream) {
   using namespace reaching;
-  if (auto ok = check(options); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(options));
   Reaching made(options);
   numeric::Random random(seed, stream);
   const auto about_one = [&](double spread) { return std::clamp(1.0 + spread * random.normal(), kLeast, kMost); };

@@ -9,9 +9,7 @@ namespace mbk::participant {
 template <int Axes>
 Result<Remnant<Axes>> Remnant<Axes>::create(const Options& options, double sample_time, std::uint64_t seed,
                                             std::uint32_t stream) {
-  if (auto ok = above_zero({{"sample time", sample_time, "s"}, {"cutoff of noise", options.cutoff.value, "Hz"}}); !ok) {
-    return tl::unexpected(ok.error());
-  }
+  MBK_TRY(above_zero({{"sample time", sample_time, "s"}, {"cutoff of noise", options.cutoff.value, "Hz"}}));
   if (auto ok = not_negative({{"floor of noise", options.floor, ""}, {"noise per force", options.per_force, ""}});
       !ok) {
     return tl::unexpected(ok.error());

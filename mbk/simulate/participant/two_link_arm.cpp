@@ -74,9 +74,9 @@ Result<JointParameters> joint_parameters(const ArmGeometry& geometry, const impe
     return bad_usage("the hand of an arm of two links has 2×2 matrices M, B and K and two coordinates x0");
   }
   if (!impedance::stacked(hand).allFinite()) return bad_usage("M, B, K and x0 of a hand must be finite");
-  if (auto ok = check(geometry); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(geometry));
   const Vector2d x0 = hand.x0;
-  if (auto ok = within_reach(geometry, x0); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(within_reach(geometry, x0));
   const Vector2d q = joint_angles(geometry, x0);
   const Matrix2d J = jacobian(geometry, q);
   const auto at_joints = [&](const Matrix& at_hand) { return Matrix2d(J.transpose() * at_hand * J); };
@@ -84,14 +84,13 @@ Result<JointParameters> joint_parameters(const ArmGeometry& geometry, const impe
 }
 
 Result<TwoLinkArm> TwoLinkArm::create(const Options& options) {
-  if (auto ok = check(options.geometry); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check(options.geometry));
   if (!options.joints.damping.allFinite() || !options.joints.stiffness.allFinite()) {
     return bad_usage("the joint damping and stiffness of an arm must be finite");
   }
-  if (auto ok = within_reach(options.geometry, options.equilibrium); !ok) return tl::unexpected(ok.error());
-  const auto inertia = ChainInertia::from_matrix(options.joints.inertia, options.joints.elbow_angle);
-  if (!inertia) return tl::unexpected(inertia.error());
-  return TwoLinkArm(options, *inertia);
+  MBK_TRY(within_reach(options.geometry, options.equilibrium));
+  const auto inertia = MBK_TRY(ChainInertia::from_matrix(options.joints.inertia, options.joints.elbow_angle));
+  return TwoLinkArm(options, inertia);
 }
 
 Vector2d TwoLinkArm::elastic_torque(const Vector2d& q) const {

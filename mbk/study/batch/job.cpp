@@ -92,10 +92,9 @@ tl::unexpected<Error> damaged(const fs::path& file) {
 }
 
 Result<Job> job_from(const fs::path& file) {
-  const auto text = read_whole(file);
-  if (!text) return tl::unexpected(text.error());
+  const auto text = MBK_TRY(read_whole(file));
   try {
-    const auto json = nlohmann::json::parse(*text);
+    const auto json = nlohmann::json::parse(text);
     if (json.at("schema") != "mbk.job/1") {
       return bad_data("is of another version of mbk", "finish it with the version that began it", file.string());
     }
@@ -166,7 +165,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
   JobFolder made;
   made.folder_ = folder;
   for (const fs::path& one : {folder, made.shards(), made.logs()}) {
-    if (auto ok = store::make_folder(one); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(store::make_folder(one));
   }
   job.program = program_identity();
   job.simd = word_of(simd());
@@ -194,8 +193,8 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
   for (const std::string* const text : {&job.kind, &job.specification, &job.program, &job.simd, &units, &chunks})
     add(*text);
   job.id = sum.hex();
-  if (auto ok = write_whole(folder / kUnits, units); !ok) return tl::unexpected(ok.error());
-  if (auto ok = write_whole(folder / kChunks, chunks); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(write_whole(folder / kUnits, units));
+  MBK_TRY(write_whole(folder / kChunks, chunks));
   const nlohmann::ordered_json json = {
       {"schema", "mbk.job/1"},
       {"id", job.id},
@@ -209,7 +208,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
       {"specification", nlohmann::ordered_json::parse(job.specification, nullptr, false)}};
   if (json.at("specification").is_discarded()) return bad_data("the job's specification is no JSON");
   // The job is there once this file is.
-  if (auto ok = write_whole(folder / kJob, json.dump(2) + "\n"); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(write_whole(folder / kJob, json.dump(2) + "\n"));
   made.job_ = std::move(job);
   return made;
 }
@@ -221,9 +220,7 @@ Result<JobFolder> JobFolder::open(const fs::path& folder) {
   JobFolder opened;
   std::error_code error;
   opened.folder_ = fs::absolute(folder, error);
-  auto job = job_from(folder / kJob);
-  if (!job) return tl::unexpected(job.error());
-  opened.job_ = std::move(*job);
+  opened.job_ = MBK_TRY(job_from(folder / kJob));
   return opened;
 }
 
@@ -286,7 +283,7 @@ Result<std::vector<std::string>> JobFolder::keys(const Chunk& chunk) const {
 Result<void> JobFolder::remove() const {
   std::error_code error;
   // Its name goes first: what is left of a folder without it is no job.
-  if (auto ok = store::remove_file(folder_ / kJob); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(store::remove_file(folder_ / kJob));
   fs::remove_all(folder_, error);
   if (error) return bad_data(fmt::format("cannot be removed: {}", error.message()), "remove it", folder_.string());
   return {};

@@ -122,13 +122,12 @@ void add_failures(const JobFolder& folder, const ShardFile& file, std::map<std::
 Result<std::map<std::string, std::int64_t>> failures_of(const JobFolder& folder,
                                                         const std::vector<FinishedTask>& tasks) {
   std::map<std::string, std::int64_t> failures;
-  const auto files = list_shards(folder);
-  if (!files) return tl::unexpected(files.error());
+  const auto files = MBK_TRY(list_shards(folder));
   for (const FinishedTask& task : tasks) {
     if (task.end.failed == 0) continue;
     const auto file = std::ranges::find_if(
-        *files, [&](const ShardFile& one) { return one.chunk == task.chunk && one.state == ShardFile::State::whole; });
-    if (file != files->end()) add_failures(folder, *file, failures);
+        files, [&](const ShardFile& one) { return one.chunk == task.chunk && one.state == ShardFile::State::whole; });
+    if (file != files.end()) add_failures(folder, *file, failures);
   }
   return failures;
 }
@@ -164,11 +163,10 @@ double JobEfficiency::busy() const {
 }
 
 Result<JobEfficiency> job_efficiency(const JobFolder& folder) {
-  auto tasks = finished_tasks(folder);
-  if (!tasks) return tl::unexpected(tasks.error());
+  auto tasks = MBK_TRY(finished_tasks(folder));
   // What was done twice counts once.
-  const auto [twice, end] = std::ranges::unique(*tasks, {}, &FinishedTask::chunk);
-  tasks->erase(twice, end);
+  const auto [twice, end] = std::ranges::unique(tasks, {}, &FinishedTask::chunk);
+  tasks.erase(twice, end);
   JobEfficiency job;
   job.title = folder.job().title;
   job.chunks = folder.job().chunks;
@@ -176,7 +174,7 @@ Result<JobEfficiency> job_efficiency(const JobFolder& folder) {
   const Notes notes(job_events(folder), static_cast<std::size_t>(job.chunks), job);
   std::vector<Span> spans = notes.lost;
   for (const auto& [from, to] : spans) job.lost_s += to - from;
-  for (const FinishedTask& task : *tasks) {
+  for (const FinishedTask& task : tasks) {
     ++job.finished_chunks;
     job.finished_units += task.end.units;
     job.failed_units += task.end.failed;
@@ -194,9 +192,8 @@ Result<JobEfficiency> job_efficiency(const JobFolder& folder) {
   std::tie(job.working_s, job.most_at_a_time) = covered(std::move(spans));
   job.working_s = std::min(job.working_s, job.elapsed_s);
   job.waiting_s = job.elapsed_s - job.working_s;
-  auto failures = failures_of(folder, *tasks);
-  if (!failures) return tl::unexpected(failures.error());
-  job.failures = std::move(*failures);
+  auto failures = MBK_TRY(failures_of(folder, tasks));
+  job.failures = std::move(failures);
   return job;
 }
 

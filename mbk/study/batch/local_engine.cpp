@@ -32,7 +32,7 @@ class LocalEngine : public Engine {
 
   Result<std::map<std::int64_t, Alive>> alive() override {
     reap();
-    if (auto ok = fill(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(fill());
     std::map<std::int64_t, Alive> all;
     for (const std::int64_t chunk : waiting_) all[chunk] = {};
     for (const auto& [chunk, process] : running_) all[chunk] = {true, ""};
@@ -80,10 +80,9 @@ class LocalEngine : public Engine {
       std::vector<std::string> command = command_;
       command.push_back("--chunk");
       command.push_back(std::to_string(chunk));
-      auto process = ChildProcess::start(command, log_of(chunk));
-      if (!process) return tl::unexpected(process.error());
+      auto process = MBK_TRY(ChildProcess::start(command, log_of(chunk)));
       waiting_.pop_front();
-      running_.emplace(chunk, std::move(*process));
+      running_.emplace(chunk, std::move(process));
     }
     return {};
   }

@@ -20,10 +20,9 @@ bool is_unit(RecordKind kind) {
 /// The next result or failure, or the end.
 Result<ShardRecord> next_unit(ShardReader& reader, const fs::path& file) {
   while (true) {
-    auto record = reader.next();
-    if (!record) return tl::unexpected(record.error());
-    if (!*record) return bad_data("ends early", "", file.string());
-    if (is_unit((*record)->kind) || (*record)->kind == RecordKind::end) return std::move(**record);
+    auto record = MBK_TRY(reader.next());
+    if (!record) return bad_data("ends early", "", file.string());
+    if (is_unit(record->kind) || record->kind == RecordKind::end) return std::move(*record);
   }
 }
 
@@ -63,10 +62,9 @@ Result<std::vector<ShardFile>> list_shards(const JobFolder& folder) {
 Result<ShardReader> open_shard_of(const JobFolder& folder, const fs::path& file, std::int64_t chunk) {
   auto reader = ShardReader::open(file);
   if (!reader) return reader;
-  const auto record = reader->next();
-  if (!record) return tl::unexpected(record.error());
-  if (!*record || (*record)->kind != RecordKind::header) return bad_data("has no header", "", file.string());
-  const auto header = shard_header_from((*record)->payload);
+  const auto record = MBK_TRY(reader->next());
+  if (!record || record->kind != RecordKind::header) return bad_data("has no header", "", file.string());
+  const auto header = shard_header_from(record->payload);
   if (!header) return tl::unexpected(header.error().in(file.string()));
   if (header->program != folder.job().program) {
     return bad_data(
@@ -80,30 +78,25 @@ Result<ShardReader> open_shard_of(const JobFolder& folder, const fs::path& file,
 }
 
 Result<ShardEnd> check_shard(const JobFolder& folder, const Chunk& chunk, const fs::path& file) {
-  auto reader = open_shard_of(folder, file, chunk.number);
-  if (!reader) return tl::unexpected(reader.error());
+  auto reader = MBK_TRY(open_shard_of(folder, file, chunk.number));
   for (std::int64_t k = 0; k < chunk.count; ++k) {
-    const auto record = unit_of(*reader, file, chunk.first + k);
-    if (!record) return tl::unexpected(record.error());
+    MBK_TRY(unit_of(reader, file, chunk.first + k));
   }
-  const auto end = next_unit(*reader, file);
-  if (!end) return tl::unexpected(end.error());
-  if (end->kind != RecordKind::end) return bad_data("holds too many units", "", file.string());
-  const auto json = nlohmann::json::parse(end->payload, nullptr, false);
+  const auto end = MBK_TRY(next_unit(reader, file));
+  if (end.kind != RecordKind::end) return bad_data("holds too many units", "", file.string());
+  const auto json = nlohmann::json::parse(end.payload, nullptr, false);
   if (!json.is_object()) return bad_data("its end cannot be read", "", file.string());
   return ShardEnd{json.value("host", std::string()), json.value("units", std::int64_t{0}),
                   json.value("failed", std::int64_t{0}), json.value("wall_s", 0.0), json.value("cpu_s", 0.0)};
 }
 
 Result<std::vector<FinishedTask>> finished_tasks(const JobFolder& folder) {
-  const auto chunks = folder.chunks();
-  if (!chunks) return tl::unexpected(chunks.error());
-  const auto files = list_shards(folder);
-  if (!files) return tl::unexpected(files.error());
+  const auto chunks = MBK_TRY(folder.chunks());
+  const auto files = MBK_TRY(list_shards(folder));
   std::vector<FinishedTask> tasks;
-  for (const ShardFile& file : *files) {
-    if (file.state != ShardFile::State::whole || file.chunk < 0 || file.chunk >= std::ssize(*chunks)) continue;
-    const Chunk& chunk = (*chunks)[static_cast<std::size_t>(file.chunk)];
+  for (const ShardFile& file : files) {
+    if (file.state != ShardFile::State::whole || file.chunk < 0 || file.chunk >= std::ssize(chunks)) continue;
+    const Chunk& chunk = chunks[static_cast<std::size_t>(file.chunk)];
     const auto end = check_shard(folder, chunk, file.path);
     if (end) tasks.push_back({chunk.number, chunk.expected_s, *end});
   }
@@ -111,37 +104,32 @@ Result<std::vector<FinishedTask>> finished_tasks(const JobFolder& folder) {
 }
 
 Result<MergeReport> merge(const JobFolder& folder, const std::function<Result<void>(MergedUnit)>& take) {
-  const auto chunks = folder.chunks();
-  if (!chunks) return tl::unexpected(chunks.error());
-  const auto files = list_shards(folder);
-  if (!files) return tl::unexpected(files.error());
+  const auto chunks = MBK_TRY(folder.chunks());
+  const auto files = MBK_TRY(list_shards(folder));
   MergeReport report;
-  auto file = files->begin();
-  for (const Chunk& chunk : *chunks) {
+  auto file = files.begin();
+  for (const Chunk& chunk : chunks) {
     std::vector<std::pair<const fs::path*, ShardReader>> readers;
-    for (; file != files->end() && file->chunk <= chunk.number; ++file) {
+    for (; file != files.end() && file->chunk <= chunk.number; ++file) {
       if (file->chunk < chunk.number || file->state != ShardFile::State::whole) continue;
-      auto reader = open_shard_of(folder, file->path, chunk.number);
-      if (!reader) return tl::unexpected(reader.error());
-      readers.emplace_back(&file->path, std::move(*reader));
+      auto reader = MBK_TRY(open_shard_of(folder, file->path, chunk.number));
+      readers.emplace_back(&file->path, std::move(reader));
     }
     if (readers.empty()) {
       ++report.missing_chunks;
       continue;
     }
-    auto keys = folder.keys(chunk);
-    if (!keys) return tl::unexpected(keys.error());
+    auto keys = MBK_TRY(folder.keys(chunk));
     for (std::int64_t k = 0; k < chunk.count; ++k) {
-      MergedUnit unit{chunk.first + k, std::move((*keys)[static_cast<std::size_t>(k)]), true};
+      MergedUnit unit{chunk.first + k, std::move(keys[static_cast<std::size_t>(k)]), true};
       for (auto& [path, reader] : readers) {
-        auto record = unit_of(reader, *path, unit.number);
-        if (!record) return tl::unexpected(record.error());
-        const bool failed = record->kind == RecordKind::failure;
+        auto record = MBK_TRY(unit_of(reader, *path, unit.number));
+        const bool failed = record.kind == RecordKind::failure;
         // What one process could not do, another may have done.
         if (path == readers.front().first || (unit.failed && !failed)) {
           unit.failed = failed;
-          unit.payload = std::move(record->payload);
-        } else if (!failed && record->payload != unit.payload) {
+          unit.payload = std::move(record.payload);
+        } else if (!failed && record.payload != unit.payload) {
           unit.differing.push_back(*path);
         }
       }
@@ -151,7 +139,7 @@ Result<MergeReport> merge(const JobFolder& folder, const std::function<Result<vo
       } else {
         ++(unit.failed ? report.failed : report.results);
       }
-      if (auto ok = take(std::move(unit)); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(take(std::move(unit)));
     }
   }
   return report;

@@ -45,7 +45,7 @@ class MpiEngine : public Engine {
       }
     }
     if (!process_ && !waiting_.empty()) {
-      if (auto ok = start(std::exchange(waiting_, {})); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(start(std::exchange(waiting_, {})));
     }
     std::map<std::int64_t, Alive> all;
     // The first rank gives the chunks away in this order, as soon as the ranks are there: so those that are not whole
@@ -107,9 +107,8 @@ class MpiEngine : public Engine {
     before_.clear();
     begun_.clear();
     whole_.clear();
-    const auto files = list_shards(folder_);
-    if (!files) return tl::unexpected(files.error());
-    for (const ShardFile& file : *files) before_.insert(file.path.stem());
+    const auto files = MBK_TRY(list_shards(folder_));
+    for (const ShardFile& file : files) before_.insert(file.path.stem());
     const fs::path list = folder_.folder() / fmt::format("mpi-{}.txt", runs_);
     std::ofstream stream(list, std::ios::trunc);
     for (const std::int64_t chunk : chunks) stream << chunk << "\n";
@@ -123,9 +122,8 @@ class MpiEngine : public Engine {
     command.push_back((options_.program.parent_path() / "mbk_mpi").string());
     command.push_back(list.string());
     for (const std::string& word : work_command(folder_, options_)) command.push_back(word);
-    auto process = ChildProcess::start(command, log());
-    if (!process) return tl::unexpected(process.error());
-    process_.emplace(std::move(*process));
+    auto process = MBK_TRY(ChildProcess::start(command, log()));
+    process_.emplace(std::move(process));
     code_.reset();
     handed_out_ = chunks;
     return {};

@@ -96,7 +96,7 @@ class Run {
 
   Result<RunReport> to_end() {
     events_.add(EventKind::taken_up, -1, options_.engine);
-    if (auto ok = look(); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(look());
     finished_before_ = state_.finished_units;
     cost_before_ = finished_cost_;
     while (true) {
@@ -106,11 +106,11 @@ class Run {
         engine_.cancel_all();
         return ended(RunEnd::stopped);
       }
-      if (auto ok = hand_out(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(hand_out());
       if (state_.finished + state_.given_up == state_.chunks) return ended(RunEnd::incomplete);
       if (options_.detach && answered_) return ended(RunEnd::detached);
       say();
-      if (auto ok = wait(); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(wait());
     }
   }
 
@@ -124,17 +124,16 @@ class Run {
     const auto begin = Clock::now();
     do {
       std::this_thread::sleep_for(std::chrono::duration<double>(pause_s(kLookedFor)));
-      if (auto ok = look(); !ok) return ok;
+      MBK_TRY(look());
     } while (seconds_since(begin) < pause_s(kAsked) && state_.finished < state_.chunks && options_.stop() == Stop::no);
     return {};
   }
 
   /// What the shards say.
   Result<void> look() {
-    const auto files = list_shards(folder_);
-    if (!files) return tl::unexpected(files.error());
+    const auto files = MBK_TRY(list_shards(folder_));
     std::map<std::int64_t, std::uintmax_t> parts;
-    for (const ShardFile& file : *files) {
+    for (const ShardFile& file : files) {
       if (file.chunk < 0 || file.chunk >= state_.chunks) continue;
       Known& known = known_[static_cast<std::size_t>(file.chunk)];
       if (known.finished) continue;
@@ -151,7 +150,7 @@ class Run {
         fs::path aside = file.path;
         aside.replace_extension(kDamagedEnd);
         ++state_.losses[end.error().message];
-        if (auto ok = store::rename_on_disk(file.path, aside); !ok) return ok;
+        MBK_TRY(store::rename_on_disk(file.path, aside));
         continue;
       }
       known.finished = true;
@@ -222,8 +221,7 @@ class Run {
                       fmt::format("the logs stand in {}", folder_.logs().string()), folder_.folder().string());
     }
     if (missing.empty()) return {};
-    const auto submitted = engine_.submit(missing);
-    if (!submitted) return submitted;
+    MBK_TRY(engine_.submit(missing));
     for (const std::int64_t number : missing) {
       Known& known = known_[static_cast<std::size_t>(number)];
       known.handed_out = true;
@@ -359,30 +357,26 @@ std::string to_text(const JobState& state) {
 }
 
 Result<RunReport> run(const JobFolder& folder, Engine& engine, const RunOptions& options) {
-  if (auto ok = folder.check_program(); !ok) return tl::unexpected(ok.error());
-  const auto keeper = Keeper::take(folder);
-  if (!keeper) return tl::unexpected(keeper.error());
-  auto chunks = folder.chunks();
-  if (!chunks) return tl::unexpected(chunks.error());
-  return Run(folder, engine, options, std::move(*chunks)).to_end();
+  MBK_TRY(folder.check_program());
+  MBK_TRY(Keeper::take(folder));
+  auto chunks = MBK_TRY(folder.chunks());
+  return Run(folder, engine, options, std::move(chunks)).to_end();
 }
 
 Result<JobState> state_of(const JobFolder& folder) {
-  const auto chunks = folder.chunks();
-  if (!chunks) return tl::unexpected(chunks.error());
-  const auto files = list_shards(folder);
-  if (!files) return tl::unexpected(files.error());
+  const auto chunks = MBK_TRY(folder.chunks());
+  const auto files = MBK_TRY(list_shards(folder));
   JobState state;
   state.chunks = folder.job().chunks;
   state.units = folder.job().units;
   std::set<std::int64_t> whole, part;
-  for (const ShardFile& file : *files) {
+  for (const ShardFile& file : files) {
     if (file.chunk >= 0 && file.chunk < state.chunks) {
       (file.state == ShardFile::State::whole ? whole : part).insert(file.chunk);
     }
   }
   for (const std::int64_t number : whole) {
-    state.finished_units += (*chunks)[static_cast<std::size_t>(number)].count;
+    state.finished_units += chunks[static_cast<std::size_t>(number)].count;
     part.erase(number);
   }
   state.finished = std::ssize(whole);

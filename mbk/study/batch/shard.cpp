@@ -91,7 +91,7 @@ Result<std::unique_ptr<ShardWriter>> ShardWriter::create(const fs::path& folder,
       new ShardWriter(std::move(part), folder / (stem + std::string(kShardEnd)), descriptor));
   writer->waiting_ = kMagic;
   writer->append(RecordKind::header, 0, to_json(header));
-  if (auto ok = writer->sync(); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(writer->sync());
   return writer;
 }
 
@@ -135,7 +135,7 @@ Result<void> ShardWriter::flush() {
 
 Result<void> ShardWriter::sync() {
   const std::lock_guard lock(mutex_);
-  if (auto ok = write_waiting(); !ok) return ok;
+  MBK_TRY(write_waiting());
   while (::fsync(descriptor_) != 0) {
     if (errno != EINTR) return not_written(part_, errno);
   }
@@ -143,8 +143,8 @@ Result<void> ShardWriter::sync() {
 }
 
 Result<void> ShardWriter::finish(std::string_view end) {
-  if (auto ok = add(RecordKind::end, 0, end); !ok) return ok;
-  if (auto ok = sync(); !ok) return ok;
+  MBK_TRY(add(RecordKind::end, 0, end));
+  MBK_TRY(sync());
   const std::lock_guard lock(mutex_);
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0) return not_written(part_, errno);

@@ -23,16 +23,15 @@ constexpr double kAnswer = 60.0;  // [s] until a controller must have answered
 
 /// Runs a command of Slurm.
 Result<std::string> ask(const std::vector<std::string>& command) {
-  const auto said = command_output(command, kAnswer);
-  if (!said) return tl::unexpected(said.error());
-  if (said->code == 0) return said->out;
-  const auto begin = said->error.find("error: ");  // warnings and news may stand before it
-  const auto line = said->error.substr(begin == std::string::npos ? 0 : begin);
+  const auto said = MBK_TRY(command_output(command, kAnswer));
+  if (said.code == 0) return said.out;
+  const auto begin = said.error.find("error: ");  // warnings and news may stand before it
+  const auto line = said.error.substr(begin == std::string::npos ? 0 : begin);
   const auto cause = line.substr(0, line.find('\n'));
   const bool unreachable = cause.empty() || cause.find("ontact") != std::string::npos ||
                            cause.find("onnection") != std::string::npos || cause.find("imed out") != std::string::npos;
   return bad_data(
-      fmt::format("{}: {}", command.front(), cause.empty() ? fmt::format("exit code {}", said->code) : cause),
+      fmt::format("{}: {}", command.front(), cause.empty() ? fmt::format("exit code {}", said.code) : cause),
       unreachable ? "ask 'sinfo' whether the controller answers"
                   : "correct what it names: --partition, --account, --memory-mb, --engine-option or --job-folder");
 }
@@ -81,7 +80,7 @@ class SlurmEngine : public Engine {
   Result<std::int64_t> max_chunks() override { return max_array_size(); }
 
   Result<void> submit(std::span<const std::int64_t> chunks) override {
-    if (auto ok = write_script(); !ok) return ok;
+    MBK_TRY(write_script());
     std::vector<std::string> command = {"sbatch", "--parsable"};
     const std::string limit = options_.tasks > 0 ? fmt::format("%{}", options_.tasks) : "";
     command.push_back("--output=" + log_pattern(folder_));
@@ -90,9 +89,8 @@ class SlurmEngine : public Engine {
     if (!options_.account.empty()) command.push_back("--account=" + options_.account);
     command.insert(command.end(), options_.extra.begin(), options_.extra.end());
     command.push_back(script().string());
-    const auto said = ask(command);
-    if (!said) return tl::unexpected(said.error());
-    const std::string id = said->substr(0, said->find_first_of(";\n"));
+    const auto said = MBK_TRY(ask(command));
+    const std::string id = said.substr(0, said.find_first_of(";\n"));
     for (const std::int64_t chunk : chunks) job_of_[chunk] = id;
     std::ofstream(folder_.folder() / "submitted.txt", std::ios::app)
         << id << " --array=" << as_ranges({chunks.begin(), chunks.end()}) << limit << "\n";
@@ -101,10 +99,9 @@ class SlurmEngine : public Engine {
 
   Result<std::map<std::int64_t, Alive>> alive() override {
     // By the name of the job, which also those of an earlier process have.
-    const auto said = ask({"squeue", "--noheader", "--array", "--name=" + name_, "--format=%F %K %T %r"});
-    if (!said) return tl::unexpected(said.error());
+    const auto said = MBK_TRY(ask({"squeue", "--noheader", "--array", "--name=" + name_, "--format=%F %K %T %r"}));
     std::map<std::int64_t, Alive> all;
-    std::istringstream lines(*said);
+    std::istringstream lines(said);
     std::string job, state, why;
     std::int64_t chunk = 0;
     while (lines >> job >> chunk >> state && std::getline(lines, why)) {
@@ -196,11 +193,10 @@ class SlurmEngine : public Engine {
 }  // namespace
 
 Result<std::int64_t> max_array_size() {
-  const auto said = ask({"scontrol", "show", "config"});
-  if (!said) return tl::unexpected(said.error());
-  const auto at = said->find("\nMaxArraySize");
-  const auto sign = at == std::string::npos ? at : said->find('=', at);
-  const std::int64_t size = sign == std::string::npos ? 0 : std::atoll(said->c_str() + sign + 1);
+  const auto said = MBK_TRY(ask({"scontrol", "show", "config"}));
+  const auto at = said.find("\nMaxArraySize");
+  const auto sign = at == std::string::npos ? at : said.find('=', at);
+  const std::int64_t size = sign == std::string::npos ? 0 : std::atoll(said.c_str() + sign + 1);
   if (size < 2) return bad_data("Slurm's controller allows no job arrays", "ask who runs it to set MaxArraySize");
   return size;
 }

@@ -103,42 +103,39 @@ std::int64_t units_left_done(const JobFolder& folder, const Chunk& chunk) {
 
 Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitFunction& compute,
                        const WorkOptions& options) {
-  if (auto ok = folder.check_program(); !ok) return tl::unexpected(ok.error());
-  const auto chunk = folder.chunk(number);
-  if (!chunk) return tl::unexpected(chunk.error());
-  const auto keys = folder.keys(*chunk);
-  if (!keys) return tl::unexpected(keys.error());
-  const Remains remains = remains_of(folder, *chunk);
+  MBK_TRY(folder.check_program());
+  const auto chunk = MBK_TRY(folder.chunk(number));
+  const auto keys = MBK_TRY(folder.keys(chunk));
+  const Remains remains = remains_of(folder, chunk);
 
   std::random_device lot;
   ShardHeader header{folder.job().id, folder.job().program, number, host_name(), ::getpid()};
   header.token = fmt::format("{:08x}{:08x}", lot(), lot());
-  auto shard = ShardWriter::create(folder.shards(), header);
-  if (!shard) return tl::unexpected(shard.error());
+  auto shard = MBK_TRY(ShardWriter::create(folder.shards(), header));
   const auto begin = Clock::now();
   ChunkDone done;
   {
-    const Heartbeat heartbeat(**shard, options.heartbeat_s);
-    for (std::size_t k = 0; k < keys->size(); ++k) {
-      const auto unit = static_cast<std::uint64_t>(chunk->first) + k;
+    const Heartbeat heartbeat(*shard, options.heartbeat_s);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const auto unit = static_cast<std::uint64_t>(chunk.first) + k;
       Result<void> written;
       if (const auto found = remains.done.find(unit); found != remains.done.end()) {
-        written = (*shard)->add(RecordKind::result, unit, found->second.payload);
+        written = shard->add(RecordKind::result, unit, found->second.payload);
         ++done.found;
       } else if (const auto ended = remains.ended_in.find(unit);
                  ended != remains.ended_in.end() && ended->second >= kEndsOfOneUnit) {
-        written = (*shard)->add(RecordKind::failure, unit, "mbk ended each time it was computed");
+        written = shard->add(RecordKind::failure, unit, "mbk ended each time it was computed");
         ++done.failed;
       } else {
         if (remains.processes > 0) {
-          written = (*shard)->add(RecordKind::began, unit, "");
-          if (written) written = (*shard)->flush();
+          written = shard->add(RecordKind::began, unit, "");
+          if (written) written = shard->flush();
           if (!written) return tl::unexpected(written.error());
         }
-        const auto result = compute(static_cast<std::int64_t>(unit), (*keys)[k]);
+        const auto result = compute(static_cast<std::int64_t>(unit), keys[k]);
         if (!result) ++done.failed;
-        written = result ? (*shard)->add(RecordKind::result, unit, *result)
-                         : (*shard)->add(RecordKind::failure, unit, result.error().line());
+        written = result ? shard->add(RecordKind::result, unit, *result)
+                         : shard->add(RecordKind::failure, unit, result.error().line());
       }
       if (!written) return tl::unexpected(written.error());
       ++done.units;
@@ -149,7 +146,7 @@ Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitF
                               {"failed", done.failed},
                               {"wall_s", std::chrono::duration<double>(Clock::now() - begin).count()},
                               {"cpu_s", cpu_seconds()}};
-  if (auto ok = (*shard)->finish(end.dump()); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(shard->finish(end.dump()));
   return done;
 }
 

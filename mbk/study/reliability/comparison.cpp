@@ -151,7 +151,7 @@ Result<std::vector<std::size_t>> rising(const Vector& p) {
 }  // namespace
 
 Result<Difference> difference(const Vector& first, const Vector& second, Pairing pairing) {
-  if (auto ok = check_samples(first, second, pairing); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_samples(first, second, pairing));
   Difference result;
   result.pairing = pairing;
   result.first_count = static_cast<int>(first.size());
@@ -200,7 +200,7 @@ Result<Permutation> permutation_test(const Vector& first, const Vector& second, 
     return bad_usage(fmt::format("{} draws and {} arrangements", options.draws, options.max_exact),
                      "ask for 1 or more");
   }
-  if (auto ok = check_samples(first, second, pairing); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_samples(first, second, pairing));
   Permutation result;
   result.p = kNaN;
   if (first.size() < 2 || second.size() < 2) {
@@ -238,26 +238,24 @@ Result<Permutation> permutation_test(const Vector& first, const Vector& second, 
 }
 
 Result<Vector> holm(const Vector& p) {
-  const auto order = rising(p);
-  if (!order) return tl::unexpected(order.error());
+  const auto order = MBK_TRY(rising(p));
   Vector adjusted(p.size());
   double largest = 0.0;
-  for (std::size_t i = 0; i < order->size(); ++i) {
-    const auto k = static_cast<Index>((*order)[i]);
-    largest = std::max(largest, std::min(1.0, static_cast<double>(order->size() - i) * p[k]));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto k = static_cast<Index>(order[i]);
+    largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - i) * p[k]));
     adjusted[k] = largest;
   }
   return adjusted;
 }
 
 Result<Vector> benjamini_hochberg(const Vector& p) {
-  const auto order = rising(p);
-  if (!order) return tl::unexpected(order.error());
+  const auto order = MBK_TRY(rising(p));
   Vector adjusted(p.size());
   double smallest = 1.0;
-  for (std::size_t i = order->size(); i-- > 0;) {
-    const auto k = static_cast<Index>((*order)[i]);
-    smallest = std::min(smallest, static_cast<double>(order->size()) * p[k] / static_cast<double>(i + 1));
+  for (std::size_t i = order.size(); i-- > 0;) {
+    const auto k = static_cast<Index>(order[i]);
+    smallest = std::min(smallest, static_cast<double>(order.size()) * p[k] / static_cast<double>(i + 1));
     adjusted[k] = smallest;
   }
   return adjusted;

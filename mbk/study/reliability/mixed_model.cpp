@@ -490,7 +490,7 @@ Result<Matrix> orthonormal(const Measurements& m, Matrix& X) {
 }
 
 Result<Prepared> prepare(const Measurements& m) {
-  if (auto ok = check_shapes(m); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_shapes(m));
   const std::vector<Index> rows = sorted_rows(m);
   const auto count = static_cast<Index>(rows.size());
   const Index p = m.fixed.cols();
@@ -519,9 +519,8 @@ Result<Prepared> prepare(const Measurements& m) {
   data.has_participant = people < rows.size();
 
   Matrix X = data.table.leftCols(p);
-  auto R = orthonormal(m, X);
-  if (!R) return tl::unexpected(R.error());
-  data.R = std::move(*R);
+  auto R = MBK_TRY(orthonormal(m, X));
+  data.R = std::move(R);
   Vector y = data.table.col(p);
   data.least_squares = Vector::Zero(p);
   const double size = y.norm();
@@ -874,11 +873,9 @@ ModelReliability reliability_of_mean(const Prepared& data, const Fitted& fit, co
 }  // namespace
 
 Result<MixedModel> fit_mixed_model(const Measurements& measurements) {
-  const auto data = prepare(measurements);
-  if (!data) return tl::unexpected(data.error());
-  const auto fit = fitted(*data);
-  if (!fit) return tl::unexpected(fit.error());
-  return summarised(*data, *fit);
+  const auto data = MBK_TRY(prepare(measurements));
+  const auto fit = MBK_TRY(fitted(data));
+  return summarised(data, fit);
 }
 
 bool separates_sessions_from_trials(const MixedModel& model) {
@@ -910,34 +907,31 @@ FixedEffect contrast(const MixedModel& model, const Vector& weights) {
 }
 
 Result<ModelReliability> model_reliability(const Measurements& measurements, int trials) {
-  auto fitted_once = fit_reliability(measurements, {&trials, 1});
-  if (!fitted_once) return tl::unexpected(fitted_once.error());
-  return fitted_once->of_trials.front();
+  auto fitted_once = MBK_TRY(fit_reliability(measurements, {&trials, 1}));
+  return fitted_once.of_trials.front();
 }
 
 Result<FittedReliability> fit_reliability(const Measurements& measurements, std::span<const int> trials) {
   for (const int one : trials) {
     if (one < 1) return bad_usage(fmt::format("the mean of {} trials does not exist", one), "ask for 1 or more");
   }
-  const auto data = prepare(measurements);
-  if (!data) return tl::unexpected(data.error());
+  const auto data = MBK_TRY(prepare(measurements));
   FittedReliability result;
   Support support = Support::enough;
-  if (data->participants() < static_cast<std::size_t>(kMinPeople)) {
+  if (data.participants() < static_cast<std::size_t>(kMinPeople)) {
     support = Support::too_few_people;
-  } else if (data->sessions.size() == data->participants()) {
+  } else if (data.sessions.size() == data.participants()) {
     support = Support::too_few_sessions;
   }
   if (support != Support::enough) {
     for (const int one : trials) result.of_trials.push_back(without_numbers(support, one));
     return result;
   }
-  const auto fit = fitted(*data);
-  if (!fit) return tl::unexpected(fit.error());
-  result.model = summarised(*data, *fit);
-  const Interval of_residual = residual_interval(*data, *fit);
+  const auto fit = MBK_TRY(fitted(data));
+  result.model = summarised(data, fit);
+  const Interval of_residual = residual_interval(data, fit);
   for (const int one : trials) {
-    result.of_trials.push_back(reliability_of_mean(*data, *fit, *result.model, of_residual, one));
+    result.of_trials.push_back(reliability_of_mean(data, fit, *result.model, of_residual, one));
   }
   return result;
 }

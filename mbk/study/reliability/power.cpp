@@ -43,7 +43,7 @@ double power_of_t_test(double d, int people, Pairing pairing, double level) {
 }
 
 Result<int> people_for_effect(double d, double power, Pairing pairing, double level) {
-  if (auto ok = check_level(power, level); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_level(power, level));
   if (!std::isfinite(d) || d == 0.0) return bad_usage(fmt::format("an effect of {:g}", d), "ask for one that is not 0");
   int low = 1, high = 2;  // low is too few
   while (power_of_t_test(d, high, pairing, level) < power) {
@@ -61,7 +61,7 @@ Result<int> people_for_effect(double d, double power, Pairing pairing, double le
 
 Result<std::vector<Plan>> people_and_trials(const VarianceComponents& variances, double difference, double power,
                                             Pairing pairing, int sessions, int max_trials, double level) {
-  if (auto ok = check_variances(variances); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_variances(variances));
   if (sessions < 1 || max_trials < 1) {
     return bad_usage(fmt::format("{} sessions and {} trials", sessions, max_trials), "ask for 1 or more");
   }
@@ -70,16 +70,15 @@ Result<std::vector<Plan>> people_and_trials(const VarianceComponents& variances,
     Plan plan{sessions, trials, {}, error_of_mean(variances, sessions, trials)};
     plan.variance = pairing == Pairing::paired ? 2.0 * plan.variance : plan.variance + variances.participant;
     if (!(plan.variance > 0.0)) return bad_usage("all variances are 0", "give those of a reliability study");
-    const auto people = people_for_effect(difference / std::sqrt(plan.variance), power, pairing, level);
-    if (!people) return tl::unexpected(people.error());
-    plan.people = *people;
+    const auto people = MBK_TRY(people_for_effect(difference / std::sqrt(plan.variance), power, pairing, level));
+    plan.people = people;
     plans.push_back(plan);
   }
   return plans;
 }
 
 Result<TrialsForChange> trials_for_change(const VarianceComponents& variances, double change, int sessions) {
-  if (auto ok = check_variances(variances); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_variances(variances));
   if (sessions < 1) return bad_usage(fmt::format("{} sessions", sessions), "ask for 1 or more");
   if (!(change > 0.0 && std::isfinite(change)))
     return bad_usage(fmt::format("a change of {:g}", change), "ask for one above 0");

@@ -96,7 +96,7 @@ Result<MeanSquares> mean_squares(const Matrix& scores) {
     return bad_data(fmt::format("{} people in {} sessions have no mean squares", scores.rows(), scores.cols()),
                     "give two or more of each");
   }
-  if (auto ok = all_finite(scores); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(all_finite(scores));
   const auto n = static_cast<double>(scores.rows()), k = static_cast<double>(scores.cols());
   const double mean = scores.mean();
   const Vector of_people = scores.rowwise().mean().array() - mean;
@@ -117,36 +117,35 @@ Result<MeanSquares> mean_squares(const Matrix& scores) {
 
 Result<TestRetest> test_retest(const Matrix& scores) {
   if (scores.size() == 0) return bad_data("there are no scores", "give a row for each person");
-  if (auto ok = all_finite(scores); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(all_finite(scores));
   TestRetest result;
   result.mean_squares.people = static_cast<int>(scores.rows());
   result.mean_squares.sessions = static_cast<int>(scores.cols());
   if (scores.cols() < 2) result.support = Support::too_few_sessions;
   if (scores.rows() < kMinPeople) result.support = Support::too_few_people;
   if (scores.rows() < 2 || scores.cols() < 2) return result;
-  const auto squares = mean_squares(scores);
-  if (!squares) return tl::unexpected(squares.error());
-  result.mean_squares = *squares;
+  const auto squares = MBK_TRY(mean_squares(scores));
+  result.mean_squares = squares;
   const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * scores.cwiseAbs().maxCoeff();
-  if (result.support == Support::enough && squares->within_people + squares->between_people <= rounding * rounding) {
+  if (result.support == Support::enough && squares.within_people + squares.between_people <= rounding * rounding) {
     result.support = Support::no_variation;
   }
   if (result.support != Support::enough) return result;
 
-  const double n = squares->people, k = squares->sessions, residual_degrees = (n - 1.0) * (k - 1.0);
-  result.icc = {icc_by_ratio(IccForm::one_way, *squares, squares->within_people, n * (k - 1.0)),
-                icc_of_agreement(*squares),
-                icc_by_ratio(IccForm::consistency, *squares, squares->residual, residual_degrees)};
+  const double n = squares.people, k = squares.sessions, residual_degrees = (n - 1.0) * (k - 1.0);
+  result.icc = {icc_by_ratio(IccForm::one_way, squares, squares.within_people, n * (k - 1.0)),
+                icc_of_agreement(squares),
+                icc_by_ratio(IccForm::consistency, squares, squares.residual, residual_degrees)};
   for (std::size_t i = 0; i < 3; ++i) {
     const Icc one = result.icc[i];
     result.icc.push_back({one.form,
-                          squares->sessions,
+                          squares.sessions,
                           of_mean(one.value, k),
                           {of_mean(one.interval95.first, k), of_mean(one.interval95.second, k)}});
   }
-  const double agreement = (squares->between_sessions - squares->residual) / n + squares->residual;
-  result.error = {error_of(IccForm::agreement, agreement, satterthwaite(*squares, 1.0 / n, 1.0 - 1.0 / n)),
-                  error_of(IccForm::consistency, squares->residual, residual_degrees)};
+  const double agreement = (squares.between_sessions - squares.residual) / n + squares.residual;
+  result.error = {error_of(IccForm::agreement, agreement, satterthwaite(squares, 1.0 / n, 1.0 - 1.0 / n)),
+                  error_of(IccForm::consistency, squares.residual, residual_degrees)};
   return result;
 }
 

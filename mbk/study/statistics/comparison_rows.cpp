@@ -308,20 +308,19 @@ Result<Comparison> compared(const store::OutcomeColumns& columns,
                             const std::vector<const store::OutcomeColumn*>& chosen, const StatisticsOptions& options,
                             std::vector<std::string>& notes) {
   const Comparing& how = *options.comparing;
-  const auto levels = how.by == ComparedBy::condition ? by_condition(columns, how.levels)
-                      : how.by == ComparedBy::session ? by_session(columns, how.levels)
-                                                      : by_group(columns, options.groups, how.levels, notes);
-  if (!levels) return tl::unexpected(levels.error());
+  const auto levels = MBK_TRY(how.by == ComparedBy::condition ? by_condition(columns, how.levels)
+                              : how.by == ComparedBy::session ? by_session(columns, how.levels)
+                                                              : by_group(columns, options.groups, how.levels, notes));
   Comparison comparison;
   comparison.by = how.by;
-  comparison.levels = levels->names;
+  comparison.levels = levels.names;
   struct Task {
     const store::OutcomeColumn* column;
     int condition, first, second;
   };
   std::vector<Task> tasks;
   const int strata = how.by == ComparedBy::condition ? 1 : static_cast<int>(columns.conditions.size());
-  const int count = static_cast<int>(levels->names.size());
+  const int count = static_cast<int>(levels.names.size());
   for (int condition = 0; condition < strata; ++condition) {
     for (int first = 0; first < count; ++first) {
       for (int second = first + 1; second < count; ++second) {
@@ -332,22 +331,21 @@ Result<Comparison> compared(const store::OutcomeColumns& columns,
     }
   }
   std::vector<OutcomeComparison> outcomes(tasks.size());
-  const auto ok = numeric::parallel_for(static_cast<int>(tasks.size()), options.threads, [&](int k) -> Result<void> {
+  MBK_TRY(numeric::parallel_for(static_cast<int>(tasks.size()), options.threads, [&](int k) -> Result<void> {
     const auto [column, condition, first, second] = tasks[static_cast<std::size_t>(k)];
     std::vector<bool> keep(columns.trials.size());
     for (std::size_t i = 0; i < keep.size(); ++i) {
-      keep[i] = levels->of_trial[i] == first || levels->of_trial[i] == second;
+      keep[i] = levels.of_trial[i] == first || levels.of_trial[i] == second;
     }
     OutcomeComparison& one = outcomes[static_cast<std::size_t>(k)];
     one.condition = condition < 0 ? "" : columns.conditions[static_cast<std::size_t>(condition)];
-    one.first = levels->names[static_cast<std::size_t>(first)];
-    one.second = levels->names[static_cast<std::size_t>(second)];
+    one.first = levels.names[static_cast<std::size_t>(first)];
+    one.second = levels.names[static_cast<std::size_t>(second)];
     one.outcome = column->name;
     one.unit = column->unit;
-    compare_one(rows_of(columns, *column, condition, keep), *levels, first, options.seed, one);
+    compare_one(rows_of(columns, *column, condition, keep), levels, first, options.seed, one);
     return {};
-  });
-  if (!ok) return tl::unexpected(ok.error());
+  }));
   // What neither level has is no test.
   std::erase_if(outcomes, [](const OutcomeComparison& one) {
     return one.difference.first_count + one.difference.second_count == 0 && one.notes.empty();

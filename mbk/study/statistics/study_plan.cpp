@@ -179,18 +179,16 @@ Result<void> plan_people(const Pilot& pilot, const PlanGoal& goal, StudyPlan& pl
     if (std::isnan(V)) return kNaN;
     if (std::isinf(V)) return V;
     const auto people =
-        reliability::people_for_effect(*goal.difference / std::sqrt(V), goal.power, goal.pairing, goal.level);
-    if (!people) return tl::unexpected(people.error());
-    return double(*people);
+        MBK_TRY(reliability::people_for_effect(*goal.difference / std::sqrt(V), goal.power, goal.pairing, goal.level));
+    return double(people);
   };
   if (goal.people) {
     plan.people.value = *goal.people;
   } else {
-    const auto value = people_for(variance), low = people_for(between.first);
-    if (!value) return tl::unexpected(value.error());
-    if (!low) return tl::unexpected(low.error());
+    const auto value = MBK_TRY(people_for(variance));
+    const auto low = MBK_TRY(people_for(between.first));
     const auto high = people_for(between.second);
-    plan.people = {*value, {*low, high ? *high : std::numeric_limits<double>::infinity()}};
+    plan.people = {value, {low, high ? *high : std::numeric_limits<double>::infinity()}};
   }
   const int people = static_cast<int>(plan.people.value);
   const auto power_at = [&](double V) {
@@ -262,7 +260,7 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
   const VarianceComponents fitted = components_of(*model);
   pilot.variances = merged(fitted, pilot);
   pilot.redrawn.resize(static_cast<std::size_t>(draws));
-  const auto ok = numeric::parallel_for(draws, 0, [&](int draw) -> Result<void> {
+  MBK_TRY(numeric::parallel_for(draws, 0, [&](int draw) -> Result<void> {
     reliability::Measurements again = *m;
     numeric::Random random(seed, static_cast<std::uint32_t>(draw + 1));
     redraw(again, fitted, random);
@@ -270,13 +268,12 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
     if (!refitted) return tl::unexpected(refitted.error().in(outcome));
     pilot.redrawn[static_cast<std::size_t>(draw)] = merged(components_of(*refitted), pilot);
     return {};
-  });
-  if (!ok) return tl::unexpected(ok.error());
+  }));
   return pilot;
 }
 
 Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& goal) {
-  if (auto ok = check_goal(pilot, goal); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(check_goal(pilot, goal));
   std::vector<StudyPlan> plans;
   constexpr double kChange = reliability::kPublishedNormal95 * std::numbers::sqrt2;
   const bool change_known = !pilot.warns_of(ReliabilityWarning::people_and_sessions);
@@ -297,7 +294,7 @@ Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& g
       }
       if (goal.change) plan.change_is_detectable = plan.mdc95.value <= *goal.change;
       if (goal.difference) {
-        if (auto ok = plan_people(pilot, goal, plan); !ok) return tl::unexpected(ok.error());
+        MBK_TRY(plan_people(pilot, goal, plan));
       }
       plans.push_back(plan);
     }

@@ -82,15 +82,14 @@ void note_duplicates(const store::OutcomeColumns& columns, std::vector<std::stri
 }  // namespace
 
 Result<StudyStatistics> study_statistics(const store::OutcomeColumns& columns, const StatisticsOptions& options) {
-  const auto chosen = chosen_columns(columns, options.outcomes);
-  if (!chosen) return tl::unexpected(chosen.error());
+  const auto chosen = MBK_TRY(chosen_columns(columns, options.outcomes));
   StudyStatistics statistics;
   note_duplicates(columns, statistics.notes);
-  const int outcomes = static_cast<int>(chosen->size());
+  const int outcomes = static_cast<int>(chosen.size());
   const int count = outcomes * static_cast<int>(columns.conditions.size());
   std::vector<OutcomeReliability> reliability(static_cast<std::size_t>(count));
-  const auto ok = numeric::parallel_for(count, options.threads, [&](int k) -> Result<void> {
-    const store::OutcomeColumn& column = *(*chosen)[static_cast<std::size_t>(k % outcomes)];
+  MBK_TRY(numeric::parallel_for(count, options.threads, [&](int k) -> Result<void> {
+    const store::OutcomeColumn& column = *chosen[static_cast<std::size_t>(k % outcomes)];
     const int condition = k / outcomes;
     OutcomeReliability named;
     named.condition = columns.conditions[static_cast<std::size_t>(condition)];
@@ -98,15 +97,13 @@ Result<StudyStatistics> study_statistics(const store::OutcomeColumns& columns, c
     named.unit = column.unit;
     reliability[static_cast<std::size_t>(k)] = reliability_of(rows_of(columns, column, condition), std::move(named));
     return {};
-  });
-  if (!ok) return tl::unexpected(ok.error());
+  }));
   std::erase_if(reliability, [](const OutcomeReliability& one) { return one.results == 0; });
   statistics.reliability = std::move(reliability);
   if (options.outcomes.empty()) statistics.matrices = matrix_spreads(columns);
   if (options.comparing) {
-    auto comparison = compared(columns, *chosen, options, statistics.notes);
-    if (!comparison) return tl::unexpected(comparison.error());
-    statistics.comparison = std::move(*comparison);
+    auto comparison = MBK_TRY(compared(columns, chosen, options, statistics.notes));
+    statistics.comparison = std::move(comparison);
   }
   return statistics;
 }

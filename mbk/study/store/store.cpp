@@ -88,7 +88,7 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
   };
   std::error_code code;
   if (fs::exists(folder / kDatabaseName, code)) return there();
-  if (auto ok = make_folder(folder); !ok) return ok;
+  MBK_TRY(make_folder(folder));
   for (const auto& entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     const bool ours = name == kRecordingsName || name == "lock" || name.find(".part") != std::string::npos;
@@ -100,7 +100,7 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
   fs::permissions(folder, fs::perms::owner_all, code);
   if (code)
     return bad_data("its permissions cannot be set: " + code.message(), "choose another folder", folder.string());
-  if (auto ok = make_folder(folder / kRecordingsName); !ok) return ok;
+  MBK_TRY(make_folder(folder / kRecordingsName));
   return guarded(folder, [&]() -> Result<void> {
     // Whole before it has its name: who finds it finds a study.
     const std::string temporary = temporary_name();
@@ -114,7 +114,7 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
     {
       Database database(folder, SQLite::OPEN_READWRITE, temporary.c_str());
       SQLite::Database& connection = database.connection;
-      if (auto ok = migrate(connection, folder); !ok) return ok;
+      MBK_TRY(migrate(connection, folder));
       WriteTransaction transaction(connection);
       execute(connection, "INSERT INTO fact VALUES ('title', ?), ('options', ?)", facts.title, facts.options);
       LogLine line{.role = role, .action = LoggedAction::init};
@@ -146,16 +146,13 @@ Result<Store> Store::open(const fs::path& folder, std::function<void()> waiting)
     if (writable) {
       database = std::make_unique<Database>(folder, SQLite::OPEN_READWRITE, kDatabaseName, std::move(waiting));
     } else {
-      auto copy = Database::snapshot(folder);
-      if (!copy) return tl::unexpected(copy.error());
-      database = std::move(*copy);
+      database = MBK_TRY(Database::snapshot(folder));
       database->waiting = std::move(waiting);
     }
-    if (auto ok = migrate(database->connection, folder); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(migrate(database->connection, folder));
     if (writable && is_erasing(*database)) {  // a process was ended while it forgot someone
-      auto alone = FolderLock::take(folder, FolderLock::Kind::alone, database->waiting);
-      if (!alone) return tl::unexpected(alone.error());
-      if (auto done = finish_erasing(*database); !done) return tl::unexpected(done.error());
+      MBK_TRY(FolderLock::take(folder, FolderLock::Kind::alone, database->waiting));
+      MBK_TRY(finish_erasing(*database));
     }
     return Store(std::move(database));
   });
@@ -192,15 +189,12 @@ Result<IncomingFile> Store::bring_in(const fs::path& file) const {
 
 Result<IncomingFile> Store::bring_in(const fs::path& file, const std::string& extension) const {
   IncomingFile incoming;
-  auto lock = FolderLock::take(folder(), FolderLock::Kind::shared, database_->waiting);
-  if (!lock) return tl::unexpected(lock.error());
-  incoming.lock_ = std::move(*lock);
+  incoming.lock_ = MBK_TRY(FolderLock::take(folder(), FolderLock::Kind::shared, database_->waiting));
   const fs::path to = folder() / kRecordingsName / temporary_name();
-  auto copied = copy_hashed(file, to);
-  if (!copied) return tl::unexpected(copied.error());
+  auto copied = MBK_TRY(copy_hashed(file, to));
   incoming.path_ = to;
-  incoming.sha256_ = std::move(copied->sha256);
-  incoming.bytes_ = copied->bytes;
+  incoming.sha256_ = std::move(copied.sha256);
+  incoming.bytes_ = copied.bytes;
   incoming.extension_ = extension;
   return incoming;
 }
@@ -221,13 +215,13 @@ Result<std::vector<StoredRecording>> Store::recordings_of(const std::string& sha
 Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<const NewRecording> recordings,
                                                const std::string& origin_sha256, Role role) {
   for (const NewRecording& one : recordings) {
-    if (auto ok = check_facts(one.trial); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_facts(one.trial));
     if (one.excluded_why.empty()) continue;
-    if (auto ok = check_why(one.excluded_why); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(check_why(one.excluded_why));
   }
   // The file has its name, and the disk has that, before any row speaks of it.
   const fs::path to = folder() / stored_name(incoming.sha256_, incoming.extension_);
-  if (auto ok = make_folder(to.parent_path()); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(make_folder(to.parent_path()));
   return guarded(folder(), [&]() -> Result<std::vector<AddedRecording>> {
     SQLite::Database& connection = database_->connection;
     std::vector<AddedRecording> added;
@@ -291,7 +285,7 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
       added.push_back({r, false});
     }
     if (!any_new) return added;
-    if (auto ok = rename_on_disk(incoming.path_, to); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(rename_on_disk(incoming.path_, to));
     incoming.path_.clear();
     transaction.commit();
     return added;
@@ -318,7 +312,7 @@ Result<StoredRecording> Store::recording(std::int64_t number) const {
 }
 
 Result<void> Store::exclude(std::int64_t number, const std::string& why, Role role) {
-  if (auto ok = check_why(why); !ok) return ok;
+  MBK_TRY(check_why(why));
   return guarded(folder(), [&]() -> Result<void> {
     SQLite::Database& connection = database_->connection;
     WriteTransaction transaction(connection);
@@ -335,13 +329,12 @@ Result<void> Store::exclude(std::int64_t number, const std::string& why, Role ro
 }
 
 Result<void> Store::include(std::int64_t number, const std::string& why, Role role) {
-  if (auto ok = check_why(why); !ok) return ok;
+  MBK_TRY(check_why(why));
   return guarded(folder(), [&]() -> Result<void> {
     SQLite::Database& connection = database_->connection;
     WriteTransaction transaction(connection);
-    const auto there = recording(number);
-    if (!there) return tl::unexpected(there.error());
-    if (!there->excluded_why) return bad_usage(fmt::format("recording {} is not excluded", number));
+    const auto there = MBK_TRY(recording(number));
+    if (!there.excluded_why) return bad_usage(fmt::format("recording {} is not excluded", number));
     execute(connection, "UPDATE recording SET excluded_why = NULL WHERE number = ?", number);
     LogLine line{.role = role, .action = LoggedAction::include};
     line.recording = number;
@@ -366,11 +359,10 @@ std::optional<fs::path> find_study(const fs::path& from) {
 
 Result<std::string> file_sha256(const fs::path& file) {
   recording::Sha256 sum;
-  auto read = read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
+  MBK_TRY(read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
     sum.add(piece);
     return {};
-  });
-  if (!read) return tl::unexpected(read.error());
+  }));
   return sum.hex();
 }
 

@@ -40,8 +40,7 @@ Result<void> copy_database(Database& from, const fs::path& to) {
 
 Result<void> copy_recording(const fs::path& from, const fs::path& to, bool link) {
   if (link && ::link(from.c_str(), to.c_str()) == 0) return {};
-  auto copied = copy_hashed(from, to);
-  if (!copied) return tl::unexpected(copied.error());
+  MBK_TRY(copy_hashed(from, to));
   return {};
 }
 
@@ -59,34 +58,30 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
     const fs::path parent = to.has_parent_path() ? to.parent_path() : fs::path(".");
     TemporaryFolder temporary{parent / fmt::format(".{}.{}.part", to.filename().string(), ::getpid())};
     fs::remove_all(temporary.path, code);
-    if (auto ok = make_folder(temporary.path); !ok) return tl::unexpected(ok.error());
-    if (auto ok = make_folder(temporary.path / kRecordingsName); !ok) return tl::unexpected(ok.error());
-    if (auto ok = copy_database(*database_, temporary.path); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(make_folder(temporary.path));
+    MBK_TRY(make_folder(temporary.path / kRecordingsName));
+    MBK_TRY(copy_database(*database_, temporary.path));
     CheckReport report;
     {
-      auto copy = Store::open(temporary.path);
-      if (!copy) return tl::unexpected(copy.error());
-      const auto recordings = copy->recordings();
-      if (!recordings) return tl::unexpected(recordings.error());
+      auto copy = MBK_TRY(Store::open(temporary.path));
+      const auto recordings = MBK_TRY(copy.recordings());
       std::set<std::string> names;
-      for (const StoredRecording& one : *recordings) names.insert(stored_name(one.sha256, one.extension));
+      for (const StoredRecording& one : recordings) names.insert(stored_name(one.sha256, one.extension));
       for (const std::string& name : names) {
         const fs::path target = temporary.path / name;
-        if (auto ok = make_folder(target.parent_path()); !ok) return tl::unexpected(ok.error());
-        if (auto ok = copy_recording(folder() / name, target, link); !ok) return tl::unexpected(ok.error());
+        MBK_TRY(make_folder(target.parent_path()));
+        MBK_TRY(copy_recording(folder() / name, target, link));
       }
       for (const std::string& name : names) {
-        if (auto ok = flush_folder((temporary.path / name).parent_path()); !ok) return tl::unexpected(ok.error());
+        MBK_TRY(flush_folder((temporary.path / name).parent_path()));
       }
-      auto checked = copy->check(false, {});
-      if (!checked) return tl::unexpected(checked.error());
-      report = std::move(*checked);
+      report = MBK_TRY(copy.check(false, {}));
     }
     if (!report.problems.empty()) {
       return bad_data("the copy is not sound: " + report.problems.front(),
                       "no backup was made; 'mbk study check' says what is wrong with the study", folder().string());
     }
-    if (auto ok = rename_on_disk(temporary.path, parent / to.filename()); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(rename_on_disk(temporary.path, parent / to.filename()));
     temporary.path.clear();
     return report;
   });

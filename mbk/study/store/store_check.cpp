@@ -227,8 +227,7 @@ class Checker {
       return {};
     }
     // Nobody adds meanwhile: what is half-written now was left by a process that is gone.
-    auto alone = FolderLock::take(database_.folder, FolderLock::Kind::alone, database_.waiting);
-    if (!alone) return tl::unexpected(alone.error());
+    MBK_TRY(FolderLock::take(database_.folder, FolderLock::Kind::alone, database_.waiting));
     std::set<std::string> known;
     auto rows = query(database_.connection, "SELECT sha256, extension FROM recording");
     while (rows.executeStep()) known.insert(stored_name(text_at(rows, 0), text_at(rows, 1)));
@@ -247,12 +246,12 @@ class Checker {
       if (entry.path().filename().string().find(".part") != std::string::npos) half.push_back(entry.path());
     }
     for (const fs::path& file : half) {
-      if (auto removed = remove_file(file); !removed) return tl::unexpected(removed.error());
+      MBK_TRY(remove_file(file));
     }
     if (!half.empty()) note(fmt::format("{} removed that an interrupted process left half-written", count(half)));
     for (const fs::path& file : whole) {
       if (!remove_leftovers) continue;
-      if (auto removed = remove_file(file); !removed) return tl::unexpected(removed.error());
+      MBK_TRY(remove_file(file));
     }
     if (!whole.empty() && remove_leftovers) note(fmt::format("{} removed that no recording refers to", count(whole)));
     if (!whole.empty() && !remove_leftovers) {
@@ -313,13 +312,12 @@ Result<std::int64_t> finish_erasing(Database& database) {
   std::int64_t count = 0;
   std::set<fs::path> folders;
   for (const std::string& name : names) {
-    auto removed = remove_file(database.folder / name);
-    if (!removed) return tl::unexpected(removed.error());
-    count += *removed ? 1 : 0;
+    auto removed = MBK_TRY(remove_file(database.folder / name));
+    count += removed ? 1 : 0;
     folders.insert((database.folder / name).parent_path());
   }
   for (const fs::path& folder : folders) {
-    if (auto ok = flush_folder(folder); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(flush_folder(folder));
   }
   WriteTransaction transaction(connection);
   for (const std::string& name : names) execute(connection, "DELETE FROM erasure WHERE file = ?", name);
@@ -329,8 +327,7 @@ Result<std::int64_t> finish_erasing(Database& database) {
 
 Result<Forgotten> Store::forget(std::int64_t participant, const std::string& why, Role role) {
   if (why.empty()) return bad_usage("there is no reason", "say why; it stays in the log, so name nobody");
-  auto alone = FolderLock::take(folder(), FolderLock::Kind::alone, database_->waiting);
-  if (!alone) return tl::unexpected(alone.error());
+  MBK_TRY(FolderLock::take(folder(), FolderLock::Kind::alone, database_->waiting));
   return guarded(folder(), [&]() -> Result<Forgotten> {
     SQLite::Database& connection = database_->connection;
     Forgotten forgotten;
@@ -375,9 +372,8 @@ Result<Forgotten> Store::forget(std::int64_t participant, const std::string& why
       execute(connection, "DELETE FROM recording WHERE participant = ?", participant);
       transaction.commit();
     }
-    auto files = finish_erasing(*database_);
-    if (!files) return tl::unexpected(files.error());
-    forgotten.files = *files;
+    auto files = MBK_TRY(finish_erasing(*database_));
+    forgotten.files = files;
     connection.exec("VACUUM");
     auto emptied = query(connection, "PRAGMA wal_checkpoint(TRUNCATE)");
     emptied.executeStep();
@@ -414,7 +410,7 @@ Result<CheckReport> Store::check(bool remove_leftovers, const std::function<void
       checker.check_results();
     }
     checker.check_files(progress);
-    if (auto ok = checker.tidy(remove_leftovers); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(checker.tidy(remove_leftovers));
     return report;
   });
 }

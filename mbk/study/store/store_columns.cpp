@@ -170,9 +170,8 @@ void pack_outcomes(SQLite::Database& connection, std::int64_t result, const std:
 Result<void> pack_all_outcomes(SQLite::Database& connection) {
   SQLite::Statement documents(connection, "SELECT result, text FROM document");
   while (documents.executeStep()) {
-    const auto outcomes = outcomes_of(text_at(documents, 1));
-    if (!outcomes) return tl::unexpected(outcomes.error());
-    if (!outcomes->empty()) pack_outcomes(connection, number_at(documents, 0), *outcomes);
+    const auto outcomes = MBK_TRY(outcomes_of(text_at(documents, 1)));
+    if (!outcomes.empty()) pack_outcomes(connection, number_at(documents, 0), outcomes);
   }
   return {};
 }

@@ -145,11 +145,10 @@ Result<std::unique_ptr<Database>> Database::snapshot(const std::filesystem::path
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto before = whole_state(file);
     std::string bytes;
-    auto read = read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
+    MBK_TRY(read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
       bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
       return {};
-    });
-    if (!read) return tl::unexpected(read.error());
+    }));
     if (before && before == whole_state(file)) return in_memory(folder, std::move(bytes));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }

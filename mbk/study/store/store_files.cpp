@@ -131,7 +131,7 @@ Result<void> read_pieces(const fs::path& file, const std::function<Result<void>(
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return cannot("cannot be read", file, errno);
     if (got == 0) return {};
-    if (auto ok = take(std::span(piece).first(static_cast<std::size_t>(got))); !ok) return ok;
+    MBK_TRY(take(std::span(piece).first(static_cast<std::size_t>(got))));
   }
 }
 

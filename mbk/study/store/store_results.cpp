@@ -119,9 +119,8 @@ Result<int> Store::save(const std::string& options, const std::string& version, 
       outcomes.emplace_back();
       continue;
     }
-    auto found = outcomes_of(result.document);
-    if (!found) return tl::unexpected(found.error());
-    outcomes.push_back(std::move(*found));
+    auto found = MBK_TRY(outcomes_of(result.document));
+    outcomes.push_back(std::move(found));
   }
   return guarded(folder(), [&]() -> Result<int> {
     SQLite::Database& connection = database_->connection;

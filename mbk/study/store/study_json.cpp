@@ -186,10 +186,9 @@ Result<std::string> export_csv(const Store& study, const StudyList& list) {
         fmt::format("{},{},{},{},{},{},{},{},{},{}", r.participant, r.session, csv_field(r.condition), r.trial,
                     r.number, r.sha256, list.analysis ? fmt::format("{}", list.analysis->number) : "",
                     list.analysis ? list.analysis->version : "", word_of(one.state), csv_field(one.reason));
-    const auto outcomes = study.outcomes(one.result);
-    if (!outcomes) return tl::unexpected(outcomes.error());
-    if (outcomes->empty()) text += begin + ",,,,\n";
-    for (const Outcome& outcome : *outcomes) {
+    const auto outcomes = MBK_TRY(study.outcomes(one.result));
+    if (outcomes.empty()) text += begin + ",,,,\n";
+    for (const Outcome& outcome : outcomes) {
       text += fmt::format("{},{},{},{},{}\n", begin, outcome.name, outcome.value,
                           outcome.standard_error ? fmt::format("{}", *outcome.standard_error) : "",
                           csv_field(outcome.unit));
@@ -205,12 +204,11 @@ Result<std::string> export_json(const Store& study, const StudyList& list) {
   json["counts"] = counts_json(list);
   json["recordings"] = Document::array();
   for (const ListedRecording& one : list.recordings) {
-    const auto outcomes = study.outcomes(one.result);
-    if (!outcomes) return tl::unexpected(outcomes.error());
+    const auto outcomes = MBK_TRY(study.outcomes(one.result));
     Document recording = recording_json(one.recording);
     recording["state"] = word_of(one.state);
     if (!one.reason.empty()) recording["reason"] = one.reason;
-    recording["outcomes"] = outcomes_json(*outcomes);
+    recording["outcomes"] = outcomes_json(outcomes);
     json["recordings"].push_back(std::move(recording));
   }
   return written(json);

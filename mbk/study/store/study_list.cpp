@@ -20,12 +20,10 @@ std::int64_t StudyList::participants() const {
 
 Result<StudyList> list_study(const Store& study, std::optional<std::int64_t> analysis) {
   StudyList list;
-  auto facts = study.facts();
-  if (!facts) return tl::unexpected(facts.error());
-  list.facts = std::move(*facts);
-  auto analyses = study.analyses();
-  if (!analyses) return tl::unexpected(analyses.error());
-  list.analyses = std::move(*analyses);
+  auto facts = MBK_TRY(study.facts());
+  list.facts = std::move(facts);
+  auto analyses = MBK_TRY(study.analyses());
+  list.analyses = std::move(analyses);
   if (analysis) {
     const auto found = std::ranges::find(list.analyses, *analysis, &Analysis::number);
     if (found == list.analyses.end()) {
@@ -34,19 +32,15 @@ Result<StudyList> list_study(const Store& study, std::optional<std::int64_t> ana
     }
     list.analysis = *found;
   } else {
-    auto latest = study.latest_analysis();
-    if (!latest) return tl::unexpected(latest.error());
-    list.analysis = std::move(*latest);
+    list.analysis = MBK_TRY(study.latest_analysis());
   }
   std::map<std::int64_t, StoredResult> results;
   if (list.analysis) {
-    auto all = study.results(list.analysis->number);
-    if (!all) return tl::unexpected(all.error());
-    for (StoredResult& one : *all) results.emplace(one.recording, std::move(one));
+    auto all = MBK_TRY(study.results(list.analysis->number));
+    for (StoredResult& one : all) results.emplace(one.recording, std::move(one));
   }
-  auto recordings = study.recordings();
-  if (!recordings) return tl::unexpected(recordings.error());
-  for (StoredRecording& recording : *recordings) {
+  auto recordings = MBK_TRY(study.recordings());
+  for (StoredRecording& recording : recordings) {
     ListedRecording one{.recording = std::move(recording)};
     const auto result = results.find(one.recording.number);
     if (result != results.end()) {
@@ -67,19 +61,15 @@ Result<StudyList> list_study(const Store& study, std::optional<std::int64_t> ana
 
 Result<ShownRecording> show_recording(const Store& study, std::int64_t number) {
   ShownRecording shown;
-  auto recording = study.recording(number);
-  if (!recording) return tl::unexpected(recording.error());
-  shown.recording = std::move(*recording);
-  const auto analyses = study.analyses();
-  if (!analyses) return tl::unexpected(analyses.error());
-  auto results = study.results_of(number);
-  if (!results) return tl::unexpected(results.error());
-  for (StoredResult& result : *results) {
-    auto outcomes = study.outcomes(result.number);
-    if (!outcomes) return tl::unexpected(outcomes.error());
-    const auto analysis = std::ranges::find(*analyses, result.analysis, &Analysis::number);
+  auto recording = MBK_TRY(study.recording(number));
+  shown.recording = std::move(recording);
+  const auto analyses = MBK_TRY(study.analyses());
+  auto results = MBK_TRY(study.results_of(number));
+  for (StoredResult& result : results) {
+    auto outcomes = MBK_TRY(study.outcomes(result.number));
+    const auto analysis = std::ranges::find(analyses, result.analysis, &Analysis::number);
     shown.results.push_back(
-        {std::move(result), analysis == analyses->end() ? Analysis() : *analysis, std::move(*outcomes)});
+        {std::move(result), analysis == analyses.end() ? Analysis() : *analysis, std::move(outcomes)});
   }
   return shown;
 }

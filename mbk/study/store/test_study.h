@@ -51,11 +51,10 @@ inline Store new_study(const std::filesystem::path& folder) {
 
 /// Adds a file of that participant.
 inline Result<std::vector<AddedRecording>> add(Store& study, const std::filesystem::path& file, TrialFacts facts) {
-  auto incoming = study.bring_in(file);
-  if (!incoming) return tl::unexpected(incoming.error());
-  const std::string sha256 = incoming->sha256();
+  auto incoming = MBK_TRY(study.bring_in(file));
+  const std::string sha256 = incoming.sha256();
   const NewRecording one{0, std::move(facts), 62.0};
-  return study.add(std::move(*incoming), {&one, 1}, sha256, Role::experimenter);
+  return study.add(std::move(incoming), {&one, 1}, sha256, Role::experimenter);
 }
 
 /// A result of one axis.

@@ -54,15 +54,13 @@ MatrixFound compared(const MatrixEstimate& found, const Matrix& truth) {
 /// The trials of a run have seeds of their own: no two runs share one.
 Result<std::vector<laboratory::Performance>> performed(const char* scenario, int trials, std::uint64_t run) {
   constexpr std::uint64_t kTrialsOfARun = 1000;
-  auto scenarios = ready(scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  auto scenarios = MBK_TRY(ready(scenario));
   std::vector<laboratory::Performance> performances;
   for (int k = 0; k < trials; ++k) {
-    Scenario one = scenarios->front();
+    Scenario one = scenarios.front();
     one.seed = run * kTrialsOfARun + static_cast<std::uint64_t>(k);
-    auto performance = laboratory::simulate(one);
-    if (!performance) return tl::unexpected(performance.error());
-    performances.push_back(std::move(*performance));
+    auto performance = MBK_TRY(laboratory::simulate(one));
+    performances.push_back(std::move(performance));
   }
   return performances;
 }
@@ -70,9 +68,8 @@ Result<std::vector<laboratory::Performance>> performed(const char* scenario, int
 Result<PoolRun> found_in(std::span<const Recording> recordings, const impedance::Model& truth) {
   measurement::ExploreOptions options;
   options.after_onset_s = kWindow;
-  const auto found = measurement::after_onset(recordings, options);
-  if (!found) return tl::unexpected(found.error());
-  return PoolRun{compared(found->M, truth.M), compared(found->B, truth.B), compared(found->K, truth.K)};
+  const auto found = MBK_TRY(measurement::after_onset(recordings, options));
+  return PoolRun{compared(found.M, truth.M), compared(found.B, truth.B), compared(found.K, truth.K)};
 }
 
 Result<std::vector<PoolRun>> run_of(std::uint64_t seed) {
@@ -85,11 +82,10 @@ Result<std::vector<PoolRun>> run_of(std::uint64_t seed) {
       const auto largest = std::ranges::max_element(kPools, {}, [&](const Pool& other) {
         return std::string_view(other.scenario) == pool.scenario ? other.trials : 0;
       });
-      auto performances = performed(pool.scenario, largest->trials, seed);
-      if (!performances) return tl::unexpected(performances.error());
-      truth = performances->front().truth;
+      auto performances = MBK_TRY(performed(pool.scenario, largest->trials, seed));
+      truth = performances.front().truth;
       recordings.clear();
-      for (laboratory::Performance& one : *performances) recordings.push_back(std::move(one.recording));
+      for (laboratory::Performance& one : performances) recordings.push_back(std::move(one.recording));
       scenario = pool.scenario;
     }
     const auto found = found_in(std::span(recordings).first(static_cast<std::size_t>(pool.trials)), truth);
@@ -124,8 +120,7 @@ void add_rows(ValidationTable& table, const std::string& name, const std::vector
 
 Result<ValidationTable> after_onset_study(const StudyOptions& options) {
   using namespace after_onset_detail;
-  const auto runs = seeded_runs(options, run_of);
-  if (!runs) return tl::unexpected(runs.error());
+  const auto runs = MBK_TRY(seeded_runs(options, run_of));
   ValidationTable table;
   table.study = "after-onset";
   table.question = "what do the first 120 ms after a pulse tell of a rigid arm, and what is called known of it?";
@@ -135,7 +130,7 @@ Result<ValidationTable> after_onset_study(const StudyOptions& options) {
   for (std::size_t p = 0; p < kPools.size(); ++p) {
     const auto of = [&](MatrixFound PoolRun::*matrix) {
       std::vector<MatrixFound> found;
-      for (const auto& run : *runs) found.push_back(run[p].*matrix);
+      for (const auto& run : runs) found.push_back(run[p].*matrix);
       return found;
     };
     const std::string name = kPools[p].name;

@@ -65,32 +65,29 @@ struct ChangeRun {
 };
 
 Result<ChangeRun> run_of(const ChangeCondition& condition, std::uint64_t seed) {
-  auto scenarios = ready(condition.scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  Scenario scenario = std::move(scenarios->front());
+  auto scenarios = MBK_TRY(ready(condition.scenario));
+  Scenario scenario = std::move(scenarios.front());
   scenario.seed = seed;
   std::get<participant::ArmOptions>(std::get<PlanarTrial>(scenario.trial).load).stiffness_schedule = condition.schedule;
   condition.more(scenario);
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  const auto found = measurement::time_course({&performance->recording, 1}, {});
-  if (!found) return tl::unexpected(found.error());
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
+  const auto found = MBK_TRY(measurement::time_course({&performance.recording, 1}, {}));
   // The truth of the recording is its mean over the trial.
-  const Vector& time = performance->recording.time;
+  const Vector& time = performance.recording.time;
   double mean = 0.0;
   for (const double t : time) mean += factor_at(condition.schedule, t) / static_cast<double>(time.size());
   ChangeRun run;
-  run.changes = found->changes;
+  run.changes = found.changes;
   Index points = 0;
-  for (Index k = 0; k < found->at.size(); ++k) {
-    const double t = found->at[k];
+  for (Index k = 0; k < found.at.size(); ++k) {
+    const double t = found.at[k];
     const auto near = [t](double instant) { return std::abs(t - instant) < kEdge; };
-    const bool at_end = found->at.size() > 1 && (near(found->from) || near(found->to));
+    const bool at_end = found.at.size() > 1 && (near(found.from) || near(found.to));
     if (at_end || std::ranges::any_of(condition.steps, near)) continue;
-    const Matrix truth = performance->truth.K * (factor_at(condition.schedule, t) / mean);
-    const Matrix away = found->K.value.row(k).reshaped(2, 2) - truth;
+    const Matrix truth = performance.truth.K * (factor_at(condition.schedule, t) / mean);
+    const Matrix away = found.K.value.row(k).reshaped(2, 2) - truth;
     run.off = std::max(run.off, away.norm() / truth.norm());
-    const Matrix half = found->K.half_width.row(k).reshaped(2, 2);
+    const Matrix half = found.K.half_width.row(k).reshaped(2, 2);
     run.held += 0.25 * static_cast<double>((away.array().abs() <= half.array()).count());
     ++points;
   }
@@ -100,7 +97,7 @@ Result<ChangeRun> run_of(const ChangeCondition& condition, std::uint64_t seed) {
 
 Result<ValidationTable> study(const StudyOptions& options) {
   const std::vector<ChangeCondition> all = conditions();
-  const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<std::vector<ChangeRun>> {
+  const auto runs = MBK_TRY(seeded_runs(options, [&](std::uint64_t seed) -> Result<std::vector<ChangeRun>> {
     std::vector<ChangeRun> of_all;
     for (const ChangeCondition& condition : all) {
       const auto run = run_of(condition, seed);
@@ -108,8 +105,7 @@ Result<ValidationTable> study(const StudyOptions& options) {
       of_all.push_back(*run);
     }
     return of_all;
-  });
-  if (!runs) return tl::unexpected(runs.error());
+  }));
   ValidationTable table;
   table.study = "change";
   table.question = "is a stiffness that changes found with its course over time, and a constant one called constant?";
@@ -118,9 +114,9 @@ Result<ValidationTable> study(const StudyOptions& options) {
   table.seed = options.seed;
   for (std::size_t c = 0; c < all.size(); ++c) {
     std::vector<ChangeRun> own;
-    Vector off(static_cast<Index>(runs->size()));
+    Vector off(static_cast<Index>(runs.size()));
     double held = 0.0;
-    for (const auto& run : *runs) {
+    for (const auto& run : runs) {
       off[static_cast<Index>(own.size())] = 100.0 * run[c].off;
       held += run[c].held;
       own.push_back(run[c]);

@@ -45,9 +45,8 @@ constexpr std::array kTasks = {Task{"rigid_sinusoidal_6N", 3, 1},
 constexpr double kSmallPeak = 3.0;
 
 Result<Run> perform(const Task& task, std::uint64_t seed) {
-  auto scenarios = ready(task.scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario& scenario = scenarios->front();
+  auto scenarios = MBK_TRY(ready(task.scenario));
+  laboratory::Scenario& scenario = scenarios.front();
   auto& trial = std::get<laboratory::PlanarTrial>(scenario.trial);
   if (!task.controller) {
     auto& arm = std::get<participant::ArmOptions>(trial.load);
@@ -62,15 +61,13 @@ Result<Run> perform(const Task& task, std::uint64_t seed) {
   Vector truth;
   for (int k = 0; k < task.trials; ++k) {
     scenario.seed = seed * static_cast<std::uint64_t>(task.trials) + static_cast<std::uint64_t>(k);
-    auto performance = laboratory::simulate(scenario);
-    if (!performance) return tl::unexpected(performance.error());
-    const Vector one = impedance::stacked(performance->truth) / task.trials;
+    auto performance = MBK_TRY(laboratory::simulate(scenario));
+    const Vector one = impedance::stacked(performance.truth) / task.trials;
     truth = k == 0 ? one : Vector(truth + one);
-    recordings.push_back(std::move(performance->recording));
+    recordings.push_back(std::move(performance.recording));
   }
-  auto measured = measurement::measure(recordings, options);
-  if (!measured) return tl::unexpected(measured.error());
-  return Run{impedance::unstacked(truth, 2), std::move(*measured)};
+  auto measured = MBK_TRY(measurement::measure(recordings, options));
+  return Run{impedance::unstacked(truth, 2), std::move(measured)};
 }
 
 const Identification& by(const Run& run, Method method) {
@@ -186,12 +183,11 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
     begins[task + 1] = plans.size();
   }
   const auto count = static_cast<int>(plans.size());
-  auto ran = each_run_here(options, count, [&](int i) {
+  auto ran = MBK_TRY(each_run_here(options, count, [&](int i) {
     const auto& [task, seed] = plans[static_cast<std::size_t>(i)];
     return perform(*task, seed);
-  });
-  if (!ran) return tl::unexpected(ran.error());
-  Runs& all = *ran;
+  }));
+  Runs& all = ran;
   const auto of_task = [&](std::size_t task) {
     const auto at = [&](std::size_t k) { return all.begin() + static_cast<std::ptrdiff_t>(begins[k]); };
     return Runs(std::make_move_iterator(at(task)), std::make_move_iterator(at(task + 1)));

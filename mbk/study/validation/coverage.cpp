@@ -40,9 +40,8 @@ laboratory::PrescribedMotionOptions laboratory_of(const CoverageOptions& options
 }
 
 Result<Measurement> measured_of(const laboratory::PrescribedMotionOptions& lab, const measurement::Options& options) {
-  const auto recording = laboratory::record_prescribed_motion(lab, Hertz(1000.0));
-  if (!recording) return tl::unexpected(recording.error());
-  return measurement::measure({&*recording, 1}, options);
+  const auto recording = MBK_TRY(laboratory::record_prescribed_motion(lab, Hertz(1000.0)));
+  return measurement::measure({&recording, 1}, options);
 }
 
 void add_ellipses(const Findings& findings, const impedance::Model& truth, Held& held) {
@@ -135,9 +134,8 @@ Result<Called> called(const CoverageOptions& options, int run, int kind, bool ac
   lab.limb = antisymmetric_arm(lab.limb, kind, active ? kBarelyActive : kWellPassive);
   measurement::Options how;
   how.band = judged_band();
-  const auto measured = measured_of(lab, how);
-  if (!measured) return tl::unexpected(measured.error());
-  return Called{kind, active, measured->passivity->prediction.verdict == Verdict::passive};
+  const auto measured = MBK_TRY(measured_of(lab, how));
+  return Called{kind, active, measured.passivity->prediction.verdict == Verdict::passive};
 }
 
 /// Two kinds of active arms in each run, a passive one in every other.
@@ -147,9 +145,8 @@ Result<std::vector<Called>> called_in(const CoverageOptions& options, int run) {
                                      {(run + kKindCount / 2) % kKindCount, true},
                                      {run / 2 % kKindCount, false}}) {
     if (!active && run % 2 == 1) continue;
-    const auto one = called(options, run, kind, active);
-    if (!one) return tl::unexpected(one.error());
-    all.push_back(*one);
+    const auto one = MBK_TRY(called(options, run, kind, active));
+    all.push_back(one);
   }
   return all;
 }
@@ -174,17 +171,15 @@ void add_called(const std::vector<std::vector<Called>>& runs, int kind, bool act
 
 Result<ValidationTable> coverage(const CoverageOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
-  const auto ran = each_run(options, options.runs, [&](int run) -> Result<std::pair<Held, std::vector<Called>>> {
-    auto one = held_by(options, run);
-    if (!one) return tl::unexpected(one.error());
-    auto arms = called_in(options, run);
-    if (!arms) return tl::unexpected(arms.error());
-    return std::pair(std::move(*one), std::move(*arms));
-  });
-  if (!ran) return tl::unexpected(ran.error());
+  const auto ran =
+      MBK_TRY(each_run(options, options.runs, [&](int run) -> Result<std::pair<Held, std::vector<Called>>> {
+        auto one = MBK_TRY(held_by(options, run));
+        auto arms = MBK_TRY(called_in(options, run));
+        return std::pair(std::move(one), std::move(arms));
+      }));
   std::vector<Held> held;
   std::vector<std::vector<Called>> called;
-  for (const auto& [one, arms] : *ran) {
+  for (const auto& [one, arms] : ran) {
     held.push_back(one);
     called.push_back(arms);
   }

@@ -24,18 +24,16 @@ auto each_run_here(const Options& options, int count, const Work& work)
     -> Result<std::vector<typename std::invoke_result_t<Work, int>::value_type>> {
   std::vector<typename std::invoke_result_t<Work, int>::value_type> runs(static_cast<std::size_t>(count));
   int done = 0;
-  const auto ran = numeric::parallel_for(
+  MBK_TRY(numeric::parallel_for(
       count, options.threads,
       [&](int i) -> Result<void> {
-        auto run = work(i);
-        if (!run) return tl::unexpected(run.error());
-        runs[static_cast<std::size_t>(i)] = std::move(*run);
+        auto run = MBK_TRY(work(i));
+        runs[static_cast<std::size_t>(i)] = std::move(run);
         return {};
       },
       [&](int) {
         if (options.progress) options.progress(++done, count);
-      });
-  if (!ran) return tl::unexpected(ran.error());
+      }));
   return runs;
 }
 
@@ -46,17 +44,15 @@ template <class Options, class Work>
 auto each_run(const Options& options, int count, const Work& work)
     -> Result<std::vector<typename std::invoke_result_t<Work, int>::value_type>> {
   if (!options.elsewhere) return each_run_here(options, count, work);
-  const auto gave = options.elsewhere(count, [&](int i) -> Result<std::string> {
-    const auto run = work(i);
-    if (!run) return tl::unexpected(run.error());
+  const auto gave = MBK_TRY(options.elsewhere(count, [&](int i) -> Result<std::string> {
+    const auto run = MBK_TRY(work(i));
     batch::ValueWriter writer;
-    writer.put(*run);
+    writer.put(run);
     return writer.take();
-  });
-  if (!gave) return tl::unexpected(gave.error());
-  std::vector<typename std::invoke_result_t<Work, int>::value_type> runs(gave->size());
+  }));
+  std::vector<typename std::invoke_result_t<Work, int>::value_type> runs(gave.size());
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    batch::ValueReader reader((*gave)[k]);
+    batch::ValueReader reader(gave[k]);
     reader.get(runs[k]);
     if (!reader.complete()) return bad_data("what another process gave cannot be read", "begin the job again");
   }

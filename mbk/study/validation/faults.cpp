@@ -96,19 +96,18 @@ int ticks_to_off(const std::vector<FaultyDevice::Received>& received, std::int64
 Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64_t seed, const fs::path& target) {
   numeric::Random random(seed);
   const int detection = kind.detection[static_cast<std::size_t>(trial_kind)];
-  auto trials = protocol::read_experiment(fault_experiment(trial_kind), "faults.toml", laboratory::read_simulation);
-  if (!trials) return tl::unexpected(trials.error());
+  auto trials =
+      MBK_TRY(protocol::read_experiment(fault_experiment(trial_kind), "faults.toml", laboratory::read_simulation));
   FaultRun run;
   run.kind = trial_kind;
-  run.trial = std::move(trials->front());
+  run.trial = std::move(trials.front());
   run.trial.seed = seed;
   std::int64_t onset = draw_onset(kind, detection, random);
   kind.make(run, random);
 
   protocol::Trial elsewhere = run.trial;
   elsewhere.home += kAway * Vector2d(random.uniform() - 0.5, 0.5).normalized();
-  auto robot = laboratory::simulated_robot(elsewhere);
-  if (!robot) return tl::unexpected(robot.error());
+  auto robot = MBK_TRY(laboratory::simulated_robot(elsewhere));
   const bool keeps_time =
       run.keeps_time || run.outside == Outside::stalled_clock || run.outside == Outside::stalled_recorder;
   const bool paced = keeps_time || run.outside != Outside::nothing;
@@ -119,7 +118,7 @@ Result<Outcome> perform(const FaultKind& kind, TrialKind trial_kind, std::uint64
       return true;
     };
   }
-  FaultyDevice device(**robot, run.trial.robot.geometry, run.fault, onset, keeps_time, kTrialEnds + 1000);
+  FaultyDevice device(*robot, run.trial.robot.geometry, run.fault, onset, keeps_time, kTrialEnds + 1000);
   session::Session session({true, 0.0, &clock});
   std::atomic<std::int64_t> begun{-1};
   const auto watch = [&](std::span<const journal::Tick> ticks) {
@@ -193,10 +192,8 @@ void add_kind(const Slowest& slowest, int documented, ValidationTable& table) {
 
 Result<ValidationTable> faults_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
-  const auto folder = TemporaryFolder::create("mbk-faults");
-  if (!folder) return tl::unexpected(folder.error());
-  const auto ready = ready_trials();
-  if (!ready) return tl::unexpected(ready.error());
+  const auto folder = MBK_TRY(TemporaryFolder::create("mbk-faults"));
+  const auto ready = MBK_TRY(ready_trials());
 
   std::vector<Job> jobs;
   for (const FaultKind& kind : fault_kinds()) {
@@ -208,24 +205,21 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   const std::size_t faulty = jobs.size();
   for (int run = 0; run < 10 * options.runs; ++run) jobs.push_back({nullptr, TrialKind::position, run});
 
-  const auto ran = each_run(options, static_cast<int>(jobs.size()), [&](int i) -> Result<Outcome> {
+  const auto ran = MBK_TRY(each_run(options, static_cast<int>(jobs.size()), [&](int i) -> Result<Outcome> {
     const Job& job = jobs[static_cast<std::size_t>(i)];
     const std::uint64_t seed = 100'000 * options.seed + static_cast<std::uint64_t>(i);
     if (job.kind != nullptr) {
-      return perform(*job.kind, job.trial_kind, seed, folder->path() / fmt::format("{}.h5", i));
+      return perform(*job.kind, job.trial_kind, seed, folder.path() / fmt::format("{}.h5", i));
     }
-    protocol::Trial trial = (*ready)[static_cast<std::size_t>(job.run) % ready->size()];
+    protocol::Trial trial = ready[static_cast<std::size_t>(job.run) % ready.size()];
     trial.seed = seed;
-    const auto plan = session::make_plan(std::move(trial));
-    if (!plan) return tl::unexpected(plan.error());
-    const auto rehearsal = session::rehearse(*plan);
-    if (!rehearsal) return tl::unexpected(rehearsal.error());
+    const auto plan = MBK_TRY(session::make_plan(std::move(trial)));
+    const auto rehearsal = MBK_TRY(session::rehearse(plan));
     Outcome outcome;
-    outcome.reason = rehearsal->trip.reason;
+    outcome.reason = rehearsal.trip.reason;
     return outcome;
-  });
-  if (!ran) return tl::unexpected(ran.error());
-  const std::vector<Outcome>& outcomes = *ran;
+  }));
+  const std::vector<Outcome>& outcomes = ran;
 
   ValidationTable table;
   table.study = "faults";
@@ -271,7 +265,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
     if (outcomes[i].reason == Reason::none) continue;
     ++trips;
     table.notes.push_back(fmt::format("without a fault: {} in {}, seed {}", word_of(outcomes[i].reason),
-                                      (*ready)[static_cast<std::size_t>(jobs[i].run) % ready->size()].protocol,
+                                      ready[static_cast<std::size_t>(jobs[i].run) % ready.size()].protocol,
                                       100'000 * options.seed + i));
   }
   table.rows.push_back(exact_row("largest force commanded at the handle, by the true angles", handle_force,

@@ -100,17 +100,15 @@ ExplorationTrial simulated_trial(const ArmAtRobot& arm, const std::vector<Vector
 /// Pairs of trials with orthogonal references of odd lines up to 5 Hz, 8 mm (rms) in each axis, after a period to
 /// settle.
 Result<std::vector<ExplorationTrial>> pairs_of_trials(const ArmAtRobot& arm, int pairs, std::uint64_t seed) {
-  const auto lines = perturbation::odd_grid(25, 4, 1);
-  if (!lines) return tl::unexpected(lines.error());
-  const std::vector<double> amplitudes(lines->size(), 1.0);
+  const auto lines = MBK_TRY(perturbation::odd_grid(25, 4, 1));
+  const std::vector<double> amplitudes(lines.size(), 1.0);
   std::vector<ExplorationTrial> trials;
   for (int pair = 0; pair < pairs; ++pair) {
     std::vector<perturbation::Multisine> axes;
     for (std::uint32_t axis = 0; axis < 2; ++axis) {
-      auto sines = perturbation::Multisine::with_random_phases(kExploredPeriod, *lines, amplitudes, seed,
-                                                               100U + 2U * static_cast<std::uint32_t>(pair) + axis);
-      if (!sines) return tl::unexpected(sines.error());
-      axes.push_back(sines->scaled(0.008 / sines->root_mean_square()));
+      auto sines = MBK_TRY(perturbation::Multisine::with_random_phases(
+          kExploredPeriod, lines, amplitudes, seed, 100U + 2U * static_cast<std::uint32_t>(pair) + axis));
+      axes.push_back(sines.scaled(0.008 / sines.root_mean_square()));
     }
     constexpr int kHalfSteps = static_cast<int>(2.0 * kExploredPeriod / kExploredStep + 0.5);
     std::vector<Vector2d> period;
@@ -182,41 +180,33 @@ Result<ExploredArm> explored_arm(bool stiff, std::uint64_t seed) {
   const ArmAtRobot arm = relaxed_arm(stiff);
   ExploredArm run;
   constexpr double kTo = 5.0;
-  const auto trials = pairs_of_trials(arm, kRealisationPairs, seed);
-  if (!trials) return tl::unexpected(trials.error());
-  const auto robust = explore::periodic_response(*trials, {.max_frequency_hz = kTo});
-  if (!robust) return tl::unexpected(robust.error());
-  count_covered(*robust, arm, kTo, seed, 1, run.robust);
-  for (std::size_t k = 0; k < robust->covariance.size(); ++k) {
-    run.total += robust->covariance[k].trace().real();
-    run.noise += robust->noise_covariance[k].trace().real();
+  const auto trials = MBK_TRY(pairs_of_trials(arm, kRealisationPairs, seed));
+  const auto robust = MBK_TRY(explore::periodic_response(trials, {.max_frequency_hz = kTo}));
+  count_covered(robust, arm, kTo, seed, 1, run.robust);
+  for (std::size_t k = 0; k < robust.covariance.size(); ++k) {
+    run.total += robust.covariance[k].trace().real();
+    run.noise += robust.noise_covariance[k].trace().real();
   }
-  run.called_nonlinear = robust->periodic->total_over_noise_p < 0.01;
-  const auto fast = explore::periodic_response({trials->data(), 2}, {.max_frequency_hz = kTo});
-  if (!fast) return tl::unexpected(fast.error());
-  count_covered(*fast, arm, kTo, seed, 1, run.fast);
-  run.even_said = fast->periodic->even && fast->periodic->even->detected();
-  run.odd_said = fast->periodic->odd_lines && fast->periodic->odd_lines->detected();
+  run.called_nonlinear = robust.periodic->total_over_noise_p < 0.01;
+  const auto fast = MBK_TRY(explore::periodic_response({trials.data(), 2}, {.max_frequency_hz = kTo}));
+  count_covered(fast, arm, kTo, seed, 1, run.fast);
+  run.even_said = fast.periodic->even && fast.periodic->even->detected();
+  run.odd_said = fast.periodic->odd_lines && fast.periodic->odd_lines->detected();
   ArmAtRobot hardening = arm;
   hardening.cubic = 2e5;
-  const auto hard = pairs_of_trials(hardening, kRealisationPairs, seed);
-  if (!hard) return tl::unexpected(hard.error());
-  const auto distorted = explore::periodic_response(*hard, {.max_frequency_hz = kTo});
-  if (!distorted) return tl::unexpected(distorted.error());
-  run.hardening_said = distorted->periodic->total_over_noise_p < 0.01;
+  const auto hard = MBK_TRY(pairs_of_trials(hardening, kRealisationPairs, seed));
+  const auto distorted = MBK_TRY(explore::periodic_response(hard, {.max_frequency_hz = kTo}));
+  run.hardening_said = distorted.periodic->total_over_noise_p < 0.01;
   const ExplorationTrial one = random_trial(arm, seed);
-  const auto local = explore::local_polynomial_response({&one, 1}, {0.5, kTo});
-  if (!local) return tl::unexpected(local.error());
-  count_covered(*local, arm, kTo, seed, 2, run.local);  // neighbours share half of their lines
+  const auto local = MBK_TRY(explore::local_polynomial_response({&one, 1}, {0.5, kTo}));
+  count_covered(local, arm, kTo, seed, 2, run.local);  // neighbours share half of their lines
   return run;
 }
 
 Result<ExploredRun> explored_run(std::uint64_t seed) {
   ExploredRun run;
   for (const std::size_t k : {0U, 1U}) {
-    auto one = explored_arm(k == 0, seed);
-    if (!one) return tl::unexpected(one.error());
-    run.arms[k] = *one;
+    run.arms[k] = MBK_TRY(explored_arm(k == 0, seed));
   }
   return run;
 }
@@ -224,8 +214,7 @@ Result<ExploredRun> explored_run(std::uint64_t seed) {
 }  // namespace
 
 Result<ValidationTable> frequency_response_study(const StudyOptions& options) {
-  const auto ran = seeded_runs(options, explored_run);
-  if (!ran) return tl::unexpected(ran.error());
+  const auto ran = MBK_TRY(seeded_runs(options, explored_run));
   ValidationTable table;
   table.study = "frequency-response";
   table.question =
@@ -238,7 +227,7 @@ Result<ValidationTable> frequency_response_study(const StudyOptions& options) {
     const std::string loop = kLoops[k];
     const auto covered_rows = [&](Covered ExploredArm::*of, const std::string& method, Range expected) {
       Covered sum;
-      for (const ExploredRun& run : *ran) {
+      for (const ExploredRun& run : ran) {
         const Covered& one = run.arms[k].*of;
         sum.inside += one.inside;
         sum.magnitude_inside += one.magnitude_inside;
@@ -254,22 +243,22 @@ Result<ValidationTable> frequency_response_study(const StudyOptions& options) {
     covered_rows(&ExploredArm::local, "local polynomial", kNominal);
     Vector ratio(options.runs);
     double noise = 0.0;
-    for (const ExploredRun& run : *ran) noise += run.arms[k].noise / static_cast<double>(options.runs);
-    for (Index i = 0; i < ratio.size(); ++i) ratio[i] = (*ran)[static_cast<std::size_t>(i)].arms[k].total / noise;
+    for (const ExploredRun& run : ran) noise += run.arms[k].noise / static_cast<double>(options.runs);
+    for (Index i = 0; i < ratio.size(); ++i) ratio[i] = ran[static_cast<std::size_t>(i)].arms[k].total / noise;
     table.rows.push_back(mean_row(loop + ": variance over realisations, over that of noise", ratio,
                                   k == 0 ? std::optional(Range{0.9, 1.1}) : std::nullopt, ""));
     const auto said = [&](bool ExploredArm::*what) {
       return [k, what](const ExploredRun& run) { return run.arms[k].*what; };
     };
-    table.rows.push_back(share_row(loop + ": linear arm called nonlinear by realisations", *ran,
+    table.rows.push_back(share_row(loop + ": linear arm called nonlinear by realisations", ran,
                                    said(&ExploredArm::called_nonlinear), kHardlyEver));
     table.rows.push_back(
-        share_row(loop + ": linear arm, even distortion said", *ran, said(&ExploredArm::even_said), kHardlyEver));
+        share_row(loop + ": linear arm, even distortion said", ran, said(&ExploredArm::even_said), kHardlyEver));
     table.rows.push_back(
-        share_row(loop + ": linear arm, odd distortion said", *ran, said(&ExploredArm::odd_said), kHardlyEver));
+        share_row(loop + ": linear arm, odd distortion said", ran, said(&ExploredArm::odd_said), kHardlyEver));
     if (k > 0) continue;  // at a robot that yields the hand moves too little for the distortion to stand out
     table.rows.push_back(
-        share_row(loop + ": hardening arm called nonlinear", *ran, said(&ExploredArm::hardening_said), kNearlyAlways));
+        share_row(loop + ": hardening arm called nonlinear", ran, said(&ExploredArm::hardening_said), kNearlyAlways));
   }
   return table;
 }

@@ -40,34 +40,29 @@ Result<std::vector<protocol::Trial>> ready_trial() {
 }
 
 Result<Shown> shown_of(const journal::Journal& journal, const measurement::Options& options, const Vector& truth) {
-  const auto now = console::estimate_now(journal, options);
-  if (!now) return tl::unexpected(now.error());
-  const Identification& identification = now->measured.identification;
+  const auto now = MBK_TRY(console::estimate_now(journal, options));
+  const Identification& identification = now.measured.identification;
   const Vector error = impedance::stacked(identification.model) - truth;
   const Vector reach = numeric::kNormal95 * impedance::stacked(identification.standard_error);
   Shown shown;
   for (Index k = 0; k < kNumbers; ++k) shown.held[static_cast<std::size_t>(k)] = std::abs(error[k]) <= reach[k];
-  shown.changed = now->from > 0.0;
+  shown.changed = now.from > 0.0;
   return shown;
 }
 
 Result<ShownAtTimes> perform(protocol::Trial trial, std::uint64_t seed, const std::filesystem::path& folder) {
   trial.seed = seed;
-  auto robot = laboratory::simulated_robot(trial);
-  if (!robot) return tl::unexpected(robot.error());
-  const auto plan = session::make_plan(trial);
-  if (!plan) return tl::unexpected(plan.error());
-  const auto scenario = laboratory::scenario_of(trial);
-  if (!scenario) return tl::unexpected(scenario.error());
-  const auto load = laboratory::make_load(*scenario, std::get<laboratory::PlanarTrial>(scenario->trial));
-  if (!load) return tl::unexpected(load.error());
-  const Vector truth = impedance::stacked((*load)->impedance(trial.home));
+  auto robot = MBK_TRY(laboratory::simulated_robot(trial));
+  const auto plan = MBK_TRY(session::make_plan(trial));
+  const auto scenario = MBK_TRY(laboratory::scenario_of(trial));
+  const auto load = MBK_TRY(laboratory::make_load(scenario, std::get<laboratory::PlanarTrial>(scenario.trial)));
+  const Vector truth = impedance::stacked(load->impedance(trial.home));
   measurement::Options options;
   options.identify.handle_mass = trial.handle_mass;
   options.passivity = false;
 
   session::Session session({true, 0.0});
-  journal::Journal journal{session::header_of(*plan, (*robot)->facts()), {}, {}, {}};
+  journal::Journal journal{session::header_of(plan, robot->facts()), {}, {}, {}};
   ShownAtTimes held{};
   std::size_t taken = 0;
   std::optional<Error> failure;
@@ -82,10 +77,9 @@ Result<ShownAtTimes> perform(protocol::Trial trial, std::uint64_t seed, const st
       session.flags().end_trial = ++taken == kTimes.size();
     }
   };
-  const auto performed = session.perform(**robot, *plan, folder / fmt::format("{}.h5", seed), watch);
-  if (!performed) return tl::unexpected(performed.error());
+  const auto performed = MBK_TRY(session.perform(*robot, plan, folder / fmt::format("{}.h5", seed), watch));
   std::error_code ignored;
-  std::filesystem::remove(performed->recording, ignored);
+  std::filesystem::remove(performed.recording, ignored);
   if (failure) return tl::unexpected(*failure);
   if (taken < kTimes.size())
     return bad_data(fmt::format("the trial of seed {} ended before {:g} s", seed, kTimes[taken]), "");
@@ -95,14 +89,11 @@ Result<ShownAtTimes> perform(protocol::Trial trial, std::uint64_t seed, const st
 }  // namespace
 
 Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
-  const auto trials = ready_trial();
-  if (!trials) return tl::unexpected(trials.error());
-  const auto folder = TemporaryFolder::create("mbk-live-estimate");
-  if (!folder) return tl::unexpected(folder.error());
-  const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<ShownAtTimes> {
-    return perform(trials->front(), seed, folder->path());
-  });
-  if (!runs) return tl::unexpected(runs.error());
+  const auto trials = MBK_TRY(ready_trial());
+  const auto folder = MBK_TRY(TemporaryFolder::create("mbk-live-estimate"));
+  const auto runs = MBK_TRY(seeded_runs(options, [&](std::uint64_t seed) -> Result<ShownAtTimes> {
+    return perform(trials.front(), seed, folder.path());
+  }));
 
   ValidationTable table;
   table.study = "live-estimate";
@@ -110,7 +101,7 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
   table.unit = "%";
   table.runs = options.runs;
   table.seed = options.seed;
-  const auto count = static_cast<Index>(runs->size());
+  const auto count = static_cast<Index>(runs.size());
   const std::vector<std::string> names = identify::parameter_names(2);
   for (std::size_t at = 0; at < kTimes.size(); ++at) {
     Vector share = Vector::Zero(count);  // of the twelve, run by run: those of one run depend on each other
@@ -118,7 +109,7 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(kNumbers); ++k) {
       int hits = 0;
       for (Index run = 0; run < count; ++run) {
-        const bool one = (*runs)[static_cast<std::size_t>(run)][at].held[k];
+        const bool one = runs[static_cast<std::size_t>(run)][at].held[k];
         hits += one ? 1 : 0;
         share[run] += one ? 100.0 / kNumbers : 0.0;
       }
@@ -129,7 +120,7 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
     std::ranges::move(rows, std::back_inserter(table.rows));
   }
   const auto said_to_change = [](const ShownAtTimes& held) { return std::ranges::any_of(held, &Shown::changed); };
-  table.rows.push_back(share_row("said to have changed, though it did not", *runs, said_to_change, kHardlyEver));
+  table.rows.push_back(share_row("said to have changed, though it did not", runs, said_to_change, kHardlyEver));
   table.notes = {
       "A relaxed arm, sinusoidal position perturbation, from the session's own ticks: the live estimate is what "
       "`mbk measure` would make of the perturbation so far, and of its last 5 s where they have another stiffness. "

@@ -247,9 +247,9 @@ Result<std::unique_ptr<MisbehavingRobot>> MisbehavingRobot::create(laboratory::S
     elsewhere = std::move(*socket);
   }
   made->link_ = std::make_unique<Link>(*made, std::move(elsewhere));
-  auto served = drivers::UdpRobot::create(*made->drives_, options.local, options.sample_time, made->link_.get());
-  if (!served) return tl::unexpected(served.error());
-  made->robot_ = std::move(*served);
+  auto served =
+      MBK_TRY(drivers::UdpRobot::create(*made->drives_, options.local, options.sample_time, made->link_.get()));
+  made->robot_ = std::move(served);
   made->local_ = made->robot_->local();
   return made;
 }

@@ -259,20 +259,17 @@ struct MisspecifiedTrial {
 };
 
 Result<MisspecifiedTrial> trial_under(const Misspecification& condition, std::uint64_t seed) {
-  auto scenarios = ready(condition.scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  Scenario scenario = std::move(scenarios->front());
+  auto scenarios = MBK_TRY(ready(condition.scenario));
+  Scenario scenario = std::move(scenarios.front());
   scenario.seed = seed;
   condition.change(scenario);
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
   measurement::Options options;
   options.passivity = false;
   const bool rig = std::holds_alternative<laboratory::RigPlan>(planar(scenario).load);
   if (rig) options.identify.structure = Structure::mass_spring;
-  const auto measured = measurement::measure({&performance->recording, 1}, options);
-  if (!measured) return tl::unexpected(measured.error());
-  const Identification& id = measured->identification;
+  const auto measured = MBK_TRY(measurement::measure({&performance.recording, 1}, options));
+  const Identification& id = measured.identification;
   MisspecifiedTrial outcome;
   outcome.usable = id.usable;
   // Of a person who responds, and of a limb that trembles, other warnings tell.
@@ -283,7 +280,7 @@ Result<MisspecifiedTrial> trial_under(const Misspecification& condition, std::ui
            (condition.expected != Expected::silence && std::ranges::count(kOthers, warning.code) > 0);
   };
   outcome.warned = !id.usable || std::ranges::any_of(id.warnings, tells);
-  outcome.truth = impedance::stacked(performance->truth);
+  outcome.truth = impedance::stacked(performance.truth);
   outcome.error = impedance::stacked(id.model) - outcome.truth;
   outcome.half = numeric::kNormal95 * impedance::stacked(id.standard_error);
   return outcome;
@@ -336,7 +333,7 @@ Result<ValidationTable> misspecification_study(const StudyOptions& options, std:
   if (!only.empty()) {
     std::erase_if(conditions, [&](const Misspecification& one) { return std::ranges::count(only, one.name) == 0; });
   }
-  const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<std::vector<MisspecifiedTrial>> {
+  const auto runs = MBK_TRY(seeded_runs(options, [&](std::uint64_t seed) -> Result<std::vector<MisspecifiedTrial>> {
     std::vector<MisspecifiedTrial> outcomes;
     for (const Misspecification& condition : conditions) {
       auto outcome = trial_under(condition, seed);
@@ -344,8 +341,7 @@ Result<ValidationTable> misspecification_study(const StudyOptions& options, std:
       outcomes.push_back(std::move(*outcome));
     }
     return outcomes;
-  });
-  if (!runs) return tl::unexpected(runs.error());
+  }));
 
   ValidationTable table;
   table.study = "misspecification";
@@ -355,7 +351,7 @@ Result<ValidationTable> misspecification_study(const StudyOptions& options, std:
   table.seed = options.seed;
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     std::vector<MisspecifiedTrial> outcomes;
-    for (const std::vector<MisspecifiedTrial>& run : *runs) outcomes.push_back(run[k]);
+    for (const std::vector<MisspecifiedTrial>& run : runs) outcomes.push_back(run[k]);
     add_rows(conditions[k], outcomes, table);
   }
   table.notes = {

@@ -53,22 +53,17 @@ struct AxisOutcome {
 };
 
 Result<AxisOutcome> perform(const Scenario& scenario, bool reported) {
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  auto axis = one_dimensional::axis_of(performance->recording);
-  if (!axis) return tl::unexpected(axis.error());
-  auto impedance = one_dimensional::attempted(axis->impedance);
-  if (!impedance) return tl::unexpected(impedance.error());
-  if (!reported) return AxisOutcome{std::move(*axis), std::move(*impedance), {}};
-  auto admittance = one_dimensional::attempted(axis->admittance);
-  if (!admittance) return tl::unexpected(admittance.error());
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
+  auto axis = MBK_TRY(one_dimensional::axis_of(performance.recording));
+  auto impedance = MBK_TRY(one_dimensional::attempted(axis.impedance));
+  if (!reported) return AxisOutcome{std::move(axis), std::move(impedance), {}};
+  auto admittance = MBK_TRY(one_dimensional::attempted(axis.admittance));
   identify::ContinuousFitOptions options;
   options.poles = kPoles;
   options.zeros = kZeros;
   options.threads = 1;
-  const auto continuous = identify::fit_continuous({one_dimensional::first_part(axis->impedance)}, options);
-  if (!continuous) return tl::unexpected(continuous.error());
-  return AxisOutcome{std::move(*axis), std::move(*impedance), std::move(*admittance), continuous->converged};
+  const auto continuous = MBK_TRY(identify::fit_continuous({one_dimensional::first_part(axis.impedance)}, options));
+  return AxisOutcome{std::move(axis), std::move(impedance), std::move(admittance), continuous.converged};
 }
 
 Scenario with_condition(Scenario scenario, const Condition& condition, double switching_time) {
@@ -207,20 +202,18 @@ Chart switching_chart(Outcomes all, std::size_t each) {
 
 Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
-  const auto scenarios = ready("one_axis_random_binary");
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  const auto scenarios = MBK_TRY(ready("one_axis_random_binary"));
   const std::size_t trials = kPrinted.size(), each = trials * static_cast<std::size_t>(options.runs);
   const std::size_t rows_from = (kSwitchingTimes.size() - 1) * kConditions.size() * each;
   const auto count = static_cast<int>(rows_from + kConditions.size() * each);
-  const auto ran = each_run(options, count, [&](int i) {
+  const auto ran = MBK_TRY(each_run(options, count, [&](int i) {
     const auto k = static_cast<std::size_t>(i), number = k % each, cell = k / each;
-    Scenario scenario = with_condition((*scenarios)[number % trials], kConditions[cell % kConditions.size()],
+    Scenario scenario = with_condition(scenarios[number % trials], kConditions[cell % kConditions.size()],
                                        kSwitchingTimes[cell / kConditions.size()]);
     scenario.seed = options.seed + number;
     return perform(scenario, k >= rows_from);
-  });
-  if (!ran) return tl::unexpected(ran.error());
-  const std::vector<AxisOutcome>& outcomes = *ran;
+  }));
+  const std::vector<AxisOutcome>& outcomes = ran;
 
   ValidationTable table;
   table.study = "one-dimensional";

@@ -40,9 +40,8 @@ Result<Attempt> attempted(const SignalPair& whole) {
   options.zeros = kZeros;
   options.threads = 1;
   options.max_iterations = 100;
-  auto fit = identify::fit_prediction_error({first_part(whole)}, options);
-  if (!fit) return tl::unexpected(fit.error());
-  Attempt attempt{std::move(fit->f), std::move(fit->b), fit->converged, 0.0};
+  auto fit = MBK_TRY(identify::fit_prediction_error({first_part(whole)}, options));
+  Attempt attempt{std::move(fit.f), std::move(fit.b), fit.converged, 0.0};
   attempt.vaf = validation_vaf(attempt, whole);
   return attempt;
 }
@@ -55,12 +54,11 @@ Result<Axis> axis_of(const Recording& recording) {
       recording.find("force_y")->values.segment(begin, count),
       recording.find("reference_y")->values.segment(begin, count);
   const Hertz rate(1.0 / step);
-  const auto thin = dsp::decimate(signals, rate, static_cast<Index>(std::llround(rate.value / kRate)));
-  if (!thin) return tl::unexpected(thin.error());
-  const Index n = thin->rows();
+  const auto thin = MBK_TRY(dsp::decimate(signals, rate, static_cast<Index>(std::llround(rate.value / kRate))));
+  const Index n = thin.rows();
   const Vector time = Vector::LinSpaced(n, 0.0, static_cast<double>(n - 1)) / kRate;
   const auto pair = [&](Index input, Index output) {
-    return SignalPair{.time = time, .input = thin->col(input), .output = thin->col(output), .step = 1.0 / kRate};
+    return SignalPair{.time = time, .input = thin.col(input), .output = thin.col(output), .step = 1.0 / kRate};
   };
   return Axis{pair(0, 1), pair(2, 0)};
 }

@@ -61,11 +61,10 @@ void switch_controller_off(Scenario& scenario) {
 Result<void> add_plans(const Scenario& scenario, const StudyOptions& options, bool measured,
                        std::vector<TrialPlan>& plans) {
   for (const int arm : kArms) {
-    auto with_arm = with_limb(scenario, arm);
-    if (!with_arm) return tl::unexpected(with_arm.error());
+    auto with_arm = MBK_TRY(with_limb(scenario, arm));
     for (int run = 0; run < options.runs; ++run) {
-      with_arm->seed = options.seed + static_cast<std::uint64_t>(run);
-      plans.push_back({*with_arm, measured ? std::optional(published_procedure()) : std::nullopt});
+      with_arm.seed = options.seed + static_cast<std::uint64_t>(run);
+      plans.push_back({with_arm, measured ? std::optional(published_procedure()) : std::nullopt});
     }
   }
   return {};
@@ -74,16 +73,14 @@ Result<void> add_plans(const Scenario& scenario, const StudyOptions& options, bo
 Result<std::vector<TrialPlan>> all_plans(const StudyOptions& options) {
   std::vector<TrialPlan> plans;
   for (const ConditionOfArm& condition : conditions()) {
-    auto scenarios = ready(condition.scenario);
-    if (!scenarios) return tl::unexpected(scenarios.error());
-    if (!condition.controller) switch_controller_off(scenarios->front());
-    if (auto ok = add_plans(scenarios->front(), options, true, plans); !ok) return tl::unexpected(ok.error());
+    auto scenarios = MBK_TRY(ready(condition.scenario));
+    if (!condition.controller) switch_controller_off(scenarios.front());
+    MBK_TRY(add_plans(scenarios.front(), options, true, plans));
   }
-  auto crossover = ready("rigid_underdamped_2N");
-  if (!crossover) return tl::unexpected(crossover.error());
+  auto crossover = MBK_TRY(ready("rigid_underdamped_2N"));
   for (const double amplitude : kAmplitudes) {
-    std::get<perturbation::PulsePlan>(crossover->front().perturbation.kind).pulses.amplitude = amplitude;
-    if (auto ok = add_plans(crossover->front(), options, false, plans); !ok) return tl::unexpected(ok.error());
+    std::get<perturbation::PulsePlan>(crossover.front().perturbation.kind).pulses.amplitude = amplitude;
+    MBK_TRY(add_plans(crossover.front(), options, false, plans));
   }
   return plans;
 }
@@ -179,10 +176,8 @@ void add_crossover(const StudyOptions& options, Trials trials, ValidationTable& 
 
 Result<ValidationTable> participant_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
-  const auto plans = all_plans(options);
-  if (!plans) return tl::unexpected(plans.error());
-  const auto trials = run_trials(*plans, options);
-  if (!trials) return tl::unexpected(trials.error());
+  const auto plans = MBK_TRY(all_plans(options));
+  const auto trials = MBK_TRY(run_trials(plans, options));
 
   ValidationTable table;
   table.study = "participant";
@@ -192,7 +187,7 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
   table.unit = "%";
   table.runs = options.runs;
   table.seed = options.seed;
-  Trials left = *trials;
+  Trials left = trials;
   for (const ConditionOfArm& condition : conditions()) {
     const std::size_t trials_of_it = kArms.size() * static_cast<std::size_t>(options.runs);
     add_condition(condition, left.first(trials_of_it), table);

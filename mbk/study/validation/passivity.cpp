@@ -53,18 +53,15 @@ struct Said {
 using SaidInRun = std::array<Said, kDrives.size()>;
 
 Result<Said> said_of(const Drive& drive, std::uint64_t seed) {
-  auto scenarios = ready(drive.scenario);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  auto scenario = with_limb(std::move(scenarios->front()), kArms[seed % kArms.size()]);
-  if (!scenario) return tl::unexpected(scenario.error());
-  scenario->seed = seed;
-  drive.change(*scenario);
-  const auto performance = laboratory::simulate(*scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  const auto measured = measurement::measure({&performance->recording, 1}, measurement::Options());
+  auto scenarios = MBK_TRY(ready(drive.scenario));
+  auto scenario = MBK_TRY(with_limb(std::move(scenarios.front()), kArms[seed % kArms.size()]));
+  scenario.seed = seed;
+  drive.change(scenario);
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
+  const auto measured = measurement::measure({&performance.recording, 1}, measurement::Options());
   if (!measured) return tl::unexpected(measured.error());
   const Passivity& passivity = *measured->passivity;
-  Said said{performance->energy_absorbed, passivity.trial.has_value(), {}, passivity.prediction.verdict};
+  Said said{performance.energy_absorbed, passivity.trial.has_value(), {}, passivity.prediction.verdict};
   if (passivity.trial) said.trial = passivity.trial->energy.verdict;
   return said;
 }
@@ -72,7 +69,7 @@ Result<Said> said_of(const Drive& drive, std::uint64_t seed) {
 }  // namespace
 
 Result<ValidationTable> passivity_study(const StudyOptions& options) {
-  const auto runs = seeded_runs(options, [](std::uint64_t seed) -> Result<SaidInRun> {
+  const auto runs = MBK_TRY(seeded_runs(options, [](std::uint64_t seed) -> Result<SaidInRun> {
     SaidInRun run;
     for (std::size_t k = 0; k < kDrives.size(); ++k) {
       const auto said = said_of(kDrives[k], seed);
@@ -80,8 +77,7 @@ Result<ValidationTable> passivity_study(const StudyOptions& options) {
       run[k] = *said;
     }
     return run;
-  });
-  if (!runs) return tl::unexpected(runs.error());
+  }));
 
   ValidationTable table;
   table.study = "passivity";
@@ -94,7 +90,7 @@ Result<ValidationTable> passivity_study(const StudyOptions& options) {
     const auto share = [&](const char* what, std::optional<Range> expected,
                            const std::function<bool(const Said&)>& is) {
       table.rows.push_back(share_row(
-          fmt::format("{}, {}: {}", drive.relaxed ? "relaxed" : "rigid", drive.name, what), *runs,
+          fmt::format("{}, {}: {}", drive.relaxed ? "relaxed" : "rigid", drive.name, what), runs,
           [&](const SaidInRun& run) { return is(run[k]); }, expected));
     };
     const auto trial = [](Verdict verdict) {

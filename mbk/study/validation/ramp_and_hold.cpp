@@ -30,9 +30,8 @@ bool holds(const Interval& interval, double value) {
 
 /// The ready scenario with holds and pauses no longer than the measurement takes of them.
 Result<laboratory::Scenario> short_scenario(std::uint64_t seed) {
-  auto scenarios = ready("relaxed_ramp_and_hold");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario scenario = scenarios->front();
+  auto scenarios = MBK_TRY(ready("relaxed_ramp_and_hold"));
+  laboratory::Scenario scenario = scenarios.front();
   scenario.seed = seed;
   auto& plan = std::get<perturbation::RampPlan>(scenario.perturbation.kind);
   plan.ramps.hold = 0.2;
@@ -45,17 +44,14 @@ Result<laboratory::Scenario> short_scenario(std::uint64_t seed) {
 }
 
 Result<PlateauRun> plateau_run(std::uint64_t seed) {
-  const auto scenario = short_scenario(seed);
-  if (!scenario) return tl::unexpected(scenario.error());
-  const auto performance = laboratory::simulate(*scenario);
-  if (!performance) return tl::unexpected(performance.error());
+  const auto scenario = MBK_TRY(short_scenario(seed));
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
   std::vector<Warning> warnings;
   measurement::ExploreOptions options;
-  const auto found = measurement::plateau_stiffness({&performance->recording, 1}, options, warnings);
-  if (!found) return tl::unexpected(found.error());
+  const auto found = MBK_TRY(measurement::plateau_stiffness({&performance.recording, 1}, options, warnings));
   PlateauRun run;
-  const StiffnessRegression& fit = found->fit;
-  const Matrix& truth = performance->truth.K;
+  const StiffnessRegression& fit = found.fit;
+  const Matrix& truth = performance.truth.K;
   for (Index entry = 0; entry < 4; ++entry) {
     const auto at = static_cast<std::size_t>(entry);
     run.error[at] = fit.K(entry / 2, entry % 2) - truth(entry / 2, entry % 2);
@@ -68,10 +64,10 @@ Result<PlateauRun> plateau_run(std::uint64_t seed) {
   const double turn = std::remainder(true_ellipse.orientation - fit.ellipse->ellipse.orientation, std::numbers::pi);
   run.orientation_held = holds(fit.ellipse->orientation95, fit.ellipse->ellipse.orientation + turn);
   run.antisymmetry_held = holds(fit.antisymmetry->value95, impedance::antisymmetric_part(truth));
-  run.usable = found->usable;
+  run.usable = found.usable;
   options.plateau.from_s = 0.02;
   options.plateau.to_s = 0.08;
-  const auto early = measurement::plateau_stiffness({&performance->recording, 1}, options, warnings);
+  const auto early = measurement::plateau_stiffness({&performance.recording, 1}, options, warnings);
   run.early_refused = !early || !early->usable;
   return run;
 }
@@ -80,8 +76,7 @@ Result<PlateauRun> plateau_run(std::uint64_t seed) {
 
 Result<ValidationTable> ramp_and_hold_study(const StudyOptions& options) {
   using namespace ramp_and_hold;
-  const auto ran = seeded_runs(options, plateau_run);
-  if (!ran) return tl::unexpected(ran.error());
+  const auto ran = MBK_TRY(seeded_runs(options, plateau_run));
   ValidationTable table;
   table.study = "ramp-and-hold";
   table.question =
@@ -93,18 +88,18 @@ Result<ValidationTable> ramp_and_hold_study(const StudyOptions& options) {
   for (std::size_t entry = 0; entry < kEntries.size(); ++entry) {
     const std::string name = kEntries[entry];
     Vector errors(options.runs);
-    for (Index i = 0; i < errors.size(); ++i) errors[i] = (*ran)[static_cast<std::size_t>(i)].error[entry];
+    for (Index i = 0; i < errors.size(); ++i) errors[i] = ran[static_cast<std::size_t>(i)].error[entry];
     table.rows.push_back(bias_row(name, errors, kAllowedBias, "N/m"));
     table.rows.push_back(share_row(
-        name + ": 95 % interval holds the truth", *ran, [entry](const PlateauRun& run) { return run.held[entry]; },
+        name + ": 95 % interval holds the truth", ran, [entry](const PlateauRun& run) { return run.held[entry]; },
         kNominal));
   }
   Vector relative(options.runs);
-  for (Index i = 0; i < relative.size(); ++i) relative[i] = (*ran)[static_cast<std::size_t>(i)].relative_error;
+  for (Index i = 0; i < relative.size(); ++i) relative[i] = ran[static_cast<std::size_t>(i)].relative_error;
   table.rows.push_back(median_row("median error of K, of its norm", relative, Range{0.0, 5.0}, "%"));
   const auto share = [&](const char* what, bool PlateauRun::*is, std::optional<Range> expected) {
     table.rows.push_back(share_row(
-        what, *ran, [is](const PlateauRun& run) { return run.*is; }, expected));
+        what, ran, [is](const PlateauRun& run) { return run.*is; }, expected));
   };
   share("antisymmetric part: 95 % interval holds the truth", &PlateauRun::antisymmetry_held, kNominal);
   share("area of the ellipse: 95 % interval holds the truth", &PlateauRun::area_held, kNominal);

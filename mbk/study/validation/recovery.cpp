@@ -61,15 +61,13 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
                                                             {"underdamped", "relaxed_underdamped"}};
   std::vector<TrialPlan> plans;
   for (const auto& [name, file] : conditions) {
-    const auto scenarios = ready(file);
-    if (!scenarios) return tl::unexpected(scenarios.error());
+    const auto scenarios = MBK_TRY(ready(file));
     for (int run = 0; run < options.runs; ++run) {
-      plans.push_back({scenarios->front(), measurement::Options()});
+      plans.push_back({scenarios.front(), measurement::Options()});
       plans.back().scenario.seed = options.seed + static_cast<std::uint64_t>(run);
     }
   }
-  const auto trials = run_trials(plans, options);
-  if (!trials) return tl::unexpected(trials.error());
+  const auto trials = MBK_TRY(run_trials(plans, options));
 
   ValidationTable table;
   table.study = "recovery";
@@ -77,7 +75,7 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
   table.unit = "error";
   table.runs = options.runs;
   table.seed = options.seed;
-  Trials left = *trials;
+  Trials left = trials;
   for (const auto& [name, file] : conditions) {
     add_rows(name, left.first(static_cast<std::size_t>(options.runs)), table);
     left = left.subspan(static_cast<std::size_t>(options.runs));

@@ -52,13 +52,11 @@ struct LimbCondition {
 };
 
 Result<ExplorationTrial> two_link_trial(std::uint64_t seed) {
-  auto scenarios = ready("relaxed_sinusoidal");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario& scenario = scenarios->front();
+  auto scenarios = MBK_TRY(ready("relaxed_sinusoidal"));
+  laboratory::Scenario& scenario = scenarios.front();
   scenario.seed = seed;
-  const auto performance = laboratory::simulate(scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  const Recording& recording = performance->recording;
+  const auto performance = MBK_TRY(laboratory::simulate(scenario));
+  const Recording& recording = performance.recording;
   return preprocess::exploration_trial_of(recording, recording::inspect(recording), {});
 }
 
@@ -99,30 +97,26 @@ void add_held(const ResponseModel& model, const SimulatedLimb& limb, std::vector
 
 Result<Run> run_of(const LimbCondition& condition, std::uint64_t seed) {
   const SimulatedLimb& limb = condition.limb;
-  const Result<ExplorationTrial> trial =
-      condition.of_two_links ? two_link_trial(seed) : simulate_limb(limb, kDuration, kRate, seed);
-  if (!trial) return tl::unexpected(trial.error());
-  const auto signals = explore::limb_signals({&*trial, 1});
-  if (!signals) return tl::unexpected(signals.error());
-  const auto response = explore::impulse_response(*signals);
-  if (!response) return tl::unexpected(response.error());
-  const auto cascade = explore::parallel_cascade(*signals);
-  if (!cascade) return tl::unexpected(cascade.error());
+  const auto trial =
+      MBK_TRY(condition.of_two_links ? two_link_trial(seed) : simulate_limb(limb, kDuration, kRate, seed));
+  const auto signals = MBK_TRY(explore::limb_signals({&trial, 1}));
+  const auto response = MBK_TRY(explore::impulse_response(signals));
+  const auto cascade = MBK_TRY(explore::parallel_cascade(signals));
   Run run;
-  run.enough = response->model.enough;
-  add_held(response->model, limb, run.held);
-  run.found = cascade->found;
+  run.enough = response.model.enough;
+  add_held(response.model, limb, run.held);
+  run.found = cascade.found;
   if (run.found != DelayedResponse::reflex || !condition.reflex) return run;
-  run.direction = (cascade->direction - limb.direction).norm() < 1e-6;
-  add_held(cascade->intrinsic_model, limb, run.intrinsic);
+  run.direction = (cascade.direction - limb.direction).norm() < 1e-6;
+  add_held(cascade.intrinsic_model, limb, run.intrinsic);
   if (!run.direction) return run;
   const auto holds = [](const Margin& one, double truth) { return std::abs(one.value - truth) <= one.half_width; };
   for (Index j = 0; j < limb.reflex_gain.size(); ++j) {
-    run.gain.push_back(holds(cascade->gain[static_cast<std::size_t>(j)], limb.reflex_gain[j]));
+    run.gain.push_back(holds(cascade.gain[static_cast<std::size_t>(j)], limb.reflex_gain[j]));
   }
-  if (cascade->second_order) {
-    run.second_gain = holds(cascade->second_order->gain[0], limb.reflex_gain[0]);
-    run.second_delay = holds(cascade->second_order->delay, limb.delay);
+  if (cascade.second_order) {
+    run.second_gain = holds(cascade.second_order->gain[0], limb.reflex_gain[0]);
+    run.second_delay = holds(cascade.second_order->delay, limb.delay);
   }
   return run;
 }
@@ -145,7 +139,7 @@ ValidationRow coverage_row(std::string what, const std::vector<Run>& runs,
 Result<ValidationTable> study(const StudyOptions& options) {
   const std::vector<LimbCondition> all = limb_conditions();
   using RunOfAll = std::vector<Run>;
-  const auto runs = seeded_runs(options, [&](std::uint64_t seed) -> Result<RunOfAll> {
+  const auto runs = MBK_TRY(seeded_runs(options, [&](std::uint64_t seed) -> Result<RunOfAll> {
     RunOfAll of_all;
     for (const LimbCondition& condition : all) {
       auto run = run_of(condition, seed);
@@ -153,8 +147,7 @@ Result<ValidationTable> study(const StudyOptions& options) {
       of_all.push_back(std::move(*run));
     }
     return of_all;
-  });
-  if (!runs) return tl::unexpected(runs.error());
+  }));
 
   ValidationTable table;
   table.study = "reflex";
@@ -166,7 +159,7 @@ Result<ValidationTable> study(const StudyOptions& options) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const LimbCondition& condition = all[k];
     std::vector<Run> own;
-    for (const RunOfAll& run : *runs) own.push_back(run[k]);
+    for (const RunOfAll& run : runs) own.push_back(run[k]);
     const auto named = [&](const char* what) { return fmt::format("{}: {}", condition.name, what); };
     const auto share = [&](const char* what, std::optional<Range> expected, const std::function<bool(const Run&)>& is) {
       table.rows.push_back(share_row(named(what), own, is, expected));

@@ -79,8 +79,7 @@ Result<void> balanced(Random& random, const Truth& truth, Answers& answers) {
       scores(i, j) = own + of_session[j] + std::sqrt(truth.residual) * random.normal();
     }
   }
-  const auto found = reliability::test_retest(scores);
-  if (!found) return tl::unexpected(found.error());
+  const auto found = MBK_TRY(reliability::test_retest(scores));
   const double agreement = truth.session + truth.residual;
   const auto add = [&](std::string_view what, bool held) {
     answers.held.push_back({fmt::format("{}: {}", truth.name, what), held});
@@ -88,9 +87,9 @@ Result<void> balanced(Random& random, const Truth& truth, Answers& answers) {
   const auto error = [&](std::string_view what, double value, double true_value) {
     answers.error.emplace_back(fmt::format("{}: mean {}", truth.name, what), 100.0 * (value / true_value - 1.0));
   };
-  const auto& one_way = found->icc[0];
-  const auto& by_agreement = found->icc[1];
-  const auto& by_consistency = found->icc[2];
+  const auto& one_way = found.icc[0];
+  const auto& by_agreement = found.icc[1];
+  const auto& by_consistency = found.icc[2];
   const double icc_of_agreement = truth.participant / (truth.participant + agreement);
   const double icc_of_consistency = truth.participant / (truth.participant + truth.residual);
   if (truth.session == 0.0) add("ICC(1)", holds(one_way.interval95, icc_of_agreement));
@@ -101,15 +100,14 @@ Result<void> balanced(Random& random, const Truth& truth, Answers& answers) {
   add("ICC(C,1)", holds(by_consistency.interval95, icc_of_consistency));
   const double true_mdc = kChange * std::sqrt(truth.residual);
   answers.held.push_back({fmt::format("{}: MDC, consistency", truth.name),
-                          holds(found->error[1].mdc95_interval, true_mdc), kNominalOrMore});
-  error("MDC, consistency", found->error[1].mdc95, true_mdc);
-  if (truth.session == 0.0) error("MDC, agreement", found->error[0].mdc95, kChange * std::sqrt(agreement));
+                          holds(found.error[1].mdc95_interval, true_mdc), kNominalOrMore});
+  error("MDC, consistency", found.error[1].mdc95, true_mdc);
+  if (truth.session == 0.0) error("MDC, agreement", found.error[0].mdc95, kChange * std::sqrt(agreement));
 
-  const auto limits = reliability::bland_altman(scores.col(0), scores.col(1));
-  if (!limits) return tl::unexpected(limits.error());
+  const auto limits = MBK_TRY(reliability::bland_altman(scores.col(0), scores.col(1)));
   const double bias = of_session[1] - of_session[0];
   const double reach = reliability::kPublishedNormal95 * std::sqrt(2.0 * truth.residual);
-  add("upper limit of agreement", holds(limits->upper.interval95, bias + reach));
+  add("upper limit of agreement", holds(limits.upper.interval95, bias + reach));
   return {};
 }
 
@@ -150,24 +148,22 @@ Measurements unbalanced_measurements(Random& random, const Truth& truth, bool kn
 
 Result<void> unbalanced(Random& random, const Truth& truth, bool known, Answers& answers) {
   const Measurements m = unbalanced_measurements(random, truth, known);
-  const auto model = reliability::fit_mixed_model(m);
-  if (!model) return tl::unexpected(model.error());
+  const auto model = MBK_TRY(reliability::fit_mixed_model(m));
   const std::string name = fmt::format("{}{}", truth.name, known ? ", variances known" : "");
   for (const int trials : {1, kTrials}) {
     if (known && trials == 1) continue;
-    const auto found = reliability::model_reliability(m, trials);
-    if (!found) return tl::unexpected(found.error());
+    const auto found = MBK_TRY(reliability::model_reliability(m, trials));
     const double between = truth.session + truth.residual / trials;
     const std::string mean = fmt::format("{}: mixed model, {} trial{}, ", name, trials, trials == 1 ? "" : "s");
     answers.held.push_back(
-        {mean + "ICC", holds(found->icc95, truth.participant / (truth.participant + between)), expected_of(truth)});
+        {mean + "ICC", holds(found.icc95, truth.participant / (truth.participant + between)), expected_of(truth)});
     answers.held.push_back(
-        {mean + "SEM between sessions", holds(found->sem_between95, std::sqrt(between)), kNominalOrMore});
+        {mean + "SEM between sessions", holds(found.sem_between95, std::sqrt(between)), kNominalOrMore});
     answers.error.emplace_back(mean + "mean MDC between sessions",
-                               100.0 * (found->mdc95_between / (kChange * std::sqrt(between)) - 1.0));
+                               100.0 * (found.mdc95_between / (kChange * std::sqrt(between)) - 1.0));
   }
-  answers.held.push_back({name + ": mixed model, condition", holds(model->effects[2].interval95, kCondition)});
-  answers.false_positive.emplace_back(name + ": mixed model", model->effects[1].p <= 0.05);
+  answers.held.push_back({name + ": mixed model, condition", holds(model.effects[2].interval95, kCondition)});
+  answers.false_positive.emplace_back(name + ": mixed model", model.effects[1].p <= 0.05);
   return {};
 }
 
@@ -213,10 +209,9 @@ Result<void> heavy_tails(Random& random, Answers& answers) {
         {fmt::format("normal errors, {}: heavy tails warned of", size), warned(drawn(kNormal)), Range{0.0, 5.0}});
     for (const Tails& tails : kTails) {
       const Matrix scores = drawn(tails);
-      const auto found = reliability::test_retest(scores);
-      if (!found) return tl::unexpected(found.error());
+      const auto found = MBK_TRY(reliability::test_retest(scores));
       const double variance = tails.outlier < 0.0 ? 1.0 : 1.0 + kOutliers * tails.outlier * tails.outlier;
-      const bool held = holds(found->error[1].mdc95_interval, kChange * std::sqrt(variance));
+      const bool held = holds(found.error[1].mdc95_interval, kChange * std::sqrt(variance));
       const bool said = warned(scores);
       const std::string name = fmt::format("{}, {}: ", tails.name, size);
       answers.tails.push_back({name + "heavy tails warned of", said, std::nullopt});
@@ -253,20 +248,20 @@ Result<Answers> answered(std::uint64_t seed) {
   std::uint32_t stream = 0;
   for (const Truth& truth : kBalanced) {
     Random random(seed, ++stream);
-    if (auto ok = balanced(random, truth, answers); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(balanced(random, truth, answers));
   }
   for (const Truth& truth : kUnbalanced) {
     for (const bool known : {false, true}) {
       Random random(seed, ++stream);
-      if (auto ok = unbalanced(random, truth, known, answers); !ok) return tl::unexpected(ok.error());
+      MBK_TRY(unbalanced(random, truth, known, answers));
     }
   }
   for (const double ratio : {1.0, 2.0}) {
     Random random(seed, ++stream);
-    if (auto ok = groups(random, ratio, answers); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(groups(random, ratio, answers));
   }
   Random random(seed, ++stream);
-  if (auto ok = heavy_tails(random, answers); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(heavy_tails(random, answers));
   return answers;
 }
 
@@ -274,8 +269,7 @@ Result<Answers> answered(std::uint64_t seed) {
 
 Result<ValidationTable> reliability_study(const StudyOptions& options) {
   using namespace reliability_detail;
-  const auto runs = seeded_runs(options, answered);
-  if (!runs) return tl::unexpected(runs.error());
+  const auto runs = MBK_TRY(seeded_runs(options, answered));
   ValidationTable table;
   table.study = "reliability";
   table.question =
@@ -283,26 +277,26 @@ Result<ValidationTable> reliability_study(const StudyOptions& options) {
   table.unit = "%";
   table.runs = options.runs;
   table.seed = options.seed;
-  for (std::size_t k = 0; k < runs->front().held.size(); ++k) {
-    const Held& first = runs->front().held[k];
+  for (std::size_t k = 0; k < runs.front().held.size(); ++k) {
+    const Held& first = runs.front().held[k];
     table.rows.push_back(share_row(
-        first.what + ": 95 % interval holds the truth", *runs, [k](const Answers& run) { return run.held[k].truth; },
+        first.what + ": 95 % interval holds the truth", runs, [k](const Answers& run) { return run.held[k].truth; },
         first.expected));
   }
-  for (std::size_t k = 0; k < runs->front().tails.size(); ++k) {
-    const Held& first = runs->front().tails[k];
+  for (std::size_t k = 0; k < runs.front().tails.size(); ++k) {
+    const Held& first = runs.front().tails[k];
     table.rows.push_back(share_row(
-        first.what, *runs, [k](const Answers& run) { return run.tails[k].truth; }, first.expected));
+        first.what, runs, [k](const Answers& run) { return run.tails[k].truth; }, first.expected));
   }
   constexpr double kWithin = 5.0;  // [%]
-  for (std::size_t k = 0; k < runs->front().error.size(); ++k) {
+  for (std::size_t k = 0; k < runs.front().error.size(); ++k) {
     Vector error(options.runs);
-    for (Index i = 0; i < error.size(); ++i) error[i] = (*runs)[static_cast<std::size_t>(i)].error[k].second;
-    table.rows.push_back(bias_row(runs->front().error[k].first + ", off by", error, kWithin, "%"));
+    for (Index i = 0; i < error.size(); ++i) error[i] = runs[static_cast<std::size_t>(i)].error[k].second;
+    table.rows.push_back(bias_row(runs.front().error[k].first + ", off by", error, kWithin, "%"));
   }
-  for (std::size_t k = 0; k < runs->front().false_positive.size(); ++k) {
+  for (std::size_t k = 0; k < runs.front().false_positive.size(); ++k) {
     table.rows.push_back(share_row(
-        runs->front().false_positive[k].first + ": called different by chance, at 5 %", *runs,
+        runs.front().false_positive[k].first + ": called different by chance, at 5 %", runs,
         [k](const Answers& run) { return run.false_positive[k].second; }, kFalsePositives));
   }
   table.notes = {

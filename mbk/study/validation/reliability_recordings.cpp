@@ -119,23 +119,20 @@ Result<std::vector<RecordedAnswer>> answers_of(std::span<const SimulatedTrial> t
 Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) {
   using namespace recorded_reliability;
   if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 1 or more");
-  const auto scenarios = ready("relaxed_sinusoidal");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  laboratory::Scenario scenario = scenarios->front();
+  const auto scenarios = MBK_TRY(ready("relaxed_sinusoidal"));
+  laboratory::Scenario scenario = scenarios.front();
   std::get<perturbation::MultisinePlan>(scenario.perturbation.kind).duration = kRecordedSeconds;
   std::vector<TrialPlan> plans;
   for (int run = 0; run < options.runs; ++run) {
     const auto of_study = trials_of_study(scenario, options.seed + static_cast<std::uint64_t>(run));
     plans.insert(plans.end(), of_study.begin(), of_study.end());
   }
-  const auto trials = run_trials(plans, options);
-  if (!trials) return tl::unexpected(trials.error());
+  const auto trials = MBK_TRY(run_trials(plans, options));
   constexpr std::size_t kOfStudy = std::size_t{kRecordedPeople} * kRecordedSessions;
   std::vector<std::vector<RecordedAnswer>> runs;
   for (int run = 0; run < options.runs; ++run) {
-    auto answers = answers_of(std::span(*trials).subspan(static_cast<std::size_t>(run) * kOfStudy, kOfStudy));
-    if (!answers) return tl::unexpected(answers.error());
-    runs.push_back(std::move(*answers));
+    auto answers = MBK_TRY(answers_of(std::span(trials).subspan(static_cast<std::size_t>(run) * kOfStudy, kOfStudy)));
+    runs.push_back(std::move(answers));
   }
 
   ValidationTable table;
@@ -145,7 +142,7 @@ Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) 
   table.runs = options.runs;
   table.seed = options.seed;
   table.rows.push_back(share_row(
-      "recordings that are usable", *trials, [](const SimulatedTrial& trial) { return trial.identification.usable; },
+      "recordings that are usable", trials, [](const SimulatedTrial& trial) { return trial.identification.usable; },
       kNearlyAlways));
   const auto all = [&](std::size_t outcome, const auto& number) {
     Vector values(options.runs);

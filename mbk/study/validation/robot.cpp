@@ -27,15 +27,11 @@ struct Run {
 using Runs = std::vector<Run>;
 
 Result<Run> perform(std::uint64_t seed) {
-  const auto recording = free_motion(seed);
-  if (!recording) return tl::unexpected(recording.error());
-  auto right = identified_robot(*recording, FrictionModel::full);
-  if (!right) return tl::unexpected(right.error());
-  auto printed = identified_robot(*recording, FrictionModel::full, PlanarMechanism::Coriolis::printed);
-  if (!printed) return tl::unexpected(printed.error());
-  auto without = identified_robot(*recording, FrictionModel::viscous);
-  if (!without) return tl::unexpected(without.error());
-  return Run{std::move(*right), std::move(*printed), std::move(*without)};
+  const auto recording = MBK_TRY(free_motion(seed));
+  auto right = MBK_TRY(identified_robot(recording, FrictionModel::full));
+  auto printed = MBK_TRY(identified_robot(recording, FrictionModel::full, PlanarMechanism::Coriolis::printed));
+  auto without = MBK_TRY(identified_robot(recording, FrictionModel::viscous));
+  return Run{std::move(right), std::move(printed), std::move(without)};
 }
 
 Vector of_runs(const Runs& runs, const std::function<double(const Run&)>& value) {
@@ -139,14 +135,11 @@ void add_without_coulomb(const Runs& runs, const Vector& truth, ValidationTable&
 Result<ValidationTable> robot_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
   if (options.elsewhere) return only_here();
-  const auto ran = each_run_here(options, options.runs,
-                                 [&](int i) { return perform(options.seed + static_cast<std::uint64_t>(i)); });
-  if (!ran) return tl::unexpected(ran.error());
-  const Runs& runs = *ran;
-  const auto truth = true_parameters(FrictionModel::full);
-  if (!truth) return tl::unexpected(truth.error());
-  const auto viscous_truth = true_parameters(FrictionModel::viscous);
-  if (!viscous_truth) return tl::unexpected(viscous_truth.error());
+  const auto ran = MBK_TRY(each_run_here(options, options.runs,
+                                         [&](int i) { return perform(options.seed + static_cast<std::uint64_t>(i)); }));
+  const Runs& runs = ran;
+  const auto truth = MBK_TRY(true_parameters(FrictionModel::full));
+  const auto viscous_truth = MBK_TRY(true_parameters(FrictionModel::viscous));
 
   ValidationTable table;
   table.study = "robot";
@@ -154,10 +147,10 @@ Result<ValidationTable> robot_study(const StudyOptions& options) {
   table.unit = "value";
   table.runs = options.runs;
   table.seed = options.seed;
-  add_coefficients(runs, *truth, table);
+  add_coefficients(runs, truth, table);
   add_fit(runs, table);
-  add_printed_sign(runs, *truth, table);
-  add_without_coulomb(runs, *viscous_truth, table);
+  add_printed_sign(runs, truth, table);
+  add_without_coulomb(runs, viscous_truth, table);
   table.notes.emplace_back(
       "The robot of table A.1 with 0.03 N·m of Coulomb friction at each joint, in the closed loop of the laboratory "
       "(ready scenario free_motion); each run has other phases and other noise.");

@@ -10,9 +10,8 @@ namespace mbk::validation {
 namespace {
 
 Result<laboratory::Scenario> free_motion_scenario() {
-  auto scenarios = ready("free_motion");
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  return scenarios->front();
+  auto scenarios = MBK_TRY(ready("free_motion"));
+  return scenarios.front();
 }
 
 }  // namespace
@@ -35,20 +34,17 @@ void measure_currents(laboratory::Scenario& scenario) {
 }
 
 Result<Recording> free_motion(std::uint64_t seed, const std::optional<robot::Capstan>& capstan) {
-  auto scenario = free_motion_scenario();
-  if (!scenario) return tl::unexpected(scenario.error());
-  scenario->seed = seed;
-  planar(*scenario).robot.capstan = capstan;
-  measure_currents(*scenario);
-  auto performance = laboratory::simulate(*scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  return std::move(performance->recording);
+  auto scenario = MBK_TRY(free_motion_scenario());
+  scenario.seed = seed;
+  planar(scenario).robot.capstan = capstan;
+  measure_currents(scenario);
+  auto performance = MBK_TRY(laboratory::simulate(scenario));
+  return std::move(performance.recording);
 }
 
 Result<Vector> true_parameters(FrictionModel friction) {
-  auto scenario = free_motion_scenario();
-  if (!scenario) return tl::unexpected(scenario.error());
-  const robot::PlanarRobot& robot = planar(*scenario).robot.robot;
+  auto scenario = MBK_TRY(free_motion_scenario());
+  const robot::PlanarRobot& robot = planar(scenario).robot.robot;
   const robot::DriveTerms terms = drive_terms(friction);
   const int per_joint = terms.per_joint();
   Vector truth = Vector::Zero(3 + 2 * per_joint);
@@ -64,10 +60,9 @@ Result<Vector> true_parameters(FrictionModel friction) {
 
 Result<RobotIdentification> identified_robot(const Recording& recording, FrictionModel friction,
                                              robot::PlanarMechanism::Coriolis coriolis) {
-  auto scenario = free_motion_scenario();
-  if (!scenario) return tl::unexpected(scenario.error());
+  auto scenario = MBK_TRY(free_motion_scenario());
   robot::PlanarMechanism::Options mechanism;
-  mechanism.geometry = planar(*scenario).robot.robot.geometry;
+  mechanism.geometry = planar(scenario).robot.robot.geometry;
   mechanism.coriolis = coriolis;
   robot::DynamicModel model{std::make_shared<robot::PlanarMechanism>(mechanism), drive_terms(friction)};
   model.parameters = Vector::Zero(static_cast<Index>(model.coefficients().size()));

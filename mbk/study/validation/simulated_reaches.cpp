@@ -65,13 +65,12 @@ explore::RecordedReach undisturbed_reach(const SimulatedReaches& hand, const Way
 /// The servo takes over at the trigger; what differs from the undisturbed way is differenced once and twice.
 Result<void> displace(const SimulatedReaches& hand, const explore::ReachPrediction& prediction, const Vector& direction,
                       explore::RecordedReach& reach) {
-  const auto predicted = prediction.predict(reach);
-  if (!predicted) return tl::unexpected(predicted.error());
+  const auto predicted = MBK_TRY(prediction.predict(reach));
   const Index rows = std::min(prediction.future_rows(), reach.position.rows() - reach.trigger);
   Matrix away = Matrix::Zero(rows, 2);
   for (Index i = 0; i < rows; ++i) {
     const double t = static_cast<double>(i) * kSample;
-    away.row(i) = predicted->position.row(i) - reach.position.row(reach.trigger + i) +
+    away.row(i) = predicted.position.row(i) - reach.position.row(reach.trigger + i) +
                   hand.amplitude * displacement_shape(hand, t) * direction.transpose();
   }
   for (Index i = 0; i < rows; ++i) {
@@ -100,14 +99,13 @@ Result<ReachesOfOneRun> simulate_reaches(const SimulatedReaches& hand, std::uint
     run.undisturbed.push_back(undisturbed_reach(hand, way, random));
   }
   const auto prediction =
-      explore::ReachPrediction::create(run.undisturbed, kSample, {.future = hand.out + hand.hold + hand.back});
-  if (!prediction) return tl::unexpected(prediction.error());
+      MBK_TRY(explore::ReachPrediction::create(run.undisturbed, kSample, {.future = hand.out + hand.hold + hand.back}));
   for (int i = 0; i < hand.directions * hand.repetitions; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i % hand.directions) / hand.directions;
     const Vector direction{{std::cos(angle), std::sin(angle)}};
     const Way way(hand, random);
     explore::RecordedReach reach = undisturbed_reach(hand, way, random);
-    if (auto ok = displace(hand, *prediction, direction, reach); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(displace(hand, prediction, direction, reach));
     run.displaced.push_back({std::move(reach), hand.amplitude * direction});
   }
   return run;

@@ -15,16 +15,14 @@ double handle_mass(const laboratory::Scenario& scenario) {
 }
 
 Result<SimulatedTrial> run(const TrialPlan& plan) {
-  const auto performance = laboratory::simulate(plan.scenario);
-  if (!performance) return tl::unexpected(performance.error());
-  SimulatedTrial trial{performance->energy_absorbed, performance->truth, {}};
+  const auto performance = MBK_TRY(laboratory::simulate(plan.scenario));
+  SimulatedTrial trial{performance.energy_absorbed, performance.truth, {}};
   if (!plan.measurement) return trial;
   measurement::Options options = *plan.measurement;
   options.passivity = false;
   options.identify.handle_mass = handle_mass(plan.scenario);
-  auto measured = measurement::measure({&performance->recording, 1}, options);
-  if (!measured) return tl::unexpected(measured.error());
-  trial.identification = std::move(measured->identification);
+  auto measured = MBK_TRY(measurement::measure({&performance.recording, 1}, options));
+  trial.identification = std::move(measured.identification);
   return trial;
 }
 
@@ -37,10 +35,9 @@ Result<std::vector<laboratory::Scenario>> ready(std::string_view name) {
 }
 
 Result<laboratory::Scenario> with_limb(laboratory::Scenario scenario, int number) {
-  const auto limb = participant::participant_limb(number);
-  if (!limb) return tl::unexpected(limb.error());
+  const auto limb = MBK_TRY(participant::participant_limb(number));
   auto& arm = std::get<participant::ArmOptions>(std::get<laboratory::PlanarTrial>(scenario.trial).load);
-  std::get<participant::TwoLinkArm::Options>(arm.limb).joints = limb->joints;
+  std::get<participant::TwoLinkArm::Options>(arm.limb).joints = limb.joints;
   return scenario;
 }
 

@@ -59,9 +59,8 @@ ChartSeries series_of(const char* name, const NamedErrors& all, const std::strin
 }
 
 Result<void> add_file(const RigFile& file, const StudyOptions& options, std::vector<TrialPlan>& plans) {
-  const auto scenarios = ready(file.file);
-  if (!scenarios) return tl::unexpected(scenarios.error());
-  for (const laboratory::Scenario& scenario : *scenarios) {
+  const auto scenarios = MBK_TRY(ready(file.file));
+  for (const laboratory::Scenario& scenario : scenarios) {
     for (int run = 0; run < options.runs; ++run) {
       plans.push_back({scenario, mass_and_springs()});
       plans.back().scenario.seed = scenario.seed + 1000 * (options.seed + static_cast<std::uint64_t>(run));
@@ -76,10 +75,9 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
   std::vector<TrialPlan> plans;
   for (const RigFile& file : kFiles) {
-    if (auto ok = add_file(file, options, plans); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(add_file(file, options, plans));
   }
-  const auto trials = run_trials(plans, options);
-  if (!trials) return tl::unexpected(trials.error());
+  const auto trials = MBK_TRY(run_trials(plans, options));
 
   ValidationTable table;
   table.study = "springs";
@@ -100,8 +98,8 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
     for (std::size_t i = 0; i < plans.size(); ++i) {
       if (plans[i].scenario.protocol != file.file) continue;
       const auto [stiffness, mass] = rig_names(plans[i].scenario.name);
-      const impedance::Model& truth = (*trials)[i].truth;
-      const impedance::Model& model = (*trials)[i].identification.model;
+      const impedance::Model& truth = trials[i].truth;
+      const impedance::Model& model = trials[i].identification.model;
       const std::pair<const char*, std::pair<Index, Index>> elements[] = {
           {"k_xx", {0, 0}}, {"k_yy", {1, 1}}, {"k_s", {0, 1}}};
       for (const auto& [name, at] : elements) {

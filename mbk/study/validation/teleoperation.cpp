@@ -104,9 +104,8 @@ struct Case {
 Result<laboratory::MotionVerdict> simulated(const TeleoperationSetup& setup, const std::array<Termination, 2>& ports) {
   MassSpringDamper hand(ports[0].mass, ports[0].damping, ports[0].stiffness),
       environment(ports[1].mass, ports[1].damping, ports[1].stiffness);
-  const auto motion = laboratory::simulate(setup, hand, environment);
-  if (!motion) return tl::unexpected(motion.error());
-  laboratory::MotionVerdict verdict = laboratory::judge(*motion);
+  const auto motion = MBK_TRY(laboratory::simulate(setup, hand, environment));
+  laboratory::MotionVerdict verdict = laboratory::judge(motion);
   return verdict;
 }
 
@@ -120,15 +119,13 @@ Result<std::optional<WorstTerminations>> hardest(const Teleoperator& design, dou
   constexpr double kMore = 0.2;  // [N·s/m]
   constexpr int kPoints = 500;
   const FrequencyGrid grid{RadPerSec(1.0), laboratory::highest_shown(kSamplingPeriod), kPoints};
-  const auto largest = teleop::largest_shortage_on_grid(design, grid, kOperator);
-  if (!largest) return tl::unexpected(largest.error());
-  const double beyond = std::max(a, largest->value()) + kMore;
+  const auto largest = MBK_TRY(teleop::largest_shortage_on_grid(design, grid, kOperator));
+  const double beyond = std::max(a, largest.value()) + kMore;
   const auto exact = lti::exact(beyond);
   if (!exact) return std::nullopt;
-  const auto too_much = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kSamplingPeriod);
-  if (!too_much) return tl::unexpected(too_much.error());
+  const auto too_much = MBK_TRY(teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kSamplingPeriod));
   auto worst = teleop::worst_terminations(
-      design, teleop::violated_frequencies(*too_much, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod,
+      design, teleop::violated_frequencies(too_much, laboratory::highest_shown(kSamplingPeriod)), kSamplingPeriod,
       kOperator, beyond);
   if (worst) worst->at_port[0].damping += beyond - a;
   return worst;
@@ -163,24 +160,22 @@ Result<void> try_stable(const TeleoperationSetup& setup, double a, Random& rando
   for (int i = 0; i < kPairs; ++i) {
     const auto pair = random_pair(random, a);
     ++result.simulated;
-    if (auto ok = try_pair(setup, pair, result.grew, result.grew_sampled); !ok) return ok;
+    MBK_TRY(try_pair(setup, pair, result.grew, result.grew_sampled));
     TeleoperationSetup losing = setup;
     losing.line.loss = 0.1;
     losing.line.jitter = 5e-3;
-    const auto late = simulated(losing, pair);
-    if (!late) return tl::unexpected(late.error());
+    const auto late = MBK_TRY(simulated(losing, pair));
     ++result.late;
-    result.grew_late += grows(*late) ? 1 : 0;
+    result.grew_late += grows(late) ? 1 : 0;
   }
-  const auto hard = hardest(setup.teleoperator, a);
-  if (!hard) return tl::unexpected(hard.error());
-  if (!*hard) return {};
+  const auto hard = MBK_TRY(hardest(setup.teleoperator, a));
+  if (!hard) return {};
   ++result.hard;
   // a quarter of the time must hold several of its turns
   constexpr double kTurns = 20.0;
   TeleoperationSetup longer = setup;
-  longer.duration = std::max(setup.duration, kTurns * 2.0 * std::numbers::pi / (*hard)->frequency.value);
-  return try_pair(longer, (*hard)->at_port, result.grew_hard, result.grew_sampled);
+  longer.duration = std::max(setup.duration, kTurns * 2.0 * std::numbers::pi / hard->frequency.value);
+  return try_pair(longer, hard->at_port, result.grew_hard, result.grew_sampled);
 }
 
 Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStability& stability, double a) {
@@ -191,40 +186,34 @@ Result<std::optional<Shown>> show(TeleoperationSetup setup, const AbsoluteStabil
   constexpr double kSlowest = 0.16;  // [1/s]
   if (!worst || worst->growth < kSlowest) return std::nullopt;
   setup.duration = laboratory::duration_to_show(*worst);
-  const auto verdict = simulated(setup, worst->at_port);
-  if (!verdict) return tl::unexpected(verdict.error());
-  Shown shown{grows(*verdict), worst->frequency.value, verdict->frequency.value, worst->growth, verdict->growth, {}};
+  const auto verdict = MBK_TRY(simulated(setup, worst->at_port));
+  Shown shown{grows(verdict), worst->frequency.value, verdict.frequency.value, worst->growth, verdict.growth, {}};
   if (a == 0.0) {
     setup.passivity_controller = 0.5 * lti::to_double(setup.teleoperator.values.at("master.m")) / kSamplingPeriod;
-    const auto controlled = simulated(setup, worst->at_port);
-    if (!controlled) return tl::unexpected(controlled.error());
-    shown.grew_with_controller = grows(*controlled);
+    const auto controlled = MBK_TRY(simulated(setup, worst->at_port));
+    shown.grew_with_controller = grows(controlled);
   }
   return std::optional(shown);
 }
 
 Result<Case> perform(const Teleoperator& design, double a, Random& random) {
-  const auto exact = lti::exact(a);
-  if (!exact) return tl::unexpected(exact.error());
-  const auto network = design.equations().with_shortage(kOperator, teleop::Polynomial{*exact}).at(0);
-  if (!network) return tl::unexpected(network.error());
-  const AbsoluteStability decided = teleop::llewellyn(*network);
+  const auto exact = MBK_TRY(lti::exact(a));
+  const auto network = MBK_TRY(design.equations().with_shortage(kOperator, teleop::Polynomial{exact}).at(0));
+  const AbsoluteStability decided = teleop::llewellyn(network);
   constexpr int kPoints = 1000;
   const FrequencyGrid grid{RadPerSec(1e-2), RadPerSec(std::numbers::pi / kSamplingPeriod), kPoints};
-  const auto sampled = teleop::llewellyn_on_grid(design, grid, kOperator, *exact, kSamplingPeriod);
-  if (!sampled) return tl::unexpected(sampled.error());
+  const auto sampled = MBK_TRY(teleop::llewellyn_on_grid(design, grid, kOperator, exact, kSamplingPeriod));
 
-  Case result{decided.holds(), sampled->holds()};
+  Case result{decided.holds(), sampled.holds()};
   TeleoperationSetup setup;
   setup.teleoperator = design;
   setup.sample_time = kSamplingPeriod;
   if (result.stable && result.stable_sampled) {
-    if (auto ok = try_stable(setup, a, random, result); !ok) return tl::unexpected(ok.error());
+    MBK_TRY(try_stable(setup, a, random, result));
     return result;
   }
-  auto shown = show(setup, result.stable ? *sampled : decided, a);
-  if (!shown) return tl::unexpected(shown.error());
-  result.shown = *shown;
+  auto shown = MBK_TRY(show(setup, result.stable ? sampled : decided, a));
+  result.shown = shown;
   return result;
 }
 
@@ -338,19 +327,17 @@ Result<double> wall_energy(bool with_controller) {
   device.robot.inertia.mass = kMass;
   device.robot.friction[0].viscous = kDamping;
   device.steps_per_tick = 4;
-  auto loop = laboratory::ClosedLoop<1>::create(device, AxisVector<1>(kStart), hand);
-  if (!loop) return tl::unexpected(loop.error());
-  auto controller = control::SeriesPassivityController::create(kSamplingPeriod, 0.5 * kMass / kSamplingPeriod);
-  if (!controller) return tl::unexpected(controller.error());
+  auto loop = MBK_TRY(laboratory::ClosedLoop<1>::create(device, AxisVector<1>(kStart), hand));
+  auto controller = MBK_TRY(control::SeriesPassivityController::create(kSamplingPeriod, 0.5 * kMass / kSamplingPeriod));
   control::PassivityObserver observer;
   double lowest = 0.0;
-  while (loop->time() <= kDuration) {
-    const double x = loop->motor_angle()[0], asked = x > 0.0 ? kWall * x : 0.0;
-    const double force = with_controller ? controller->step(x, asked) : asked;
+  while (loop.time() <= kDuration) {
+    const double x = loop.motor_angle()[0], asked = x > 0.0 ? kWall * x : 0.0;
+    const double force = with_controller ? controller.step(x, asked) : asked;
     observer.step(x, force);
     lowest = std::min(lowest, observer.energy());
-    loop->hold(AxisVector<1>(-force), kSamplingPeriod);
-    loop->advance();
+    loop.hold(AxisVector<1>(-force), kSamplingPeriod);
+    loop.advance();
   }
   return lowest;
 }
@@ -358,11 +345,10 @@ Result<double> wall_energy(bool with_controller) {
 Result<void> add_wall(ValidationTable& table) {
   constexpr double kLastDigit = 0.0005;  // [J]
   for (const auto& [with, known] : {std::pair{false, -0.237}, {true, -0.007}}) {
-    const auto energy = wall_energy(with);
-    if (!energy) return tl::unexpected(energy.error());
+    const auto energy = MBK_TRY(wall_energy(with));
     table.rows.push_back(exact_row(
         fmt::format("wall of 30 kN/m at 1 kHz, lowest energy {} passivity controller", with ? "with" : "without"),
-        *energy, Range{known - kLastDigit, known + kLastDigit}, "J"));
+        energy, Range{known - kLastDigit, known + kLastDigit}, "J"));
   }
   return {};
 }
@@ -389,22 +375,20 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
   constexpr int kDesigns = static_cast<int>(kArchitectures.size());
   const int designs = kDesigns * options.runs;
-  const auto ran = each_run(options, designs, [&](int i) -> Result<Cases> {
+  const auto ran = MBK_TRY(each_run(options, designs, [&](int i) -> Result<Cases> {
     Random random(options.seed, static_cast<std::uint32_t>(i));
     const Teleoperator design =
         random_design(kArchitectures[static_cast<std::size_t>(i) % kArchitectures.size()], random);
     Cases of_design;
     for (const auto& with : kOperators) {
       const double a = lti::to_double(rounded(random.uniform(with.lowest, with.highest)));
-      auto one = perform(design, a, random);
-      if (!one) return tl::unexpected(one.error());
-      of_design.push_back(*one);
+      auto one = MBK_TRY(perform(design, a, random));
+      of_design.push_back(one);
     }
     return of_design;
-  });
-  if (!ran) return tl::unexpected(ran.error());
+  }));
   std::vector<Cases> of_operators(kOperators.size());
-  for (const Cases& of_design : *ran) {
+  for (const Cases& of_design : ran) {
     for (std::size_t k = 0; k < kOperators.size(); ++k) of_operators[k].push_back(of_design[k]);
   }
 
@@ -416,7 +400,7 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
   table.seed = options.seed;
   for (std::size_t k = 0; k < kOperators.size(); ++k) add_rows(kOperators[k], of_operators[k], table);
   add_controlled(of_operators.front(), table);
-  if (auto ok = add_wall(table); !ok) return tl::unexpected(ok.error());
+  MBK_TRY(add_wall(table));
   table.charts.push_back(growth_chart(of_operators));
   table.notes.emplace_back(
       "Random designs of position–position, position–force, three and four channels, half of them with 1 to 20 ms of "

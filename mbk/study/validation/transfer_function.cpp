@@ -69,11 +69,10 @@ Result<Estimate> estimated(std::uint64_t seed, Record kind) {
   options.zeros = 1;
   if (kind == Record::straight_lines) options.hold = InputHold::first;  // its steps look like those of a held input
   options.find_delay = kind == Record::held_and_delayed;
-  const auto found = identify::identify_transfer_function({noisy_record(seed, kind)}, {}, options);
-  if (!found) return tl::unexpected(found.error());
-  Estimate made{Vector(kTruth.size()), found->covariance.diagonal().cwiseSqrt(), found->model.delay,
-                found->delay_standard_error.value_or(0.0), !found->residuals.independent()};
-  made.theta << found->model.denominator.head(4), found->model.numerator;
+  const auto found = MBK_TRY(identify::identify_transfer_function({noisy_record(seed, kind)}, {}, options));
+  Estimate made{Vector(kTruth.size()), found.covariance.diagonal().cwiseSqrt(), found.model.delay,
+                found.delay_standard_error.value_or(0.0), !found.residuals.independent()};
+  made.theta << found.model.denominator.head(4), found.model.numerator;
   return made;
 }
 
@@ -87,17 +86,15 @@ Result<Run> identified_run(std::uint64_t seed) {
   for (const auto& [kind, to] :
        {std::pair{Record::straight_lines, &run.straight_lines}, std::pair{Record::held, &run.held},
         std::pair{Record::held_and_delayed, &run.delayed}}) {
-    auto made = estimated(seed, kind);
-    if (!made) return tl::unexpected(made.error());
-    *to = std::move(*made);
+    *to = MBK_TRY(estimated(seed, kind));
   }
   identify::TransferFunctionOptions options;
   options.threads = 1;
   options.hold = InputHold::first;
   options.orders = {{2, 0}, {2, 1}, {3, 1}, {3, 2}, {4, 0}, {4, 1}, {4, 2}, {5, 1}};
-  const auto chosen = identify::identify_transfer_function({noisy_record(seed, Record::straight_lines)}, {}, options);
-  if (!chosen) return tl::unexpected(chosen.error());
-  run.right_order = chosen->model.poles() == 4 && chosen->model.zeros() == 1;
+  const auto chosen =
+      MBK_TRY(identify::identify_transfer_function({noisy_record(seed, Record::straight_lines)}, {}, options));
+  run.right_order = chosen.model.poles() == 4 && chosen.model.zeros() == 1;
   return run;
 }
 
@@ -111,9 +108,8 @@ ValidationRow coverage_row(std::string quantity, const std::vector<Run>& runs, E
 }  // namespace
 
 Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
-  const auto ran = seeded_runs(options, identified_run);
-  if (!ran) return tl::unexpected(ran.error());
-  const std::vector<Run>& runs = *ran;
+  const auto ran = MBK_TRY(seeded_runs(options, identified_run));
+  const std::vector<Run>& runs = ran;
 
   ValidationTable table;
   table.study = "transfer-function";

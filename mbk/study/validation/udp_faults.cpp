@@ -201,28 +201,26 @@ class Runner {
     } else if (job.run % 2 == 1) {
       command.insert(command.end(), {"--version", "2"});
     }
-    auto robot = batch::ChildProcess::start(command, file("-robot.log"));
-    if (!robot) return tl::unexpected(robot.error());
+    auto robot = MBK_TRY(batch::ChildProcess::start(command, file("-robot.log")));
     if (!wait_until([&] { return port_of(file("-robot.log")).has_value(); }, kPatience)) {
       return bad_data("the robot does not listen: " + text_of(file("-robot.log")), "", command.front());
     }
     std::ofstream(file(".toml")) << experiment << "[device]\nkind = \"udp\"\nforce_latency_ticks = 1\nport = "
                                  << port_of(file("-robot.log")).value_or(0) << "\n";
-    auto mbk = batch::ChildProcess::start({options_->program.string(), "run", file(".toml").string(), "--no-measure",
-                                           "--quiet", "--out", file(".h5").string()},
-                                          file(".log"));
-    if (!mbk) return tl::unexpected(mbk.error());
+    auto mbk = MBK_TRY(batch::ChildProcess::start({options_->program.string(), "run", file(".toml").string(),
+                                                   "--no-measure", "--quiet", "--out", file(".h5").string()},
+                                                  file(".log")));
     if (key) {
       // Somebody stops the trial.
       wait_until([&] { return read_truth(file("-robot.log")).motors_on >= 0; }, kPatience);
       std::this_thread::sleep_for(std::chrono::duration<double>(std::max(moment, kMovingIn + 0.1)));
-      mbk->send(SIGINT);
+      mbk.send(SIGINT);
     }
-    const auto code = mbk->wait(kTrial - kPerturbed + perturbed + kPatience);
+    const auto code = mbk.wait(kTrial - kPerturbed + perturbed + kPatience);
     // What the motors do once nobody is there any more.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    robot->send(SIGTERM);
-    if (!robot->wait(kPatience)) return bad_data("the robot does not end", "", command.front());
+    robot.send(SIGTERM);
+    if (!robot.wait(kPatience)) return bad_data("the robot does not end", "", command.front());
 
     FaultOutcome outcome;
     outcome.truth = read_truth(file("-robot.log"));
@@ -453,39 +451,35 @@ Result<std::vector<const UdpFaultKind*>> kinds_of(const UdpFaultsOptions& option
 Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
   const int runs = options.study.runs;
   if (runs < 1) return bad_usage(fmt::format("{} runs show nothing", runs), "pass --runs 20");
-  const auto kinds = kinds_of(options);
-  if (!kinds) return tl::unexpected(kinds.error());
-  const auto folder = TemporaryFolder::create("mbk-udp-faults");
-  if (!folder) return tl::unexpected(folder.error());
+  const auto kinds = MBK_TRY(kinds_of(options));
+  const auto folder = MBK_TRY(TemporaryFolder::create("mbk-udp-faults"));
 
   std::vector<Job> jobs;
-  for (const UdpFaultKind* kind : *kinds) {
+  for (const UdpFaultKind* kind : kinds) {
     for (int run = 0; run < runs; ++run) jobs.push_back({kind, kTrialKinds[static_cast<std::size_t>(run % 2)], run});
   }
   for (int run = 0; options.faults.empty() && run < kFaultFreeTrials * runs; ++run) {
     jobs.push_back({nullptr, kTrialKinds[static_cast<std::size_t>(run / 2 % 2)], run});
   }
-  const Runner runner(options, folder->path());
+  const Runner runner(options, folder.path());
   std::vector<std::vector<FaultOutcome>> outcomes(jobs.size());  // all attempts
   const auto count = static_cast<int>(jobs.size());
   int done = 0;
-  const auto ran = numeric::parallel_for(
+  MBK_TRY(numeric::parallel_for(
       count, options.study.threads == 0 ? kSideBySide : options.study.threads,
       [&](int i) -> Result<void> {
         const auto at = static_cast<std::size_t>(i);
         const Job& job = jobs[at];
         for (int attempt = 0; attempt < kAttempts; ++attempt) {
-          auto outcome = runner.perform(job, attempt * count + i);
-          if (!outcome) return tl::unexpected(outcome.error());
-          outcomes[at].push_back(std::move(*outcome));
+          auto outcome = MBK_TRY(runner.perform(job, attempt * count + i));
+          outcomes[at].push_back(std::move(outcome));
           if (job.kind == nullptr || verdict_of(job, outcomes[at].back()) != Verdict::stalled) break;
         }
         return {};
       },
       [&](int) {
         if (options.study.progress) options.study.progress(++done, count);
-      });
-  if (!ran) return tl::unexpected(ran.error());
+      }));
 
   ValidationTable table;
   table.study = "faults";

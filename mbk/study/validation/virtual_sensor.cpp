@@ -218,15 +218,14 @@ ChartSeries series_of(const Trials& trials, Force force, bool masses) {
 Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
   if (options.runs < 1) return no_runs(options.runs);
   if (options.elsewhere) return only_here();
-  const auto scenarios = ready("rig_table_5_1");
-  if (!scenarios) return tl::unexpected(scenarios.error());
+  const auto scenarios = MBK_TRY(ready("rig_table_5_1"));
 
   // Each run: a robot with rigid drives and all rigs, and one with elastic drives and the rigs of the middle mass.
   std::vector<std::pair<laboratory::Scenario, std::size_t>> plans;  // with the number of its robot
   const auto runs = static_cast<std::size_t>(options.runs);
   for (const bool elastic : {false, true}) {
     for (std::size_t run = 0; run < runs; ++run) {
-      for (const laboratory::Scenario& scenario : *scenarios) {
+      for (const laboratory::Scenario& scenario : scenarios) {
         if (elastic && rig_names(scenario.name).second != "M3") continue;
         auto& [plan, robot] = plans.emplace_back(scenario, elastic ? runs + run : run);
         plan.seed = scenario.seed + 1000 * (options.seed + run);
@@ -245,10 +244,9 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
       robots_count, options.threads,
       [&](int i) -> Result<void> {
         const bool elastic = i >= options.runs;
-        auto found = identify_robots(options.seed + static_cast<std::uint64_t>(i % options.runs),
-                                     elastic ? std::optional(robot::Capstan{}) : std::nullopt);
-        if (!found) return tl::unexpected(found.error());
-        robots[static_cast<std::size_t>(i)] = std::move(*found);
+        auto found = MBK_TRY(identify_robots(options.seed + static_cast<std::uint64_t>(i % options.runs),
+                                             elastic ? std::optional(robot::Capstan{}) : std::nullopt));
+        robots[static_cast<std::size_t>(i)] = std::move(found);
         return {};
       },
       count);
@@ -258,14 +256,13 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
       trials_count, options.threads,
       [&](int i) -> Result<void> {
         const auto& [scenario, robot] = plans[static_cast<std::size_t>(i)];
-        auto trial = perform(scenario, robots[robot], {});
-        if (!trial) return tl::unexpected(trial.error());
-        all[static_cast<std::size_t>(i)] = std::move(*trial);
+        auto trial = MBK_TRY(perform(scenario, robots[robot], {}));
+        all[static_cast<std::size_t>(i)] = std::move(trial);
         return {};
       },
       count);
   if (!ran) return tl::unexpected(ran.error());
-  const auto rigid = static_cast<std::ptrdiff_t>(runs * scenarios->size());
+  const auto rigid = static_cast<std::ptrdiff_t>(runs * scenarios.size());
   const Trials elastic(all.begin() + rigid, all.end());
   all.resize(static_cast<std::size_t>(rigid));
 

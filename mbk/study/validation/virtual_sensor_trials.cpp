@@ -47,13 +47,10 @@ Result<ForceOutcome> measured(const Recording& recording, Force force, const Rob
   preprocess::Options signals = options.preprocess;
   signals.cutoff = truth.preparation.cutoff;
   signals.every = truth.preparation.every;
-  const auto trial = prepare_with(recording, force, robots, std::move(signals));
-  if (!trial) return tl::unexpected(trial.error());
-  const auto rmse = force_rmse(*trial, truth);
-  if (!rmse) return tl::unexpected(rmse.error());
-  auto found = identify::identify_impedance({*trial}, options.identify);
-  if (!found) return tl::unexpected(found.error());
-  return ForceOutcome{std::move(found->model), std::move(found->standard_error), std::move(found->fit.vaf), *rmse};
+  const auto trial = MBK_TRY(prepare_with(recording, force, robots, std::move(signals)));
+  const auto rmse = MBK_TRY(force_rmse(trial, truth));
+  auto found = MBK_TRY(identify::identify_impedance({trial}, options.identify));
+  return ForceOutcome{std::move(found.model), std::move(found.standard_error), std::move(found.fit.vaf), rmse};
 }
 
 }  // namespace
@@ -66,13 +63,11 @@ RobotModel Robots::behind(Force force) const {
 }
 
 Result<Robots> identify_robots(std::uint64_t seed, const std::optional<robot::Capstan>& capstan) {
-  const auto recording = free_motion(seed, capstan);
-  if (!recording) return tl::unexpected(recording.error());
+  const auto recording = MBK_TRY(free_motion(seed, capstan));
   Robots robots;
   for (const FrictionModel friction : {FrictionModel::full, FrictionModel::viscous, FrictionModel::none}) {
-    auto found = identified_robot(*recording, friction);
-    if (!found) return tl::unexpected(found.error());
-    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(std::move(found->model));
+    auto found = MBK_TRY(identified_robot(recording, friction));
+    robots.models[static_cast<std::size_t>(friction)] = std::make_shared<robot::DynamicModel>(std::move(found.model));
   }
   return robots;
 }
@@ -83,9 +78,8 @@ Result<PreparedTrial> prepare_with(const Recording& recording, Force force, cons
   if (force == Force::sensor) return preprocess::prepare(recording, inspection, options);
   options.force_source = force == Force::observer ? ForceSource::observer : ForceSource::virtual_sensor;
   options.robot = robots.behind(force);
-  const auto computed = preprocess::virtual_force(recording, inspection, *options.robot, options);
-  if (!computed) return tl::unexpected(computed.error());
-  return preprocess::prepare(computed->recording, recording::inspect(computed->recording), options, &*computed);
+  const auto computed = MBK_TRY(preprocess::virtual_force(recording, inspection, *options.robot, options));
+  return preprocess::prepare(computed.recording, recording::inspect(computed.recording), options, &computed);
 }
 
 Result<ForceTrial> perform(const laboratory::Scenario& scenario, const Robots& robots,
@@ -93,19 +87,18 @@ Result<ForceTrial> perform(const laboratory::Scenario& scenario, const Robots& r
   std::vector<Eigen::Vector2d> force;
   laboratory::SimulateOptions watching;
   watching.watch = [&](const laboratory::TrueState<2>& state) { force.push_back(state.force_hand_on_robot); };
-  const auto performance = laboratory::simulate(scenario, watching);
-  if (!performance) return tl::unexpected(performance.error());
-  const Recording& recording = performance->recording;
+  const auto performance = MBK_TRY(laboratory::simulate(scenario, watching));
+  const Recording& recording = performance.recording;
   Matrix acted(static_cast<Index>(force.size()), 2);
   for (std::size_t k = 0; k < force.size(); ++k) acted.row(static_cast<Index>(k)) = force[k].transpose();
-  const auto truth = prepare_with(with_force(recording, acted), Force::sensor, robots, measurement.options.preprocess);
-  if (!truth) return tl::unexpected(truth.error());
+  const auto truth =
+      MBK_TRY(prepare_with(with_force(recording, acted), Force::sensor, robots, measurement.options.preprocess));
 
   ForceTrial trial;
   std::tie(trial.stiffness, trial.mass) = rig_names(scenario.name);
-  trial.truth = performance->truth;
+  trial.truth = performance.truth;
   for (const Force source : measurement.forces) {
-    auto outcome = measured(recording, source, robots, *truth, measurement.options);
+    auto outcome = measured(recording, source, robots, truth, measurement.options);
     if (!outcome) return tl::unexpected(outcome.error().in(scenario.name));
     trial.by[static_cast<std::size_t>(source)] = std::move(*outcome);
   }
