@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "apps/mbk/memory.h"
+#include "apps/mbk/terminal/memory.h"
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/filter_chain.h"
 #include "mbk/base/numeric/least_squares.h"

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/mbk/memory.h"
+#include "apps/mbk/terminal/memory.h"
 #include "mbk/measure/identify/prediction_error.h"
 #include "mbk/measure/identify/srivc.h"
 

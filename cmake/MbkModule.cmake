@@ -152,7 +152,7 @@ function(mbk_test name)
     mbk_precompile(${name} tests)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  # As in the program (apps/mbk/memory.cpp), memory that was freed serves again; to clear new pages took a quarter of some.
+  # As in the program (apps/mbk/terminal/memory.cpp), memory that was freed serves again; to clear new pages took a quarter of some.
   gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST
                        PROPERTIES TIMEOUT 300 ${labels} ENVIRONMENT ${MBK_KEEPS_MEMORY})
 endfunction()

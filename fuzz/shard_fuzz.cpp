@@ -10,8 +10,8 @@
 #include <iterator>
 
 #include "fuzz/fuzz.h"
-#include "mbk/study/batch/shard.h"
-#include "mbk/study/batch/value_bytes.h"
+#include "mbk/batch/shard.h"
+#include "mbk/batch/value_bytes.h"
 
 namespace mbk::fuzz {
 namespace {

@@ -12,7 +12,7 @@ import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 KEYWORDS = {"DEPENDS", "SOURCES", "PRIVATE_HEADERS", "LIBRARIES", "PUBLIC_LIBRARIES", "TEST_LIBRARIES"}
-MOST_WINGS = 10
+MOST_WINGS = 11
 FOLDERS = ("mbk", "apps", "bindings", "tests", "bench", "fuzz", "examples")
 
 

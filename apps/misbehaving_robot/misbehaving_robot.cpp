@@ -1,6 +1,6 @@
 // mbk_misbehaving_robot SCENARIO --fault NAME: a simulated robot behind UDP that misbehaves, and says what it truly
 // did.
-#include "mbk/study/validation/misbehaving_robot.h"
+#include "mbk/validate/misbehaving_robot.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,8 +15,8 @@
 #include "mbk/base/realtime/thread_setup.h"
 #include "mbk/simulate/laboratory/find_scenario.h"
 #include "mbk/simulate/laboratory/simulated_device.h"
-#include "mbk/study/validation/rule_breakers.h"
-#include "mbk/study/validation/udp_fault_kinds.h"
+#include "mbk/validate/rule_breakers.h"
+#include "mbk/validate/udp_fault_kinds.h"
 
 namespace {
 

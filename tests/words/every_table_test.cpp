@@ -38,8 +38,8 @@
 #include "mbk/model/trial/transfer_function.h"
 #include "mbk/model/trial/verdict.h"
 #include "mbk/model/trial/warning.h"
-#include "mbk/study/validation/fault_kinds.h"
-#include "mbk/study/validation/virtual_sensor_trials.h"
+#include "mbk/validate/fault_kinds.h"
+#include "mbk/validate/virtual_sensor_trials.h"
 #include "mbk/teleop/design.h"
 
 namespace mbk {

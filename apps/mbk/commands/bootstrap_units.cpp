@@ -1,0 +1,117 @@
+#include "apps/mbk/commands/bootstrap_units.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+
+#include "apps/mbk/terminal/progress.h"
+#include "apps/mbk/commands/study_jobs.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/files/contents/sha256.h"
+#include "mbk/batch/value_bytes.h"
+
+namespace mbk::app {
+namespace {
+
+using Draws = std::vector<std::vector<double>>;
+using Json = nlohmann::json;
+
+Json rows_json(const Matrix& matrix) {
+  Json rows = Json::array();
+  for (Index i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Matrix matrix_from(const Json& rows) {
+  Matrix matrix(static_cast<Index>(rows.size()), rows.empty() ? 0 : static_cast<Index>(rows.front().size()));
+  for (Index i = 0; i < matrix.rows(); ++i) {
+    const Json& row = rows.at(static_cast<std::size_t>(i));
+    for (Index j = 0; j < matrix.cols(); ++j) matrix(i, j) = row.at(static_cast<std::size_t>(j)).get<double>();
+  }
+  return matrix;
+}
+
+Json specification_of(const Bootstrap& bootstrap) {
+  Json tables = Json::array();
+  for (const statistics::PeopleTable& table : bootstrap.tables) {
+    Json one = {{"first", rows_json(table.first)}, {"second", rows_json(table.second)}};
+    if (table.pairing) one["pairing"] = word_of(*table.pairing);
+    tables.push_back(std::move(one));
+  }
+  return {{"seed", bootstrap.seed}, {"draws", bootstrap.draws}, {"tables", std::move(tables)}};
+}
+
+batch::UnitFunction units_of(std::vector<statistics::PeopleTable> tables, std::uint64_t seed) {
+  return [tables = std::move(tables), seed](std::int64_t number, const std::string& /*key*/) -> Result<std::string> {
+    batch::ValueWriter writer;
+    writer.put(statistics::bootstrap_draw(tables, seed, static_cast<int>(number)));
+    return writer.take();
+  };
+}
+
+}  // namespace
+
+Result<Draws> draws_here(const Bootstrap& bootstrap, bool quiet) {
+  Draws draws(static_cast<std::size_t>(bootstrap.draws));
+  Progress progress(quiet, "resampling: ");
+  int done = 0;
+  MBK_TRY(numeric::parallel_for(
+      bootstrap.draws, 0,
+      [&](int k) -> Result<void> {
+        draws[static_cast<std::size_t>(k)] = statistics::bootstrap_draw(bootstrap.tables, bootstrap.seed, k);
+        return {};
+      },
+      [&](int /*k*/) { progress.count(++done, bootstrap.draws); }));
+  return draws;
+}
+
+Result<Draws> draws_elsewhere(const Bootstrap& bootstrap, const EngineArguments& engine,
+                              const std::filesystem::path& study, bool quiet, std::optional<int>& code) {
+  Request request{std::string(kBootstrapKind), specification_of(bootstrap).dump()};
+  request.title = fmt::format("mbk study summary --bootstrap {} --seed {}", bootstrap.draws, bootstrap.seed);
+  for (int k = 0; k < bootstrap.draws; ++k) request.keys.push_back(std::to_string(k));
+  request.weights.assign(request.keys.size(), 1.0);
+  request.compute = units_of(bootstrap.tables, bootstrap.seed);
+  constexpr std::size_t kDigits = 12;
+  const std::string sum = recording::sha256(std::as_bytes(std::span(request.specification)));
+  request.folder = study / "jobs" / fmt::format("{}-{}", kBootstrapKind, sum.substr(0, kDigits));
+  const auto carried = carry_out(engine, request, quiet);
+  if (!carried) return tl::unexpected(carried.error());
+  if (carried->code) {
+    code = carried->code;
+    return bad_data("some draws are missing");
+  }
+  const auto results = MBK_TRY(results_of(*carried->folder));
+  Draws draws(results.size());
+  for (std::size_t k = 0; k < draws.size(); ++k) {
+    batch::ValueReader reader(results[k]);
+    reader.get(draws[k]);
+    if (!reader.complete()) return bad_data("a draw in a shard cannot be read", "begin the job again");
+  }
+  if (!engine.keep) {
+    MBK_TRY(keep_record(*carried->folder, study));
+    MBK_TRY(carried->folder->remove());
+  }
+  return draws;
+}
+
+Result<batch::UnitFunction> bootstrap_units(const Json& specification) {
+  std::vector<statistics::PeopleTable> tables;
+  for (const Json& one : specification.at("tables")) {
+    statistics::PeopleTable table{std::nullopt, matrix_from(one.at("first")), matrix_from(one.at("second"))};
+    if (one.contains("pairing")) {
+      table.pairing = value_of<reliability::Pairing>(one.at("pairing").get<std::string>());
+      if (!table.pairing) return bad_data("the job's specification cannot be read", "begin the job again");
+    }
+    tables.push_back(std::move(table));
+  }
+  return units_of(std::move(tables), specification.at("seed").get<std::uint64_t>());
+}
+
+}  // namespace mbk::app

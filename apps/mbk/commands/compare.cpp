@@ -1,0 +1,230 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/measure_options.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/options/report_file.h"
+#include "apps/mbk/commands/stored_result.h"
+#include "mbk/measure/analyse/analyse_width.h"
+#include "mbk/measure/analyse/ellipses.h"
+#include "mbk/measure/measurement/measure.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/report/width_text.h"
+#include "mbk/present/result/json.h"
+#include "mbk/present/result/width_json.h"
+
+namespace mbk::app {
+namespace {
+
+struct CompareArguments : MeasureArguments {
+  AnalyseArguments analyse;
+  ReportArguments report;
+};
+
+/// One of those that are compared.
+struct Compared {
+  std::string name;  ///< of the file that was given, and which of its results where it holds several
+  result::ReportedResult found;
+};
+
+/// Everything that was given, and what a folder held besides.
+struct Given {
+  std::vector<Compared> all;
+  std::vector<Error> ignored;  ///< files of folders that hold no result
+};
+
+bool is_stored(const std::filesystem::path& file) {
+  return file.extension() == ".json";
+}
+
+/// As `measure` made it, as far as it was stored.
+Result<Measurement> restored(result::StoredResult stored) {
+  Measurement measured;
+  if (stored.passivity.energy || stored.passivity.judged) {
+    auto passivity = MBK_TRY(passivity_of(stored, {}));
+    measured.passivity = std::move(passivity);
+  }
+  measured.identification = std::move(stored.identification);
+  measured.alternative = std::move(stored.alternative);
+  if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
+    measured.findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
+  }
+  return measured;
+}
+
+Result<std::vector<Compared>> from_stored(const std::filesystem::path& file) {
+  auto results = MBK_TRY(stored_results(file));
+  std::vector<Compared> all;
+  for (result::StoredResult& stored : results) {
+    auto measured = restored(std::move(stored));
+    if (!measured) return tl::unexpected(measured.error().in(file.string()));
+    std::string name = file.string();
+    if (results.size() > 1) name += fmt::format(", result {}", all.size() + 1);
+    all.push_back({std::move(name), {std::move(*measured), {}, {}}});
+    all.back().found.recordings.resize(all.back().found.measured.identification.sources.size());
+  }
+  return all;
+}
+
+Result<Compared> from_recording(CompareArguments arguments, const std::filesystem::path& file) {
+  arguments.reading.files = {file};
+  const bool with_report = arguments.report.file.has_value();
+  auto options = MBK_TRY(measurement_options(arguments, arguments.analyse, with_report));
+  options.passivity = with_report;
+  auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
+  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  auto measured = MBK_TRY(measurement::measure(std::span(recordings), options));
+  Compared one{file.string(), {std::move(measured), {}, {}}};
+  for (std::size_t k = 0; with_report && k < recordings.size(); ++k) {
+    one.found.recordings.push_back(facts_of(recordings[k], one.found.measured.identification, k));
+  }
+  return one;
+}
+
+/// The results of a folder in the order of their names; what else is there is kept with the reason.
+Result<void> add_folder(const std::filesystem::path& folder, Given& given) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (is_stored(it->path()) && it->is_regular_file(error)) files.push_back(it->path());
+  }
+  if (error) return bad_data("cannot be read: " + error.message(), "check its permissions", folder.string());
+  std::ranges::sort(files);
+  const std::size_t before = given.all.size();
+  for (const std::filesystem::path& file : files) {
+    auto found = from_stored(file);
+    if (found) {
+      std::ranges::move(*found, std::back_inserter(given.all));
+    } else {
+      given.ignored.push_back(found.error());
+    }
+  }
+  if (given.all.size() > before) return {};
+  return bad_data("there is no result in this folder",
+                  "write results with 'mbk measure FILE --json --out FOLDER/NAME.json', or name recordings",
+                  folder.string());
+}
+
+Result<Given> read_all(const CompareArguments& arguments) {
+  Given given;
+  for (const std::filesystem::path& file : arguments.reading.files) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) {
+      MBK_TRY(add_folder(file, given));
+    } else if (is_stored(file)) {
+      auto found = MBK_TRY(from_stored(file));
+      std::ranges::move(found, std::back_inserter(given.all));
+    } else {
+      auto found = MBK_TRY(from_recording(arguments, file));
+      given.all.push_back(std::move(found));
+    }
+  }
+  if (given.all.size() < 2) {
+    return bad_usage("there is one result, and nothing to compare it with",
+                     "name another result, a recording, or a folder of results");
+  }
+  return given;
+}
+
+const Identification& identification(const Compared& one) {
+  return one.found.measured.identification;
+}
+
+std::string source_line(const Identification& id, const char* which) {
+  std::string text;
+  for (const SourceFile& source : id.sources) text += fmt::format("{:<7} {}\n", which, source.label());
+  text += fmt::format("        by {}\n", method_name(id.method));
+  if (!id.usable) text += fmt::format("  ! the {} result is not usable: 'mbk measure' says why\n", which);
+  return text;
+}
+
+/// The first and each of the others.
+std::string text_of(const std::vector<Compared>& all, const std::vector<WidthFindings>& widths) {
+  std::string text;
+  const Identification& first = identification(all.front());
+  for (std::size_t k = 0; k < widths.size(); ++k) {
+    const Identification& second = identification(all[k + 1]);
+    if (widths.size() > 1) text += fmt::format("{}{}\n", k == 0 ? "" : "\n", all[k + 1].name);
+    text += source_line(first, "first") + source_line(second, "second");
+    text += first.usable && second.usable ? report::width_text(widths[k])
+                                          : "  no width is shown; --json holds the numbers\n";
+  }
+  return text;
+}
+
+std::string json_of(const std::vector<Compared>& all, const std::vector<WidthFindings>& widths) {
+  std::vector<std::string> documents;
+  for (std::size_t k = 0; k < widths.size(); ++k) {
+    documents.push_back(
+        result::width_to_json(identification(all.front()).sources, identification(all[k + 1]).sources, widths[k]));
+  }
+  return result::one_or_list_json("mbk.comparisons/1", documents);
+}
+
+int run(const CompareArguments& arguments, const std::string& typed) {
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok)
+    return report_error(ok.error());
+  auto given = read_all(arguments);
+  if (!given) return report_error(given.error());
+  for (const Error& error : given->ignored) say("mbk: left out: {}\n", error.line());
+  std::vector<WidthFindings> widths;
+  bool good = identification(given->all.front()).usable;
+  for (const Compared& other : std::span(given->all).subspan(1)) {
+    auto width = analyse::analyse_width(identification(given->all.front()), identification(other));
+    if (!width) return report_error(given->all.size() > 2 ? width.error().in(other.name) : width.error());
+    good = good && identification(other).usable && width->complete();
+    widths.push_back(std::move(*width));
+  }
+  const std::string shown = arguments.output.json ? json_of(given->all, widths) : text_of(given->all, widths);
+  if (arguments.report.file) {
+    result::ComparisonReport report{{{}, SeveralTrials{}, typed, arguments.report.note}, {}, widths};
+    report.compared.together->failed = std::move(given->ignored);
+    for (Compared& one : given->all) {
+      report.names.push_back(std::move(one.name));
+      report.compared.results.push_back(std::move(one.found));
+    }
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, result::to_json(report),
+                             arguments.reading.files);
+        !ok)
+      return report_error(ok.error());
+  }
+  if (auto ok = arguments.output.write(shown, arguments.reading.files); !ok) return report_error(ok.error());
+  return good ? kFine : kNotUsable;
+}
+
+}  // namespace
+
+Action add_compare(Command app, const std::string& typed) {
+  auto arguments = std::make_shared<CompareArguments>();
+  const Command command = app.add_command("compare", "what changed between results: how far M, B and K are apart");
+  command.footer(
+      "Examples:\n"
+      "  mbk compare relaxed.json rigid.json\n"
+      "      what 'mbk measure --json --out relaxed.json' and so on wrote\n"
+      "  mbk compare relaxed.mat rigid.mat --method iv\n"
+      "      both recordings measured alike first\n"
+      "  mbk compare results/ --report all.html\n"
+      "      every result of a folder: side by side on a page, and each against the first of them\n\n"
+      "√(Σ ln² λ) over the eigenvalues of Z₁⁻¹Z₂, symmetric parts of M, B and K each: 0 where both are\n"
+      "equal, √2 ln 7 = 2.75 where the second is seven times the first in every direction; the same in\n"
+      "whatever axes and units, at hand or joints. Beside it how many times the second is the first, least\n"
+      "and most, and along which direction from x. A matrix that is not positive definite has no width\n"
+      "(exit code 4). Of more than two, each is compared with the first.");
+  add_measure_options(command, *arguments);
+  command.get_option("FILE").description("results of 'mbk measure --json', recordings, or folders of results");
+  // They join files or add what a width does not show.
+  for (const char* name : {"--parts", "--pool", "--bootstrap", "--seed", "--decimate-check", "--threads"}) {
+    command.remove_option(name);
+  }
+  add_output_options(command, arguments->output, "mbk.compare/1");
+  add_report_options(command, arguments->report);
+  return [arguments, typed] { return run(*arguments, typed); };
+}
+
+}  // namespace mbk::app

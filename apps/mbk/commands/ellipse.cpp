@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/output.h"
+#include "mbk/measure/analyse/ellipses.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/result/json.h"
+
+namespace mbk::app {
+namespace {
+
+struct EllipseArguments {
+  std::filesystem::path file;
+  bool json = false;
+  Output output;
+};
+
+int run(const EllipseArguments& arguments) {
+  if (auto ok = arguments.output.check({arguments.file}); !ok) return report_error(ok.error());
+  const auto text = read_text(arguments.file);
+  if (!text) return report_error(text.error());
+  auto identifications = result::identifications_from_json(*text);
+  if (!identifications) return report_error(identifications.error().in(arguments.file.string()));
+  std::vector<Findings> all;
+  std::string shown;
+  int code = kFine;
+  for (const Identification& identification : *identifications) {
+    const auto findings = analyse::analyse_ellipses(identification);
+    if (!findings) return report_error(findings.error().in(arguments.file.string()));
+    all.push_back(*findings);
+    if (!shown.empty()) shown += "\n";
+    for (const SourceFile& source : identification.sources) shown += source.label() + "\n";
+    shown += fmt::format("  by {}\n", method_name(identification.method));
+    if (identification.usable) {
+      shown += report::ellipses_text(*findings);
+    } else {
+      shown += "  NOT USABLE: no ellipse is shown; 'mbk measure' says why. --json holds the numbers.\n";
+      code = kNotUsable;
+    }
+  }
+  if (arguments.json) shown = result::to_json(*identifications, all);
+  if (auto ok = arguments.output.write(shown, {arguments.file}); !ok) return report_error(ok.error());
+  return code;
+}
+
+}  // namespace
+
+Action add_ellipse(Command app) {
+  auto arguments = std::make_shared<EllipseArguments>();
+  const Command command = app.add_command("ellipse", "impedance ellipses of a stored result, with 95 % intervals");
+  command.footer(
+      "Example:\n"
+      "  mbk ellipse result.json\n"
+      "      what 'mbk measure log.mat --json --out result.json' wrote\n\n"
+      "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x; symmetric parts only.");
+  command.add_option("RESULT.json", arguments->file, "a file that 'mbk measure --json' wrote").required();
+  command.add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1");
+  arguments->output.add_options(command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <memory>
+#include <tuple>
+
+#include "apps/mbk/options/chart_files.h"
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/measure_options.h"
+#include "apps/mbk/options/named_files.h"
+#include "apps/mbk/terminal/progress.h"
+#include "apps/mbk/options/report_file.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/files/recording/write_file.h"
+#include "mbk/measure/analyse/summarise.h"
+#include "mbk/present/report/result_charts.h"
+#include "mbk/present/report/text.h"
+#include "mbk/present/report/trials_table.h"
+#include "mbk/present/result/json.h"
+
+namespace mbk::app {
+namespace {
+
+using measurement::Examined;
+
+struct MeasureCommandArguments : MeasureArguments {
+  AnalyseArguments analyse;
+  ReportArguments report;
+  FilesBeside beside;
+
+  /// Whether what shows how good a result is will be drawn.
+  [[nodiscard]] bool draws() const { return report.file || beside.charts; }
+};
+
+/// A result, with the diagnostics where a report will show them: those of one recording.
+Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
+                             bool with_diagnostics) {
+  if (with_diagnostics && recordings.size() == 1) return measurement::examine(recordings, options);
+  auto measured = MBK_TRY(measurement::measure(recordings, options));
+  return Examined{std::move(measured), {}};
+}
+
+/// A recording that was read and measured; its samples are gone.
+struct MeasuredOne {
+  Examined examined;
+  result::RecordingFacts facts;
+};
+
+/// One result for each FILE, several at a time: of no more than are worked on at once are the samples in memory. The
+/// order is that of the files.
+std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, const measurement::Options& options,
+                                              const MeasureCommandArguments& arguments) {
+  const int count = reader.count();
+  std::vector<Result<MeasuredOne>> results(static_cast<std::size_t>(count), bad_data("not measured"));
+  const bool with_report = arguments.report.file.has_value(), draws = arguments.draws();
+  const auto measured = [&](int i) -> Result<MeasuredOne> {
+    auto recording = MBK_TRY(reader.read_perturbation(i));
+    add_arm(arguments.analyse, recording);
+    auto one = MBK_TRY(measure_one({&recording, 1}, options, draws));
+    result::RecordingFacts facts;
+    if (with_report) facts = facts_of(recording, one.measured.identification);
+    return MeasuredOne{std::move(one), std::move(facts)};
+  };
+  Progress progress(arguments.output.quiet);
+  int done = 0;
+  std::ignore = numeric::parallel_for(
+      count, arguments.threads,
+      [&](int i) -> Result<void> {
+        results[static_cast<std::size_t>(i)] = measured(i);
+        return {};
+      },
+      [&](int i) { progress.count(++done, count, reader.file(i).string()); });  // a failure is kept with its file
+  return results;
+}
+
+/// Everything that a run of the command found.
+struct MeasuredTrials {
+  std::vector<result::RecordingFacts> facts;  ///< of the recordings that are behind `measured`; for a report
+  std::vector<Measurement> measured;
+  std::vector<std::optional<Diagnostics>> diagnostics;  ///< one for each result
+  bool several = false;                                 ///< more than one result was asked for
+  SeveralTrials together;
+
+  void add(Examined one) {
+    measured.push_back(std::move(one.measured));
+    diagnostics.emplace_back();
+    if (!one.diagnostics.empty()) diagnostics.back() = std::move(one.diagnostics.front());
+  }
+};
+
+/// One fit over all of them: what cannot be read is missing in it, so that there is none.
+Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
+  auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
+  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  auto pooled = MBK_TRY(measure_one(recordings, options, arguments.draws()));
+  MeasuredTrials found;
+  for (std::size_t k = 0; arguments.report.file && k < recordings.size(); ++k) {
+    found.facts.push_back(facts_of(recordings[k], pooled.measured.identification, k));
+  }
+  found.add(std::move(pooled));
+  return found;
+}
+
+/// One result for each: a recording that cannot be measured costs only itself.
+Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
+  const auto reader = MBK_TRY(RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor));
+  MeasuredTrials found;
+  found.several = reader.count() > 1;
+  for (Result<MeasuredOne>& one : measure_each(reader, options, arguments)) {
+    if (!one) {
+      found.together.failed.push_back(one.error());
+      continue;
+    }
+    found.facts.push_back(std::move(one->facts));
+    found.add(std::move(one->examined));
+  }
+  if (!found.several || found.measured.empty()) return found;
+  std::vector<Identification> identifications;
+  for (const Measurement& one : found.measured) identifications.push_back(one.identification);
+  auto mean = analyse::summarise(identifications);
+  if (mean) {
+    found.together.summary = std::move(*mean);
+  } else {
+    found.together.no_summary = mean.error().message;
+  }
+  return found;
+}
+
+/// Table and charts.
+Result<void> write_beside(const MeasureCommandArguments& arguments, const MeasuredTrials& found) {
+  const bool overwrite = arguments.output.to.overwrite;
+  if (const auto& file = arguments.beside.summary) {
+    const std::string table = file->extension() == ".tex" ? report::trials_latex(found.measured, found.together)
+                                                          : report::trials_csv(found.measured, found.together);
+    MBK_TRY(recording::write_derived(*file, overwrite, table, arguments.reading.files));
+  }
+  if (!arguments.beside.charts) return {};
+  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, overwrite, arguments.reading.files));
+  for (std::size_t k = 0; k < found.measured.size(); ++k) {
+    const auto charts = report::measurement_charts(found.measured[k], found.diagnostics[k]);
+    MBK_TRY(files.write(found.measured[k].identification.sources.front(), charts));
+  }
+  return {};
+}
+
+/// What can be said before the work begins.
+Result<void> check(const MeasureCommandArguments& arguments) {
+  MBK_TRY(check_files(arguments.reading.files, arguments.output.to, arguments.report, arguments.beside));
+  if (!arguments.beside.charts) return {};
+  return ChartFiles::check(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files,
+                           {"force", "force-x"});
+}
+
+/// The work of `measure` and `identify`, which leaves out ellipses, passivity and what they take to compute.
+int run(const MeasureCommandArguments& given, const std::string& typed, bool with_findings) {
+  MeasureCommandArguments arguments = given;
+  auto files = named_files(given.reading.files);
+  if (!files) return report_error(files.error());
+  arguments.reading.files = std::move(*files);
+  auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
+  if (!options) return report_error(options.error());
+  options->passivity = with_findings;
+  if (auto ok = check(arguments); !ok) return report_error(ok.error());
+  auto found = arguments.pool ? measure_pooled(arguments, *options) : measure_apart(arguments, *options);
+  if (!found) return report_error(found.error());
+  int code = kFine;
+  for (const Error& error : found->together.failed) code = std::max(code, report_error(error));
+  if (found->measured.empty()) return code;
+  for (Measurement& one : found->measured) {
+    if (!with_findings) one.findings.reset();
+    if (code == kFine && !one.identification.usable) code = kNotUsable;
+  }
+
+  std::string text;
+  if (arguments.output.json) {
+    text =
+        found->several ? result::to_json(found->measured, found->together) : result::to_json(found->measured.front());
+  } else {
+    for (const Measurement& one : found->measured) text += (text.empty() ? "" : "\n") + report::measurement_text(one);
+    if (found->several) text += "\n" + report::summary_text(found->together);
+  }
+  if (arguments.report.file) {
+    const std::string document = report_json(typed, arguments.report.note, found->facts, found->measured,
+                                             found->diagnostics, found->several ? &found->together : nullptr);
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document, arguments.reading.files); !ok)
+      return report_error(ok.error());
+  }
+  if (auto ok = write_beside(arguments, *found); !ok) return report_error(ok.error());
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
+  return code;
+}
+
+Action add(Command app, const char* name, const char* summary, const std::string& footer, const std::string& typed,
+           bool with_findings) {
+  auto arguments = std::make_shared<MeasureCommandArguments>();
+  const Command command = app.add_command(name, summary);
+  command.footer(footer);
+  add_measure_options(command, *arguments);
+  add_analyse_options(command, arguments->analyse);
+  add_output_options(command, arguments->output, "mbk.result/2");
+  if (with_findings) add_report_options(command, arguments->report);
+  add_summary_option(command, arguments->beside);
+  add_charts_option(command, arguments->beside);
+  return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
+}
+
+}  // namespace
+
+Action add_measure(Command app, const std::string& typed) {
+  return add(app, "measure", "recording → M, B, K, x0 with intervals, ellipses, warnings",
+             "Examples:\n"
+             "  mbk measure log.mat\n"
+             "      a 19-row log of a planar robot; protocol, window and filters are chosen and printed\n"
+             "  mbk measure --mode reference log.mat\n"
+             "      the published procedure, sample for sample\n"
+             "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
+             "      one joint from a CSV file, the first 40 s to identify, the rest held out\n"
+             "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
+             "      several trials: one result each, and the mean of the usable ones with its 95 % interval\n"
+             "  mbk measure trials --summary trials.csv --charts charts\n"
+             "      every recording in a folder, or in 'S0?/relaxed_*.mat'; one row each; charts as SVG files\n"
+             "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
+             "      at shoulder and elbow too; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
+             "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
+             "      one file for the browser or the printer: the result in plain words, ellipses, plots, glossary\n\n"
+             "Exit codes: " +
+                 std::string(kExitCodes),
+             typed, true);
+}
+
+Action add_identify(Command app) {
+  return add(app, "identify", "only the model: M, B, K, x0 with intervals and fit",
+             "Examples:\n"
+             "  mbk identify log.mat --json\n"
+             "  mbk identify --structure mass-spring rig.mat\n"
+             "      a payload on springs: one mass, no damping, symmetric stiffness",
+             "", false);
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/options/output_options.h"
+#include "apps/mbk/commands/robot_check_report.h"
+#include "apps/mbk/commands/robot_commands.h"
+#include "apps/mbk/options/scenario_argument.h"
+#include "mbk/experiment/session/live_check.h"
+#include "mbk/experiment/session/machine_check.h"
+#include "mbk/simulate/laboratory/simulation.h"
+
+namespace mbk::app {
+namespace {
+
+constexpr int kNotAllTested = 6;
+constexpr double kSaySo = 2.0;  // what takes longer is said [s]
+
+struct RobotCheckArguments {
+  std::string file;
+  std::optional<double> live, timing;
+  std::string link;
+  bool motors = false;
+  double rate_hz = 1000.0;
+  int local_port = 0;
+  OutputArguments output;
+};
+
+/// "192.168.7.2:25000"; the port may be missing.
+Result<drivers::UdpAddress> address_of(const std::string& given) {
+  constexpr std::uint16_t kPort = 25000;
+  const std::size_t colon = given.rfind(':');
+  if (colon == std::string::npos) return drivers::UdpAddress::find(given, kPort);
+  std::uint16_t port = 0;
+  const char* const end = given.data() + given.size();
+  const auto [at, error] = std::from_chars(given.data() + colon + 1, end, port);
+  if (error != std::errc() || at != end || port == 0) {
+    return bad_usage(fmt::format("--link: {} names no port from 1 to 65535", quoted(given)),
+                     "write it as 192.168.7.2:25000");
+  }
+  return drivers::UdpAddress::find(given.substr(0, colon), port);
+}
+
+Result<RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments) {
+  const auto text = MBK_TRY(read_scenario_text(arguments.file));
+  const auto setup = MBK_TRY(session::read_robot_setup(text.text, text.file, laboratory::read_simulation));
+  if (arguments.live && !setup.has_device) {
+    return tl::unexpected(
+        Error{ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
+  }
+  RobotCheckReport::Setup found{arguments.file, session::setup_text(setup), session::check_setup(setup), "", {}};
+  if (!arguments.live) return found;
+  const auto robot = MBK_TRY(protocol::make_device(setup.trial));
+  const auto record = MBK_TRY(session::watch_robot(*robot, setup.trial.rate, *arguments.live));
+  found.live_text = session::live_text(setup, robot->facts(), record);
+  found.live = session::check_live(setup, robot->facts(), record);
+  return found;
+}
+
+Result<RobotCheckReport::Link> check_link(const RobotCheckArguments& arguments) {
+  const auto robot = MBK_TRY(address_of(arguments.link));
+  auto wire = MBK_TRY(drivers::UdpBridgeWire::open(robot, static_cast<std::uint16_t>(arguments.local_port)));
+  drivers::BridgeCheckOptions options;
+  options.rate = arguments.rate_hz;
+  options.motors = arguments.motors;
+  if (options.motors && !arguments.output.quiet) say("the motors of {} go on, with command 0\n", robot.text());
+  auto report = MBK_TRY(drivers::check_bridge(wire, options));
+  return RobotCheckReport::Link{robot.text(), options, std::move(report)};
+}
+
+RobotCheckReport::Timing check_timing(const RobotCheckArguments& arguments) {
+  if (*arguments.timing > kSaySo && !arguments.output.quiet) say("measuring for {:g} s\n", *arguments.timing);
+  RobotCheckReport::Timing found{
+      realtime::read_machine(), realtime::measure_lateness(1.0 / arguments.rate_hz, *arguments.timing), {}};
+  found.findings = session::check_machine(found.machine, found.lateness);
+  return found;
+}
+
+Result<RobotCheckReport> check_all(const RobotCheckArguments& arguments) {
+  RobotCheckReport report;
+  if (!arguments.file.empty()) {
+    auto setup = MBK_TRY(check_setup(arguments));
+    report.setup = std::move(setup);
+  }
+  if (!arguments.link.empty()) {
+    auto link = MBK_TRY(check_link(arguments));
+    report.link = std::move(link);
+  }
+  if (arguments.timing) report.timing = check_timing(arguments);
+  return report;
+}
+
+int run(const RobotCheckArguments& arguments) {
+  if (auto ok = arguments.output.to.check({}); !ok) return report_error(ok.error());
+  if (arguments.file.empty() && arguments.link.empty() && !arguments.timing) {
+    return report_error({ErrorKind::usage, "there is nothing to check",
+                         "name a FILE, or give --link ADDRESS or --rt; --help says more", ""});
+  }
+  const auto report = check_all(arguments);
+  if (!report) return report_error(report.error());
+  if (auto ok = arguments.output.to.write(arguments.output.json ? json_of(*report) : text_of(*report), {}); !ok) {
+    return report_error(ok.error());
+  }
+  return report->wrong() ? kNotUsable : report->incomplete() ? kNotAllTested : kFine;
+}
+
+}  // namespace
+
+Action add_robot_check(Command group) {
+  auto arguments = std::make_shared<RobotCheckArguments>();
+  const Command command = group.add_command("check", "whether a robot is described, wired and reached as it should be");
+  command.footer(
+      "Examples:\n"
+      "  mbk robot check my_experiment.toml\n"
+      "      geometry, limits, wiring and device as understood, and what cannot be meant\n"
+      "  mbk robot check my_experiment.toml --live 5\n"
+      "      also five seconds of readings, motors off; turn the joints, press the stop button\n"
+      "  mbk robot check --link 192.168.7.2:25000 --motors\n"
+      "      whether the robot's program keeps every rule of the link: a bridge of your own\n"
+      "  mbk robot check --rt 60\n"
+      "      how punctually this machine wakes a session's loop, and what holds it up\n\n"
+      "Do all of it before anyone sits down at a new robot. The keys of [device] and the rules of the\n"
+      "link stand in docs/guide/devices.md, a bridge to begin with in docs/guide/your_own_robot.md.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not all tested.");
+  const Option file =
+      command
+          .add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
+          .check(suggests(ready_scenario_names()));
+  command.add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
+      .type_name("S")
+      .expected(0, 1)
+      .default_str("2")
+      .option_text("S")
+      .check(positive())
+      .needs(file);
+  const Option link = command
+                          .add_option("--link", arguments->link,
+                                      "a robot's program behind UDP, every rule that it has to keep (port 25000)")
+                          .type_name("ADDRESS")
+                          .check(not_empty());
+  command
+      .add_flag("--motors", arguments->motors,
+                "also the rules for which its motors go on, with command 0: nobody at the robot, a hand on its stop "
+                "button")
+      .needs(link);
+  command.add_option("--local-port", arguments->local_port, "where --link listens; 0: any that is free (0)")
+      .type_name("N")
+      .check(whole_number(0, 65535))
+      .needs(link);
+  command
+      .add_option("--rt", arguments->timing, "wake a loop for so long as a session does, and say how late it was (10)")
+      .type_name("S")
+      .expected(0, 1)
+      .default_str("10")
+      .option_text("S")
+      .check(positive());
+  command.add_option("--rate", arguments->rate_hz, "of --link and --rt, Hz (1000)").type_name("HZ").check(positive());
+  add_output_options(command, arguments->output, "mbk.robot_check/1");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,259 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/options/output_options.h"
+#include "apps/mbk/options/preprocess_options.h"
+#include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/commands/robot_commands.h"
+#include "apps/mbk/options/robot_file.h"
+#include "apps/mbk/options/word_options.h"
+#include "mbk/measure/measurement/identify_robot.h"
+#include "mbk/model/robot/drive_term_names.h"
+#include "mbk/present/report/robot_text.h"
+#include "mbk/present/result/robot_json.h"
+
+namespace mbk::app {
+namespace {
+
+struct RobotIdentifyArguments {
+  ReadingArguments reading;
+  WindowArguments window;
+  FilterArguments filters;
+  OutputArguments output;
+  std::optional<std::filesystem::path> robot;
+  RobotMethod method = RobotMethod::weighted_least_squares;
+  bool consistent = false;
+  double hac_lag_s = 1.0;
+  std::vector<std::filesystem::path> held_out;
+  std::string fixed, terms, delay = "auto", stribeck_velocity;
+  std::optional<double> smoothing, motion_cutoff_hz;
+};
+
+/// A number, or the word "auto" as an absent one.
+Result<std::optional<double>> number_or_auto(const std::string& given, const char* option) {
+  if (given == "auto") return std::nullopt;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
+  if (error != std::errc() || end != given.data() + given.size() || !(std::abs(value) < 1e6)) {
+    return bad_usage(fmt::format("{}: {} is neither a number nor 'auto'", option, quoted(given)));
+  }
+  return value;
+}
+
+/// Sets the terms that a list names; a coefficient that stays keeps its value.
+Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) {
+  robot::DynamicModel& model = robot.model;
+  robot::DriveTerms& drive = model.drive;
+  const std::vector<robot::Coefficient> before = model.coefficients();
+  const Vector values = model.parameters;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
+  for (std::size_t begin = 0; list != "none" && begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string word = list.substr(begin, end - begin);
+    begin = end + 1;
+    const auto term = std::ranges::find(robot::kDriveTermNames, word, &robot::DriveTermName::word);
+    if (term == robot::kDriveTermNames.end()) {
+      return bad_usage(fmt::format("--terms: there is no term {}", quoted(word)),
+                       "take of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
+    }
+    drive.*term->wanted = true;
+  }
+  if (drive.cable) drive.offset = true;  // k (q − q₀) has a constant
+  const std::vector<robot::Coefficient> after = model.coefficients();
+  model.parameters.setZero(static_cast<Index>(after.size()));
+  std::vector<std::string> unstated;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const auto old = std::ranges::find(before, after[k].name, &robot::Coefficient::name);
+    if (old == before.end() || std::ranges::find(robot.unstated, after[k].name) != robot.unstated.end()) {
+      unstated.push_back(after[k].name);
+    } else {
+      model.parameters[static_cast<Index>(k)] = values[old - before.begin()];
+    }
+  }
+  robot.unstated = std::move(unstated);
+  return {};
+}
+
+/// The robot's structure with what the options say of its drives.
+Result<void> choose(const RobotIdentifyArguments& arguments, robot::RobotDescription& robot,
+                    measurement::RobotOptions& options) {
+  const bool usual = !arguments.robot && arguments.terms.empty();
+  if (usual || !arguments.terms.empty()) {
+    MBK_TRY(set_terms(usual ? "viscous,coulomb,offset" : arguments.terms, robot));
+  }
+  robot::DynamicModel& model = robot.model;
+  if (arguments.smoothing) model.drive.smoothing = *arguments.smoothing;
+  const auto delay = MBK_TRY(number_or_auto(arguments.delay, "--motor-delay"));
+  options.fit.delay = !delay;
+  if (delay) model.delay = 1e-3 * *delay;
+  if (!arguments.stribeck_velocity.empty()) {
+    const auto velocity = MBK_TRY(number_or_auto(arguments.stribeck_velocity, "--stribeck-velocity"));
+    if (velocity && !(*velocity > 0.0)) return bad_usage("--stribeck-velocity: not above 0");
+    if (!model.drive.stribeck) {
+      return bad_usage("--stribeck-velocity without a Stribeck term", "add --terms viscous,coulomb,stribeck,offset");
+    }
+    options.stribeck_velocity = !velocity;
+    if (velocity) model.drive.stribeck_velocity = *velocity;
+  }
+  return {};
+}
+
+/// Which coefficients a list names.
+Result<std::vector<Index>> indices_of(const std::string& list, const robot::RobotDescription& robot) {
+  std::vector<Index> indices;
+  if (list.empty()) return indices;
+  const std::vector<robot::Coefficient> known = robot.model.coefficients();
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string name = list.substr(begin, end - begin);
+    begin = end + 1;
+    const auto found = std::ranges::find(known, name, &robot::Coefficient::name);
+    if (found == known.end()) {
+      std::vector<std::string> names;
+      for (const robot::Coefficient& one : known) names.push_back(one.name);
+      return bad_usage(fmt::format("--fix: the robot has no coefficient {}", quoted(name)),
+                       fmt::format("there are {}", fmt::join(names, ", ")));
+    }
+    if (std::ranges::find(robot.unstated, name) != robot.unstated.end()) {
+      return bad_usage(fmt::format("--fix: the description of the robot has no value of {}", quoted(name)),
+                       "state it in the file of --robot");
+    }
+    indices.push_back(found - known.begin());
+  }
+  return indices;
+}
+
+int run(const RobotIdentifyArguments& arguments) {
+  if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
+  measurement::RobotOptions options;
+  auto robot = describe_robot(arguments.robot);
+  if (!robot) return report_error(robot.error());
+  if (auto ok = choose(arguments, *robot, options); !ok) return report_error(ok.error());
+  const auto fixed = indices_of(arguments.fixed, *robot);
+  if (!fixed) return report_error(fixed.error());
+  options.fit.fixed = *fixed;
+  const auto signals = signal_options(arguments.window, arguments.filters);
+  if (!signals) return report_error(signals.error());
+  options.preprocess.signals = *signals;
+  if (arguments.motion_cutoff_hz) options.preprocess.motion_cutoff = Hertz(*arguments.motion_cutoff_hz);
+  options.fit.method = arguments.method;
+  options.fit.consistent = arguments.consistent;
+  options.fit.hac_lag_s = arguments.hac_lag_s;
+  if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
+
+  ReadingArguments reading = arguments.reading;
+  reading.joints = robot->model.mechanism->joint_names();
+  const auto recordings = read_recordings(reading);
+  if (!recordings) return report_error(recordings.error());
+  reading.files = arguments.held_out;
+  const auto held_out = read_recordings(reading);
+  if (!held_out) return report_error(held_out.error());
+  auto found = measurement::identify_robot(*recordings, *held_out, robot->model, options);
+  if (!found) return report_error(found.error());
+  found->description = robot->toml;
+  found->urdf = robot->urdf;
+  const std::string text = arguments.output.json ? result::to_json(*found) : report::robot_text(*found);
+  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
+  return found->usable ? kFine : kNotUsable;
+}
+
+}  // namespace
+
+Action add_robot_identify(Command group) {
+  auto arguments = std::make_shared<RobotIdentifyArguments>();
+  const Command command = group.add_command("identify", "the robot's own inertia and friction, from its motion alone");
+  command.footer(
+      "Examples:\n"
+      "  mbk simulate free_motion --out free.h5\n"
+      "  mbk robot identify free.h5\n"
+      "      the thesis's robot: alpha1 … alpha3, friction, and how well the torque is explained\n"
+      "  mbk robot identify free_1.h5 free_2.h5 --held-out free_3.h5 --json --out robot.json\n"
+      "      several recordings in one fit, another to judge it; robot.json is what a virtual force needs\n"
+      "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
+      "      your own robot, from its URDF\n"
+      "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n"
+      "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml --consistent\n"
+      "      each link with a mass, a centre and an inertia that a body can have\n\n"
+      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you\n"
+      "will measure. Torque and motion are filtered alike; what the data cannot distinguish is reported.\n\n"
+      "Exit codes: " +
+      std::string(kExitCodes));
+  add_reading_options(command, arguments->reading);
+  const Option held_out =
+      command.add_option("--held-out", arguments->held_out, "recordings that only judge the fit").type_name("FILE");
+  command.accept_former_name(held_out, "--held-back");
+  command
+      .add_option("--robot", arguments->robot,
+                  "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
+      .type_name("FILE")
+      .check(not_empty());
+  add_window_options(command, arguments->window);
+  add_filter_options(command, arguments->filters);
+  const char* const model = "Model";
+  command
+      .add_option("--terms", arguments->terms,
+                  "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
+                  "(viscous,coulomb,offset)")
+      .type_name("LIST")
+      .check(not_empty())
+      .group(model);
+  command
+      .add_option("--fix", arguments->fixed,
+                  "coefficients that are known: they keep the value of the robot's description, as in "
+                  "--fix link_1.mass_x,link_2.mass_x for links that are symmetric")
+      .type_name("LIST")
+      .check(not_empty())
+      .group(model);
+  command
+      .add_option("--friction-smoothing", arguments->smoothing,
+                  "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
+                  "(0.02)")
+      .type_name("V")
+      .check(not_negative())
+      .group(model);
+  command.add_option("--stribeck-velocity", arguments->stribeck_velocity, "rad/s or m/s; auto finds it (0.05)")
+      .type_name("V|auto")
+      .check(not_empty())
+      .group(model);
+  command
+      .add_option(
+          "--motor-delay", arguments->delay,
+          "by which the motors act after the torque that is recorded; a torque that is held for a sample counts "
+          "as half of one (auto: found)")
+      .type_name("MS|auto")
+      .check(not_empty())
+      .group(model);
+  add_choice(command, "--method", arguments->method,
+             "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
+             "noise of the motion does not bias")
+      .group(model);
+  command
+      .add_flag("--consistent", arguments->consistent,
+                "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
+                "and drives that do not feed the motion; what the data leave open stays near the description")
+      .group(model);
+  command
+      .add_option("--motion-cutoff", arguments->motion_cutoff_hz,
+                  "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
+                  "reference, or without one the band of the torque")
+      .type_name("HZ")
+      .check(positive())
+      .group(model);
+  command
+      .add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
+      .type_name("S")
+      .check(positive())
+      .group(model);
+  add_output_options(command, arguments->output, "mbk.robot/1");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace mbk::app

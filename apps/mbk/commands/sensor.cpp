@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/options/output_options.h"
+#include "apps/mbk/options/preprocess_options.h"
+#include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/options/sensor_options.h"
+#include "mbk/base/core/units.h"
+#include "mbk/measure/calibration/force_sensor.h"
+#include "mbk/measure/measurement/find_sensor_delay.h"
+#include "mbk/present/report/sensor_text.h"
+#include "mbk/present/result/sensor_json.h"
+
+namespace mbk::app {
+namespace {
+
+struct SensorCalibrateArguments {
+  ReadingArguments reading;
+  OutputArguments output;
+  std::optional<double> lever_arm_mm, range;
+  std::optional<int> bits;
+  calibration::SensorFrame frame = calibration::SensorFrame::automatic;
+  double hac_lag_s = 1.0;
+  double longest_delay_ms = 50.0;
+};
+
+Result<calibration::SensorCalibrationOptions> options_of(const SensorCalibrateArguments& arguments) {
+  calibration::SensorCalibrationOptions options;
+  options.crosstalk = arguments.reading.axes != 1;
+  if (arguments.lever_arm_mm) options.lever_arm = *arguments.lever_arm_mm / kMillimetres;
+  if (arguments.bits) options.converter = calibration::Converter{*arguments.bits, *arguments.range};
+  options.hac_lag_s = arguments.hac_lag_s;
+  options.longest_delay = arguments.longest_delay_ms / kMilliseconds;
+  return options;
+}
+
+Result<SensorCalibration> calibrate(const SensorCalibrateArguments& arguments) {
+  const auto options = MBK_TRY(options_of(arguments));
+  ReadingArguments reading = arguments.reading;
+  reading.axes = 2;  // --axes counts those of the sensor here; the names are Fx, Fy, Vx, Vy either way
+  reading.untimed = true;
+  const auto recordings = MBK_TRY(read_recordings(reading));
+  std::vector<calibration::SensorRun> runs;
+  for (const Recording& recording : recordings) {
+    auto run = MBK_TRY(calibration::sensor_run(recording, arguments.frame));
+    runs.push_back(std::move(run));
+  }
+  return calibration::calibrate_sensor(runs, options);
+}
+
+int run_calibrate(const SensorCalibrateArguments& arguments) {
+  const Output& output = arguments.output.to;
+  if (auto ok = output.check(arguments.reading.files); !ok) return report_error(ok.error());
+  const auto calibration = calibrate(arguments);
+  if (!calibration) return report_error(calibration.error());
+  const std::string text = arguments.output.json ? result::to_json(*calibration) : report::sensor_text(*calibration);
+  if (auto ok = output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+Action add_sensor_calibrate(Command sensor) {
+  auto arguments = std::make_shared<SensorCalibrateArguments>();
+  const Command command = sensor.add_command("calibrate", "slope, zero, crosstalk and noise from known loads");
+  command.footer(
+      "Examples:\n"
+      "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10\n"
+      "      columns Fx, Fy in N and Vx, Vy in V, one row a load; repeats and both signs are welcome\n"
+      "  mbk sensor calibrate --channels Fx=mass*9.81,Vx=volt x_loads.csv --axes 1\n"
+      "      a hung mass in kg, one axis\n"
+      "  mbk sensor calibrate trial.csv --json --out cell.json\n"
+      "      a reference sensor's Fx, Fy over time beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
+      "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
+  ReadingArguments& reading = arguments->reading;
+  add_reading_options(command, reading);
+  command.get_option("--axes").description("1: each axis separately; otherwise crosstalk is fitted too");
+  command.get_option("FILE").description("tables of loads or recordings: .csv, .h5 or .mat");
+  command.add_option("--lever-arm-mm", arguments->lever_arm_mm, "from the gauges to the load, kept for --sensor")
+      .type_name("MM")
+      .check(positive());
+  const Option bits =
+      command.add_option("--bits", arguments->bits, "of the converter; otherwise its step is looked for in the data")
+          .type_name("N")
+          .check(whole_number(2, 32));
+  const Option range = command.add_option("--range", arguments->range, "of the converter, ± volts")
+                           .type_name("V")
+                           .check(positive())
+                           .needs(bits);
+  bits.needs(range);
+  add_sensor_frame(
+      command, arguments->frame,
+      "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
+      "link where q2 is there");
+  command
+      .add_option("--longest-delay-ms", arguments->longest_delay_ms,
+                  "by which the voltage may come after a reference, either way (50; 0: none)")
+      .type_name("MS")
+      .check(not_negative());
+  command
+      .add_option("--hac-lag", arguments->hac_lag_s,
+                  "reach of the residual's correlation in the standard errors, s (1)")
+      .type_name("S")
+      .check(not_negative());
+  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor/1, which --sensor reads");
+  arguments->output.to.add_options(command);
+  return [arguments] { return run_calibrate(*arguments); };
+}
+
+struct SensorDelayArguments {
+  ReadingArguments reading;
+  WindowArguments window;
+  FilterArguments filters;
+  OutputArguments output;
+  double mass = 0.0;
+};
+
+Result<MeasuredDelay> find_delay(const SensorDelayArguments& arguments) {
+  const auto recordings = MBK_TRY(read_recordings(arguments.reading));
+  if (recordings.size() != 1) return bad_usage("a delay is found in one recording", "name one FILE");
+  auto signals = MBK_TRY(signal_options(arguments.window, arguments.filters));
+  signals.axes = arguments.reading.axes;
+  auto found = measurement::find_sensor_delay(recordings.front(), arguments.mass, signals);
+  if (!found) return tl::unexpected<Error>(found.error().in(recordings.front().sources.front().label()));
+  return found;
+}
+
+int run_delay(const SensorDelayArguments& arguments) {
+  const Output& output = arguments.output.to;
+  if (auto ok = output.check(arguments.reading.files); !ok) return report_error(ok.error());
+  const auto found = find_delay(arguments);
+  if (!found) return report_error(found.error());
+  const std::string text = arguments.output.json ? result::to_json(*found) : report::sensor_delay_text(*found);
+  if (auto ok = output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
+  return found->usable() ? kFine : kNotUsable;
+}
+
+Action add_delay(Command sensor) {
+  auto arguments = std::make_shared<SensorDelayArguments>();
+  const Command command = sensor.add_command("delay", "by how much the force is read late, from a known mass");
+  command.footer(
+      "Fix a known mass to the handle, let the robot move it about for half a minute (a multisine up\n"
+      "to some hertz), and record as in a trial. No hand may touch it.\n\n"
+      "Examples:\n"
+      "  mbk sensor delay mass.h5 --mass 1.194\n"
+      "      1 kg, and 0.194 kg of the handle that is beyond the force sensor\n"
+      "  mbk measure trial.h5 --force-delay-ms 10.2\n"
+      "      a trial with the delay that was found\n\n"
+      "Exit codes: 0 the delay is found, 2 wrong usage, 3 bad or unreadable data, 4 it is not to be\n"
+      "used: something else than that mass is at the handle, or its motion is too slow or short.");
+  add_reading_options(command, arguments->reading);
+  command.add_option("--mass", arguments->mass, "beyond the force sensor, the handle's own included, kg")
+      .type_name("KG")
+      .check(positive())
+      .required();
+  add_window_options(command, arguments->window);
+  add_filter_options(command, arguments->filters);
+  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor_delay/1");
+  arguments->output.to.add_options(command);
+  return [arguments] { return run_delay(*arguments); };
+}
+
+}  // namespace
+
+Action add_sensor(Command app) {
+  const Command command = app.add_command("sensor", "slope, zero and delay of a force sensor of your own");
+  command.require_subcommand();
+  command.footer(
+      "Examples:\n"
+      "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --json --out cell.json\n"
+      "  mbk measure --sensor cell.json trial.csv\n"
+      "  mbk sensor delay mass.h5 --mass 1.194");
+  const Actions actions = {{"calibrate", add_sensor_calibrate(command)}, {"delay", add_delay(command)}};
+  return [command, actions] { return run_chosen(command, actions); };
+}
+
+}  // namespace mbk::app

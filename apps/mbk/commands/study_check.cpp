@@ -1,0 +1,326 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/terminal/progress.h"
+#include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/options/study_options.h"
+#include "apps/mbk/options/threads_option.h"
+#include "mbk/base/core/version.h"
+#include "mbk/base/numeric/parallel.h"
+#include "mbk/study/store/study_list.h"
+
+namespace mbk::app {
+namespace {
+
+struct CheckArguments {
+  StudyArguments study;
+  OutputArguments output;
+  bool quick = false, remove_leftovers = false, verify = false, undo = false, link = false;
+  unsigned threads = 0;
+  std::string head, why;
+  std::int64_t number = 0;
+  std::filesystem::path to;
+};
+
+/// Measures the results of this version again, and holds them against what is stored, byte by byte.
+class Repeater {
+ public:
+  Repeater(const store::Store& study, const CheckArguments& arguments, store::CheckReport& report)
+      : study_(study), arguments_(arguments), report_(report) {}
+
+  Result<void> repeat_all() {
+    const auto analyses = MBK_TRY(study_.analyses());
+    for (const store::Analysis& analysis : analyses) {
+      MBK_TRY(repeat(analysis));
+    }
+    return {};
+  }
+
+ private:
+  Result<void> repeat(const store::Analysis& analysis) {
+    const auto units = MBK_TRY(study_.measured(analysis.number));
+    if (units.empty()) return {};
+    const std::string count = counted(std::ssize(units), "result", "results");
+    if (analysis.version != version()) {
+      report_.notes.push_back(fmt::format("{} of analysis {} not repeated: mbk {} made them, this is {}", count,
+                                          analysis.number, analysis.version, version()));
+      return {};
+    }
+    const auto options = MBK_TRY(options_from_json(analysis.options));
+    if (names_files(options)) {
+      report_.notes.push_back(
+          fmt::format("{} of analysis {} not repeated: they depend on a file (--robot, --sensor) that a study does not "
+                      "keep",
+                      count, analysis.number));
+      return {};
+    }
+    const auto measuring = MBK_TRY(measuring_of(options));
+    return repeat(analysis, *measuring, units);
+  }
+
+  Result<void> repeat(const store::Analysis& analysis, const Measuring& measuring,
+                      const std::vector<store::Unit>& units) {
+    std::vector<std::string> problems(units.size());
+    Progress progress(arguments_.output.quiet, "measured again: ");
+    int done = 0;
+    MBK_TRY(numeric::parallel_for(
+        static_cast<int>(units.size()), arguments_.threads,
+        [&](int k) -> Result<void> {
+          const store::Unit& unit = units[static_cast<std::size_t>(k)];
+          const auto again = measure_unit(measuring, study_.folder(), unit);
+          std::string& problem = problems[static_cast<std::size_t>(k)];
+          if (!again) {
+            problem = again.error().line();
+            return {};
+          }
+          const std::scoped_lock lock(mutex_);
+          const auto stored = MBK_TRY(study_.document(unit, analysis.number));
+          if (stored != again->document) {
+            problem =
+                fmt::format("{}: measured again it gives another result (analysis {})", unit.file, analysis.number);
+          }
+          return {};
+        },
+        [&](int) { progress.count(++done, static_cast<int>(units.size())); }));
+    for (std::string& problem : problems) {
+      if (problem.empty()) {
+        ++report_.repeated;
+      } else {
+        report_.problems.push_back(std::move(problem));
+      }
+    }
+    return {};
+  }
+
+  const store::Store& study_;
+  const CheckArguments& arguments_;
+  store::CheckReport& report_;
+  std::mutex mutex_;  ///< the store is for one thread at a time
+};
+
+std::string check_text(const store::CheckReport& report, bool quick) {
+  std::string text;
+  for (const std::string& problem : report.problems) text += "! " + problem + "\n";
+  for (const std::string& note : report.notes) text += "  " + note + "\n";
+  text += fmt::format("{}, {:.1f} MB: ", counted(report.recordings, "recording", "recordings"),
+                      1e-6 * static_cast<double>(report.bytes));
+  text += fmt::format("{} with the hash it was added with\n", counted(report.files, "file", "files"));
+  text += counted(report.results, "result", "results");
+  text += quick ? ", none measured again\n" : fmt::format(", {} measured again and the same\n", report.repeated);
+  text += fmt::format("{} of the log, head {}\n", counted(report.log_lines, "line", "lines"), report.head);
+  return text + (report.problems.empty() ? "sound\n"
+                                         : counted(std::ssize(report.problems), "problem", "problems") +
+                                               ": restore what is missing or changed from a backup\n");
+}
+
+int run_check(const CheckArguments& arguments) {
+  if (auto ok = check_files({}, arguments.output.to); !ok) return report_error(ok.error());
+  auto study = open_study(arguments.study);
+  if (!study) return report_error(study.error());
+  Progress progress(arguments.output.quiet, "files: ");
+  auto report = study->check(arguments.remove_leftovers, [&](int done, int of) { progress.count(done, of); });
+  if (!report) return report_error(report.error());
+  if (!arguments.quick) {
+    Repeater repeater(*study, arguments, *report);
+    if (auto ok = repeater.repeat_all(); !ok) return report_error(ok.error());
+  }
+  const std::string text = arguments.output.json ? store::to_json(*report) : check_text(*report, arguments.quick);
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
+  return report->problems.empty() ? kFine : kBadData;
+}
+
+std::string line_text(const store::LogLine& line) {
+  std::string what(word_of(line.action));
+  if (line.recording) what += fmt::format(" recording {}", *line.recording);
+  if (line.analysis) what += fmt::format(", analysis {}", *line.analysis);
+  if (line.participant) what += fmt::format(" participant {}", *line.participant);
+  return fmt::format("{:>5} {} {:<12} {}  {}{}\n", line.number, line.time, word_of(line.role), line.hash.substr(0, 12),
+                     what, line.why.empty() ? "" : ": " + line.why);
+}
+
+int run_log(const CheckArguments& arguments) {
+  if (auto ok = check_files({}, arguments.output.to); !ok) return report_error(ok.error());
+  const auto study = open_study(arguments.study);
+  if (!study) return report_error(study.error());
+  const auto lines = study->log();
+  if (!lines) return report_error(lines.error());
+  std::optional<store::LogVerdict> verdict;
+  if (arguments.verify) {
+    auto found = study->verify_log(arguments.head);
+    if (!found) return report_error(found.error());
+    verdict = std::move(*found);
+  }
+  std::string text;
+  if (arguments.output.json) {
+    text = store::to_json(*lines, verdict);
+  } else if (verdict) {
+    for (const std::string& problem : verdict->problems) text += "! " + problem + "\n";
+    text += fmt::format("{}{}\nhead {}\n", counted(verdict->lines, "line", "lines"),
+                        verdict->problems.empty() ? ", each as it was written" : "", verdict->head);
+  } else {
+    for (const store::LogLine& line : *lines) text += line_text(line);
+    text += fmt::format("head {}\n", lines->empty() ? "" : lines->back().hash);
+  }
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
+  return verdict && !verdict->problems.empty() ? kBadData : kFine;
+}
+
+int run_exclude(const CheckArguments& arguments) {
+  auto study = open_study(arguments.study);
+  if (!study) return report_error(study.error());
+  const auto done = arguments.undo ? study->include(arguments.number, arguments.why, arguments.study.role)
+                                   : study->exclude(arguments.number, arguments.why, arguments.study.role);
+  if (!done) return report_error(done.error());
+  const std::string text =
+      fmt::format("recording {} {}\n", arguments.number, arguments.undo ? "counts again" : "excluded");
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+int run_forget(const CheckArguments& arguments) {
+  auto study = open_study(arguments.study);
+  if (!study) return report_error(study.error());
+  const auto forgotten = study->forget(arguments.number, arguments.why, arguments.study.role);
+  if (!forgotten) return report_error(forgotten.error());
+  std::string text =
+      fmt::format("participant {} forgotten: {}, {}, {} erased\n", arguments.number,
+                  counted(forgotten->recordings, "recording", "recordings"),
+                  counted(forgotten->results, "result", "results"), counted(forgotten->files, "file", "files"));
+  text += "backups, exported tables and the files that were added are elsewhere: erase them too\n";
+  if (!forgotten->lines_with_reasons.empty()) {
+    text += fmt::format("the log keeps the reasons that were given for these recordings, in {} {}: {}\n",
+                        forgotten->lines_with_reasons.size() == 1 ? "line" : "lines",
+                        fmt::join(forgotten->lines_with_reasons, ", "),
+                        "'mbk study log' shows them; if one names a person, only a new study leaves it out");
+  }
+  if (!forgotten->log_of_changes_emptied) {
+    text += "another process is reading: erased rows stand in study.sqlite-wal until it ends and a command follows\n";
+  }
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+int run_backup(const CheckArguments& arguments) {
+  auto study = open_study(arguments.study);
+  if (!study) return report_error(study.error());
+  const auto report = study->backup(arguments.to, arguments.link);
+  if (!report) return report_error(report.error());
+  const std::string text = fmt::format("{}: {}, {}, checked\nhead {}\n", arguments.to.string(),
+                                       counted(report->recordings, "recording", "recordings"),
+                                       counted(report->results, "result", "results"), report->head);
+  if (auto ok = print_text(text); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+void add_why_option(Command command, std::string& why) {
+  command.add_option("--why", why, "the reason, which stays in the log: name nobody")
+      .type_name("TEXT")
+      .required()
+      .check(not_empty());
+}
+
+}  // namespace
+
+Action add_study_exclude(Command group) {
+  auto arguments = std::make_shared<CheckArguments>();
+  const Command command = group.add_command("exclude", "leave a recording out of summaries, with the reason");
+  command.footer(
+      "Examples:\n"
+      "  mbk study exclude 12 --why \"hand slipped off the handle\"\n"
+      "  mbk study exclude 12 --undo --why \"it was trial 13\"\n\n"
+      "Nothing is erased. The recording stays in lists and exports, with the reason.");
+  command.add_option("N", arguments->number, "its number, as 'mbk study list' shows it")
+      .required()
+      .check(whole_number(1, 999999999));
+  add_why_option(command, arguments->why);
+  command.add_flag("--undo", arguments->undo, "let it count again");
+  add_study_and_role(command, arguments->study);
+  return [arguments] { return run_exclude(*arguments); };
+}
+
+Action add_study_forget(Command group) {
+  auto arguments = std::make_shared<CheckArguments>();
+  const Command command = group.add_command("forget", "erase a participant's recordings and results");
+  command.footer(
+      "Examples:\n"
+      "  mbk study forget --participant 7 --why \"consent withdrawn\"\n\n"
+      "Recordings and results are removed, and what they took in the database is overwritten with zeros. The log\n"
+      "keeps that they were there and that they were forgotten, without data. Not promised: that a disk keeps no\n"
+      "trace of removed files. Backups are not touched.");
+  command.add_option("--participant", arguments->number, "whose")
+      .type_name("N")
+      .required()
+      .check(whole_number(1, 999999999));
+  add_why_option(command, arguments->why);
+  add_study_and_role(command, arguments->study);
+  return [arguments] { return run_forget(*arguments); };
+}
+
+Action add_study_check(Command group) {
+  auto arguments = std::make_shared<CheckArguments>();
+  const Command command = group.add_command("check", "whether everything is as it was stored, and comes out again");
+  command.footer(
+      "Examples:\n"
+      "  mbk study check\n"
+      "      every file's hash, the database, the log, and every result of this version measured again\n"
+      "  mbk study check --quick\n"
+      "      nothing is measured again\n\n"
+      "What an interrupted process left half-written is removed and said.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 something is missing or not as it was stored.");
+  command.add_flag("--quick", arguments->quick, "do not measure again");
+  command.add_flag("--remove-leftovers", arguments->remove_leftovers,
+                   "also remove whole files that no recording refers to");
+  add_threads_option(command, arguments->threads, "recordings measured");
+  add_study_option(command, arguments->study);
+  add_output_options(command, arguments->output, "mbk.study_check/1");
+  return [arguments] { return run_check(*arguments); };
+}
+
+Action add_study_log(Command group) {
+  auto arguments = std::make_shared<CheckArguments>();
+  const Command command = group.add_command("log", "who did what, when and why");
+  command.footer(
+      "Examples:\n"
+      "  mbk study log\n"
+      "      the last line is the head: note it where nobody can change both\n"
+      "  mbk study log --verify --head 3f0c…\n"
+      "      also that the log still holds the line that was noted\n\n"
+      "Each line holds the hash of the one before, so that a line that is changed, taken out or put in shows. Who\n"
+      "can write the file can write the whole log anew, or cut its end: only a head that was noted elsewhere, or a\n"
+      "backup, shows that. Reading a study is not logged.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 the log is not as it was written.");
+  const Option verify = command.add_flag("--verify", arguments->verify, "recompute every hash");
+  command.add_option("--head", arguments->head, "a head that was noted: 64 hexadecimal digits")
+      .type_name("HASH")
+      .check([](const std::string& given) {
+        const bool fits = given.size() == 64 && given.find_first_not_of("0123456789abcdef") == std::string::npos;
+        return fits ? "" : fmt::format("{} is not 64 hexadecimal digits", quoted(given));
+      })
+      .needs(verify);
+  add_study_option(command, arguments->study);
+  add_output_options(command, arguments->output, "mbk.study_log/1");
+  return [arguments] { return run_log(*arguments); };
+}
+
+Action add_study_backup(Command group) {
+  auto arguments = std::make_shared<CheckArguments>();
+  const Command command = group.add_command("backup", "a copy of the whole study, checked");
+  command.footer(
+      "Examples:\n"
+      "  mbk study backup /media/backup/arms-2026-05-04\n"
+      "  mbk study backup ../arms-before --link\n"
+      "      on the same disk without taking room: against mistakes, not against a broken disk\n\n"
+      "It can be made while others work. To restore, copy the folder back.");
+  command.add_option("FOLDER", arguments->to, "which is not there yet").required();
+  command.add_flag("--link", arguments->link, "recordings become further names of the same files, where possible");
+  add_study_option(command, arguments->study);
+  return [arguments] { return run_backup(*arguments); };
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/options/study_options.h"
+#include "mbk/base/core/printable.h"
+
+namespace mbk::app {
+namespace {
+
+struct InitArguments {
+  StudyArguments study;
+  std::filesystem::path folder;
+  std::string title;
+  MeasuringArguments measuring;
+};
+
+/// The options that were given, where a study can keep them.
+Result<std::string> kept_options(Command command) {
+  const GivenOptions given = given_options(command);
+  if (names_files(given)) {
+    return bad_usage("--robot and --sensor name files, which a study does not keep",
+                     "pass them to 'mbk study measure'");
+  }
+  MBK_TRY(measuring_of(given));
+  return options_to_json(given);
+}
+
+int run_init(Command command, const InitArguments& arguments) {
+  const auto options = kept_options(command);
+  if (!options) return report_error(options.error());
+  const store::StudyFacts facts{printable(arguments.title), *options};
+  if (auto ok = store::Store::create(arguments.folder, facts, arguments.study.role); !ok) {
+    return report_error(ok.error());
+  }
+  if (auto ok = print_text(fmt::format("{}: a new study\n", arguments.folder.string())); !ok) {
+    return report_error(ok.error());
+  }
+  return kFine;
+}
+
+int run_defaults(Command command, const InitArguments& arguments) {
+  const auto options = kept_options(command);
+  if (!options) return report_error(options.error());
+  auto study = open_study(arguments.study);
+  if (!study) return report_error(study.error());
+  if (!given_options(command).empty()) {
+    if (auto ok = study->set_options(*options, arguments.study.role); !ok) return report_error(ok.error());
+  }
+  const auto stored = default_options(*study);
+  if (!stored) return report_error(stored.error());
+  const std::string text = options_text(*stored);
+  if (auto ok = print_text((text.empty() ? "none: as 'mbk measure' without options" : text) + "\n"); !ok) {
+    return report_error(ok.error());
+  }
+  return kFine;
+}
+
+}  // namespace
+
+Action add_study_init(Command group) {
+  auto arguments = std::make_shared<InitArguments>();
+  const Command command = group.add_command("init", "a new study in a folder of its own");
+  command.footer(
+      "Examples:\n"
+      "  mbk study init arms --title \"Stiffness at rest\"\n"
+      "  mbk study init ankles --axes 1 --channels x=position_rad,F=torque_Nm --protocol free\n"
+      "      how its recordings are read and measured unless 'mbk study measure' is told otherwise\n\n"
+      "Only the owner of the folder can read what is in it. It belongs on a local disk: network file systems\n"
+      "do not lock files as the database needs it.");
+  command.add_option("FOLDER", arguments->folder, "which is not there yet, or empty").required();
+  command.add_option("--title", arguments->title, "one line; name nobody").type_name("TEXT").check(not_empty());
+  add_choice_of_role(command, arguments->study);
+  add_measuring_options(command, arguments->measuring);
+  command.remove_option("--threads");
+  return [command, arguments] { return run_init(command, *arguments); };
+}
+
+Action add_study_defaults(Command group) {
+  auto arguments = std::make_shared<InitArguments>();
+  const Command command = group.add_command("defaults", "show or change how a study's recordings are measured");
+  command.footer(
+      "Examples:\n"
+      "  mbk study defaults\n"
+      "      shows them\n"
+      "  mbk study defaults --mode reference --protocol sinusoidal\n"
+      "      replaces all of them; the next 'mbk study measure' measures everything with these");
+  add_study_and_role(command, arguments->study);
+  add_measuring_options(command, arguments->measuring);
+  command.remove_option("--threads");
+  return [command, arguments] { return run_defaults(command, *arguments); };
+}
+
+}  // namespace mbk::app

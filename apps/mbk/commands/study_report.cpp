@@ -1,0 +1,110 @@
+#include "mbk/study/longitudinal/study_report.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/options/report_file.h"
+#include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/commands/study_jobs.h"
+#include "apps/mbk/commands/study_listing.h"
+#include "mbk/base/core/printable.h"
+#include "mbk/files/recording/write_file.h"
+#include "mbk/present/report/html.h"
+
+namespace mbk::app {
+namespace {
+
+struct StudyReportArguments : AnalysisArguments {
+  std::optional<std::int64_t> participant;
+  std::string outcome, note;
+  ComparingArguments comparing;
+};
+
+/// What makes the page again, without the names of files, which may name people.
+std::string command_of(const StudyReportArguments& arguments, const store::StudyList& list) {
+  std::string text = "mbk study report";
+  if (arguments.participant) text += fmt::format(" --participant {}", *arguments.participant);
+  if (list.analysis) text += fmt::format(" --analysis {}", list.analysis->number);
+  if (!arguments.outcome.empty()) text += " --outcome " + arguments.outcome;
+  if (!arguments.comparing.compare.empty()) text += " --compare";
+  for (const std::string& word : arguments.comparing.compare) text += " " + shell_word(word);
+  for (const std::string& group : arguments.comparing.groups) text += " --group " + shell_word(group);
+  return text + (arguments.participant ? fmt::format(" --out participant_{}.html", *arguments.participant)
+                                       : " --out study.html");
+}
+
+Result<std::string> document_of(const StudyReportArguments& arguments, const store::Store& study,
+                                store::StudyList list) {
+  store::OutcomeColumns columns;
+  if (list.analysis) {
+    columns = MBK_TRY(study.columns(list.analysis->number));
+  }
+  statistics::add_matrix_numbers(columns);
+  const auto options = MBK_TRY(statistics_options(arguments.comparing));
+  const auto statistics = statistics::study_statistics(columns, options);
+  if (!statistics) return tl::unexpected(statistics.error());
+  const std::string summary =
+      store::to_json(list, store::summarise_outcomes(columns), statistics::to_json(*statistics));
+  const std::string command = command_of(arguments, list);
+  auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), *statistics,
+                                                   arguments.participant, arguments.outcome));
+  report.command = command;
+  report.note = printable(arguments.note);
+  if (!arguments.participant) {
+    auto jobs = MBK_TRY(job_documents(study.folder()));
+    report.jobs = std::move(jobs);
+  }
+  return arguments.participant ? longitudinal::participant_report_json(report, *arguments.participant)
+                               : longitudinal::study_report_json(report, summary);
+}
+
+int run_report(const StudyReportArguments& arguments) {
+  const Output& to = arguments.output.to;
+  if (auto ok = check_files({}, to); !ok) return report_error(ok.error());
+  if (auto page = report::page(""); !page && !arguments.output.json) return report_error(page.error());
+  std::optional<store::Store> study;
+  auto list = listed_study(arguments, study);
+  if (!list) return report_error(list.error());
+  const auto document = document_of(arguments, *study, std::move(*list));
+  if (!document) return report_error(document.error());
+  const auto page = arguments.output.json ? document : report::page(*document);
+  if (!page) return report_error(page.error());
+  if (auto ok = recording::write_file(*to.file, to.overwrite, *page, Readers::owner); !ok)
+    return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_study_report(Command group) {
+  auto arguments = std::make_shared<StudyReportArguments>();
+  const Command command = group.add_command("report", "one HTML page of the study, or of one participant");
+  command.footer(
+      "Examples:\n"
+      "  mbk study report --out study.html\n"
+      "      reliability, participants, sessions, ellipses, what does not count and why, jobs of --engine\n"
+      "  mbk study report --participant 7 --out participant_7.html\n"
+      "      what changed since the first session, and whether it is more than the minimal detectable change\n"
+      "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"
+      "A page is one file that needs no network; it prints on A4, and its data can be saved from it. It holds\n"
+      "health data: pass it on as such. The page of a participant holds no numbers of other people.");
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  const Option participant = command.add_option("--participant", arguments->participant, "a page of this one")
+                                 .type_name("N")
+                                 .check(whole_number(1, 999999999));
+  command.add_option("--outcome", arguments->outcome, "is shown first (stiffness_lambda_max, or a stiffness)")
+      .type_name("NAME")
+      .check(not_empty());
+  add_comparing_options(command, arguments->comparing);
+  command.get_option("--compare").excludes(participant);
+  command.add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none of its own")
+      .type_name("TEXT");
+  add_output_options(command, arguments->output, "mbk.study_report/1, mbk.participant_report/1");
+  command.get_option("--out").required().description("the page to write");
+  return [arguments] { return run_report(*arguments); };
+}
+
+}  // namespace mbk::app

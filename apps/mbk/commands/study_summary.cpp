@@ -1,0 +1,206 @@
+#include "mbk/study/store/study_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <memory>
+#include <string_view>
+
+#include "apps/mbk/commands/bootstrap_units.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/commands/study_listing.h"
+#include "mbk/study/statistics/study_statistics.h"
+#include "mbk/study/statistics/study_statistics_text.h"
+
+namespace mbk::app {
+namespace {
+
+struct SummaryArguments : AnalysisArguments {
+  std::vector<std::string> outcomes;
+  ComparingArguments comparing;
+  std::optional<int> draws;
+  std::uint64_t seed = 1;
+  EngineArguments engine;
+};
+
+/// "patients=1-10,12": a name and the numbers of its people.
+Result<statistics::PeopleGroup> group_of(const std::string& text) {
+  const auto wrong = [&] {
+    return bad_usage(fmt::format("{} is no group", quoted(text)),
+                     "write a name and its participants, as in patients=1-10,12");
+  };
+  const std::size_t equal = text.find('=');
+  if (equal == 0 || equal == std::string::npos) return wrong();
+  statistics::PeopleGroup group{text.substr(0, equal), {}};
+  std::string_view rest = std::string_view(text).substr(equal + 1);
+  const auto number = [](std::string_view& from, std::int64_t& value) {
+    const auto [end, code] = std::from_chars(from.data(), from.data() + from.size(), value);
+    if (code != std::errc() || value < 1) return false;
+    from.remove_prefix(static_cast<std::size_t>(end - from.data()));
+    return true;
+  };
+  constexpr std::int64_t kMost = 1'000'000;
+  while (true) {
+    std::int64_t first = 0, last = 0;
+    if (!number(rest, first)) return wrong();
+    last = first;
+    if (rest.starts_with('-')) {
+      rest.remove_prefix(1);
+      if (!number(rest, last) || last < first || last - first > kMost) return wrong();
+    }
+    for (std::int64_t one = first; one <= last; ++one) group.participants.push_back(one);
+    if (rest.empty()) return group;
+    if (!rest.starts_with(',')) return wrong();
+    rest.remove_prefix(1);
+  }
+}
+
+}  // namespace
+
+Result<statistics::StatisticsOptions> statistics_options(const ComparingArguments& arguments) {
+  statistics::StatisticsOptions options;
+  for (const std::string& text : arguments.groups) {
+    auto group = MBK_TRY(group_of(text));
+    const auto same = std::ranges::find(options.groups, group.name, &statistics::PeopleGroup::name);
+    if (same == options.groups.end()) {
+      options.groups.push_back(std::move(group));
+    } else {
+      same->participants.insert(same->participants.end(), group.participants.begin(), group.participants.end());
+    }
+  }
+  if (arguments.compare.empty()) {
+    if (!options.groups.empty())
+      return bad_usage("--group says who is in which group, and nothing compares them", "pass --compare group");
+    return options;
+  }
+  const auto by = value_of<statistics::ComparedBy>(arguments.compare.front());
+  if (!by) {
+    return bad_usage(fmt::format("{} cannot be compared", quoted(arguments.compare.front())),
+                     "pass --compare condition, group or session, and then which, if not all");
+  }
+  if (*by != statistics::ComparedBy::group && !options.groups.empty()) {
+    return bad_usage("--group says who is in which group, and nothing compares them", "pass --compare group");
+  }
+  options.comparing = {*by, {arguments.compare.begin() + 1, arguments.compare.end()}};
+  return options;
+}
+
+void add_comparing_options(Command command, ComparingArguments& arguments) {
+  command.add_option("--compare", arguments.compare, "condition, group or session, and which of them (all)")
+      .type_name("WHAT");
+  command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12").type_name("NAME=N,...");
+}
+namespace {
+
+std::string summary_text(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
+                         const statistics::StudyStatistics& found, bool details) {
+  const std::string text = study_head_text(list);
+  if (!list.analysis) return text + "  nothing was measured: 'mbk study measure'\n";
+  if (outcomes.empty()) return text + "  no result is usable: 'mbk study list' says why\n";
+  return text + statistics::outcomes_text(outcomes) + statistics::reliability_text(found, details) +
+         statistics::comparison_text(found, details) + statistics::bootstrap_text(found) +
+         statistics::notes_text(found.notes);
+}
+
+/// Resamples people, in this process or as --engine says.
+/// @returns  what the command is to end with, where the draws are not all there
+Result<std::optional<int>> resample(const SummaryArguments& arguments, const store::Store& study,
+                                    statistics::StudyStatistics& found) {
+  const Bootstrap bootstrap{statistics::people_tables(found), arguments.seed, *arguments.draws};
+  std::optional<int> code;
+  const auto draws = arguments.engine.kind
+                         ? draws_elsewhere(bootstrap, arguments.engine, study.folder(), arguments.output.quiet, code)
+                         : draws_here(bootstrap, arguments.output.quiet);
+  if (code) return code;
+  if (!draws) return tl::unexpected(draws.error());
+  statistics::add_bootstrap(found, bootstrap.tables, *draws, arguments.seed);
+  return code;
+}
+
+Result<void> check_bootstrap(const SummaryArguments& arguments) {
+  if (arguments.engine.kind && !arguments.draws) {
+    return bad_usage("only resampling is done by --engine", "pass --bootstrap 2000, or leave out --engine");
+  }
+  return {};
+}
+
+int run_summary(const SummaryArguments& arguments) {
+  if (auto ok = check_bootstrap(arguments); !ok) return report_error(ok.error());
+  auto options = statistics_options(arguments.comparing);
+  if (!options) return report_error(options.error());
+  options->outcomes = arguments.outcomes;
+  std::optional<store::Store> study;
+  const auto list = listed_study(arguments, study);
+  if (!list) return report_error(list.error());
+  store::OutcomeColumns columns;
+  if (list->analysis) {
+    auto found = study->columns(list->analysis->number);
+    if (!found) return report_error(found.error());
+    columns = std::move(*found);
+  }
+  statistics::add_matrix_numbers(columns);
+  auto found = statistics::study_statistics(columns, *options);
+  if (!found) return report_error(found.error());
+  if (arguments.draws) {
+    const auto code = resample(arguments, *study, *found);
+    if (!code) return report_error(code.error());
+    if (*code) return **code;
+  }
+  if (!options->outcomes.empty()) {
+    std::erase_if(columns.outcomes, [&](const store::OutcomeColumn& column) {
+      return std::ranges::find(options->outcomes, column.name) == options->outcomes.end();
+    });
+  }
+  const auto outcomes = store::summarise_outcomes(columns);
+  const std::string text = arguments.output.json ? store::to_json(*list, outcomes, statistics::to_json(*found))
+                                                 : summary_text(*list, outcomes, *found, !options->outcomes.empty());
+  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_study_summary(Command group) {
+  auto arguments = std::make_shared<SummaryArguments>();
+  const Command command = group.add_command("summary", "each outcome: its size, how reliable it is, what differs");
+  command.footer(
+      "Examples:\n"
+      "  mbk study summary\n"
+      "  mbk study summary --outcome K_xx\n"
+      "      every form of ICC, limits of agreement, trials within a session, the mixed model\n"
+      "  mbk study summary --compare condition relaxed tensed\n"
+      "      in the same people where they have both, else between two sets of people\n"
+      "  mbk study summary --compare group --group patients=1-10 --group controls=11-20\n"
+      "  mbk study summary --compare session 1 2 --outcome K_xx K_yy\n"
+      "      p-values are adjusted for as many tests as there are: name the outcomes before you look\n"
+      "  mbk study summary --bootstrap 2000 --compare condition relaxed tensed\n"
+      "      intervals that suppose no distribution, by drawing the people again 2000 times\n"
+      "  mbk study summary --bootstrap 100000 --engine slurm\n"
+      "      on the cluster; the intervals are the same to the last bit\n"
+      "  mbk study summary --json --out summary.json\n\n"
+      "Only usable results of recordings that are not excluded count; how many do not is said.");
+  add_study_option(command, arguments->study);
+  add_analysis_option(command, *arguments);
+  command.add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
+      .type_name("NAME...");
+  add_comparing_options(command, arguments->comparing);
+  const Option bootstrap =
+      command
+          .add_option("--bootstrap", arguments->draws,
+                      "also intervals of reliability and differences by drawing people again, so many times")
+          .type_name("N")
+          .check(whole_number(1000, 100'000));
+  command.add_option("--seed", arguments->seed, "of these draws (1)")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<long>::max()))
+      .needs(bootstrap);
+  add_output_options(command, arguments->output, "mbk.study_summary/1");
+  add_engine_options(command, arguments->engine);
+  return [arguments] { return run_summary(*arguments); };
+}
+
+}  // namespace mbk::app

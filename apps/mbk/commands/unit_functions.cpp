@@ -1,0 +1,32 @@
+// What the units of jobs are, by the kind of job.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/mbk/commands/bootstrap_units.h"
+#include "apps/mbk/options/engine_options.h"
+#include "apps/mbk/commands/explore_units.h"
+#include "apps/mbk/commands/job_kinds.h"
+#include "apps/mbk/commands/measure_units.h"
+
+namespace mbk::app {
+
+Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use) {
+  const std::string& kind = folder.job().kind;
+  const auto json = nlohmann::json::parse(folder.job().specification, nullptr, false);
+  Result<batch::UnitFunction> compute =
+      bad_data(fmt::format("this mbk does not know jobs of the kind '{}'", kind), "use the mbk that began it");
+  try {
+    if (kind == kValidateKind) return with_validation_units(json, folder, use);
+    if (kind == kMeasureKind) compute = measure_units(json);
+    if (kind == kBootstrapKind) compute = bootstrap_units(json);
+    if (kind == kExploreKind) compute = explore_units(json);
+    if (kind == kSimulateKind) compute = simulate_units(json);
+  } catch (const nlohmann::json::exception&) {
+    return bad_data("the job's specification cannot be read", "begin the job again", folder.folder().string());
+  }
+  if (!compute) return tl::unexpected(compute.error());
+  return use(*compute);
+}
+
+}  // namespace mbk::app

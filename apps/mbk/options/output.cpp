@@ -1,0 +1,118 @@
+#include "apps/mbk/options/output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "apps/mbk/caller.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/terminal/terminal.h"
+#include "mbk/base/core/printable.h"
+#include "mbk/files/recording/write_file.h"
+
+namespace mbk::app {
+
+int report_error(const Error& error) {
+  if (Caller* const caller = Caller::current(); caller != nullptr) {
+    caller->fail(error);
+  } else {
+    std::fflush(stdout);
+    if (terminal_at(STDERR_FILENO).colour) {
+      say("\x1b[1;31mmbk:\x1b[0m {}\n", error.line());
+    } else {
+      say("mbk: {}\n", error.line());
+    }
+  }
+  switch (error.kind) {
+    case ErrorKind::usage:
+      return kWrongUsage;
+    case ErrorKind::data:
+      return kBadData;
+    case ErrorKind::not_usable:
+      return kNotUsable;
+  }
+  return kBadData;
+}
+
+void Output::add_options(Command command) {
+  const Option out = command.add_option("--out", file, "write to this file instead of standard output")
+                         .type_name("FILE")
+                         .check(not_empty());
+  command.add_flag("--overwrite", overwrite, "replace that file where it is there").needs(out);
+}
+
+Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,
+                            const std::vector<std::filesystem::path>& inputs) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return {};
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::equivalent(file, input, error)) {
+      return fail(ErrorKind::usage, "is what is read, and would be lost",
+                  fmt::format("choose another name for {}", option), file.string());
+    }
+  }
+  if (overwrite) return {};
+  return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
+}
+
+namespace {
+
+Result<void> write_to_stdout(const std::string& text) {
+  flush_messages();  // at a terminal both stand below one another, in the order in which they came
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
+  const int error = errno;
+  return bad_data(fmt::format("standard output could not be written: {}", std::strerror(error)),
+                  error == ENOSPC  ? "free space on the disk"
+                  : error == EPIPE ? "what it was piped into has ended before it had read everything"
+                                   : "see where it goes");
+}
+
+}  // namespace
+
+Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) const {
+  return file ? check_new_file(*file, "--out", overwrite, inputs) : Result<void>{};
+}
+
+Result<void> Output::write(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
+  if (Caller* const caller = Caller::current(); caller != nullptr) {
+    caller->write(text);
+    if (!file) return {};
+  }
+  if (file) return recording::write_derived(*file, overwrite, text, sources);
+  return write_to_stdout(printable_lines(text));
+}
+
+Result<void> print_text(const std::string& text) {
+  return Output().write(text, {});
+}
+
+Result<void> Output::show(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
+  const bool printed = !file && Caller::current() == nullptr;
+  return printed ? write_to_stdout(for_people(text, terminal_at(STDOUT_FILENO))) : write(text, sources);
+}
+
+Result<std::string> read_text(const std::filesystem::path& file) {
+  if (const std::string* const document = document_in_memory(file)) return *document;
+  constexpr std::uintmax_t kLargest = 256u << 20u;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    return bad_data(std::filesystem::exists(file, error) ? "not a file" : "no such file", "check the name",
+                    file.string());
+  }
+  if (std::filesystem::file_size(file, error) > kLargest)
+    return bad_data("larger than 256 MB", "a result is far smaller: check the name", file.string());
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.good() && !stream.eof()) return bad_data("cannot be read", "check its permissions", file.string());
+  if (text.empty()) return bad_data("the file is empty", "nothing was written, or the copy failed", file.string());
+  return text;
+}
+
+}  // namespace mbk::app

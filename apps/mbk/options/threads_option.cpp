@@ -1,0 +1,13 @@
+#include "apps/mbk/options/threads_option.h"
+
+#include "apps/mbk/options/option_checks.h"
+
+namespace mbk::app {
+
+Option add_threads_option(Command command, unsigned& threads, const std::string& what) {
+  return command.add_option("--threads", threads, what + " at a time (as many as there are cores)")
+      .type_name("N")
+      .check(whole_number(1, 1024));
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/commands/commands_json.h"
+#include "apps/mbk/terminal/manual_page.h"
+#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/options/output.h"
+#include "mbk/base/core/version.h"
+#include "mbk/files/recording/write_file.h"
+
+namespace mbk::app {
+namespace {
+
+struct ManualArguments {
+  std::vector<std::string> command;
+  std::optional<std::filesystem::path> pages;
+  bool json = false, overwrite = false;
+};
+
+/// The command that the words lead to, from `root` down; nullptr where there is none.
+const CommandText* find_command(const CommandText& root, const std::vector<std::string>& words) {
+  const CommandText* at = &root;
+  for (const std::string& word : words) {
+    const auto below = std::ranges::find(at->commands, word, &CommandText::name);
+    if (below == at->commands.end()) return nullptr;
+    at = &*below;
+  }
+  return at;
+}
+
+/// Every page as a file of its own.
+int write_pages(const CommandText& root, const std::filesystem::path& folder, bool overwrite) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    return report_error({ErrorKind::usage, error.message(), "name a folder that can be made", folder.string()});
+  }
+  Result<void> written;
+  for_each_command(root, [&](const CommandText& command) {
+    if (!written) return;
+    written = recording::write_file(folder / manual_file(command), overwrite,
+                                    manual_page(command, root, std::string(version())));
+  });
+  return written ? kFine : report_error(written.error());
+}
+
+int run(const ManualArguments& arguments, Command app) {
+  const CommandText root = describe(app);
+  if (arguments.json) {
+    if (auto ok = print_text(commands_json(root, std::string(version()))); !ok) return report_error(ok.error());
+    return kFine;
+  }
+  if (arguments.pages) {
+    if (arguments.command.empty()) return write_pages(root, *arguments.pages, arguments.overwrite);
+    return report_error({ErrorKind::usage, "--pages writes every page", "omit COMMAND or --pages", ""});
+  }
+  const CommandText* const command = find_command(root, arguments.command);
+  if (command == nullptr) {
+    return report_error(
+        {ErrorKind::usage,
+         fmt::format("unknown command {}", quoted(fmt::format("{}", fmt::join(arguments.command, " ")))),
+         "'mbk --help' names them", ""});
+  }
+  if (auto ok = print_text(manual_page(*command, root, std::string(version()))); !ok) return report_error(ok.error());
+  return kFine;
+}
+
+}  // namespace
+
+Action add_manual(Command app) {
+  auto arguments = std::make_shared<ManualArguments>();
+  const Command command = app.add_command("manual", "the manual page of a command, for man");
+  command.footer(
+      "Examples:\n"
+      "  mbk manual measure | man -l -\n"
+      "  mbk manual springs field | man -l -\n"
+      "  mbk manual --pages ~/.local/share/man/man1\n"
+      "      all of them, where man finds them: man mbk-measure\n"
+      "  mbk manual --json\n"
+      "      every command with its options, for programs that call mbk\n\n"
+      "Where mbk came as a package, or by 'cmake --install', the pages are in place.");
+  const Option named =
+      command.add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
+          .check(suggests(names_below(app)));
+  const Option pages =
+      command.add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
+          .type_name("FOLDER")
+          .check(not_empty());
+  command.add_flag("--overwrite", arguments->overwrite, "replace pages that are there").needs(pages);
+  command.add_flag("--json", arguments->json, "every command with its options, for programs: schema mbk.commands/1")
+      .excludes(named)
+      .excludes(pages);
+  return [arguments, app] { return run(*arguments, app); };
+}
+
+}  // namespace mbk::app

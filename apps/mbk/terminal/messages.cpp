@@ -1,0 +1,168 @@
+#include "apps/mbk/terminal/messages.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <system_error>
+#include <thread>
+
+#include "apps/mbk/caller.h"
+#include "mbk/base/realtime/rest.h"
+
+namespace mbk::app {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 512;
+constexpr int kNotRead = -1, kNoMemory = -2;  // beside the numbers of errno
+
+/// Never destroyed: a thread that hangs in its last message outlives main.
+struct Messages {
+  std::mutex mutex;
+  std::condition_variable came;
+  std::deque<std::string> waiting;
+  bool background = false, writing = false;
+  std::uint64_t lost = 0;
+  int error = 0;  // of the last one lost
+
+  void lose(std::uint64_t count, int why) noexcept {
+    lost += count;
+    error = why;
+  }
+};
+
+Messages& messages() {
+  static Messages& all = *new Messages;
+  return all;
+}
+
+/// @returns  0, or the error
+int write_whole(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const ssize_t wrote = write(STDERR_FILENO, text.data(), text.size());
+    if (wrote > 0) {
+      text.remove_prefix(static_cast<std::size_t>(wrote));
+    } else if (wrote == 0) {
+      return EIO;
+    } else if (errno == EAGAIN) {  // whoever shares it made it so
+      pollfd output{STDERR_FILENO, POLLOUT, 0};
+      constexpr int kPatience = 200;  // [ms]
+      if (poll(&output, 1, kPatience) == 0) return kNotRead;
+    } else if (errno != EINTR) {
+      return errno;
+    }
+  }
+  return 0;
+}
+
+/// Until the queue is closed and empty.
+void write_waiting() {
+  Messages& all = messages();
+  std::unique_lock lock(all.mutex);
+  while (true) {
+    all.came.wait(lock, [&] { return !all.waiting.empty() || !all.background; });
+    if (all.waiting.empty()) return;
+    const std::string text = std::move(all.waiting.front());
+    all.waiting.pop_front();
+    all.writing = true;
+    lock.unlock();
+    const int error = write_whole(text);
+    lock.lock();
+    all.writing = false;
+    if (error != 0) all.lose(1, error);
+  }
+}
+
+std::string reason(int error) {
+  if (error == kNotRead) return "its reader does not read";
+  if (error == kNoMemory) return std::strerror(ENOMEM);
+  return std::strerror(error);
+}
+
+}  // namespace
+
+void say_text(std::string_view text) noexcept {
+  try {
+    if (Caller* const caller = Caller::current(); caller != nullptr) {
+      caller->say(text);
+      return;
+    }
+    Messages& all = messages();
+    {
+      const std::scoped_lock lock(all.mutex);
+      if (all.background) {
+        if (all.waiting.size() < kMaxWaiting) {
+          all.waiting.emplace_back(text);
+        } else {
+          all.lose(1, kNotRead);
+        }
+        all.came.notify_one();
+        return;
+      }
+    }
+    const int error = write_whole(text);
+    const std::scoped_lock lock(all.mutex);
+    if (error != 0) all.lose(1, error);
+  } catch (...) {  // no memory to keep it in
+    if (write_whole(text) != 0) count_lost_message();
+  }
+}
+
+void count_lost_message() noexcept {
+  try {
+    Messages& all = messages();
+    const std::scoped_lock lock(all.mutex);
+    all.lose(1, kNoMemory);
+  } catch (...) {  // a mutex that cannot be had: then not even that can be counted
+  }
+}
+
+bool flush_messages(std::chrono::milliseconds longest) noexcept {
+  try {
+    Messages& all = messages();
+    const auto are_written = [&] {
+      const std::scoped_lock lock(all.mutex);
+      return all.waiting.empty() && !all.writing;
+    };
+    if (realtime::rest(longest, are_written)) return true;
+    const std::scoped_lock lock(all.mutex);
+    if (!all.waiting.empty()) all.lose(all.waiting.size(), kNotRead);
+    all.waiting.clear();
+  } catch (...) {
+    count_lost_message();
+  }
+  return false;
+}
+
+LostMessages take_lost_messages() {
+  flush_messages();
+  Messages& all = messages();
+  const std::scoped_lock lock(all.mutex);
+  if (all.lost == 0) return {};
+  return {std::exchange(all.lost, 0), reason(all.error)};
+}
+
+BackgroundMessages::BackgroundMessages() {
+  {
+    const std::scoped_lock lock(messages().mutex);
+    messages().background = true;
+  }
+  try {
+    std::thread(write_waiting).detach();  // it may hang in its last message for ever
+  } catch (const std::system_error&) {    // no thread to be had: whoever says something waits
+    messages().background = false;
+  }
+}
+
+BackgroundMessages::~BackgroundMessages() {
+  if (!flush_messages()) return;  // what is said from now on is lost too, but holds nobody up
+  const std::scoped_lock lock(messages().mutex);
+  messages().background = false;
+  messages().came.notify_all();
+}
+
+}  // namespace mbk::app

@@ -1,0 +1,71 @@
+#include "apps/mbk/terminal/questions.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/trimmed.h"
+
+namespace mbk::app {
+
+Result<std::string> Questions::ask(const std::string& question, const std::string& by_default,
+                                   const CheckAnswer& check) const {
+  if (defaults_) {
+    if (by_default.empty()) return bad_usage(fmt::format("no default for: {}", question), "answer it, without --yes");
+    const std::string wrong = check(by_default);
+    if (!wrong.empty()) return bad_usage(fmt::format("{}: {}", question, wrong), "answer it, without --yes");
+    return by_default;
+  }
+  const bool terminal = ::isatty(STDIN_FILENO) == 1;
+  while (true) {
+    say("{}{}: ", question, by_default.empty() ? "" : fmt::format(" [{}]", by_default));
+    std::string line;
+    if (!std::getline(std::cin, line)) {
+      say("\n");
+      return bad_usage(fmt::format("the answers end before: {}", question), "pass --yes to take what is proposed");
+    }
+    if (!terminal) say("{}\n", line);
+    std::string answer(trimmed(line, " \t\r"));
+    if (answer.empty()) answer = by_default;
+    const std::string wrong = answer.empty() ? "an answer is needed" : check(answer);
+    if (wrong.empty()) return answer;
+    if (!terminal) return bad_usage(fmt::format("{}: {}", question, wrong), "mend that answer");
+    say("  {}\n", wrong);
+  }
+}
+
+CheckAnswer word_of_these(std::vector<std::string> words) {
+  return [words = std::move(words)](const std::string& given) {
+    return std::ranges::find(words, given) != words.end()
+               ? ""
+               : fmt::format("{} is none of {}", quoted(given), fmt::join(words, ", "));
+  };
+}
+
+CheckAnswer positive_number() {
+  return positive().wrong;
+}
+
+CheckAnswer numbers_with_commas(std::size_t count) {
+  return [count](const std::string& given) -> std::string {
+    std::istringstream stream(given);
+    std::size_t numbers = 0;
+    const CheckAnswer number = number_within(1e6).wrong;
+    for (std::string one; std::getline(stream, one, ',');) {
+      std::string word(trimmed(one));
+      if (const std::string wrong = number(word); !wrong.empty()) return wrong;
+      ++numbers;
+    }
+    return numbers == count && !given.ends_with(',')
+               ? ""
+               : fmt::format("{} is not {} numbers with commas between them", quoted(given), count);
+  };
+}
+
+}  // namespace mbk::app
