@@ -6,11 +6,11 @@
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/readers_option.h"
 #include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/trial_files.h"
 #include "mbk/files/recording/write.h"
@@ -118,7 +118,7 @@ int convert_one(const Conversion& job, int k, const std::filesystem::path& file)
   if (!recording) {
     const ReadingArguments& reading = job.arguments.reading;
     const bool whole =
-        reading.channels.empty() && !reading.parts && recording::nothing_is_recognised(recording.error());
+        reading.channels.empty() && !reading.parts && recording.error().code == recording::kNothingRecognised;
     return whole ? copy_arrays(job, k, file, recording.error()) : report_error(recording.error());
   }
   const Readers readers = job.arguments.readers.value_or(Readers::owner);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -18,6 +20,10 @@ namespace mbk::recording {
 /// A file or folder that was opened once for a command: its bytes, its hash, its format, the trials that it holds.
 /// Whatever is read of it opens nothing anew. May be used by several threads.
 class RecordingFile;
+
+/// Codes of `read`'s errors: a sound file of which no channel, or only the time, is recognised; a time that cannot be
+/// in seconds.
+inline constexpr std::string_view kNothingRecognised = "nothing-recognised", kUnbelievableTime = "unbelievable-time";
 
 struct ReadOptions {
   std::vector<ChannelSource> channels;  ///< empty: the file is recognised automatically
@@ -49,8 +55,8 @@ struct ReadOptions {
 /// The same for a channel map, which may leave a dimension of an array over (slices.h): each of its indices is a trial.
 [[nodiscard]] std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& options);
 
-/// The first bytes; none of a folder.
-[[nodiscard]] std::string_view begin_of(const RecordingFile& file);
+/// [bytes]; 0 of a folder.
+[[nodiscard]] std::size_t size_of(const RecordingFile& file);
 
 /// Closes the file until it is read: for whoever holds hundreds of them.
 void rest(const RecordingFile& file);
@@ -82,11 +88,6 @@ void rest(const RecordingFile& file);
 /// @param options  as of list_contents
 /// @fails  as list_contents
 [[nodiscard]] Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& options = {});
-
-/// Whether `read` refused a sound file for this alone, that no channel of it is recognised.
-[[nodiscard]] bool nothing_is_recognised(const Error& error);
-/// Whether `read` refused a file because its time cannot be in seconds.
-[[nodiscard]] bool time_is_unbelievable(const Error& error);
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.
