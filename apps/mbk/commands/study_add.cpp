@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/commands/study_commands.h"
+#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/study_options.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/terminal/progress.h"
 #include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/files/bids/read_run.h"
 #include "mbk/files/c3d/c3d.h"
@@ -118,10 +118,7 @@ class Adder {
 
   Result<store::TrialFacts> check(const Recording& recording, const KnownFacts& facts,
                                   const std::vector<std::string>& unseen) const {
-    const auto withdrawn = recording.metadata.find("withdrawn");
-    if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
-      return bad_data("the person has withdrawn: these data must not be used", "remove the file");
-    }
+    MBK_TRY(preprocess::check_consent(recording));
     auto identifying = store::identifying_entries(recording.metadata);
     identifying.insert(identifying.end(), unseen.begin(), unseen.end());
     if (!identifying.empty() && !arguments_.strip) {

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
-#include <system_error>
 
 #include "apps/mbk/caller.h"
+#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/terminal/memory.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/formats.h"
@@ -21,13 +20,7 @@
 namespace mbk::app {
 namespace {
 
-/// Whether a file holds more than some minutes.
-bool is_long(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kLong = std::uintmax_t{32} << 20;
-  std::error_code none;
-  const std::uintmax_t size = std::filesystem::file_size(file, none);
-  return !none && size > kLong;
-}
+constexpr std::size_t kLong = std::size_t{32} << 20;  // bytes of a file that holds more than some minutes
 
 Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   recording::ReadOptions options;
@@ -190,7 +183,7 @@ Result<Recording> RecordingReader::read_stored(int k) const {
     if (recording->sources.empty()) recording->sources.push_back({file(k).string(), "arrays in memory", ""});
     return recording;
   }
-  if (is_long(file(k))) give_back_large_blocks();
+  if (record(k).open && recording::size_of(*record(k).open) > kLong) give_back_large_blocks();
   const recording::ReadOptions options = options_of(k);
   if (parts_) return recording::read_parts(files(), options);
   if (record(k).refused) return tl::unexpected(*record(k).refused);
@@ -227,10 +220,8 @@ std::vector<std::filesystem::path> RecordingReader::files() const {
 
 Result<Recording> RecordingReader::read_perturbation(int k) const {
   auto one = MBK_TRY(read(k));
-  const auto withdrawn = one.metadata.find("withdrawn");
-  if (withdrawn != one.metadata.end() && withdrawn->second == "yes") {
-    return bad_data("the person has withdrawn: these data must not be used", "leave the file out, and remove it",
-                    one.sources.empty() ? "" : one.sources.front().label());
+  if (auto ok = preprocess::check_consent(one); !ok) {
+    return tl::unexpected(one.sources.empty() ? ok.error() : ok.error().in(one.sources.front().label()));
   }
   return preprocess::perturbation_only(std::move(one));
 }

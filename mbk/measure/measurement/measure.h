@@ -40,7 +40,7 @@ struct Options {
 /// - the handle's mass, as identify::Options says;
 /// - a clock: where a session missed ticks (gaps of at most 0.1 s, at most 5 % of the time), the samples are put on the
 ///   even clock that the recording names (`rate_hz`), in default mode; the result warns of it.
-/// @fails as its steps; where the same file is pooled twice;
+/// @fails as its steps and preprocess::check_consent; where the same file is pooled twice;
 /// where the joint domain is asked for and pooled recordings were made in different postures;
 /// where a recording has a source, the message names its file.
 [[nodiscard]] Result<Measurement> measure(std::span<const Recording> recordings, const Options& options);
