@@ -186,6 +186,21 @@ TEST_F(Conducted, WhoeverMeasuresGetsThePerturbationAndWhatTheTrialSaysOfItself)
   EXPECT_TRUE(conduct(planned(trials()), session_, script_, looking).completed);
 }
 
+TEST_F(Conducted, ANoteOfTheTrialIsInTheFileThatWasMeasured) {
+  class Noting : public Operator {
+    std::vector<std::string> notes() override { return {"the chair moved"}; }
+  } noting;
+  std::string measured;
+  const Measure looking = [&](const Recording& recording) -> Result<Measurement> {
+    measured = recording.sources.front().sha256;
+    return bad_data("only looked at");
+  };
+  EXPECT_TRUE(conduct(planned({trials().front()}), session_, noting, looking).completed);
+  const auto there = recording::read(folder_ / "p07.h5", {});
+  EXPECT_EQ(there->metadata.at("notes"), "the chair moved");
+  EXPECT_EQ(there->sources.front().sha256, measured);  // nobody wrote it again
+}
+
 TEST_F(Conducted, WithoutAMeasureTrialsAreOnlyRecorded) {
   EXPECT_TRUE(conduct(planned(trials(experiment_text(kDrowned))), session_, script_, {}).completed);
   EXPECT_EQ(std::ranges::count(script_.told, "not measured"), 2);
