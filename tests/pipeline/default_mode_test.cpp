@@ -89,7 +89,7 @@ TEST(Consent, DataOfAPersonWhoHasWithdrawnAreMeasuredByNoFunction) {
   Recording recording = generated({});
   recording.metadata["withdrawn"] = "yes";
   const std::vector<Recording> recordings = {recording};
-  const auto code = [](const auto& result) { return result ? std::string_view("measured") : result.error().code; };
+  const auto code = [](const auto& result) { return result ? std::string("measured") : result.error().code; };
   EXPECT_EQ(code(measurement::measure(recordings, {})), "withdrawn");
   EXPECT_EQ(code(measurement::examine(recordings, {})), "withdrawn");
   EXPECT_EQ(code(measurement::explore(recordings, {})), "withdrawn");

@@ -48,7 +48,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
 
 /// The one recording that is converted.
 Result<Recording> read_one(const ReadingArguments& reading, const SensorArguments& sensor) {
-  const auto reader = MBK_TRY(RecordingReader::of(reading, sensor));
+  const auto reader = MBK_TRY(open_recordings(reading, sensor));
   if (reader.count() > 1) {
     return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader.count()),
                 "say which with --trial; 'mbk info' lists them", reading.files.front().string());
@@ -157,7 +157,7 @@ int run(ConvertArguments arguments) {
   if (!arguments.bids.empty()) return run_bids(arguments, *output.file);
   const auto format = recording::format_of(*output.file, arguments.format);
   if (!format) return report_error(format.error());
-  auto reader = RecordingReader::of(reading, arguments.sensor);
+  auto reader = open_recordings(reading, arguments.sensor);
   if (!reader) return report_error(reader.error());
   std::vector<std::string> trials;
   for (int k = 0; k < reader->count(); ++k) trials.push_back(reader->trial(k));

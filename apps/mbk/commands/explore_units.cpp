@@ -50,7 +50,7 @@ Result<RecordingReader> reader_of(const ExploringArguments& arguments, const Jso
   ReadingArguments reading = arguments.reading;
   reading.files = {file};
   reading.trial = key.at("trial").get<std::string>();
-  return RecordingReader::of(reading, arguments.sensor);
+  return open_recordings(reading, arguments.sensor);
 }
 
 batch::UnitFunction units_of(const ExploringArguments& arguments, const measurement::ExploreOptions& options,
@@ -116,7 +116,7 @@ std::vector<std::string> exploring_words(Command command) {
 Result<std::vector<ExploredRecord>> explored_here(const ExploringEach& each, unsigned threads) {
   ExploringArguments arguments = each.arguments;
   const auto options = MBK_TRY(exploring_options(arguments));
-  const auto reader = MBK_TRY(RecordingReader::of(arguments.reading, arguments.sensor));
+  const auto reader = MBK_TRY(open_recordings(arguments.reading, arguments.sensor));
   std::vector<ExploredRecord> all(static_cast<std::size_t>(reader.count()));
   Progress progress(each.quiet);
   int done = 0;
@@ -134,7 +134,7 @@ Result<std::vector<ExploredRecord>> explored_elsewhere(const ExploringEach& each
                                                        std::optional<int>& code) {
   ExploringArguments arguments = each.arguments;
   const auto options = MBK_TRY(exploring_options(arguments));
-  const auto reader = MBK_TRY(RecordingReader::of(arguments.reading, arguments.sensor));
+  const auto reader = MBK_TRY(open_recordings(arguments.reading, arguments.sensor));
   auto keys = MBK_TRY(keys_of(reader));
   const auto sensor = MBK_TRY(sensor_sum(arguments));
   const std::string listed = fmt::format("{}", fmt::join(keys, "\n"));

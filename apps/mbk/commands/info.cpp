@@ -101,7 +101,7 @@ int run(const InfoArguments& arguments) {
     recording.time.resize(0);
     recordings.push_back(std::move(recording));
   };
-  const auto reader = RecordingReader::of(reading, arguments.sensor);
+  const auto reader = open_recordings(reading, arguments.sensor);
   if (!reader) return report_error(reader.error());
   if (reader->count() == 1 && reader->is_journal(0)) {
     auto recording = read_journal(reading.files.front());

@@ -64,7 +64,7 @@ class Adder {
   Added add(store::IncomingFile& incoming, const KnownFacts& facts) {
     ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {incoming.path()};
-    const auto reader = MBK_TRY(RecordingReader::of(reading, measuring_->arguments.sensor));
+    const auto reader = MBK_TRY(open_recordings(reading, measuring_->arguments.sensor));
     if (facts.trial && reader.count() > 1) {
       return bad_usage(fmt::format("the file holds {} trials", reader.count()), "leave --trial out: they are counted");
     }
@@ -166,7 +166,7 @@ class Adder {
     }
     ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {motion};
-    const auto reader = MBK_TRY(RecordingReader::of(reading, measuring_->arguments.sensor));
+    const auto reader = MBK_TRY(open_recordings(reading, measuring_->arguments.sensor));
     auto recording = MBK_TRY(reader.read(0));
     KnownFacts known = facts;
     const auto condition = recording.metadata.find("condition");  // in full; a name has only its letters and digits

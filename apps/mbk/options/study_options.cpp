@@ -262,7 +262,7 @@ Result<Recording> read_stored(const Measuring& measuring, const std::filesystem:
     reading.rate_hz = plain.rate_hz;
   }
   reading.files = {file};
-  const auto reader = MBK_TRY(RecordingReader::of(reading, measuring.arguments.sensor));
+  const auto reader = MBK_TRY(open_recordings(reading, measuring.arguments.sensor));
   const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
   if (which >= reader.count()) return bad_data(fmt::format("there is no record {} in it", part), "", file.string());
   return what == Reading::perturbation ? reader.read_perturbation(which) : reader.read(which);
