@@ -315,8 +315,8 @@ class TerminalOperator : public session::Operator {
 };
 
 /// @returns  the exit code, where no signal ended the session outside of a trial
-int perform(Session& session, const session::Experiment& experiment, const session::Pace& pace,
-            const RunArguments& arguments) {
+int conduct_experiment(Session& session, const session::Experiment& experiment, const session::Pace& pace,
+                       const RunArguments& arguments) {
   const auto console = RunConsole::open(arguments.console, experiment, session.flags());
   if (!console) return report_error(console.error());
   if (auto* const page = console->page(); page != nullptr && !page->may_begin(session, experiment)) return kFine;
@@ -350,7 +350,7 @@ int run(const RunArguments& arguments) {
   {
     const StopSignals signals(session.flags());
     const BackgroundMessages messages;
-    code = perform(session, *experiment, pace, arguments);
+    code = conduct_experiment(session, *experiment, pace, arguments);
     ended_by = signals.ended_by();
   }
   if (ended_by != 0 && code == kFine) end_by(ended_by);
