@@ -3,7 +3,7 @@
 been read in a help text before, and the steps (help texts read, commands run) are counted. The counts are those of
 docs/guide/tasks.md; tests/web/tasks_test.mjs does the tasks of a browser.
 
-  MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/tasks_test.py    prints the counts
+  MBK=build/release/bin/mbk MAKE_LOG=build/release/bin/make_log python3 tests/end_to_end/tasks_test.py    prints the counts
 """
 
 import json
