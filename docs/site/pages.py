@@ -229,7 +229,7 @@ class Site:
     # The library
 
     def add_library(self):
-        text = (ROOT / "CONTRIBUTING.md").read_text()
+        text = (ROOT / "docs/house.md").read_text()
         holds = dict(re.findall(r"^\| [^|]*\| `(\w+)` \| (.*?) \|$", text, re.MULTILINE))
         rows = []
         lists = re.sub(r"#[^\n]*", "", (ROOT / "mbk/CMakeLists.txt").read_text())
@@ -243,7 +243,7 @@ class Site:
             "# C++ library\n"
             + self.rewritten(
                 "What an application may use: the public headers, with their equations, units, signs and the ways in which "
-                "they fail. A module uses only modules of lower layers ([why](docs/adr/0004-layers.md)); how to link them "
+                "they fail. A module uses only modules of lower layers ([why](docs/decisions.md#modules-layers-and-wings)); how to link them "
                 "is in [install.md](docs/guide/install.md), programs to begin with in "
                 "[use_the_library](examples/use_the_library/README.md).\n", pathlib.Path("CONTRIBUTING.md"), "library")
             + "\n" + " · ".join(self.outward("library", f"api/{file}", label) for file, label in (
@@ -443,8 +443,10 @@ def main():
     site = Site(Reference(tag_file, out.parent / "html/api"), out)
     landing = ROOT / "docs/site/index.md"
     site.pages["index"] = site.rewritten(landing.read_text(), pathlib.Path("docs/theory/landing.md"), "index")
-    for folder in ("docs/guide", "docs/theory", "docs/adr"):
+    for folder in ("docs/guide", "docs/theory"):
         site.add_folder(folder)
+    for name in ("docs/house.md", "docs/decisions.md"):
+        site.add(pathlib.Path(name))
     site.add_examples()
     site.add_commands(mbk)
     site.pages.update(python_pages.pages(mbk))
