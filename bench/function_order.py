@@ -8,7 +8,7 @@ their place, valgrind's having neither AVX-512 nor instructions for SHA-256, sta
 or that is new, does no harm: such a function stands where it would have stood. tests/end_to_end/memory_test.py holds the
 memory.
 
-usage: tools/function-order [--build build/test]
+usage: tools/function-order [--build build/release]
 """
 
 import argparse
@@ -93,7 +93,7 @@ def patterns(bytes_of, used):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=HERE.parent / "build/test", help="folder of a build (build/test)")
+    parser.add_argument("--build", type=Path, default=HERE.parent / "build/release", help="folder of a build (build/release)")
     programs = parser.parse_args().build.resolve() / "bin"
     mbk = programs / "mbk"
     with tempfile.TemporaryDirectory(prefix="mbk-function-order-") as name:

@@ -62,12 +62,12 @@ endfunction()
 # program that is no part of the library. LOOPS: it computes what a user waits for, so that it is optimised fully
 # (cmake/MbkPrecompile.cmake), but for the sources after NO_LOOPS; LOOPS with sources behind it: only these are. OBJECTS:
 # how many its other sources become, where their size does not say. ALONE: sources and tests that are compiled by
-# themselves, for they take long. TESTS_WAIT: its tests wait for a socket (label waits).
+# themselves, for they take long. TESTS_WAIT, TESTS_ALL: WAITS and ALL of its mbk_test.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "OBJECTS" "ALONE;DEPENDS;LOOPS;NO_LOOPS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "OBJECTS;TESTS_ALL" "ALONE;DEPENDS;LOOPS;NO_LOOPS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -127,6 +127,9 @@ function(mbk_module name)
     if(ARG_TESTS_WAIT)
       set(wait WAITS)
     endif()
+    if(ARG_TESTS_ALL)
+      list(APPEND wait ALL ${ARG_TESTS_ALL})
+    endif()
     mbk_test(${name}_test ${wait} SOURCES ${tests} ALONE ${ARG_ALONE} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
   endif()
 endfunction()
@@ -135,14 +138,11 @@ set(MBK_KEEPS_MEMORY
     GLIBC_TUNABLES=glibc.malloc.mmap_threshold=134217728:glibc.malloc.trim_threshold=134217728:glibc.malloc.top_pad=16777216)
 
 # A GoogleTest program whose cases CTest sees one by one. A case skipped for want of MBK_DATA_DIR counts as skipped.
-# WAITS: it waits for a socket, which a busy machine may hold up; only tests with this label have a second chance
-# (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers. ALONE: as above.
+# tools/test leaves out the labels waits and all, which only `tools/test --all` runs. WAITS: it waits for a socket or runs
+# in real time, so a busy machine may fail it (label waits; one second chance in .ci/run). ALL FILTER: these cases, as
+# --gtest_filter names them, have the label all; the reason stands beside the call. OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers. ALONE: as above.
 function(mbk_test name)
-  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
-  set(labels "")
-  if(ARG_WAITS)
-    set(labels LABELS waits)
-  endif()
+  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "ALL" "SOURCES;ALONE;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE mbk_settings ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   # What is tested is as users have it; the tests themselves compile faster so.
@@ -152,9 +152,18 @@ function(mbk_test name)
     mbk_precompile(${name} tests)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  # As in the program (apps/mbk/terminal/memory.cpp), memory that was freed serves again; to clear new pages took a quarter of some.
-  gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST
-                       PROPERTIES TIMEOUT 300 ${labels} ENVIRONMENT ${MBK_KEEPS_MEMORY})
+  # As in the program (apps/mbk/memory.cpp), memory that was freed serves again; to clear new pages took a quarter of some.
+  set(discover TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300 ENVIRONMENT ${MBK_KEEPS_MEMORY})
+  if(ARG_WAITS)
+    gtest_discover_tests(${name} ${discover} LABELS waits)
+  elseif(ARG_ALL)
+    gtest_discover_tests(${name} TEST_FILTER ${ARG_ALL} TEST_LIST ${name}_all ${discover} LABELS all)
+    if(NOT ARG_ALL STREQUAL "*")
+      gtest_discover_tests(${name} TEST_FILTER -${ARG_ALL} ${discover})
+    endif()
+  else()
+    gtest_discover_tests(${name} ${discover})
+  endif()
 endfunction()
 
 # mbk_test_each_simd(TEST FILTER): the cases that FILTER names, as processors run them that have less than this one.
