@@ -274,7 +274,7 @@ Result<void> filter_all(const FilterChain& chain, std::span<const Column> column
 
 /// Every so many rows, where blocks of samples can do; whether they can.
 Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> columns,
-                           std::span<const FilterOutput> outputs, Index every, Hertz rate, const Passed& passed,
+                           std::span<const FilterOutput> outputs, Index every, Hertz rate,
                            std::span<double* const> to) {
   const Index length = columns.front().size(), count = (length - chain.smoothing.window) / every + 1;
   for (const Batch& batch : batches_of(outputs)) {
@@ -285,7 +285,7 @@ Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> col
     const FourValues reference = values_at(lanes, 0);
     const std::size_t width = kLanes * batch.derivatives.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
-    (*blocks)->run(lanes, length, reference, passed, values.get());
+    (*blocks)->run(lanes, length, reference, values.get());
     for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
       std::array<double*, kLanes> lane_to{};
       for (const auto& [from, target] : batch.outputs) {
@@ -315,14 +315,14 @@ Result<Index> rows_left(const FilterChain& chain, Index samples, Index every) {
 
 Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                  std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
-                                 const Passed& passed, std::span<double* const> to) {
+                                 std::span<double* const> to) {
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
   const auto rows = rows_left(chain, *length, every);
   if (!rows) return tl::unexpected(rows.error());
   if (every == 1) return filter_all(chain, columns, outputs, sample_rate, to);
 
-  const auto some = filter_blocks(chain, columns, outputs, every, sample_rate, passed, to);
+  const auto some = filter_blocks(chain, columns, outputs, every, sample_rate, to);
   if (!some) return tl::unexpected(some.error());
   if (*some) return {};
   Matrix all(*length - chain.smoothing.window + 1, static_cast<Index>(outputs.size()));
@@ -334,14 +334,13 @@ Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Colum
 }
 
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
-                                   const Passed& passed) {
+                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every) {
   const auto length = length_of(columns);
   if (!length) return tl::unexpected(length.error());
   const auto rows = rows_left(chain, *length, every);
   if (!rows) return tl::unexpected(rows.error());
   Matrix answer(*rows, static_cast<Index>(outputs.size()));
-  auto ok = smooth_then_lowpass(chain, columns, outputs, sample_rate, every, passed, columns_of(answer));
+  auto ok = smooth_then_lowpass(chain, columns, outputs, sample_rate, every, columns_of(answer));
   if (!ok) return tl::unexpected(ok.error());
   return answer;
 }
