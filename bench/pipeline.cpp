@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "apps/mbk/memory.h"
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/filter_chain.h"
 #include "mbk/base/numeric/least_squares.h"
@@ -79,7 +78,6 @@ nlohmann::json from_memory(const std::vector<dsp::Column>& columns, Index every)
 }  // namespace
 
 int main(int argc, char** argv) {
-  app::prefer_large_pages();  // as the program does
   if (argc != 2) {
     std::fputs("usage: bench_pipeline LOG.mat; see pipeline.py\n", stderr);
     return 2;

@@ -14,7 +14,6 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/mbk/memory.h"
 #include "mbk/measure/identify/prediction_error.h"
 #include "mbk/measure/identify/srivc.h"
 
@@ -55,7 +54,6 @@ int time_prediction_error(const std::vector<mbk::SignalPair>& pairs, int argc, c
 
 int main(int argc, char** argv) {
   if (argc != 4 && argc < 7) return 2;
-  mbk::app::prefer_large_pages();  // as mbk itself does
   std::ifstream file(argv[1], std::ios::binary | std::ios::ate);
   const auto count = static_cast<mbk::Index>(static_cast<std::size_t>(file.tellg()) / (2 * sizeof(double)));
   std::vector<mbk::SignalPair> pairs(1);

@@ -17,7 +17,6 @@
 #include "apps/mbk/commands.h"
 #include "apps/mbk/help.h"
 #include "apps/mbk/last_words.h"
-#include "apps/mbk/memory.h"
 #include "apps/mbk/messages.h"
 #include "apps/mbk/output.h"
 #include "apps/mbk/process.h"
@@ -68,7 +67,6 @@ constexpr std::string_view kNoMemory =
 }
 
 int run(int argc, char** argv) {
-  mbk::app::prefer_large_pages();
   const char* const simd = std::getenv("MBK_SIMD");
   if (simd != nullptr && !mbk::value_of<mbk::Simd>(simd)) {
     mbk::app::say("mbk: MBK_SIMD is '{}', which is none of {}; unset it for what this processor has\n", simd,
