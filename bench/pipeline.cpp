@@ -59,8 +59,6 @@ nlohmann::json run(const std::vector<dsp::Column>& columns, Index every) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);  // freed memory serves again, as in a program that measures many recordings
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
   if (argc != 2) {
     std::fputs("usage: bench_pipeline LOG.mat; see pipeline.py\n", stderr);
     return 2;

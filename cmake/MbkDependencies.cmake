@@ -63,8 +63,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Its garbage is left lying until a gigabyte of it is there, which saves a tenth of the time of compiling.
   target_compile_options(mbk_settings INTERFACE --param=ggc-min-heapsize=1048576)
 endif()
-# Each function in a section of its own, so that the linker can put some together (MbkFunctionOrder.cmake).
-target_compile_options(mbk_settings INTERFACE -ffunction-sections)
 if(MBK_WARNINGS_AS_ERRORS AND NOT (CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12"))
   message(STATUS "Warnings are not errors: only those of GCC 12 have been cleared")
 elseif(MBK_WARNINGS_AS_ERRORS)
