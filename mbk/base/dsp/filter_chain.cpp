@@ -280,7 +280,7 @@ Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> col
     const FourValues reference = values_at(lanes, 0);
     const std::size_t width = kLanes * batch.derivatives.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
-    (*blocks)->run(lanes, length, reference, values.get());
+    blocks->run(lanes, length, reference, values.get());
     for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
       std::array<double*, kLanes> lane_to{};
       for (const auto& [from, target] : batch.outputs) {
@@ -311,8 +311,7 @@ Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Colum
                                  std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
                                  std::span<double* const> to) {
   const auto length = MBK_TRY(length_of(columns));
-  const auto rows = rows_left(chain, length, every);
-  if (!rows) return tl::unexpected(rows.error());
+  const auto rows = MBK_TRY(rows_left(chain, length, every));
   if (every == 1) return filter_all(chain, columns, outputs, sample_rate, to);
 
   const auto some = MBK_TRY(filter_blocks(chain, columns, outputs, every, sample_rate, to));

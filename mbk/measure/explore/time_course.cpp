@@ -179,9 +179,8 @@ void set_courses(const VaryingFit& constants, const VaryingFit& fit, const Matri
 }  // namespace
 
 Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseVariable& variable, double band_hz) {
-  const auto course = course_rows(signals, variable, band_hz);
-  if (!course) return tl::unexpected(course.error());
-  const VaryingRows& rows = course->rows;
+  const auto course = MBK_TRY(course_rows(signals, variable, band_hz));
+  const VaryingRows& rows = course.rows;
   const Index n = signals.axes, p = 3 * n + 1;
   TimeCourseEstimate found;
   found.axes = static_cast<int>(n);

@@ -22,8 +22,7 @@ Result<dsp::Spectrum> spectrum_of(const Columns& signals, const std::vector<Cut>
   for (const Cut& cut : cuts) {
     for (Index axis = 0; axis < signals.cols(); ++axis) {
       const auto signal = signals.col(axis).segment(cut.begin, cut.end - cut.begin);
-      auto spectrum = dsp::welch(signal, sample_rate, resolution);
-      if (!spectrum) return tl::unexpected(spectrum.error());
+      auto spectrum = MBK_TRY(dsp::welch(signal, sample_rate, resolution));
       if (sum.density.size() == 0) {
         sum = std::move(spectrum);
       } else {

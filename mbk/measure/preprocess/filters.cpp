@@ -112,7 +112,7 @@ Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan
   }
   const Index computed = signals.force_sensitivity.cols();
   for (Index k = 0; k < computed; ++k) outputs.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
-  return dsp::smooth_then_lowpass(*chain, columns, outputs, rate, filters.every, to);
+  return dsp::smooth_then_lowpass(chain, columns, outputs, rate, filters.every, to);
 }
 
 Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,

@@ -144,16 +144,15 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   }
 
   FilterPlan filters = reference_filters(options);
-  auto plan = published ? reference_windows(how.protocol, signals->reference, clock, options.window,
-                                            filters.smoothing.half_window())
-                        : default_windows(how.protocol, signals->reference, clock, options.window);
-  if (!plan) return tl::unexpected(plan.error());
-  const std::vector<Cut> whole = plan->cuts;
-  MBK_TRY(heed_exclusions(recording, clock, how, *plan, trial.warnings));
-  MBK_TRY(check_clock(clock, inspection, *plan, trial.warnings));
-  MBK_TRY(check_finite(clock, *signals, *plan, recording.warnings));
-  MBK_TRY(check_alive(*signals, *plan));
-  warn_of_small_motion(*signals, *plan, trial.warnings);
+  auto plan = MBK_TRY(published ? reference_windows(how.protocol, signals.reference, clock, options.window,
+                                                    filters.smoothing.half_window())
+                                : default_windows(how.protocol, signals.reference, clock, options.window));
+  const std::vector<Cut> whole = plan.cuts;
+  MBK_TRY(heed_exclusions(recording, clock, how, plan, trial.warnings));
+  MBK_TRY(check_clock(clock, inspection, plan, trial.warnings));
+  MBK_TRY(check_finite(clock, signals, plan, recording.warnings));
+  MBK_TRY(check_alive(signals, plan));
+  warn_of_small_motion(signals, plan, trial.warnings);
 
   const bool by_reference = how.protocol == Protocol::sinusoidal;
   const auto band = MBK_TRY(by_reference ? excited_band(signals.reference, whole, rate)  // known where the limb is not
@@ -191,11 +190,11 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     const Index rows = rows_of_cuts[k], first = cut.begin + lost;
     const auto to = columns_from(row, {&trial.position, &trial.velocity, &trial.acceleration,
                                        &trial.force_hand_on_robot, &trial.reference_motion, &trial.force_sensitivity});
-    MBK_TRY(filter_cut(*signals, cut, filters, plan->trim, rate, options.padding, with_reference, to));
+    MBK_TRY(filter_cut(signals, cut, filters, plan.trim, rate, options.padding, with_reference, to));
     const auto kept = Eigen::seqN(first, rows, every);
     trial.time.segment(row, rows) = recording.time(kept);
     for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
-      trial.reference.col(axis).segment(row, rows) = signals->reference.col(axis)(kept);
+      trial.reference.col(axis).segment(row, rows) = signals.reference.col(axis)(kept);
     }
     append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;
