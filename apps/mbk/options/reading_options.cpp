@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <filesystem>
 
 #include "apps/mbk/caller.h"
 #include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/terminal/memory.h"
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/formats.h"
@@ -16,8 +14,6 @@
 
 namespace mbk::app {
 namespace {
-
-constexpr std::size_t kLong = std::size_t{32} << 20;  // bytes of a file that holds more than some minutes
 
 Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   recording::ReadOptions options;
@@ -103,11 +99,7 @@ Result<RecordingReader> open_recordings(const ReadingArguments& arguments, const
   reading.options = MBK_TRY(read_options(arguments));
   reading.sensor = MBK_TRY(sensor_use(with_sensor));
   reading.in_memory = recording_in_memory;
-  auto reader = MBK_TRY(RecordingReader::open(reading));
-  for (int k = 0; k < reader.count(); ++k) {
-    if (reader.size(k) > kLong) give_back_large_blocks();
-  }
-  return reader;
+  return RecordingReader::open(reading);
 }
 
 Result<std::vector<Recording>> read_recordings(const ReadingArguments& arguments, const SensorArguments& with_sensor) {

@@ -54,7 +54,6 @@ class RecordingFile {
     auto file = MBK_TRY(OpenFile::open(path));
     const auto format = MBK_TRY(format_of(file));
     made->format_ = format;
-    made->size_ = file.size();
     if (format->open != nullptr) {
       made->trials_ = MBK_TRY(format->open(file));
     } else {
@@ -64,7 +63,6 @@ class RecordingFile {
   }
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const std::vector<TrialName>& trials() const {
     static const std::vector<TrialName> kNone;
     return trials_ ? trials_->trials() : kNone;
@@ -93,7 +91,6 @@ class RecordingFile {
 
  private:
   std::filesystem::path path_;
-  std::size_t size_ = 0;
   const FileFormat* format_ = nullptr;
   std::shared_ptr<const OpenTrials> trials_;  ///< of a file or folder of several
   mutable std::optional<OpenFile> file_;      ///< of one that holds one
@@ -171,10 +168,6 @@ std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& o
   if (!file.trials().empty() || !slices) return file.trials();
   const auto decoded = file.decode(options, false);  // what is wrong is for whoever reads it
   return decoded ? trials_of_map(decoded->contents, options.channels) : std::vector<TrialName>();
-}
-
-std::size_t size_of(const RecordingFile& file) {
-  return file.size();
 }
 
 void rest(const RecordingFile& file) {

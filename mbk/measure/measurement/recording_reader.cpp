@@ -130,10 +130,6 @@ bool RecordingReader::of_trials(int k) const {
   return record(k).open && !recording::trials_of(*record(k).open).empty();
 }
 
-std::size_t RecordingReader::size(int k) const {
-  return record(k).open ? recording::size_of(*record(k).open) : 0;
-}
-
 recording::ReadOptions RecordingReader::options_of(int k) const {
   recording::ReadOptions options = options_;
   options.trial = record(k).trial;

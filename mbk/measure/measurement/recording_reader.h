@@ -57,8 +57,6 @@ class RecordingReader {
   [[nodiscard]] bool is_journal(int k) const { return record(k).is_journal; }
   /// Whether the file holds several trials or arms.
   [[nodiscard]] bool of_trials(int k) const;
-  /// [bytes]; 0 if there is no open file.
-  [[nodiscard]] std::size_t size(int k) const;
 
  private:
   struct Record {
