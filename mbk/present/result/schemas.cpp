@@ -3,7 +3,9 @@
 namespace mbk::result {
 
 void add_schemas(document::Schemas& schemas) {
-  for (const auto add : {&add_movement_schema}) add(schemas);
+  for (const auto add : {&add_movement_schema, &add_sensor_schemas, &add_springs_schema, &add_teleop_schema}) {
+    add(schemas);
+  }
 }
 
 }  // namespace mbk::result
