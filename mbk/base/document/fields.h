@@ -417,10 +417,12 @@ class Fields {
   }
 
   /// All fields of another described value, in this object.
+  /// @param omitted  the name of one that is left out
   template <class Get>
-  void with(Get get) {
+  void with(Get get, std::string_view omitted = "") {
     using Other = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
     for (const auto& field : fields_of<Other>().all()) {
+      if (field.name == omitted) continue;
       fields_.push_back({field.name, field.meaning, field.always,
                          [get, write = field.write](const T& from, Json& to) { write(std::invoke(get, from), to); },
                          field.schema});

@@ -15,7 +15,6 @@ void add_teleop_schema(document::Schemas& schemas);
 void add_tf_schemas(document::Schemas& schemas);
 void add_explore_schemas(document::Schemas& schemas);
 void add_robot_schemas(document::Schemas& schemas);
-void add_robot_description_schema(document::Schemas& schemas);
 void add_workspace_schema(document::Schemas& schemas);
 
 }  // namespace mbk::result
