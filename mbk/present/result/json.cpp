@@ -512,43 +512,6 @@ std::string to_json(const ValidationTable& table) {
   return dumped(json);
 }
 
-std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
-  const double degrees = 180.0 / std::numbers::pi;
-  const robot::Geometry& geometry = workspace.geometry;
-  const robot::JointLimits& limits = geometry.limits;
-  const auto at = [](const Eigen::Vector2d& place) { return Json::array({number(place.x()), number(place.y())}); };
-  Json json = header("mbk.workspace/1");
-  json["links_m"] = {geometry.d1, geometry.d2};
-  json["limits_deg"] = {{"theta1", {degrees * limits.theta1_low, degrees * limits.theta1_high}},
-                        {"theta2", {degrees * limits.theta2_low, degrees * limits.theta2_high}},
-                        {"smallest_opening", degrees * limits.smallest_opening}};
-  json["x_m"] = {number(workspace.low.x()), number(workspace.high.x())};
-  json["y_m"] = {number(workspace.low.y()), number(workspace.high.y())};
-  json["area_m2"] = number(workspace.area);
-  json["outline_m"] = Json::array();
-  for (const Eigen::Vector2d& place : workspace.outline) json["outline_m"].push_back(at(place));
-  if (posture) {
-    const impedance::Ellipse felt = impedance::ellipse(posture->inertia_at_hand);
-    Json margins = Json::array();
-    for (const robot::Margin& margin : posture->margins) {
-      margins.push_back({{"quantity", margin.quantity},
-                         {"limit_deg", degrees * margin.limit},
-                         {"kind", margin.upper ? "most" : "least"},
-                         {"left_deg", number(degrees * margin.left())}});
-    }
-    json["at"] = {{"hand_m", at(posture->hand)},
-                  {"theta_deg", at(degrees * posture->theta)},
-                  {"jacobian_m", rows(posture->jacobian)},
-                  {"manipulability_m2", number(posture->manipulability)},
-                  {"margins", std::move(margins)},
-                  {"inertia_at_hand_kg",
-                   {{"matrix", rows(posture->inertia_at_hand)},
-                    {"eigenvalues", {number(felt.lambda_min), number(felt.lambda_max)}},
-                    {"orientation_deg", number(degrees * felt.orientation)}}}};
-  }
-  return dumped(json);
-}
-
 std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents) {
   std::vector<Json> objects;
   for (const std::string& document : documents) objects.push_back(Json::parse(document));
