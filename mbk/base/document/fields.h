@@ -351,7 +351,7 @@ class Fields {
   /// Numbers with so many digits, which are there only to be looked at; those of a matrix column by column.
   /// @param get  gives a double, a Vector or a Matrix
   template <class Get>
-  Field& add_rounded(std::string name, Get get, int digits, std::string meaning = "") {
+  Field& add_rounded(std::string name, Get get, int digits = kDigits, std::string meaning = "") {
     using Value = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
     if constexpr (std::is_same_v<Value, Matrix>) {
       return append(std::move(name), std::move(meaning), &Definitions::columns,
