@@ -3,7 +3,9 @@
 #include <fstream>
 #include <iostream>
 
+#include "apps/mbk/commands/robot_check_report.h"
 #include "mbk/present/result/schemas.h"
+#include "mbk/validate/robot_event.h"
 
 int main(int count, char** words) {
   if (count != 2) {
@@ -13,6 +15,8 @@ int main(int count, char** words) {
   const std::filesystem::path folder = words[1];
   mbk::document::Schemas schemas;
   mbk::result::add_schemas(schemas);
+  mbk::validation::add_robot_event_schema(schemas);
+  mbk::app::add_robot_check_schema(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
     std::ofstream file(folder / (name + ".schema.json"));
