@@ -4,6 +4,9 @@
 #include <iostream>
 
 #include "mbk/present/result/schemas.h"
+#include "mbk/study/longitudinal/report_schemas.h"
+#include "mbk/study/statistics/summary_document.h"
+#include "mbk/study/store/study_documents.h"
 
 int main(int count, char** words) {
   if (count != 2) {
@@ -13,6 +16,9 @@ int main(int count, char** words) {
   const std::filesystem::path folder = words[1];
   mbk::document::Schemas schemas;
   mbk::result::add_schemas(schemas);
+  mbk::store::add_schemas(schemas);
+  mbk::statistics::add_schemas(schemas);
+  mbk::longitudinal::add_schemas(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
     std::ofstream file(folder / (name + ".schema.json"));
