@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "mbk/batch/job_status.h"
 #include "mbk/present/result/schemas.h"
 #include "mbk/study/longitudinal/report_schemas.h"
 #include "mbk/study/statistics/summary_document.h"
@@ -19,6 +20,7 @@ int main(int count, char** words) {
   mbk::store::add_schemas(schemas);
   mbk::statistics::add_schemas(schemas);
   mbk::longitudinal::add_schemas(schemas);
+  mbk::batch::add_schemas(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
     std::ofstream file(folder / (name + ".schema.json"));
