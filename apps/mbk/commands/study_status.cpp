@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/options/study_options.h"
-#include "mbk/batch/job_efficiency.h"
+#include "mbk/batch/merge.h"
 #include "mbk/batch/run.h"
 
 namespace mbk::app {
@@ -27,25 +27,31 @@ struct StatusArguments {
 Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
   if (arguments.job) return std::vector{*arguments.job};
   const auto study = MBK_TRY(open_study(arguments.study));
-  return job_folders(study.folder());
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (auto at = fs::directory_iterator(study.folder() / "jobs", error); !error && at != fs::directory_iterator();
+       at.increment(error)) {
+    if (batch::JobFolder::is_there(at->path())) folders.push_back(at->path());
+  }
+  std::ranges::sort(folders);
+  return folders;
 }
 
 nlohmann::ordered_json json_of(const batch::JobFolder& folder, const batch::JobState& state,
-                               const batch::JobEfficiency& efficiency) {
+                               const std::vector<batch::FinishedTask>& tasks) {
   auto json = nlohmann::ordered_json::parse(batch::to_json(state));
   json["folder"] = folder.folder().string();
   json["title"] = folder.job().title;
   json["tasks"] = nlohmann::ordered_json::array();
-  for (const batch::TaskEfficiency& one : efficiency.tasks) {
-    json["tasks"].push_back({{"chunk", one.task.chunk},
-                             {"host", one.task.end.host},
-                             {"units", one.task.end.units},
-                             {"failed", one.task.end.failed},
-                             {"expected_s", one.task.expected_s},
-                             {"wall_s", one.task.end.wall_s},
-                             {"cpu_s", one.task.end.cpu_s}});
+  for (const batch::FinishedTask& one : tasks) {
+    json["tasks"].push_back({{"chunk", one.chunk},
+                             {"host", one.end.host},
+                             {"units", one.end.units},
+                             {"failed", one.end.failed},
+                             {"expected_s", one.expected_s},
+                             {"wall_s", one.end.wall_s},
+                             {"cpu_s", one.end.cpu_s}});
   }
-  json["efficiency"] = nlohmann::ordered_json::parse(batch::to_json(efficiency));
   return json;
 }
 
@@ -59,11 +65,10 @@ int run(const StatusArguments& arguments) {
     if (!folder) return report_error(folder.error());
     const auto state = batch::state_of(*folder);
     if (!state) return report_error(state.error());
-    const auto efficiency = batch::job_efficiency(*folder);
-    if (!efficiency) return report_error(efficiency.error());
-    json["jobs"].push_back(json_of(*folder, *state, *efficiency));
-    text += fmt::format("{}\n  {}\n  {}\n{}", folder->job().title, folder->folder().string(), batch::to_text(*state),
-                        batch::to_text(*efficiency));
+    const auto tasks = batch::finished_tasks(*folder);
+    if (!tasks) return report_error(tasks.error());
+    json["jobs"].push_back(json_of(*folder, *state, *tasks));
+    text += fmt::format("{}\n  {}\n  {}\n", folder->job().title, folder->folder().string(), batch::to_text(*state));
   }
   if (arguments.json) text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (auto ok = print_text(text); !ok) return report_error(ok.error());
@@ -79,7 +84,7 @@ Action add_study_status(Command group) {
       "Examples:\n"
       "  mbk study status\n"
       "  mbk study status --json\n"
-      "      with the time that each finished task waited and worked, and why tasks were lost\n"
+      "      with the time that each finished task took\n"
       "  mbk study status --job mbk-jobs/validate-recovery-0123456789ab/stage-0\n"
       "      a job of another command");
   add_study_option(command, arguments->study);

@@ -145,33 +145,6 @@ Document recordings_json(const store::StudyList& list, std::optional<std::int64_
   return own;
 }
 
-/// Above so many tasks of a job a page holds what each machine did alone.
-constexpr std::size_t kMostTasks = 1'000;
-
-/// Numbers the machines, since a page is passed on and their names say where the laboratory's network is and whose
-/// computers are in it.
-void number_hosts(Document& job) {
-  std::map<std::string, std::string> numbered;
-  for (const char* list : {"hosts", "tasks"}) {
-    for (Document& one : job[list]) {
-      const auto name = one.value("host", std::string());
-      one["host"] = numbered.try_emplace(name, fmt::format("machine {}", numbered.size() + 1)).first->second;
-    }
-  }
-}
-
-Document jobs_json(const std::vector<std::string>& jobs) {
-  Document all = Document::array();
-  for (const std::string& text : jobs) {
-    Document job = Document::parse(text, nullptr, false);
-    if (!job.is_object() || job.value("schema", std::string()) != "mbk.job_efficiency/1") continue;
-    number_hosts(job);
-    if (job["tasks"].size() > kMostTasks) job.erase("tasks");
-    all.push_back(std::move(job));
-  }
-  return all;
-}
-
 Document begun(const char* schema, const StudyReport& report) {
   Document json = {{"schema", schema}, {"software", fmt::format("mbk {}", version())}, {"command", report.command}};
   if (!report.note.empty()) json["note"] = report.note;
@@ -219,7 +192,6 @@ std::string study_report_json(const StudyReport& report, const std::string& summ
   json["courses"] = courses_json(report.courses);
   json["matrices"] = matrices_json(report.columns, {});
   add_results(json, report.columns, {});
-  if (!report.jobs.empty()) json["jobs"] = jobs_json(report.jobs);
   return written(json);
 }
 

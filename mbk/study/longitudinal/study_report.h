@@ -17,8 +17,7 @@ struct StudyReport {
   store::StudyList list;
   store::OutcomeColumns columns;
   std::vector<OutcomeCourses> courses;
-  std::string primary;            ///< the outcome that is shown first
-  std::vector<std::string> jobs;  ///< documents of schema mbk.job_efficiency/1
+  std::string primary;  ///< the outcome that is shown first
 };
 
 /// The outcome that a page shows first unless it is asked for another: the largest stiffness [N/m], or else that of
