@@ -43,9 +43,8 @@ import private_slurm  # noqa: E402
 import study as studies  # noqa: E402
 from processes import ended_by_kill, workers_of  # noqa: E402
 
-ENGINES = ("local", "slurm", "mpi")
+ENGINES = ("local", "slurm")
 WORKS = ("draws", "written", "measured")
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 JUDGED = (0, 1, 4, 6)  # exit codes of commands that did what they were asked
 FULL = {"draws": 100_000, "draw_chunks": (1000, 3000, 10_000), "written": 2000, "written_chunks": (20, 60, 150),
         "runs": 1000, "run_chunks": (10, 25, 60), "kills": 20, "pairs": 3, "trials": 1000, "units": 10_000,
@@ -75,7 +74,7 @@ class Campaign:
     # --- running things
 
     def environment(self, engine):
-        return {**(self.slurm.environment if engine == "slurm" else os.environ), **MPI}
+        return dict(self.slurm.environment if engine == "slurm" else os.environ)
 
     def start(self, engine, *arguments):
         command = [self.mbk, *arguments] + (["--engine", engine] if engine else [])

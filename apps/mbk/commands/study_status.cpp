@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
+#include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/options/study_options.h"
 #include "mbk/batch/job_status.h"
 
@@ -25,7 +25,14 @@ struct StatusArguments {
 Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
   if (arguments.job) return std::vector{*arguments.job};
   const auto study = MBK_TRY(open_study(arguments.study));
-  return job_folders(study.folder());
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (auto at = fs::directory_iterator(study.folder() / "jobs", error); !error && at != fs::directory_iterator();
+       at.increment(error)) {
+    if (batch::JobFolder::is_there(at->path())) folders.push_back(at->path());
+  }
+  std::ranges::sort(folders);
+  return folders;
 }
 
 int run(const StatusArguments& arguments) {
