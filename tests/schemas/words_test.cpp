@@ -21,7 +21,6 @@
 #include "mbk/model/trial/transfer_function.h"
 #include "mbk/model/trial/verdict.h"
 #include "mbk/model/trial/warning.h"
-#include "mbk/study/statistics/study_statistics.h"
 #include "tests/support/schemas.h"
 
 namespace mbk {
@@ -60,12 +59,6 @@ TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
   expect_words<StabilityVerdict>("teleop", "/definitions/Stability/properties/verdict");
   expect_words<StabilityCondition>("teleop", "/definitions/Stability/properties/conditions/items/properties/name");
   expect_words<MotionOutcome>("teleop", "/properties/simulation/properties/runs/items/properties/outcome");
-  expect_words<reliability::Support>("study_summary", "/definitions/StudySupport");
-  expect_words<reliability::IccForm>("study_summary", "/definitions/StudyIcc/properties/form");
-  expect_words<reliability::Pairing>("study_summary", "/definitions/StudyDifference/properties/pairing");
-  expect_words<statistics::Verdict>("study_summary", "/definitions/StudyDifference/properties/verdict");
-  expect_words<statistics::ReliabilityWarning>("study_plan", "/properties/warnings/items");
-  expect_words<statistics::ComparedBy>("study_summary", "/definitions/StudyComparison/properties/by");
   expect_words<drivers::BridgeRule>("robot_check", "/definitions/BridgeRule");
   expect_words<drivers::RuleVerdict>("robot_check", "/definitions/LinkCheck/properties/rules/items/properties/verdict");
   expect_words<Provenance>("reproduction", "/definitions/Provenance");
