@@ -453,7 +453,7 @@ def measure(mbk, flood, stops, seed=1):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mbk", type=pathlib.Path, default=HERE.parent / "build/release/bin/mbk")
+    parser.add_argument("--mbk", type=pathlib.Path, default=HERE.parents[1] / "build/release/bin/mbk")
     parser.add_argument("--stops", type=int, default=20, help="during each flood (20)")
     parser.add_argument("--flood", choices=["none"] + [flood.__name__ for flood in FLOODS], action="append",
                         help="only this one; may be repeated")
