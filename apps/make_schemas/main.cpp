@@ -4,7 +4,11 @@
 #include <iostream>
 
 #include "apps/mbk/commands/robot_check_report.h"
+#include "mbk/batch/job_status.h"
 #include "mbk/present/result/schemas.h"
+#include "mbk/study/longitudinal/report_schemas.h"
+#include "mbk/study/statistics/summary_document.h"
+#include "mbk/study/store/study_documents.h"
 #include "mbk/validate/robot_event.h"
 
 int main(int count, char** words) {
@@ -17,6 +21,10 @@ int main(int count, char** words) {
   mbk::result::add_schemas(schemas);
   mbk::validation::add_robot_event_schema(schemas);
   mbk::app::add_robot_check_schema(schemas);
+  mbk::store::add_schemas(schemas);
+  mbk::statistics::add_schemas(schemas);
+  mbk::longitudinal::add_schemas(schemas);
+  mbk::batch::add_schemas(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
     std::ofstream file(folder / (name + ".schema.json"));

@@ -20,7 +20,7 @@ from tf_test import oscillator
 ROOT = pathlib.Path(__file__).parents[2]
 CODES = schemas.read((schemas.FOLDER / "result.schema.json").as_uri())["definitions"]["WarningCode"]["enum"]
 
-OF_OTHER_PROGRAMS = ("mpi_engine.cpp", "slurm_engine.cpp")  # which call mpirun and sbatch with options of theirs
+OF_OTHER_PROGRAMS = ("slurm_engine.cpp",)  # which calls sbatch with options of its own
 
 ADVICE = {}  # code: a function of the test case, which raises it and follows its advice
 
