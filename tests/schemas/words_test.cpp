@@ -5,22 +5,16 @@
 #include <string>
 
 #include "mbk/experiment/drivers/bridge_check.h"
-#include "mbk/model/trial/arm_posture.h"
 #include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/frequency_response.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
-#include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/prepared_dynamics.h"
-#include "mbk/model/trial/prepared_trial.h"
-#include "mbk/model/trial/protocol.h"
 #include "mbk/model/trial/reproduction.h"
 #include "mbk/model/trial/robot_identification.h"
 #include "mbk/model/trial/sensor_calibration.h"
 #include "mbk/model/trial/teleoperation.h"
 #include "mbk/model/trial/transfer_function.h"
-#include "mbk/model/trial/verdict.h"
-#include "mbk/model/trial/warning.h"
 #include "tests/support/schemas.h"
 
 namespace mbk {
@@ -34,20 +28,6 @@ void expect_words(const std::string& name, const std::string& place, std::set<st
 }
 
 TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
-  expect_words<Method>("common", "/definitions/Method");
-  expect_words<Verdict>("common", "/definitions/Verdict");
-  expect_words<WarningCode>("common", "/definitions/WarningCode");
-  expect_words<ForceSource>("common", "/definitions/ForceSource");
-  expect_words<Protocol>("common", "/definitions/Preparation/properties/protocol");
-  expect_words<Procedure>("common", "/definitions/Preparation/properties/procedure");
-  expect_words<AccelerationSource>("common", "/definitions/Preparation/properties/acceleration");
-  expect_words<ArmPosture::Of>("common", "/definitions/Posture/properties/of");
-  expect_words<Mode>("result", "/properties/mode");
-  expect_words<Protocol>("result", "/properties/protocol");
-  expect_words<Structure>("result", "/properties/structure");
-  expect_words<ParametersFrom>("result", "/definitions/Estimation/properties/parameters_from", {""});
-  expect_words<ReferenceQuantity>("result", "/definitions/Instrument/properties/reference");
-  expect_words<ArmPosture::Of>("result", "/definitions/JointDomain/properties/of");
   expect_words<RobotMethod>("robot", "/properties/method");
   expect_words<InstrumentMotion>("robot", "/properties/instruments");
   expect_words<SensorWarningCode>("sensor", "/definitions/SensorWarning/properties/code");

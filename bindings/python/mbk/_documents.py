@@ -35,7 +35,8 @@ def _schema(name: str) -> dict[str, Any]:
 class _Field:
     """A place in a schema: what a description says of it, and what is below it."""
 
-    def __init__(self, node: dict[str, Any], file: str, description: str = "") -> None:
+    def __init__(self, node: dict[str, Any], file: str, description: str = "", within: str = "") -> None:
+        self.within = within  # the definition in which the field stands
         while "$ref" in node:
             description = description or node.get("description", "")
             target, _, pointer = node["$ref"].partition("#")
@@ -43,22 +44,23 @@ class _Field:
             node = _schema(file)
             for step in pointer.split("/"):
                 node = node[step] if step else node
-        self.node, self.file = node, file
+            within = pointer.rpartition("/")[2]
+        self.node, self.file, self.definition = node, file, within
         self.description: str = description or node.get("description", "")
 
     def _options(self) -> Iterator[_Field]:
         yield self
         for key in ("anyOf", "oneOf"):
             for one in self.node.get(key, ()):
-                yield from _Field(one, self.file, self.description)._options()
+                yield from _Field(one, self.file, self.description, self.definition)._options()
 
     def below(self, name: str) -> _Field | None:
         for option in self._options():
             node = option.node.get("properties", {}).get(name)
             if node is not None:
-                return _Field(node, option.file)
+                return _Field(node, option.file, within=option.definition)
             if name.isdecimal() and isinstance(option.node.get("items"), dict):
-                return _Field(option.node["items"], option.file, option.description)
+                return _Field(option.node["items"], option.file, option.description, option.definition)
         return None
 
     @property
@@ -138,7 +140,7 @@ class Part:
                 value = value.get(name, {})
         del value
         assert field is not None
-        if self._units and name in self._units and field.file == "common.schema.json":
+        if self._units and name in self._units and field.within == "Model":
             return self._units[name]
         described = _UNIT.findall(field.description)
         unit: str = described[-1] if described else ""

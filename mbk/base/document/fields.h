@@ -259,6 +259,15 @@ class Fields {
     bool always = true;  ///< whether every document has it; false too where those of an earlier version lack it
     std::function<void(const T& from, Json& to)> write;
     std::function<Json(Definitions&)> schema;
+
+    /// It is there only where `is_there` says so of a `const T&`.
+    template <class If>
+    void only_if(If is_there) {
+      always = false;
+      write = [is_there, write_it = std::move(write)](const T& from, Json& to) {
+        if (std::invoke(is_there, from)) write_it(from, to);
+      };
+    }
   };
 
   /// @param name     in schemas and TypeScript: "Reach"; without it the type stands where it is used
@@ -300,10 +309,7 @@ class Fields {
   template <class If, class Get>
   Field& add_if(If is_there, std::string name, Get get, std::string meaning = "") {
     Field& field = add(std::move(name), std::move(get), std::move(meaning));
-    field.always = false;
-    field.write = [is_there, write = std::move(field.write)](const T& from, Json& to) {
-      if (std::invoke(is_there, from)) write(from, to);
-    };
+    field.only_if(std::move(is_there));
     return field;
   }
 
@@ -345,7 +351,7 @@ class Fields {
   /// Numbers with so many digits, which are there only to be looked at; those of a matrix column by column.
   /// @param get  gives a double, a Vector or a Matrix
   template <class Get>
-  Field& add_rounded(std::string name, Get get, int digits, std::string meaning = "") {
+  Field& add_rounded(std::string name, Get get, int digits = kDigits, std::string meaning = "") {
     using Value = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
     if constexpr (std::is_same_v<Value, Matrix>) {
       return append(std::move(name), std::move(meaning), &Definitions::columns,
@@ -379,6 +385,14 @@ class Fields {
         [part](const T& from, const std::string& key, Json& to) { to[key] = part.write(from); });
   }
 
+  /// A field in the form of a Form, which `get` writes in its own way.
+  /// @param get  gives a Json
+  template <class Form, class Get>
+  Field& add_form(std::string name, Get get, std::string meaning = "") {
+    return append(std::move(name), std::move(meaning), &Definitions::of<Form>,
+                  [get](const T& from, const std::string& key, Json& to) { to[key] = std::invoke(get, from); });
+  }
+
   /// A field whose form no C++ type says.
   /// @param schema  its form as JSON Schema
   /// @param get     gives a Json
@@ -403,10 +417,12 @@ class Fields {
   }
 
   /// All fields of another described value, in this object.
+  /// @param omitted  the name of one that is left out
   template <class Get>
-  void with(Get get) {
+  void with(Get get, std::string_view omitted = "") {
     using Other = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
     for (const auto& field : fields_of<Other>().all()) {
+      if (field.name == omitted) continue;
       fields_.push_back({field.name, field.meaning, field.always,
                          [get, write = field.write](const T& from, Json& to) { write(std::invoke(get, from), to); },
                          field.schema});
@@ -451,6 +467,14 @@ template <Described T>
 [[nodiscard]] Json schema_of() {
   Definitions types;
   return document_schema(fields_of<T>().name(), fields_of<T>().schema(types), types.all());
+}
+
+/// The JSON Schema of a document that is one of several.
+template <Described... Each>
+[[nodiscard]] Json schema_of_one(const std::string& title, const std::string& meaning) {
+  Definitions types;
+  Json each = Json::array({types.of<Each>()...});
+  return document_schema(title, {{"description", meaning}, {"oneOf", std::move(each)}}, types.all());
 }
 
 /// A document as text.

@@ -138,5 +138,44 @@ TEST(Fields, MakeAClosedSchemaThatNamesEachTypeOnce) {
   EXPECT_EQ(definitions.at("Interval").at("items"), (Json{{"$ref", "#/definitions/Value"}}));
 }
 
+struct Odd {
+  double mass = 0;
+  Matrix signals;
+  std::array<Side, 2> sides = {};
+};
+
+void describe(Fields<Odd>& fields) {
+  fields.type("Odd");
+  const auto inner = [](Fields<Odd>& part) { part.add_number("mass", &Odd::mass); };
+  fields.group("inner", inner, "within").only_if([](const Odd& odd) { return odd.mass > 0; });
+  fields.add_columns("signals", &Odd::signals);
+  fields.add("sides", &Odd::sides);
+  fields.add_form<Vector>("rounded", [](const Odd& odd) { return rounded(Vector::Constant(1, odd.mass)); });
+}
+
+TEST(Fields, TakeFormsThatNoMemberHas) {
+  Odd odd;
+  odd.signals = Matrix{{1.0, 2.0}, {3.0, 4.0}};
+  EXPECT_EQ(written(odd).dump(), R"({"signals":[[1.0,3.0],[2.0,4.0]],"sides":["left","left"],"rounded":[0.0]})");
+  odd.mass = 1.0 / 3.0;
+  EXPECT_EQ(written(odd).at("inner"), (Json{{"mass", 1.0 / 3.0}}));
+  EXPECT_EQ(written(odd).at("rounded"), (Json{0.333333}));
+
+  const Json schema = schema_of_one<Odd, Part>("Either", "One of two.");
+  EXPECT_EQ(schema.at("oneOf"), (Json{{{"$ref", "#/definitions/Odd"}}, {{"$ref", "#/definitions/Part"}}}));
+  const Json& made = schema.at("definitions").at("Odd");
+  EXPECT_EQ(made.at("required"), (Json{"signals", "sides", "rounded"}));
+  const Json& properties = made.at("properties");
+  EXPECT_EQ(properties.at("inner"), (Json{{"type", "object"},
+                                          {"properties", {{"mass", {{"type", "number"}}}}},
+                                          {"required", {"mass"}},
+                                          {"additionalProperties", false},
+                                          {"description", "within"}}));
+  EXPECT_EQ(properties.at("signals"), (Json{{"$ref", "#/definitions/Columns"}}));
+  EXPECT_EQ(properties.at("sides").at("minItems"), 2);
+  EXPECT_EQ(properties.at("sides").at("maxItems"), 2);
+  EXPECT_EQ(properties.at("rounded"), (Json{{"$ref", "#/definitions/Vector"}}));
+}
+
 }  // namespace
 }  // namespace mbk::document

@@ -2,34 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 
-#include "mbk/base/numeric/dense.h"
-#include "mbk/model/impedance/ellipse.h"
 #include "mbk/model/impedance/model.h"
-#include "mbk/present/result/findings_json.h"
-#include "mbk/present/result/force_comparison_json.h"
-#include "mbk/present/result/joint_domain_json.h"
 #include "mbk/present/result/json_parts.h"
 #include "mbk/present/result/json_reading.h"
 #include "mbk/present/result/passivity_json.h"
+#include "mbk/present/result/result_document.h"
 
 namespace mbk::result {
 namespace {
-
-constexpr const char* kResultSchema = "mbk.result/2";
-constexpr const char* kFirstResultSchema = "mbk.result/1";  ///< still read
-constexpr const char* kResultsSchema = "mbk.results/1";
-
-Json model_json(const impedance::Model& model) {
-  return {{"M", rows(model.M)}, {"B", rows(model.B)}, {"K", rows(model.K)}, {"x0", list(model.x0)}};
-}
 
 Json numbers(const std::vector<double>& values) {
   Json array = Json::array();
@@ -54,264 +37,6 @@ Json chart_json(const Chart& chart) {
   return json;
 }
 
-Json ellipses_json(const Findings& findings) {
-  Json json = Json::object();
-  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) json[kMatrixNames[k]] = ellipse_json(findings.ellipses[k]);
-  return json;
-}
-
-Json antisymmetries_json(const Findings& findings) {
-  return {{"inertia", antisymmetry_json(findings.antisymmetry[0])},
-          {"stiffness", antisymmetry_json(findings.antisymmetry[1])}};
-}
-
-Json fit_json(const Fit& fit) {
-  return {{"VAF", list(fit.vaf)},
-          {"RMSE", list(fit.rmse)},
-          {"validated_on", validated_on(fit.held_out)},
-          {"VAF_in_sample", list(fit.vaf_in_sample)}};
-}
-
-Json instrument_json(const InstrumentCheck& check) {
-  return {{"reference", word_of(check.from)},
-          {"first_stage_F", list(check.strength)},
-          {"weakest_F", number(check.weakest())},
-          {"strong", check.strong()},
-          {"coherent_residual_fraction", list(check.coherent_residual)}};
-}
-
-Json unmodelled_json(const UnmodelledResponse& response) {
-  Json json = {{"coherent_share", list(response.coherent)}};
-  if (response.induced.size() > 0) json["induced_share"] = list(response.induced);
-  return json;
-}
-
-Json assumptions_json(const std::vector<AssumptionTest>& tests) {
-  Json json = Json::array();
-  for (const AssumptionTest& test : tests) {
-    json.push_back({{"assumption", word_of(test.assumption)},
-                    {"contradicted", test.contradicted},
-                    {"p_value", number(test.p_value)},
-                    {"size", number(test.size)},
-                    {"shift", number(test.shift)}});
-    if (test.frequency_hz > 0.0) json.back()["frequency_hz"] = number(test.frequency_hz);
-  }
-  return json;
-}
-
-/// A second method beside the first, without what both have in common.
-Json alternative_json(const Identification& id) {
-  Json json = {{"method", word_of(id.method)},
-               {"model", model_json(id.model)},
-               {"standard_error", model_json(id.standard_error)},
-               {"fit", fit_json(id.fit)},
-               {"covariance", {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}}},
-               {"warnings", warnings_json(id.warnings)},
-               {"usable", id.usable}};
-  if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
-  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
-  return json;
-}
-
-Json bootstrap_json(const BootstrapFindings& bootstrap) {
-  Json json = {{"replicates", bootstrap.replicates},
-               {"block_s", bootstrap.block_s},
-               {"blocks", number(bootstrap.blocks)},
-               {"seed", bootstrap.seed},
-               {"quantities", Json::array()}};
-  for (const BootstrapFinding& finding : bootstrap.findings) {
-    json["quantities"].push_back({{"name", finding.name},
-                                  {"unit", finding.unit},
-                                  {"value", number(finding.value)},
-                                  {"interval95", interval(finding.interval95)},
-                                  {"delta_interval95", interval(finding.delta95)}});
-  }
-  return json;
-}
-
-Json consistent_json(const ConsistentFit& fit) {
-  const auto cone = [](const Semidefiniteness& one) {
-    return Json{{"free_smallest_eigenvalue", number(one.free_smallest)},
-                {"smallest_eigenvalue", number(one.smallest)},
-                {"active", one.active}};
-  };
-  return {
-      {"model", model_json(fit.model)},
-      {"inertia", cone(fit.inertia)},
-      {"damping", cone(fit.damping)},
-      {"stiffness", cone(fit.stiffness)},
-      {"fit", fit_json(fit.fit)},
-      {"residual_power_increase_percent", number(fit.increase_percent())},
-      {"force_change", number(fit.force_change)},
-      {"largest_change", {{"parameter", fit.largest_change}, {"standard_errors", number(fit.largest_change_errors)}}},
-      {"duality_gap", number(fit.duality_gap)}};
-}
-
-Json disagreement_json(const Disagreement& disagreement) {
-  return {{"parameter", disagreement.parameter},
-          {"least_squares", number(disagreement.least_squares)},
-          {"iv_less_ls", number(disagreement.difference)},
-          {"standard_error", number(disagreement.standard_error)},
-          {"significant", disagreement.significant}};
-}
-
-/// What a force sensor gives, and what the computed force makes of it instead.
-Json by_sensor_json(const Identification& computed, const Identification& sensed) {
-  const impedance::Model &a = computed.model, &b = sensed.model;
-  return {{"model", model_json(b)},
-          {"standard_error", model_json(sensed.standard_error)},
-          {"fit", fit_json(sensed.fit)},
-          {"induced_error", model_json({a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0})}};
-}
-
-Json result_json(const Measurement& measured) {
-  const Identification& id = measured.identification;
-  Json json = header(kResultSchema);
-  json["inputs"] = inputs_json(id.sources);
-  for (std::size_t i = 0; i < id.sources.size(); ++i) {
-    json["inputs"][i]["duration_s"] = id.durations[i];
-    json["inputs"][i]["rate_hz"] = id.rates[i];
-  }
-  if (!id.notes.empty()) json["notes"] = id.notes;
-  if (!id.preparations.empty()) {  // a result that was read back says nothing of how it was made
-    json["mode"] = word_of(id.preparations.front().mode);
-    json["protocol"] = word_of(id.preparations.front().protocol);
-  }
-  json["method"] = word_of(id.method);
-  if (!id.method_rule.empty()) json["method_rule"] = id.method_rule;
-  json["axes"] = id.axes;
-  json["structure"] = word_of(id.structure);
-  if (id.motion != Motion::unknown) {
-    json["units"] = units_json(id.motion);
-  }
-  json["model"] = model_json(id.model);
-  json["standard_error"] = model_json(id.standard_error);
-  if (id.standard_error_of_robot) json["standard_error_of_robot"] = model_json(*id.standard_error_of_robot);
-  json["fit"] = fit_json(id.fit);
-  if (measured.findings) {
-    json["ellipses"] = ellipses_json(*measured.findings);
-    json["antisymmetry"] = antisymmetries_json(*measured.findings);
-  }
-  if (measured.joints) json["joint_domain"] = joint_domain_json(*measured.joints);
-  if (id.instrument) json["instrument"] = instrument_json(*id.instrument);
-  if (id.response) json["unmodelled_response"] = unmodelled_json(*id.response);
-  json["assumptions"] = assumptions_json(id.assumptions);
-  json["sensitivity"] = {{"x0_per_force", rows(numeric::inverse(id.model.K))}, {"B_per_delay", rows(-id.model.K)}};
-  json["alternatives"] = Json::array();
-  if (measured.alternative) json["alternatives"].push_back(alternative_json(*measured.alternative));
-  json["disagreement"] = measured.disagreement ? disagreement_json(*measured.disagreement) : Json(nullptr);
-  if (measured.force_comparison) json["force_comparison"] = force_comparison_json(*measured.force_comparison);
-  if (measured.by_sensor) json["by_force_sensor"] = by_sensor_json(id, *measured.by_sensor);
-  if (measured.bootstrap) json["bootstrap"] = bootstrap_json(*measured.bootstrap);
-  if (measured.consistent) json["consistent_fit"] = consistent_json(*measured.consistent);
-  if (measured.passivity) json["passivity"] = passivity_json(*measured.passivity);
-  json["warnings"] = warnings_json(id.warnings);
-  json["usable"] = id.usable;
-  json["covariance"] = {{"parameters", id.parameters}, {"matrix", rows(id.covariance)}};
-  json["estimation"] = {{"parameters_from", id.parameters_from ? word_of(*id.parameters_from) : ""},
-                        {"samples", id.samples},
-                        {"duration_s", id.excitation.duration},
-                        {"hac_lag_s", id.hac_lag_s},
-                        {"handle_mass_kg", id.handle_mass},
-                        {"handle_mass_from", word_of(id.handle_mass_from)}};
-  json["excitation"] = {{"rank", id.excitation.rank},
-                        {"condition", number(id.excitation.condition)},
-                        {"motion_ratio", number(id.excitation.motion_ratio)},
-                        {"motion", number(id.excitation.motion)},
-                        {"inertia_share", number(id.excitation.inertia_share)}};
-  if (id.decimation) {
-    json["decimate_check"] = {{"rate_hz", id.decimation->rate_hz},
-                              {"model", model_json(id.decimation->model)},
-                              {"largest_relative_change", id.decimation->largest_change}};
-  }
-  json["preparation"] = Json::array();
-  for (const Preparation& one : id.preparations) json["preparation"].push_back(preparation_json(one));
-  return json;
-}
-
-Json info_json(const Recording& recording, const Inspection& inspection) {
-  Json json = header("mbk.info/1");
-  json["inputs"] = inputs_json(recording.sources);
-  json["samples"] = inspection.samples;
-  json["duration_s"] = number(inspection.duration);
-  json["rate_hz"] = number(inspection.rate_hz);
-  json["interval_s"] = {{"minimum", number(inspection.interval_min)},
-                        {"median", number(inspection.interval_median)},
-                        {"maximum", number(inspection.interval_max)},
-                        {"standard_deviation", number(inspection.interval_standard_deviation)}};
-  json["gaps"] = Json::array();
-  for (const Gap& gap : inspection.gaps) {
-    json["gaps"].push_back(
-        {{"after_sample", gap.sample + 1}, {"time_s", number(gap.time)}, {"length_s", number(gap.length)}});
-  }
-  json["duplicated_times"] = inspection.duplicated_times;
-  json["backward_times"] = inspection.backward_times;
-  json["non_finite"] = Json::array();
-  for (const NonFinite& bad : inspection.non_finite) {
-    json["non_finite"].push_back({{"channel", bad.channel}, {"count", bad.count}, {"first_sample", bad.first + 1}});
-  }
-  json["missing"] = Json::array();
-  for (const MissingSamples& missing : inspection.missing) {
-    json["missing"].push_back(
-        {{"first_sample", missing.first + 1}, {"count", missing.count}, {"time_s", number(missing.time)}});
-  }
-  json["channels"] = Json::array();
-  for (const ChannelFacts& facts : inspection.channels) {
-    json["channels"].push_back({{"name", facts.name},
-                                {"unit", facts.unit},
-                                {"minimum", number(facts.min)},
-                                {"maximum", number(facts.max)},
-                                {"constant", facts.constant},
-                                {"clipped", facts.clipped},
-                                {"update_hz", number(facts.update_hz)}});
-    if (facts.updates.staleness == Staleness::none) continue;
-    json["channels"].back()["stale"] = {{"kind", word_of(facts.updates.staleness)},
-                                        {"share", number(facts.updates.share)}};
-  }
-  json["events"] = Json::array();
-  for (const Event& event : recording.events) {
-    json["events"].push_back({{"time_s", number(event.time)}, {"name", event.name}, {"value", number(event.value)}});
-  }
-  json["metadata"] = Json::object();
-  for (const auto& [key, value] : recording.metadata) json["metadata"][key] = value;
-  json["notes"] = recording.notes;
-  return json;
-}
-
-/// A document with its elements in the place of an empty list, as dumped() would write all of it: so no more than one
-/// element is there as a tree, which takes several times the memory of its text.
-/// @param document  dumped, with an empty list of that name on its first level
-template <class Element>
-std::string with_elements(const std::string& document, const std::string& name, std::size_t count,
-                          const Element& element) {
-  const std::string empty = fmt::format("\n  \"{}\": []", name);  // within a string there is no line end
-  const std::size_t place = document.find(empty);
-  if (count == 0 || place == std::string::npos) return document;
-  std::string text = document.substr(0, place + empty.size() - 1);
-  for (std::size_t k = 0; k < count; ++k) {
-    text += k > 0 ? ",\n    " : "\n    ";
-    std::string one = dumped(element(k));
-    one.pop_back();  // its line end
-    for (std::size_t begin = 0; begin < one.size();) {
-      const std::size_t end = std::min(one.find('\n', begin), one.size() - 1) + 1;
-      text.append(one, begin, end - begin);
-      if (end < one.size()) text += "    ";
-      begin = end;
-    }
-  }
-  text += "\n  ";
-  text.append(document, place + empty.size() - 1);
-  return text;
-}
-
-/// One document whatever their number: the only object itself, or all of them as `results` of another schema.
-std::string one_or_list(const char* schema_of_list, const std::vector<Json>& objects) {
-  if (objects.size() == 1) return dumped(objects.front());
-  Json json = header(schema_of_list);
-  json["results"] = objects;
-  return dumped(json);
-}
-
 // Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
 
 impedance::Model model_from(const Json& json, const char* name, Index n) {
@@ -326,8 +51,8 @@ Fit fit_from(const Json& json, Index n) {
   fit.vaf = list_from(json, "VAF", n);
   fit.rmse = list_from(json, "RMSE", n);
   fit.vaf_in_sample = json.contains("VAF_in_sample") ? list_from(json, "VAF_in_sample", n) : Vector::Constant(n, kNaN);
-  const std::string on = json.value("validated_on", validated_on(true));
-  fit.held_out = on == validated_on(true) || on == "held-back";  // so until the version before
+  const std::string on = json.value("validated_on", kHeldOut);
+  fit.held_out = on == kHeldOut || on == "held-back";  // so until the version before
   return fit;
 }
 
@@ -414,77 +139,6 @@ Identification identification_from(const Json& json) {
 
 }  // namespace
 
-std::string to_json(const Measurement& measured) {
-  return dumped(result_json(measured));
-}
-
-std::string to_compact_json(const Measurement& measured) {
-  return result_json(measured).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together) {
-  Json json = header(kResultsSchema);
-  json["results"] = Json::array();
-  if (const auto& summary = together.summary) {
-    Json omitted = Json::array();
-    for (const OmittedTrial& one : summary->omitted) omitted.push_back({{"file", one.file}, {"why", one.why}});
-    json["summary"] = {{"trials", summary->trials},
-                       {"omitted", std::move(omitted)},
-                       {"method", word_of(summary->method)},
-                       {"model", model_json(summary->mean)},
-                       {"between_trial_standard_error", model_json(summary->between_trial_standard_error)},
-                       {"half_width95", model_json(summary->half_width95)}};
-  } else {
-    json["no_summary"] = together.no_summary;
-  }
-  if (!together.failed.empty()) {
-    json["failed"] = Json::array();
-    for (const Error& error : together.failed) {
-      json["failed"].push_back({{"file", error.where}, {"message", error.message}, {"try", error.remedy}});
-    }
-  }
-  return with_elements(dumped(json), "results", results.size(), [&](std::size_t k) { return result_json(results[k]); });
-}
-
-std::string to_json(const std::vector<Identification>& identifications, const std::vector<Findings>& findings) {
-  std::vector<Json> objects;
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    Json json = header("mbk.ellipse/1");
-    json["inputs"] = inputs_json(identifications[i].sources);
-    json["ellipses"] = ellipses_json(findings[i]);
-    json["antisymmetry"] = antisymmetries_json(findings[i]);
-    objects.push_back(std::move(json));
-  }
-  return one_or_list("mbk.ellipses/1", objects);
-}
-
-std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections) {
-  std::vector<Json> objects;
-  for (std::size_t i = 0; i < inspections.size(); ++i) objects.push_back(info_json(recordings[i], inspections[i]));
-  return one_or_list("mbk.infos/1", objects);
-}
-
-std::string to_json(const FileContents& contents, const Error& unrecognised) {
-  Json json = header("mbk.contents/1");
-  json["inputs"] = inputs_json({contents.source});
-  json["kind"] = contents.table ? "table" : "variables";
-  json["arrays"] = Json::array();
-  for (const StoredArray& array : contents.arrays) {
-    Json one = {{"name", array.name},
-                {"rows", array.rows},
-                {"columns", array.columns},
-                {"minimum", number(array.minimum)},
-                {"maximum", number(array.maximum)}};
-    if (!array.unit.empty()) one["unit"] = array.unit;
-    if (array.rate_hz > 0) one["rate_hz"] = array.rate_hz;
-    if (!array.shape.empty()) one["shape"] = array.shape;
-    json["arrays"].push_back(std::move(one));
-  }
-  json["notes"] = contents.notes;
-  json["unrecognised"] = {{"message", unrecognised.message}, {"try", unrecognised.remedy}};
-  return dumped(json);
-}
-
 std::string to_json(const ValidationTable& table) {
   Json json = header("mbk.validation/2");
   json["study"] = table.study;
@@ -510,49 +164,6 @@ std::string to_json(const ValidationTable& table) {
   if (!table.notes.empty()) json["notes"] = table.notes;
   for (const Chart& chart : table.charts) json["charts"].push_back(chart_json(chart));
   return dumped(json);
-}
-
-std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
-  const double degrees = 180.0 / std::numbers::pi;
-  const robot::Geometry& geometry = workspace.geometry;
-  const robot::JointLimits& limits = geometry.limits;
-  const auto at = [](const Eigen::Vector2d& place) { return Json::array({number(place.x()), number(place.y())}); };
-  Json json = header("mbk.workspace/1");
-  json["links_m"] = {geometry.d1, geometry.d2};
-  json["limits_deg"] = {{"theta1", {degrees * limits.theta1_low, degrees * limits.theta1_high}},
-                        {"theta2", {degrees * limits.theta2_low, degrees * limits.theta2_high}},
-                        {"smallest_opening", degrees * limits.smallest_opening}};
-  json["x_m"] = {number(workspace.low.x()), number(workspace.high.x())};
-  json["y_m"] = {number(workspace.low.y()), number(workspace.high.y())};
-  json["area_m2"] = number(workspace.area);
-  json["outline_m"] = Json::array();
-  for (const Eigen::Vector2d& place : workspace.outline) json["outline_m"].push_back(at(place));
-  if (posture) {
-    const impedance::Ellipse felt = impedance::ellipse(posture->inertia_at_hand);
-    Json margins = Json::array();
-    for (const robot::Margin& margin : posture->margins) {
-      margins.push_back({{"quantity", margin.quantity},
-                         {"limit_deg", degrees * margin.limit},
-                         {"kind", margin.upper ? "most" : "least"},
-                         {"left_deg", number(degrees * margin.left())}});
-    }
-    json["at"] = {{"hand_m", at(posture->hand)},
-                  {"theta_deg", at(degrees * posture->theta)},
-                  {"jacobian_m", rows(posture->jacobian)},
-                  {"manipulability_m2", number(posture->manipulability)},
-                  {"margins", std::move(margins)},
-                  {"inertia_at_hand_kg",
-                   {{"matrix", rows(posture->inertia_at_hand)},
-                    {"eigenvalues", {number(felt.lambda_min), number(felt.lambda_max)}},
-                    {"orientation_deg", number(degrees * felt.orientation)}}}};
-  }
-  return dumped(json);
-}
-
-std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents) {
-  std::vector<Json> objects;
-  for (const std::string& document : documents) objects.push_back(Json::parse(document));
-  return one_or_list(schema_of_list, objects);
 }
 
 namespace {
