@@ -5,12 +5,10 @@
 #include <string>
 
 #include "mbk/experiment/drivers/bridge_check.h"
-#include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/frequency_response.h"
 #include "mbk/model/trial/frequency_response_estimate.h"
 #include "mbk/model/trial/parallel_cascade_estimate.h"
 #include "mbk/model/trial/prepared_dynamics.h"
-#include "mbk/model/trial/reproduction.h"
 #include "mbk/model/trial/robot_identification.h"
 #include "mbk/model/trial/sensor_calibration.h"
 #include "mbk/model/trial/teleoperation.h"
@@ -41,10 +39,6 @@ TEST(WordsOfSchemas, AreThoseOfTheEnumerations) {
   expect_words<MotionOutcome>("teleop", "/properties/simulation/properties/runs/items/properties/outcome");
   expect_words<drivers::BridgeRule>("robot_check", "/definitions/BridgeRule");
   expect_words<drivers::RuleVerdict>("robot_check", "/definitions/LinkCheck/properties/rules/items/properties/verdict");
-  expect_words<Provenance>("reproduction", "/definitions/Provenance");
-  expect_words<Agreement>("reproduction", "/definitions/Agreement");
-  expect_words<Exhibit::Kind>("reproduction", "/definitions/Exhibit/properties/kind");
-  expect_words<ChartSeries::Drawn>("reproduction", "/definitions/Chart/properties/series/items/properties/drawn");
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "mbk/base/document/json_values.h"
-#include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/warning.h"
 
@@ -46,13 +45,6 @@ inline Json warnings_json(const std::vector<Warning>& warnings) {
     if (!was.empty()) one["was"] = was;
     array.push_back(std::move(one));
   }
-  return array;
-}
-
-/// Lines of a chart that are there to compare with.
-inline Json references_json(const std::vector<ChartReference>& lines) {
-  Json array = Json::array();
-  for (const ChartReference& line : lines) array.push_back({{"value", number(line.value)}, {"name", line.name}});
   return array;
 }
 
