@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "apps/mbk/commands/commands_json.h"
 #include "mbk/batch/job_status.h"
 #include "mbk/present/result/schemas.h"
 #include "mbk/study/longitudinal/report_schemas.h"
@@ -21,6 +22,7 @@ int main(int count, char** words) {
   mbk::statistics::add_schemas(schemas);
   mbk::longitudinal::add_schemas(schemas);
   mbk::batch::add_schemas(schemas);
+  mbk::app::add_commands_schema(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
     std::ofstream file(folder / (name + ".schema.json"));
