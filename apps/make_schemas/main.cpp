@@ -5,6 +5,7 @@
 
 #include "apps/mbk/commands/commands_json.h"
 #include "mbk/batch/job_status.h"
+#include "mbk/experiment/console/messages.h"
 #include "mbk/present/result/schemas.h"
 #include "mbk/study/longitudinal/report_schemas.h"
 #include "mbk/study/statistics/summary_document.h"
@@ -22,6 +23,7 @@ int main(int count, char** words) {
   mbk::statistics::add_schemas(schemas);
   mbk::longitudinal::add_schemas(schemas);
   mbk::batch::add_schemas(schemas);
+  mbk::console::add_schemas(schemas);
   mbk::app::add_commands_schema(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
