@@ -58,8 +58,8 @@ inline constexpr const char* kHeldOut = "held-out";
 /// Adds `validated_on`, the data behind VAF and RMSE.
 /// @param held_out  gives a bool
 template <class T, class Get>
-void add_validated_on(document::Fields<T>& fields, Get held_out) {
-  fields.add_choice("validated_on", held_out, kHeldOut, "in-sample", "the data behind VAF and RMSE");
+auto& add_validated_on(document::Fields<T>& fields, Get held_out) {
+  return fields.add_choice("validated_on", held_out, kHeldOut, "in-sample", "the data behind VAF and RMSE");
 }
 
 /// The units of what moves; none where that is not known.

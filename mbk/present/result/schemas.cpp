@@ -5,6 +5,7 @@ namespace mbk::result {
 void add_schemas(document::Schemas& schemas) {
   for (const auto add : {
            &add_comparison_schemas,
+           &add_explore_schemas,
            &add_info_schemas,
            &add_movement_schema,
            &add_passivity_schemas,
