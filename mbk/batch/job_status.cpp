@@ -1,8 +1,27 @@
 #include "mbk/batch/job_status.h"
 
+#include "mbk/base/core/vector4.h"
+
 namespace mbk::batch {
 
 using document::Fields;
+
+void describe(Fields<Job>& fields) {
+  fields.type("Job", "job.json in the folder of a job that --engine began.");
+  fields.constant("schema", "mbk.job/1");
+  fields.add("id", &Job::id, "SHA-256 over all that a result depends on, and the units");
+  fields.add("title", &Job::title);
+  fields.add("kind", &Job::kind, "which work: \"measure\", \"simulate\"");
+  fields.add("program", &Job::program, "version and build of the mbk that alone does it");
+  fields.add_form<Simd>(
+      "simd", [](const Job& job) { return document::Json(job.simd); }, "processors of that kind or better do it");
+  fields.add("units", &Job::units);
+  fields.add("chunks", &Job::chunks);
+  fields.add("memory_mb", &Job::memory_mb);
+  fields.add_as(
+      "specification", {{"type", "object"}, {"additionalProperties", true}},
+      [](const Job& job) { return document::Json::parse(job.specification); }, "in the terms of the kind");
+}
 
 void describe(Fields<JobState>& fields) {
   fields.type("JobState", "What `mbk work FOLDER --status --json` writes, and each line of a job's progress.jsonl.");
@@ -67,6 +86,7 @@ std::string to_json(std::span<const JobStatus> jobs) {
 }
 
 void add_schemas(document::Schemas& schemas) {
+  schemas["job"] = document::schema_of<Job>();
   schemas["job_state"] = document::schema_of<JobState>();
   schemas["study_status"] = document::schema_of<StudyStatus>();
 }

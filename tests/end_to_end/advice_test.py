@@ -18,7 +18,7 @@ from explore_test import trial
 from tf_test import oscillator
 
 ROOT = pathlib.Path(__file__).parents[2]
-CODES = schemas.read((schemas.FOLDER / "result.schema.json").as_uri())["definitions"]["WarningCode"]["enum"]
+CODES = schemas.validator("result").schema["definitions"]["WarningCode"]["enum"]
 
 OF_OTHER_PROGRAMS = ("slurm_engine.cpp",)  # which calls sbatch with options of its own
 

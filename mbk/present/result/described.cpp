@@ -152,6 +152,12 @@ void describe(Fields<ForceComparison>& fields) {
   fields.add("longest_lag_s", &ForceComparison::longest_lag, "that was tried [s]");
 }
 
+void describe(Fields<ChartReference>& fields) {
+  fields.type("Line", "A value that is marked across the whole chart.");
+  fields.add("value", &ChartReference::value);
+  fields.add("name", &ChartReference::name);
+}
+
 namespace impedance {
 
 void describe(Fields<Model>& fields) {

@@ -7,6 +7,7 @@
 #include "mbk/base/core/result.h"
 #include "mbk/base/document/fields.h"
 #include "mbk/model/impedance/model.h"
+#include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/energy.h"
 #include "mbk/model/trial/findings.h"
 #include "mbk/model/trial/force_comparison.h"
@@ -30,6 +31,7 @@ void describe(document::Fields<AntisymmetryFinding>& fields);
 void describe(document::Fields<ForceComparison>& fields);
 void describe(document::Fields<Energy>& fields);
 void describe(document::Fields<Passivity>& fields);
+void describe(document::Fields<ChartReference>& fields);
 
 namespace impedance {
 void describe(document::Fields<Model>& fields);

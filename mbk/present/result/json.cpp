@@ -14,29 +14,6 @@
 namespace mbk::result {
 namespace {
 
-Json numbers(const std::vector<double>& values) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(number(value));
-  return array;
-}
-
-Json chart_json(const Chart& chart) {
-  Json json = {{"title", chart.title},
-               {"x", {{"label", chart.x.label}, {"unit", chart.x.unit}}},
-               {"y", {{"label", chart.y.label}, {"unit", chart.y.unit}}},
-               {"series", Json::array()}};
-  for (const ChartSeries& series : chart.series) {
-    Json one = {{"name", series.name}, {"x", numbers(series.x)}, {"y", numbers(series.y)}};
-    for (const auto& ends : series.intervals) one["intervals"].push_back(interval(ends));
-    json["series"].push_back(std::move(one));
-  }
-  if (!chart.horizontal.empty()) json["horizontal"] = references_json(chart.horizontal);
-  if (!chart.vertical.empty()) json["vertical"] = references_json(chart.vertical);
-  if (chart.identity) json["identity"] = true;
-  if (!chart.notes.empty()) json["notes"] = chart.notes;
-  return json;
-}
-
 // Reading back. Every access is checked; nlohmann's exceptions stay inside `identifications_from_json`.
 
 impedance::Model model_from(const Json& json, const char* name, Index n) {
@@ -136,37 +113,6 @@ Identification identification_from(const Json& json) {
   if (const auto notes = json.find("notes"); notes != json.end()) id.notes = notes->get<std::vector<std::string>>();
   return id;
 }
-
-}  // namespace
-
-std::string to_json(const ValidationTable& table) {
-  Json json = header("mbk.validation/2");
-  json["study"] = table.study;
-  json["question"] = table.question;
-  json["unit"] = table.unit;
-  json["runs"] = table.runs;
-  json["seed"] = table.seed;
-  json["rows"] = Json::array();
-  for (const ValidationRow& row : table.rows) {
-    Json one = {{"what", row.what},
-                {"value", number(row.value)},
-                {"interval95", row.interval95 ? interval(*row.interval95) : Json(nullptr)},
-                {"expected", row.expected ? interval(*row.expected) : Json(nullptr)},
-                {"verdict", word_of(row.verdict())},
-                {"met", row.judged() ? Json(row.met()) : Json(nullptr)}};
-    if (row.unit) one["unit"] = *row.unit;
-    if (row.spread) one["spread"] = number(*row.spread);
-    if (row.trials) one["trials"] = *row.trials;
-    json["rows"].push_back(std::move(one));
-  }
-  json["verdict"] = word_of(table.verdict());
-  json["met"] = table.met();
-  if (!table.notes.empty()) json["notes"] = table.notes;
-  for (const Chart& chart : table.charts) json["charts"].push_back(chart_json(chart));
-  return dumped(json);
-}
-
-namespace {
 
 /// Every result of a document by itself, read by `read`.
 template <class Read>

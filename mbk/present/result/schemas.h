@@ -18,6 +18,8 @@ void add_tf_schemas(document::Schemas& schemas);
 void add_explore_schemas(document::Schemas& schemas);
 void add_robot_schemas(document::Schemas& schemas);
 void add_workspace_schema(document::Schemas& schemas);
+void add_reproduction_schemas(document::Schemas& schemas);
+void add_validation_schema(document::Schemas& schemas);
 void add_passivity_schemas(document::Schemas& schemas);
 void add_report_schemas(document::Schemas& schemas);
 void add_result_schemas(document::Schemas& schemas);
