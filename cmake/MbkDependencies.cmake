@@ -81,8 +81,4 @@ if(MBK_BUILD_TESTS)
   # An engine of its own for tests/physics. Debian's mujocoConfig.cmake names a folder that its package does not have.
   find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h REQUIRED)
   find_library(MUJOCO_LIBRARY mujoco REQUIRED)
-  # A solver of its own for tests/conic; OpenMP only to ask it for one thread.
-  find_path(CSDP_INCLUDE_DIR csdp/declarations.h REQUIRED)
-  find_library(CSDP_LIBRARY sdp REQUIRED)
-  find_package(OpenMP REQUIRED COMPONENTS CXX)
 endif()
