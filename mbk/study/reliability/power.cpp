@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "mbk/study/reliability/distributions.h"
+#include "mbk/base/numeric/distributions.h"
 
 namespace mbk::reliability {
 namespace {
@@ -38,8 +38,9 @@ double power_of_t_test(double d, int people, Pairing pairing, double level) {
   const bool paired = pairing == Pairing::paired;
   const double n = people, degrees = paired ? n - 1.0 : 2.0 * n - 2.0;
   const double noncentrality = std::abs(d) * std::sqrt(paired ? n : 0.5 * n);
-  const double limit = student_quantile(1.0 - 0.5 * level, degrees);
-  return noncentral_t_above(limit, degrees, noncentrality) + noncentral_t_below(-limit, degrees, noncentrality);
+  const double limit = numeric::student_quantile(1.0 - 0.5 * level, degrees);
+  return numeric::noncentral_t_above(limit, degrees, noncentrality) +
+         numeric::noncentral_t_below(-limit, degrees, noncentrality);
 }
 
 Result<int> people_for_effect(double d, double power, Pairing pairing, double level) {
