@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "apps/mbk/caller.h"
-#include "apps/mbk/terminal/memory.h"
 #include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/option_checks.h"
 #include "mbk/files/journal/journal.h"
@@ -20,14 +19,6 @@
 
 namespace mbk::app {
 namespace {
-
-/// Whether a file holds more than some minutes.
-bool is_long(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kLong = std::uintmax_t{32} << 20;
-  std::error_code none;
-  const std::uintmax_t size = std::filesystem::file_size(file, none);
-  return !none && size > kLong;
-}
 
 Result<recording::ReadOptions> read_options(const ReadingArguments& arguments) {
   recording::ReadOptions options;
@@ -190,7 +181,6 @@ Result<Recording> RecordingReader::read_stored(int k) const {
     if (recording->sources.empty()) recording->sources.push_back({file(k).string(), "arrays in memory", ""});
     return recording;
   }
-  if (is_long(file(k))) give_back_large_blocks();
   const recording::ReadOptions options = options_of(k);
   if (parts_) return recording::read_parts(files(), options);
   if (record(k).refused) return tl::unexpected(*record(k).refused);
