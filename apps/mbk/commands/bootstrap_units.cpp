@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "apps/mbk/terminal/progress.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "mbk/base/numeric/parallel.h"
-#include "mbk/files/contents/sha256.h"
 #include "mbk/batch/value_bytes.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace mbk::app {
 namespace {
@@ -49,9 +48,7 @@ Json specification_of(const Bootstrap& bootstrap) {
 
 batch::UnitFunction units_of(std::vector<statistics::PeopleTable> tables, std::uint64_t seed) {
   return [tables = std::move(tables), seed](std::int64_t number, const std::string& /*key*/) -> Result<std::string> {
-    batch::ValueWriter writer;
-    writer.put(statistics::bootstrap_draw(tables, seed, static_cast<int>(number)));
-    return writer.take();
+    return batch::to_bytes(statistics::bootstrap_draw(tables, seed, static_cast<int>(number)));
   };
 }
 
@@ -90,14 +87,10 @@ Result<Draws> draws_elsewhere(const Bootstrap& bootstrap, const EngineArguments&
   const auto results = MBK_TRY(results_of(*carried->folder));
   Draws draws(results.size());
   for (std::size_t k = 0; k < draws.size(); ++k) {
-    batch::ValueReader reader(results[k]);
-    reader.get(draws[k]);
-    if (!reader.complete()) return bad_data("a draw in a shard cannot be read", "begin the job again");
+    if (!batch::from_bytes(results[k], draws[k]))
+      return bad_data("a draw in a shard cannot be read", "begin the job again");
   }
-  if (!engine.keep) {
-    MBK_TRY(keep_record(*carried->folder, study));
-    MBK_TRY(carried->folder->remove());
-  }
+  MBK_TRY(remove_job(*carried->folder, engine));
   return draws;
 }
 

@@ -11,10 +11,10 @@
 
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/batch/value_bytes.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/result/exploration_json.h"
-#include "mbk/batch/value_bytes.h"
 #include "mbk/study/store/store.h"
 
 namespace mbk::app {
@@ -59,9 +59,7 @@ batch::UnitFunction units_of(const ExploringArguments& arguments, const measurem
     const Json key = Json::parse(text, nullptr, false);
     if (!key.is_object()) return bad_data("the job's list of recordings is damaged", "begin the job again");
     const auto reader = MBK_TRY(reader_of(arguments, key));
-    batch::ValueWriter writer;
-    writer.put(explored(reader, 0, options, json));
-    return writer.take();
+    return batch::to_bytes(explored(reader, 0, options, json));
   };
 }
 
@@ -159,9 +157,8 @@ Result<std::vector<ExploredRecord>> explored_elsewhere(const ExploringEach& each
   const auto results = MBK_TRY(results_of(*carried->folder));
   std::vector<ExploredRecord> all(results.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    batch::ValueReader bytes(results[k]);
-    bytes.get(all[k]);
-    if (!bytes.complete()) return bad_data("a result in a shard cannot be read", "begin the job again");
+    if (!batch::from_bytes(results[k], all[k]))
+      return bad_data("a result in a shard cannot be read", "begin the job again");
   }
   MBK_TRY(remove_job(*carried->folder, engine));
   return all;

@@ -11,19 +11,17 @@
 #include <tuple>
 #include <utility>
 
-#include "apps/mbk/options/engine_options.h"
 #include "apps/mbk/commands/measure_units.h"
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
+#include "apps/mbk/options/engine_options.h"
+#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/study_options.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/numeric/parallel.h"
-#include "mbk/files/contents/sha256.h"
-#include "mbk/batch/job_events.h"
 #include "mbk/batch/merge.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace mbk::app {
 namespace {
@@ -234,18 +232,12 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
     if (!carried) return report_error(carried.error());
     if (!carried->folder) return *carried->code;
     ResultQueue queue(study, *key, arguments.study.role);
-    const auto begin = std::chrono::steady_clock::now();
     const auto collected = collect(*carried->folder, queue);
     tally += queue.tally;
     if (!collected) return report_error(collected.error());
-    batch::note_merged(*carried->folder,
-                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     count += *collected;
     if (carried->code) return said_of(tally, count, carried->code);
-    if (!arguments.engine.keep) {
-      if (auto ok = keep_record(*carried->folder, study.folder()); !ok) return report_error(ok.error());
-      if (auto ok = carried->folder->remove(); !ok) return report_error(ok.error());
-    }
+    if (auto ok = remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
     // What could not be read is not tried again at once.
     if (arguments.engine.keep || tally.unread > 0) return said_of(tally, count);
   }

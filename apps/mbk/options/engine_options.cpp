@@ -12,13 +12,12 @@
 #include <thread>
 
 #include "apps/mbk/caller.h"
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/word_options.h"
-#include "mbk/files/contents/sha256.h"
-#include "mbk/batch/job_events.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/batch/merge.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace mbk::app {
 namespace {
@@ -156,9 +155,17 @@ Result<JobFolder> job_of(const EngineArguments& arguments, const Request& reques
 void add_engine_options(Command command, EngineArguments& arguments) {
   constexpr const char* kGroup = "Many processes and machines";
   const auto add = [&](Option option) { option.group(kGroup); };
-  add(add_choice(
-      command, "--engine", arguments.kind,
-      "processes on this machine (local), a job array (slurm), mpirun (mpi); without it: within this process"));
+  add(command
+          .add_option_function(
+              "--engine", [&arguments](const std::string& word) { arguments.kind = value_of<EngineKind>(word); },
+              "processes on this machine (local), a job array (slurm); without it: within this process")
+          .type_name("local|slurm")
+          .check([](const std::string& given) -> std::string {
+            if (given != "mpi") return "";
+            return "mpi is no engine any more; begin the job with local or slurm, and add workers with "
+                   "'mpirun -n N mbk work FOLDER'";
+          })
+          .check(one_of({kWordList<EngineKind>.begin(), kWordList<EngineKind>.end()})));
   add(command
           .add_option("--tasks", arguments.tasks, "processes at a time (as many as there are cores; slurm: no limit)")
           .type_name("N")
@@ -190,7 +197,7 @@ void add_engine_options(Command command, EngineArguments& arguments) {
           .check(positive()));
   add(command.add_option("--partition", arguments.partition, "of Slurm (SBATCH_PARTITION)").type_name("NAME"));
   add(command.add_option("--account", arguments.account, "of Slurm (SBATCH_ACCOUNT)").type_name("NAME"));
-  add(command.add_option("--engine-option", arguments.extra, "passed on to sbatch or mpirun; may be repeated")
+  add(command.add_option("--engine-option", arguments.extra, "passed on to sbatch; may be repeated")
           .type_name("OPTION")
           .allow_extra_args(false));
   add(command.add_flag("--detach", arguments.detach,
@@ -201,7 +208,6 @@ void add_engine_options(Command command, EngineArguments& arguments) {
 }
 
 Result<std::vector<std::string>> results_of(const JobFolder& folder) {
-  const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> results;
   const auto merged = MBK_TRY(batch::merge(folder, [&](batch::MergedUnit unit) -> Result<void> {
     if (!unit.differing.empty()) {
@@ -214,7 +220,6 @@ Result<std::vector<std::string>> results_of(const JobFolder& folder) {
     return {};
   }));
   if (merged.missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
-  batch::note_merged(folder, seconds_since(begin));
   return results;
 }
 
@@ -258,7 +263,6 @@ Result<Carried> carry_out(const EngineArguments& arguments, const Request& reque
 
   batch::RunOptions run_options;
   run_options.silence_s = arguments.silence_s;
-  run_options.engine = word_of(*arguments.kind);
   run_options.detach = arguments.detach;
   const NotedSignals signals;
   run_options.stop = [] {
