@@ -60,12 +60,12 @@ Value taken(tl::expected<Value, Error>&& result) {
 ///     MBK_TRY(check(recording));
 ///
 /// A statement expression, which GCC and Clang know; write it only as a whole statement or a whole initialiser.
-#define MBK_TRY(...) MBK_TRY_NAMED(__COUNTER__, __VA_ARGS__)
-#define MBK_TRY_NAMED(number, ...) MBK_TRY_AS(mbk_result_##number, __VA_ARGS__)
-#define MBK_TRY_AS(result, ...)                                                                      \
-  __extension__({                                                                                    \
-    auto result = (__VA_ARGS__);                                                                     \
-    if (!result) [[unlikely]]                                                                        \
-      return ::tl::unexpected<::mbk::Error>(std::move(result).error());                              \
-    ::mbk::taken(std::move(result));                                                                 \
+#define MBK_TRY(...) MBK_TRY_NUMBERED(__COUNTER__, __VA_ARGS__)
+#define MBK_TRY_NUMBERED(number, ...) MBK_TRY_AS(number, __VA_ARGS__)
+#define MBK_TRY_AS(number, ...)                                                      \
+  __extension__({                                                                    \
+    auto mbk_result_##number = (__VA_ARGS__);                                        \
+    if (!mbk_result_##number) [[unlikely]]                                           \
+      return ::tl::unexpected<::mbk::Error>(std::move(mbk_result_##number).error()); \
+    ::mbk::taken(std::move(mbk_result_##number));                                    \
   })
