@@ -7,15 +7,15 @@ using document::kDigits;
 using document::kTimeDigits;
 
 void describe(Fields<StiffnessRegression>& fields) {
-  using Fit = StiffnessRegression;
+  using Regression = StiffnessRegression;
   fields.type("StiffnessRegression",
               "Stiffness K by regression of restoring forces on displacements, f = K d, with what was commanded as "
               "instrument. Not made symmetric.");
-  fields.add("K", &Fit::K, "[N/m or N·m/rad]");
-  fields.add("standard_error", &Fit::standard_error);
+  fields.add("K", &Regression::K, "[N/m or N·m/rad]");
+  fields.add("standard_error", &Regression::standard_error);
   fields.add(
       "interval95",
-      [](const Fit& fit) {
+      [](const Regression& fit) {
         std::vector<std::vector<Interval>> rows;
         for (Index r = 0; r < fit.K.rows(); ++r) {
           auto& row = rows.emplace_back();
@@ -26,18 +26,18 @@ void describe(Fields<StiffnessRegression>& fields) {
         return rows;
       },
       "of each entry of K, by Student's t");
-  fields.add("degrees_of_freedom", &Fit::degrees_of_freedom, "the fewest of any entry");
-  fields.add("relative_error", &Fit::relative_error,
+  fields.add("degrees_of_freedom", &Regression::degrees_of_freedom, "the fewest of any entry");
+  fields.add("relative_error", &Regression::relative_error,
              "root of the sum of squared standard errors over that of squared entries");
-  fields.add("residual_rms", &Fit::residual_rms, "[N or N·m]");
-  fields.add("displacements", &Fit::displacements, "that were used");
-  fields.add("directions", &Fit::directions, "different ones");
-  fields.add("amplitude", &Fit::amplitude, "mean of the commanded ones [m or rad]");
-  fields.add("reached", &Fit::reached, "displacement over what was commanded, in the direction in which it is least");
-  fields.add("linear_p", &Fit::linear_p,
+  fields.add("residual_rms", &Regression::residual_rms, "[N or N·m]");
+  fields.add("displacements", &Regression::displacements, "that were used");
+  fields.add("directions", &Regression::directions, "different ones");
+  fields.add("amplitude", &Regression::amplitude, "mean of the commanded ones [m or rad]");
+  fields.add("reached", &Regression::reached, "displacement over what was commanded, in the direction in which it is least");
+  fields.add("linear_p", &Regression::linear_p,
              "probability of such a lack of fit over the directions where K is all there is");
-  fields.add("ellipse", &Fit::ellipse);
-  fields.add("antisymmetry", &Fit::antisymmetry);
+  fields.add("ellipse", &Regression::ellipse);
+  fields.add("antisymmetry", &Regression::antisymmetry);
 }
 
 void describe(Fields<DisplacedHand>& fields) {
