@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -289,24 +288,6 @@ class Run {
 };
 
 }  // namespace
-
-std::string to_json(const JobState& state) {
-  nlohmann::ordered_json json = {{"schema", "mbk.job_state/1"},
-                                 {"chunks", state.chunks},
-                                 {"finished", state.finished},
-                                 {"running", state.running},
-                                 {"waiting", state.waiting},
-                                 {"given_up", state.given_up},
-                                 {"units", state.units},
-                                 {"finished_units", state.finished_units},
-                                 {"failed_units", state.failed_units},
-                                 {"elapsed_s", state.elapsed_s},
-                                 {"units_per_s", state.units_per_s},
-                                 {"left_s", state.left_s},
-                                 {"losses", state.losses}};
-  if (!state.trouble.empty()) json["trouble"] = state.trouble;
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 std::string to_text(const JobState& state) {
   std::string text =

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/commands/stored_result.h"
 #include "apps/mbk/options/measure_options.h"
 #include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/commands/stored_result.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/draw_chart.h"
@@ -146,11 +146,9 @@ int run(const PassivityArguments& arguments) {
   if (answers->found.empty()) return code;
   std::string shown;
   if (arguments.output.json) {
-    std::vector<std::string> documents;
-    for (const LimbAnswer& one : answers->found) {
-      documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
-    }
-    shown = result::one_or_list_json("mbk.passivities/1", documents);
+    std::vector<result::PassivityDocument> documents;
+    for (const LimbAnswer& one : answers->found) documents.push_back({one.sources, one.passivity, one.energies});
+    shown = result::to_json(documents);
   } else {
     for (const LimbAnswer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }

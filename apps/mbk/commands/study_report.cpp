@@ -42,17 +42,14 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
   }
   statistics::add_matrix_numbers(columns);
   const auto options = MBK_TRY(statistics_options(arguments.comparing));
-  const auto statistics = statistics::study_statistics(columns, options);
-  if (!statistics) return tl::unexpected(statistics.error());
-  const std::string summary =
-      store::to_json(list, store::summarise_outcomes(columns), statistics::to_json(*statistics));
+  auto statistics = MBK_TRY(statistics::study_statistics(columns, options));
   const std::string command = command_of(arguments, list);
-  auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), *statistics,
+  auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), std::move(statistics),
                                                    arguments.participant, arguments.outcome));
   report.command = command;
   report.note = printable(arguments.note);
   return arguments.participant ? longitudinal::participant_report_json(report, *arguments.participant)
-                               : longitudinal::study_report_json(report, summary);
+                               : longitudinal::study_report_json(report);
 }
 
 int run_report(const StudyReportArguments& arguments) {

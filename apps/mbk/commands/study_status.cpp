@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/study_options.h"
-#include "mbk/batch/merge.h"
-#include "mbk/batch/run.h"
+#include "mbk/batch/job_status.h"
 
 namespace mbk::app {
 namespace {
@@ -37,40 +35,20 @@ Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
   return folders;
 }
 
-nlohmann::ordered_json json_of(const batch::JobFolder& folder, const batch::JobState& state,
-                               const std::vector<batch::FinishedTask>& tasks) {
-  auto json = nlohmann::ordered_json::parse(batch::to_json(state));
-  json["folder"] = folder.folder().string();
-  json["title"] = folder.job().title;
-  json["tasks"] = nlohmann::ordered_json::array();
-  for (const batch::FinishedTask& one : tasks) {
-    json["tasks"].push_back({{"chunk", one.chunk},
-                             {"host", one.end.host},
-                             {"units", one.end.units},
-                             {"failed", one.end.failed},
-                             {"expected_s", one.expected_s},
-                             {"wall_s", one.end.wall_s},
-                             {"cpu_s", one.end.cpu_s}});
-  }
-  return json;
-}
-
 int run(const StatusArguments& arguments) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
   std::string text = jobs->empty() ? "no job is under way\n" : "";
-  nlohmann::ordered_json json = {{"schema", "mbk.study_status/1"}, {"jobs", nlohmann::ordered_json::array()}};
+  std::vector<batch::JobStatus> all;
   for (const fs::path& one : *jobs) {
     const auto folder = batch::JobFolder::open(one);
     if (!folder) return report_error(folder.error());
-    const auto state = batch::state_of(*folder);
-    if (!state) return report_error(state.error());
-    const auto tasks = batch::finished_tasks(*folder);
-    if (!tasks) return report_error(tasks.error());
-    json["jobs"].push_back(json_of(*folder, *state, *tasks));
-    text += fmt::format("{}\n  {}\n  {}\n", folder->job().title, folder->folder().string(), batch::to_text(*state));
+    const auto status = batch::status_of(*folder);
+    if (!status) return report_error(status.error());
+    all.push_back(*status);
+    text += fmt::format("{}\n  {}\n  {}\n", status->title, status->folder, batch::to_text(status->state));
   }
-  if (arguments.json) text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (arguments.json) text = batch::to_json(all);
   if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }

@@ -156,7 +156,7 @@ int run_summary(const SummaryArguments& arguments) {
     });
   }
   const auto outcomes = store::summarise_outcomes(columns);
-  const std::string text = arguments.output.json ? store::to_json(*list, outcomes, statistics::to_json(*found))
+  const std::string text = arguments.output.json ? statistics::to_json(*list, outcomes, *found)
                                                  : summary_text(*list, outcomes, *found, !options->outcomes.empty());
   if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
   return kFine;
