@@ -121,12 +121,9 @@ void add_rows(ValidationTable& table, const std::string& name, const std::vector
 Result<ValidationTable> after_onset_study(const StudyOptions& options) {
   using namespace after_onset_detail;
   const auto runs = MBK_TRY(seeded_runs(options, run_of));
-  ValidationTable table;
-  table.study = "after-onset";
-  table.question = "what do the first 120 ms after a pulse tell of a rigid arm, and what is called known of it?";
-  table.unit = "% of the runs";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"after-onset",
+                        "what do the first 120 ms after a pulse tell of a rigid arm, and what is called known of it?",
+                        "% of the runs", options.runs, options.seed};
   for (std::size_t p = 0; p < kPools.size(); ++p) {
     const auto of = [&](MatrixFound PoolRun::*matrix) {
       std::vector<MatrixFound> found;

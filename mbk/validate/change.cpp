@@ -106,12 +106,9 @@ Result<ValidationTable> study(const StudyOptions& options) {
     }
     return of_all;
   }));
-  ValidationTable table;
-  table.study = "change";
-  table.question = "is a stiffness that changes found with its course over time, and a constant one called constant?";
-  table.unit = "% of the trials";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{
+      "change", "is a stiffness that changes found with its course over time, and a constant one called constant?",
+      "% of the trials", options.runs, options.seed};
   for (std::size_t c = 0; c < all.size(); ++c) {
     std::vector<ChangeRun> own;
     Vector off(static_cast<Index>(runs.size()));

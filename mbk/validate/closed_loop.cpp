@@ -193,12 +193,9 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
     return Runs(std::make_move_iterator(at(task)), std::make_move_iterator(at(task + 1)));
   };
 
-  ValidationTable table;
-  table.study = "closed-loop";
-  table.question = "does the model say what the energy says, where the limb acts back on its own motion?";
-  table.unit = "%";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"closed-loop",
+                        "does the model say what the energy says, where the limb acts back on its own motion?", "%",
+                        options.runs, options.seed};
   add_multisine(of_task(0), table);
   add_coverage(of_task(1), table);
   add_pulses(of_task(2), table);

@@ -184,14 +184,11 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
     called.push_back(arms);
   }
 
-  ValidationTable table;
-  table.study = "coverage";
-  table.question =
+  ValidationTable table{
+      "coverage",
       fmt::format("how often do the 95 % intervals hold the truth, with coloured force noise of {:g} N in one trial?",
-                  options.remnant_force);
-  table.unit = "%";
-  table.runs = options.runs;
-  table.seed = options.seed;
+                  options.remnant_force),
+      "%", options.runs, options.seed};
   for (std::size_t k = 0; k < held.front().size(); ++k) {
     int hits = 0;
     for (const Held& run : held) hits += run[k].second ? 1 : 0;

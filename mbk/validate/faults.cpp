@@ -221,12 +221,9 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   }));
   const std::vector<Outcome>& outcomes = ran;
 
-  ValidationTable table;
-  table.study = "faults";
-  table.question = "whatever breaks: are the motors off in time, for the right reason, and is everything recorded?";
-  table.unit = "ticks";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{
+      "faults", "whatever breaks: are the motors off in time, for the right reason, and is everything recorded?",
+      "ticks", options.runs, options.seed};
   const double cap = safety::Limits{}.handle_force;
   double handle_force = 0.0, runaway_speed = 0.0;
   int right = 0, off = 0, recorded = 0;

@@ -95,12 +95,8 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
     return perform(trials.front(), seed, folder.path());
   }));
 
-  ValidationTable table;
-  table.study = "live-estimate";
-  table.question = "how often do the 95 % intervals hold the truth while the trial still runs?";
-  table.unit = "%";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"live-estimate", "how often do the 95 % intervals hold the truth while the trial still runs?",
+                        "%", options.runs, options.seed};
   const auto count = static_cast<Index>(runs.size());
   const std::vector<std::string> names = identify::parameter_names(2);
   for (std::size_t at = 0; at < kTimes.size(); ++at) {

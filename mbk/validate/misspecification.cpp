@@ -343,12 +343,9 @@ Result<ValidationTable> misspecification_study(const StudyOptions& options, std:
     return outcomes;
   }));
 
-  ValidationTable table;
-  table.study = "misspecification";
-  table.question = "where M, B and K do not hold, does mbk say so, and is it silent where they do?";
-  table.unit = "% of the trials";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"misspecification",
+                        "where M, B and K do not hold, does mbk say so, and is it silent where they do?",
+                        "% of the trials", options.runs, options.seed};
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     std::vector<MisspecifiedTrial> outcomes;
     for (const std::vector<MisspecifiedTrial>& run : runs) outcomes.push_back(run[k]);

@@ -215,14 +215,11 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
   }));
   const std::vector<AxisOutcome>& outcomes = ran;
 
-  ValidationTable table;
-  table.study = "one-dimensional";
-  table.question =
+  ValidationTable table{
+      "one-dimensional",
       "does any linear time-invariant model hold for an arm that corrects its place along one axis, and does one hold "
-      "for the same arm when it does not?";
-  table.unit = "%";
-  table.runs = options.runs;
-  table.seed = options.seed;
+      "for the same arm when it does not?",
+      "%", options.runs, options.seed};
   const Outcomes all = outcomes;
   for (std::size_t condition = 0; condition < kConditions.size(); ++condition) {
     const Outcomes mine = all.subspan(rows_from + condition * each, each);

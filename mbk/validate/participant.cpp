@@ -179,14 +179,11 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
   const auto plans = MBK_TRY(all_plans(options));
   const auto trials = MBK_TRY(run_trials(plans, options));
 
-  ValidationTable table;
-  table.study = "participant";
-  table.question =
+  ValidationTable table{
+      "participant",
       "does the simulated participant behave as people did: passive when relaxed, active against small pulses, "
-      "passive against large or sustained forces?";
-  table.unit = "%";
-  table.runs = options.runs;
-  table.seed = options.seed;
+      "passive against large or sustained forces?",
+      "%", options.runs, options.seed};
   Trials left = trials;
   for (const ConditionOfArm& condition : conditions()) {
     const std::size_t trials_of_it = kArms.size() * static_cast<std::size_t>(options.runs);

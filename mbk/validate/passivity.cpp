@@ -79,12 +79,8 @@ Result<ValidationTable> passivity_study(const StudyOptions& options) {
     return run;
   }));
 
-  ValidationTable table;
-  table.study = "passivity";
-  table.question = "is what mbk says of a limb's passivity true, whatever perturbs it?";
-  table.unit = "% of the trials";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"passivity", "is what mbk says of a limb's passivity true, whatever perturbs it?",
+                        "% of the trials", options.runs, options.seed};
   for (std::size_t k = 0; k < kDrives.size(); ++k) {
     const Drive& drive = kDrives[k];
     const auto share = [&](const char* what, std::optional<Range> expected,

@@ -77,13 +77,10 @@ Result<PlateauRun> plateau_run(std::uint64_t seed) {
 Result<ValidationTable> ramp_and_hold_study(const StudyOptions& options) {
   using namespace ramp_and_hold;
   const auto ran = MBK_TRY(seeded_runs(options, plateau_run));
-  ValidationTable table;
-  table.study = "ramp-and-hold";
-  table.question =
-      "does the force on the plateaus of ramps and holds give the stiffness, and do its intervals hold it?";
-  table.unit = "share";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{
+      "ramp-and-hold",
+      "does the force on the plateaus of ramps and holds give the stiffness, and do its intervals hold it?", "share",
+      options.runs, options.seed};
   constexpr double kAllowedBias = 1.25;  // N/m: 1 % of the largest entry
   for (std::size_t entry = 0; entry < kEntries.size(); ++entry) {
     const std::string name = kEntries[entry];

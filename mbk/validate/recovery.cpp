@@ -69,12 +69,8 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
   }
   const auto trials = MBK_TRY(run_trials(plans, options));
 
-  ValidationTable table;
-  table.study = "recovery";
-  table.question = "how far from the truth is what mbk measures of a relaxed arm in the closed loop?";
-  table.unit = "error";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"recovery", "how far from the truth is what mbk measures of a relaxed arm in the closed loop?",
+                        "error", options.runs, options.seed};
   Trials left = trials;
   for (const auto& [name, file] : conditions) {
     add_rows(name, left.first(static_cast<std::size_t>(options.runs)), table);

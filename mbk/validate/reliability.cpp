@@ -270,13 +270,10 @@ Result<Answers> answered(std::uint64_t seed) {
 Result<ValidationTable> reliability_study(const StudyOptions& options) {
   using namespace reliability_detail;
   const auto runs = MBK_TRY(seeded_runs(options, answered));
-  ValidationTable table;
-  table.study = "reliability";
-  table.question =
-      "how often do the intervals of ICC, SEM and MDC hold the truth, and are groups called different that are alike?";
-  table.unit = "%";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{
+      "reliability",
+      "how often do the intervals of ICC, SEM and MDC hold the truth, and are groups called different that are alike?",
+      "%", options.runs, options.seed};
   for (std::size_t k = 0; k < runs.front().held.size(); ++k) {
     const Held& first = runs.front().held[k];
     table.rows.push_back(share_row(

@@ -135,12 +135,8 @@ Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) 
     runs.push_back(std::move(answers));
   }
 
-  ValidationTable table;
-  table.study = "recorded-reliability";
-  table.question = "does a study say of its recordings what is true of the people in it?";
-  table.unit = "";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"recorded-reliability", "does a study say of its recordings what is true of the people in it?",
+                        "", options.runs, options.seed};
   table.rows.push_back(share_row(
       "recordings that are usable", trials, [](const SimulatedTrial& trial) { return trial.identification.usable; },
       kNearlyAlways));

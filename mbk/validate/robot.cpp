@@ -141,12 +141,9 @@ Result<ValidationTable> robot_study(const StudyOptions& options) {
   const auto truth = MBK_TRY(true_parameters(FrictionModel::full));
   const auto viscous_truth = MBK_TRY(true_parameters(FrictionModel::viscous));
 
-  ValidationTable table;
-  table.study = "robot";
-  table.question = "how far from the truth are the dynamics that mbk identifies of a robot that moves by itself?";
-  table.unit = "value";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"robot",
+                        "how far from the truth are the dynamics that mbk identifies of a robot that moves by itself?",
+                        "value", options.runs, options.seed};
   add_coefficients(runs, truth, table);
   add_fit(runs, table);
   add_printed_sign(runs, truth, table);

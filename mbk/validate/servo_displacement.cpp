@@ -61,12 +61,9 @@ Result<ServoRun> servo_run(std::uint64_t seed) {
 Result<ValidationTable> servo_displacement_study(const StudyOptions& options) {
   using namespace servo_displacement;
   const auto ran = MBK_TRY(seeded_runs(options, servo_run));
-  ValidationTable table;
-  table.study = "servo-displacement";
-  table.question = "does a displacement relative to the predicted reach give the stiffness of a hand that moves?";
-  table.unit = "share";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"servo-displacement",
+                        "does a displacement relative to the predicted reach give the stiffness of a hand that moves?",
+                        "share", options.runs, options.seed};
   const auto values_of = [&](const auto& value) {
     Vector values(options.runs);
     for (Index i = 0; i < values.size(); ++i) values[i] = value(ran[static_cast<std::size_t>(i)]);

@@ -79,12 +79,9 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
   }
   const auto trials = MBK_TRY(run_trials(plans, options));
 
-  ValidationTable table;
-  table.study = "springs";
-  table.question = "how far from the truth are the stiffness and mass that mbk identifies of a rig of springs?";
-  table.unit = "error";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"springs",
+                        "how far from the truth are the stiffness and mass that mbk identifies of a rig of springs?",
+                        "error", options.runs, options.seed};
   Chart stiffnesses = identified_against_true("Stiffness of the rigs: k_xx, k_yy and k_s", "N/m");
   Chart masses = identified_against_true("Mass of the rigs", "kg");
   for (const RigFile& file : kFiles) {

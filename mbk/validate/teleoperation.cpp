@@ -17,15 +17,15 @@
 #include "mbk/simulate/laboratory/closed_loop.h"
 #include "mbk/simulate/laboratory/simulate_teleoperation.h"
 #include "mbk/simulate/participant/load.h"
+#include "mbk/teleop/llewellyn.h"
+#include "mbk/teleop/sampled.h"
+#include "mbk/teleop/worst_terminations.h"
 #include "mbk/validate/each_run.h"
 #include "mbk/validate/robot_trials.h"
 #include "mbk/validate/rows.h"
 #include "mbk/validate/seeded_runs.h"
 #include "mbk/validate/simulated_trials.h"
 #include "mbk/validate/study.h"
-#include "mbk/teleop/llewellyn.h"
-#include "mbk/teleop/sampled.h"
-#include "mbk/teleop/worst_terminations.h"
 
 namespace mbk::validation {
 namespace {
@@ -392,12 +392,9 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
     for (std::size_t k = 0; k < kOperators.size(); ++k) of_operators[k].push_back(of_design[k]);
   }
 
-  ValidationTable table;
-  table.study = "teleoperation";
-  table.question = "do teleoperators behave in time as Llewellyn's and the modified criterion say?";
-  table.unit = "value";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"teleoperation",
+                        "do teleoperators behave in time as Llewellyn's and the modified criterion say?", "value",
+                        options.runs, options.seed};
   for (std::size_t k = 0; k < kOperators.size(); ++k) add_rows(kOperators[k], of_operators[k], table);
   add_controlled(of_operators.front(), table);
   MBK_TRY(add_wall(table));

@@ -111,12 +111,9 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
   const auto ran = MBK_TRY(seeded_runs(options, identified_run));
   const std::vector<Run>& runs = ran;
 
-  ValidationTable table;
-  table.study = "transfer-function";
-  table.question = "how far from the truth is the transfer function that mbk identifies, and is its order found?";
-  table.unit = "error";
-  table.runs = options.runs;
-  table.seed = options.seed;
+  ValidationTable table{"transfer-function",
+                        "how far from the truth is the transfer function that mbk identifies, and is its order found?",
+                        "error", options.runs, options.seed};
   const auto of_runs = [&](auto&& value) {
     Vector values(options.runs);
     for (Index i = 0; i < values.size(); ++i) values[i] = value(runs[static_cast<std::size_t>(i)]);

@@ -250,16 +250,16 @@ UdpFaultKind kind_of(const config::Section& row, const config::Section& words) {
   return kind;
 }
 
-struct Table {
+struct KindTable {
   std::vector<UdpFaultKind> kinds;
   std::vector<std::string_view> moves;
 };
 
-const Table& table() {
-  static const Table kTable = [] {
+const KindTable& kind_table() {
+  static const KindTable kTable = [] {
     const config::Document document = fault_table("udp_faults");
     const config::Section words = document.root().section("words");
-    Table read;
+    KindTable read;
     for (const config::Section& row : document.root().section("faults").sections("rows")) {
       read.kinds.push_back(kind_of(row, words));
     }
@@ -275,11 +275,11 @@ const Table& table() {
 }  // namespace
 
 std::span<const UdpFaultKind> udp_fault_kinds() {
-  return table().kinds;
+  return kind_table().kinds;
 }
 
 std::span<const std::string_view> motion_reasons() {
-  return table().moves;
+  return kind_table().moves;
 }
 
 const UdpFaultKind* find_udp_fault(std::string_view name) {

@@ -482,12 +482,9 @@ Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
         if (options.study.progress) options.study.progress(++done, count);
       }));
 
-  ValidationTable table;
-  table.study = "faults";
-  table.question = "a robot behind UDP misbehaves: is it found out in time, and is what is said of its motors true?";
-  table.unit = "ticks";
-  table.runs = runs;
-  table.seed = options.study.seed;
+  ValidationTable table{
+      "faults", "a robot behind UDP misbehaves: is it found out in time, and is what is said of its motors true?",
+      "ticks", runs, options.study.seed};
   Summary summary(table);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     for (const FaultOutcome& outcome : outcomes[i]) summary.add(jobs[i], outcome);
