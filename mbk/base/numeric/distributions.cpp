@@ -1,4 +1,4 @@
-#include "mbk/study/reliability/distributions.h"
+#include "mbk/base/numeric/distributions.h"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -12,38 +12,45 @@
 
 #include "mbk/base/numeric/statistics.h"
 
-namespace mbk::reliability {
+namespace mbk::numeric {
 namespace {
 
 namespace policies = boost::math::policies;
+template <bool kLongDouble>
 using Quiet =
     policies::policy<policies::domain_error<policies::ignore_error>, policies::pole_error<policies::ignore_error>,
                      policies::overflow_error<policies::ignore_error>,
                      policies::underflow_error<policies::ignore_error>,
                      policies::evaluation_error<policies::ignore_error>,
-                     policies::rounding_error<policies::ignore_error>, policies::promote_double<false>>;
+                     policies::rounding_error<policies::ignore_error>, policies::promote_double<kLongDouble>>;
 
-using StudentsT = boost::math::students_t_distribution<double, Quiet>;
-using FisherF = boost::math::fisher_f_distribution<double, Quiet>;
-using ChiSquared = boost::math::chi_squared_distribution<double, Quiet>;
-using NoncentralT = boost::math::non_central_t_distribution<double, Quiet>;
+using StudentsT = boost::math::students_t_distribution<double, Quiet<true>>;
+using FisherF = boost::math::fisher_f_distribution<double, Quiet<true>>;
+using ChiSquared = boost::math::chi_squared_distribution<double, Quiet<true>>;
+using NoncentralT = boost::math::non_central_t_distribution<double, Quiet<false>>;  // whose series are long
 
 }  // namespace
 
 double student_quantile(double p, double degrees_of_freedom) {
-  if (std::isinf(degrees_of_freedom)) return numeric::normal_quantile(p);
+  if (std::isinf(degrees_of_freedom)) return normal_quantile(p);
   return boost::math::quantile(StudentsT(degrees_of_freedom), p);
 }
 
 double student_two_sided(double t, double degrees_of_freedom) {
   if (std::isnan(t)) return t;
   if (std::isinf(t)) return 0.0;
-  if (std::isinf(degrees_of_freedom)) return 2.0 * numeric::normal_probability(-std::abs(t));
+  if (std::isinf(degrees_of_freedom)) return 2.0 * normal_probability(-std::abs(t));
   return 2.0 * boost::math::cdf(StudentsT(degrees_of_freedom), -std::abs(t));
 }
 
 double f_quantile(double p, double numerator, double denominator) {
   return boost::math::quantile(FisherF(numerator, denominator), p);
+}
+
+double f_probability_above(double x, double numerator, double denominator) {
+  if (!(x > 0.0)) return 1.0;
+  if (std::isinf(x)) return 0.0;
+  return boost::math::cdf(boost::math::complement(FisherF(numerator, denominator), x));
 }
 
 double chi_square_quantile(double p, double degrees_of_freedom) {
@@ -80,4 +87,4 @@ double noncentrality_of(double t, double degrees_of_freedom, double p) {
   return 0.5 * (low + high);
 }
 
-}  // namespace mbk::reliability
+}  // namespace mbk::numeric

@@ -1,9 +1,8 @@
 #pragma once
 
-namespace mbk::reliability {
+namespace mbk::numeric {
 
-/// Distributions of Boost.Math, for degrees of freedom that need not be whole, and infinite ones where the limit is
-/// normal. None throws: what is not defined is NaN.
+/// Distributions of Boost.Math, for degrees of freedom that need not be whole. None throws: what is not defined is NaN.
 
 /// t with P(T ≤ t) = p. @param degrees_of_freedom > 0, or ∞
 [[nodiscard]] double student_quantile(double p, double degrees_of_freedom);
@@ -13,6 +12,8 @@ namespace mbk::reliability {
 
 /// x with P(F ≤ x) = p.
 [[nodiscard]] double f_quantile(double p, double numerator, double denominator);
+/// P(F > x); 1 where x is not above 0.
+[[nodiscard]] double f_probability_above(double x, double numerator, double denominator);
 
 /// x with P(χ² ≤ x) = p, and P(χ² > x).
 [[nodiscard]] double chi_square_quantile(double p, double degrees_of_freedom);
@@ -29,4 +30,4 @@ namespace mbk::reliability {
 /// @param t finite
 [[nodiscard]] double noncentrality_of(double t, double degrees_of_freedom, double p);
 
-}  // namespace mbk::reliability
+}  // namespace mbk::numeric
