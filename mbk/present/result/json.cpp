@@ -6,7 +6,6 @@
 #include <string>
 
 #include "mbk/model/impedance/model.h"
-#include "mbk/present/result/json_parts.h"
 #include "mbk/present/result/json_reading.h"
 #include "mbk/present/result/passivity_json.h"
 #include "mbk/present/result/result_document.h"

@@ -4,11 +4,14 @@
 
 #include <string>
 
+#include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/nan.h"
-#include "mbk/present/result/json_parts.h"
+#include "mbk/base/document/json_values.h"
 
 /// How documents of mbk are read back. For the sources of this module only.
 namespace mbk::result {
+
+using document::Json;
 
 /// What stands in a document and cannot be; thrown within a reading function only.
 struct Malformed {
