@@ -7,10 +7,10 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/readers_option.h"
 #include "apps/mbk/options/reading_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/trial_files.h"
 #include "mbk/files/recording/write.h"

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/measure/measurement/measure_movement.h"
 #include "mbk/present/report/movement_text.h"
 #include "mbk/present/result/movement_json.h"

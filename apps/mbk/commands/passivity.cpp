@@ -11,8 +11,8 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/stored_result.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/draw_chart.h"

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/commands/robot_check_report.h"
 #include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/scenario_argument.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/session/live_check.h"
 #include "mbk/experiment/session/machine_check.h"
 #include "mbk/simulate/laboratory/simulation.h"

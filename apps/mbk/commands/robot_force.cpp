@@ -2,13 +2,13 @@
 #include <string>
 
 #include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/robot_file.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/measure/measurement/compute_force.h"
 #include "mbk/present/report/robot_text.h"

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/robot_file.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/measure/measurement/identify_robot.h"
 #include "mbk/model/robot/drive_term_names.h"
 #include "mbk/present/report/robot_text.h"

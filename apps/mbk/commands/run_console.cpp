@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/report_file.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/present/report/html.h"
 

@@ -3,11 +3,11 @@
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/options/sensor_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 #include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/measure/measurement/find_sensor_delay.h"

@@ -8,12 +8,12 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/job_kinds.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/readers_option.h"
 #include "apps/mbk/options/scenario_argument.h"
 #include "apps/mbk/options/threads_option.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/files/recording/write.h"

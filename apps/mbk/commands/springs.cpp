@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/options/scenario_argument.h"
 #include "apps/mbk/options/spring_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 #include "mbk/measure/calibration/spring_array.h"
 #include "mbk/measure/calibration/spring_constant.h"

@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/study_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/files/bids/read_run.h"
 #include "mbk/files/c3d/c3d.h"

@@ -6,11 +6,11 @@
 #include <mutex>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/options/threads_option.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/study/store/study_list.h"

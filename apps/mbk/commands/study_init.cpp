@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/study_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 
 namespace mbk::app {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_bids.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/present/report/text.h"
 
 namespace mbk::app {

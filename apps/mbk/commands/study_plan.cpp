@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/study/statistics/study_statistics.h"
 
 namespace mbk::app {

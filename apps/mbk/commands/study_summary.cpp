@@ -10,9 +10,9 @@
 
 #include "apps/mbk/commands/bootstrap_units.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/statistics/study_statistics_text.h"
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
@@ -18,6 +17,7 @@
 #include "apps/mbk/terminal/signal_names.h"
 #include "apps/mbk/options/threads_option.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/measure/analyse/describe_transfer_function.h"
 #include "mbk/measure/measurement/identify_transfer_function.h"
 #include "mbk/measure/preprocess/resample.h"

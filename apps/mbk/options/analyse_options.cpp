@@ -9,8 +9,8 @@
 #include <map>
 #include <optional>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/model/trial/arm_posture.h"
 
 namespace mbk::app {

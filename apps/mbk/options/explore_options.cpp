@@ -1,8 +1,8 @@
 #include "apps/mbk/options/explore_options.h"
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/terminal/signal_names.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 #include "mbk/files/recording/channel_table.h"
 

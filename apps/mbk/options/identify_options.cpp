@@ -1,7 +1,7 @@
 #include "apps/mbk/options/identify_options.h"
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 
 namespace mbk::app {
 

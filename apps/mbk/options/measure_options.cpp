@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/robot_file.h"
 #include "apps/mbk/options/threads_option.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 #include "mbk/present/report/ranges_text.h"
 

@@ -12,8 +12,8 @@
 
 #include "apps/mbk/caller.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/terminal/terminal.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/files/recording/write_file.h"
 

@@ -4,8 +4,8 @@
 
 #include <charconv>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 
 namespace mbk::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/mbk/caller.h"
 #include "apps/mbk/terminal/memory.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/journal/journal.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/formats.h"

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 #include "mbk/present/result/sensor_json.h"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 
 namespace mbk::app {

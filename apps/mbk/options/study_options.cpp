@@ -10,9 +10,9 @@
 #include <tuple>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/robot_file.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/contents/sha256.h"

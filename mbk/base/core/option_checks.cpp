@@ -1,4 +1,4 @@
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <charconv>
 #include <optional>
 
-namespace mbk::app {
+namespace mbk {
 namespace {
 
 constexpr double kLargest = 1e12;
@@ -28,14 +28,14 @@ std::string quoted(const std::string& given) {
   return given.size() > kShown ? fmt::format("'{}…'", given.substr(0, kShown)) : fmt::format("'{}'", given);
 }
 
-Check positive() {
+OptionCheck positive() {
   return {[](const std::string& given) -> std::string {
     const auto value = number<double>(given);
     return value && *value > 0.0 && *value < kLargest ? "" : fmt::format("{} is not a positive number", quoted(given));
   }};
 }
 
-Check not_negative() {
+OptionCheck not_negative() {
   return {[](const std::string& given) -> std::string {
     const auto value = number<double>(given);
     return value && *value >= 0.0 && *value < kLargest
@@ -44,7 +44,7 @@ Check not_negative() {
   }};
 }
 
-Check number_within(double largest) {
+OptionCheck number_within(double largest) {
   return {[=](const std::string& given) -> std::string {
     const auto value = number<double>(given);
     return value && *value >= -largest && *value <= largest
@@ -53,7 +53,7 @@ Check number_within(double largest) {
   }};
 }
 
-Check whole_number(long least, long most) {
+OptionCheck whole_number(long least, long most) {
   return {[=](const std::string& given) -> std::string {
     const auto value = number<long>(given);
     return value && *value >= least && *value <= most
@@ -62,7 +62,7 @@ Check whole_number(long least, long most) {
   }};
 }
 
-Check odd_number(long least, long most) {
+OptionCheck odd_number(long least, long most) {
   return {[=](const std::string& given) -> std::string {
     const auto value = number<long>(given);
     return value && *value >= least && *value <= most && *value % 2 == 1
@@ -71,11 +71,11 @@ Check odd_number(long least, long most) {
   }};
 }
 
-Check not_empty() {
+OptionCheck not_empty() {
   return {[](const std::string& given) -> std::string { return given.empty() ? "'' is empty" : ""; }};
 }
 
-Check one_of(const std::vector<std::string>& words) {
+OptionCheck one_of(const std::vector<std::string>& words) {
   return {[words](const std::string& given) -> std::string {
             if (std::ranges::find(words, given) != words.end()) return "";
             return fmt::format("{} is none of {}", quoted(given), fmt::join(words, "|"));
@@ -83,8 +83,8 @@ Check one_of(const std::vector<std::string>& words) {
           words};
 }
 
-Check suggests(const std::vector<std::string>& words) {
+OptionCheck suggests(const std::vector<std::string>& words) {
   return {{}, words};
 }
 
-}  // namespace mbk::app
+}  // namespace mbk
