@@ -12,7 +12,7 @@
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/explore_options.h"
 #include "apps/mbk/commands/explore_units.h"
-#include "apps/mbk/options/named_files.h"
+#include "mbk/files/recording/named_files.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/report_file.h"
 #include "apps/mbk/options/threads_option.h"
@@ -135,7 +135,7 @@ Action add_explore(Command app, const std::string& typed) {
   command.get_option("--engine").needs(each);
   return [command, arguments, typed] {
     ExploreArguments named = *arguments;
-    auto files = named_files(named.reading.files);
+    auto files = recording::named_files(named.reading.files);
     if (!files) return report_error(files.error());
     named.reading.files = std::move(*files);
     return named.each ? run_each(command, named) : run_explore(std::move(named), typed);

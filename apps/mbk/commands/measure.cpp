@@ -5,7 +5,7 @@
 #include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/options/named_files.h"
+#include "mbk/files/recording/named_files.h"
 #include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/report_file.h"
 #include "mbk/base/numeric/parallel.h"
@@ -152,7 +152,7 @@ Result<void> check(const MeasureCommandArguments& arguments) {
 /// The work of `measure` and `identify`, which leaves out ellipses, passivity and what they take to compute.
 int run(const MeasureCommandArguments& given, const std::string& typed, bool with_findings) {
   MeasureCommandArguments arguments = given;
-  auto files = named_files(given.reading.files);
+  auto files = recording::named_files(given.reading.files);
   if (!files) return report_error(files.error());
   arguments.reading.files = std::move(*files);
   auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());

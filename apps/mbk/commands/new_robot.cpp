@@ -9,6 +9,7 @@
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/questions.h"
 #include "apps/mbk/options/report_file.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/model/robot_file/robot_file.h"
 

@@ -1,6 +1,7 @@
 #include "apps/mbk/commands/stored_result.h"
 
 #include "apps/mbk/options/output.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/measure/analyse/judge_passivity.h"
 
 namespace mbk::app {

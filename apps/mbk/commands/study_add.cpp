@@ -13,6 +13,7 @@
 #include "mbk/files/bids/read_run.h"
 #include "mbk/files/c3d/c3d.h"
 #include "mbk/files/contents/file_bytes.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/files/kinarm/exam_parameters.h"
 #include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/write.h"

@@ -10,6 +10,7 @@
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/option_checks.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/teleoperation_text.h"
 #include "mbk/present/result/teleoperation_json.h"

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "apps/mbk/caller.h"
 #include "apps/mbk/terminal/memory.h"
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
@@ -116,7 +115,7 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
   constexpr std::size_t kMany = 64;  // files that a process may well hold open
   const bool many = arguments.files.size() > kMany;
   for (const std::filesystem::path& file : arguments.files) {
-    if (arguments.parts && recording_in_memory(file)) {
+    if (arguments.parts && recording::held_recording(file)) {
       return fail(ErrorKind::usage, "--parts joins files, and this is in memory", "join the arrays instead",
                   file.string());
     }
@@ -138,7 +137,7 @@ Result<RecordingReader> RecordingReader::of(const ReadingArguments& arguments, c
 Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const std::filesystem::path& file,
                                                                          const std::string& trial,
                                                                          const recording::ReadOptions& options) {
-  if (auto given = recording_in_memory(file)) return std::vector<Record>{{file, trial, {}, std::move(given)}};
+  if (auto given = recording::held_recording(file)) return std::vector<Record>{{file, trial, {}, std::move(given)}};
   auto open = recording::open(file);
   if (!open) {  // reported by whoever reads it
     Record record{file, "", {}, {}, open.error(), journal::is_journal(file)};

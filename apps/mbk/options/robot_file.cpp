@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/mbk/options/output.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/model/robot_file/robot_file.h"
 #include "mbk/present/result/robot_json.h"
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/mbk/options/output.h"
+#include "mbk/files/contents/read_text.h"
 
 namespace mbk::app {
 

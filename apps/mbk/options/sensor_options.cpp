@@ -12,6 +12,7 @@
 #include "apps/mbk/options/word_options.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/present/result/sensor_json.h"
 
 namespace mbk::app {

@@ -1,4 +1,4 @@
-#include "apps/mbk/options/named_files.h"
+#include "mbk/files/recording/named_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/mbk/caller.h"
 #include "mbk/base/core/natural_order.h"
 #include "mbk/files/recording/formats.h"
+#include "mbk/files/recording/in_memory.h"
 #include "mbk/files/recording/read.h"
 
-namespace mbk::app {
-namespace named {
+namespace mbk::recording {
+namespace {
 
 namespace fs = std::filesystem;
 
@@ -24,7 +24,7 @@ bool is_recording(const fs::directory_entry& entry) {
   std::string extension = entry.path().extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  const std::vector<std::string_view> known = recording::format_extensions();
+  const std::vector<std::string_view> known = format_extensions();
   return entry.is_regular_file(ignored) && !entry.path().filename().string().starts_with('.') &&
          std::ranges::find(known, extension) != known.end();
 }
@@ -36,8 +36,8 @@ std::vector<fs::path> sorted(std::vector<fs::path> files) {
 }
 
 Result<std::vector<fs::path>> files_in(const fs::path& folder) {
-  const auto set = recording::open(folder);
-  if (set && !recording::trials_of(**set).empty()) return std::vector<fs::path>{folder};  // a BIDS data set
+  const auto set = open(folder);
+  if (set && !trials_of(**set).empty()) return std::vector<fs::path>{folder};  // a BIDS data set
   std::vector<fs::path> files;
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), last; !code && entry != last; entry.increment(code)) {
@@ -46,7 +46,7 @@ Result<std::vector<fs::path>> files_in(const fs::path& folder) {
   if (code) return bad_data("the folder cannot be read: " + code.message(), "check its permissions", folder.string());
   if (files.empty()) {
     return bad_data(
-        fmt::format("the folder holds no recording ({})", fmt::join(recording::format_extensions(), " ")),
+        fmt::format("the folder holds no recording ({})", fmt::join(format_extensions(), " ")),
         fmt::format("name the files, or a pattern in quotes such as '{}'", (folder / "*" / "*.mat").string()),
         folder.string());
   }
@@ -68,21 +68,21 @@ Result<std::vector<fs::path>> files_like(const std::string& pattern) {
 
 Result<std::vector<fs::path>> files_of(const fs::path& typed) {
   std::error_code ignored;
-  if (recording_in_memory(typed)) return std::vector<fs::path>{typed};
+  if (held_recording(typed)) return std::vector<fs::path>{typed};
   if (fs::is_directory(typed, ignored)) return files_in(typed);
   const bool pattern = typed.string().find_first_of("*?[") != std::string::npos;
   return pattern && !fs::exists(typed, ignored) ? files_like(typed.string()) : std::vector<fs::path>{typed};
 }
 
-}  // namespace named
+}  // namespace
 
 Result<std::vector<std::filesystem::path>> named_files(const std::vector<std::filesystem::path>& typed) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& one : typed) {
-    const auto more = MBK_TRY(named::files_of(one));
+    const auto more = MBK_TRY(files_of(one));
     files.insert(files.end(), more.begin(), more.end());
   }
   return files;
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::recording
