@@ -293,8 +293,8 @@ std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answe
 }
 
 Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call& call) {
-  ReadingArguments reading;
-  SensorArguments sensor;
+  ReadRequest reading;
+  SensorRequest sensor;
   const Parser parser("read");
   add_reading_options(parser.command(), reading);
   add_sensor_options(parser.command(), sensor);

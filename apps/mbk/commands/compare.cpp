@@ -23,7 +23,6 @@ namespace mbk::app {
 namespace {
 
 struct CompareArguments : MeasureArguments {
-  AnalyseArguments analyse;
   ReportArguments report;
 };
 
@@ -75,10 +74,10 @@ Result<std::vector<Compared>> from_stored(const std::filesystem::path& file) {
 Result<Compared> from_recording(CompareArguments arguments, const std::filesystem::path& file) {
   arguments.reading.files = {file};
   const bool with_report = arguments.report.file.has_value();
-  auto options = MBK_TRY(measurement_options(arguments, arguments.analyse, with_report));
+  auto options = MBK_TRY(measurement_options(arguments, with_report));
   options.passivity = with_report;
   auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
-  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  for (Recording& recording : recordings) add_arm(arguments.arm, recording);
   auto measured = MBK_TRY(measurement::measure(std::span(recordings), options));
   Compared one{file.string(), {std::move(measured), {}, {}}};
   for (std::size_t k = 0; with_report && k < recordings.size(); ++k) {

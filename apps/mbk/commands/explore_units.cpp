@@ -47,7 +47,7 @@ Result<RecordingReader> reader_of(const ExploringArguments& arguments, const Jso
   if (sum_of(file) != key.at("sha256").get<std::string>()) {
     return bad_data("it has changed since the job was begun", "put it back, or begin again", file.string());
   }
-  ReadingArguments reading = arguments.reading;
+  ReadRequest reading = arguments.reading;
   reading.files = {file};
   reading.trial = key.at("trial").get<std::string>();
   return RecordingReader::of(reading, arguments.sensor);

@@ -157,15 +157,15 @@ Result<SpringConstant> constant_of(const Recording& recording, double hac_lag_s)
 }
 
 struct CalibrateArguments {
-  ReadingArguments reading;
+  ReadRequest reading;
   OutputArguments output;
   double hac_lag_s = 1.0;
 };
 
 int run_calibrate(const CalibrateArguments& arguments) {
   if (auto ok = arguments.output.to.check(arguments.reading.files); !ok) return report_error(ok.error());
-  ReadingArguments reading = arguments.reading;
-  if (reading.axes == 0) reading.axes = 1;
+  ReadRequest reading = arguments.reading;
+  if (reading.options.axes == 0) reading.options.axes = 1;
   const auto recordings = read_recordings(reading);
   if (!recordings) return report_error(recordings.error());
   std::vector<SpringConstant> constants;

@@ -63,7 +63,7 @@ class Adder {
   }
 
   Added add(store::IncomingFile& incoming, const KnownFacts& facts) {
-    ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
+    ReadRequest reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {incoming.path()};
     const auto reader = MBK_TRY(RecordingReader::of(reading, measuring_->arguments.sensor));
     if (facts.trial && reader.count() > 1) {
@@ -168,7 +168,7 @@ class Adder {
       return fail(ErrorKind::usage, "is a folder", "'mbk study import' takes all recordings of a BIDS data set",
                   motion.string());
     }
-    ReadingArguments reading = reading_for(measuring_->arguments.reading, measuring_->options);
+    ReadRequest reading = reading_for(measuring_->arguments.reading, measuring_->options);
     reading.files = {motion};
     const auto reader = MBK_TRY(RecordingReader::of(reading, measuring_->arguments.sensor));
     auto recording = MBK_TRY(reader.read(0));

@@ -35,6 +35,7 @@ struct OptionFacts {
   OptionCheck check = {};      ///< which values it may have. An enumeration fills it in itself
   std::string needs = {};      ///< another option without which it is wrong
   std::string group = {};      ///< heading in --help; "": the first one
+  std::string excludes = {};   ///< another option beside which it is wrong
   bool names_file = false;     ///< a result depends on what that file holds, not on its name
   bool takes_several = false;  ///< values between commas, or the option several times
 };
@@ -188,6 +189,9 @@ class OptionTable {
       }
       if (!row->facts.needs.empty() && !given.contains(row->facts.needs)) {
         return bad_usage(fmt::format("{} needs {} beside it", name, row->facts.needs));
+      }
+      if (!row->facts.excludes.empty() && given.contains(row->facts.excludes)) {
+        return bad_usage(fmt::format("{} and {} cannot be given together", name, row->facts.excludes));
       }
     }
     Options options{};

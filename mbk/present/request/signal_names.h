@@ -3,10 +3,10 @@
 #include <span>
 #include <string>
 
-#include "apps/mbk/options/reading_options.h"
+#include "mbk/present/request/read_request.h"
 #include "mbk/base/core/result.h"
 
-namespace mbk::app {
+namespace mbk::request {
 
 /// A signal as the command line names it, and what it is then called.
 struct SignalName {
@@ -18,9 +18,9 @@ struct SignalName {
 
 /// Where the signals stand: channels under their own names (position, Fx), or else columns, rows or variables of the
 /// file, which the map then makes `input`, `output` and `drive`.
-[[nodiscard]] Result<void> place_signals(ReadingArguments& reading, std::span<const SignalName> signals);
+[[nodiscard]] Result<void> place_signals(ReadRequest& reading, std::span<const SignalName> signals);
 
 /// How a signal was named, without what converts it: "-2:mm" is −2.
 [[nodiscard]] std::string shown_name(const std::string& given);
 
-}  // namespace mbk::app
+}  // namespace mbk::request

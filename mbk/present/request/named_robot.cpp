@@ -1,14 +1,13 @@
-#include "apps/mbk/options/robot_file.h"
+#include "mbk/present/request/named_robot.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/mbk/options/output.h"
 #include "mbk/files/contents/read_text.h"
 #include "mbk/model/robot_file/robot_file.h"
 #include "mbk/present/result/robot_json.h"
 
-namespace mbk::app {
+namespace mbk::request {
 namespace {
 
 /// The robot that a result describes, with the numbers that it holds.
@@ -68,4 +67,4 @@ Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>&
   return std::move(description.model);
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::request

@@ -6,7 +6,7 @@
 #include "mbk/base/core/result.h"
 #include "mbk/model/robot/robot_description.h"
 
-namespace mbk::app {
+namespace mbk::request {
 
 /// The robot that --robot names: a description in TOML, a URDF, or what 'mbk robot identify --json' wrote; without a
 /// file the thesis's robot, with the parameters of table A.1.
@@ -18,4 +18,4 @@ namespace mbk::app {
 /// identify' found them and said that they must not be used.
 [[nodiscard]] Result<robot::DynamicModel> robot_of(const std::optional<std::filesystem::path>& file);
 
-}  // namespace mbk::app
+}  // namespace mbk::request

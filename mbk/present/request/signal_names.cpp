@@ -1,4 +1,4 @@
-#include "apps/mbk/terminal/signal_names.h"
+#include "mbk/present/request/signal_names.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/channel_table.h"
 
-namespace mbk::app {
+namespace mbk::request {
 
-Result<void> place_signals(ReadingArguments& reading, std::span<const SignalName> signals) {
+Result<void> place_signals(ReadRequest& reading, std::span<const SignalName> signals) {
   const auto mapped = MBK_TRY(reading.channels.empty() ? Result<std::vector<recording::ChannelSource>>()
                                                        : recording::parse_channel_map(reading.channels));
   const auto in_map = [&](const std::string& name) {
@@ -29,8 +29,8 @@ Result<void> place_signals(ReadingArguments& reading, std::span<const SignalName
     if (by_name || in_map(name)) {
       signal.to = name;
       if (flipped) *signal.sign = -1.0;
-      if (by_name) reading.requested.push_back(name);
-      if (std::string_view(signal.channel) != "output") reading.commands.push_back(name);
+      if (by_name) reading.options.requested.push_back(name);
+      if (std::string_view(signal.channel) != "output") reading.options.commands.push_back(name);
       continue;
     }
     reading.channels += fmt::format("{}{}={}", reading.channels.empty() ? "" : ",", signal.channel, signal.given);
@@ -45,4 +45,4 @@ std::string shown_name(const std::string& given) {
   return (entry->front().negate ? "−" : "") + entry->front().source;
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::request
