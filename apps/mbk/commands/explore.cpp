@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/explore_units.h"
-#include "mbk/files/recording/named_files.h"
+#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/options/report_file.h"
 #include "apps/mbk/options/table_options.h"
 #include "apps/mbk/options/threads_option.h"
+#include "mbk/files/recording/named_files.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/report/result_charts.h"
 #include "mbk/present/result/exploration_json.h"
@@ -41,7 +41,8 @@ int run_each(Command command, const ExploreArguments& arguments) {
   if (arguments.reading.parts) {
     return report_error({ErrorKind::usage, "--parts joins recordings, and --each keeps them apart", "pass one", ""});
   }
-  const ExploringEach each{arguments, given_options(command, request::explore_table()), arguments.to.json, arguments.to.quiet};
+  const ExploringEach each{arguments, given_options(command, request::explore_table()), arguments.to.json,
+                           arguments.to.quiet};
   std::optional<int> code;
   const auto explored =
       arguments.engine.kind ? explored_elsewhere(each, arguments.engine, code) : explored_here(each, arguments.threads);
@@ -76,8 +77,7 @@ Result<void> check(const ExploreArguments& a) {
 
 Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
   if (!arguments.beside.charts) return {};
-  auto files =
-      MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.to.to.overwrite, arguments.reading.files));
+  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.to.to.overwrite, arguments.reading.files));
   return files.write(found.recordings.front().source, report::exploration_charts(found));
 }
 

@@ -11,6 +11,7 @@
 
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/result/exploration_json.h"
@@ -37,7 +38,7 @@ std::string written(const Json& json) {
 
 /// "" where it cannot be read: what is wrong with a file is said where it is explored.
 std::string sum_of(const fs::path& file) {
-  return store::file_sha256(file).value_or("");
+  return files::file_sha256(file).value_or("");
 }
 
 /// The reader of what a key names. The sum of its file stands in the key, so that nothing else is explored in its
@@ -83,7 +84,7 @@ Result<std::vector<std::string>> keys_of(const RecordingReader& reader) {
 
 /// The calibration of --sensor, which a result depends on; "" where there is none.
 Result<std::string> sensor_sum(const ExploringArguments& arguments) {
-  return arguments.sensor.file ? store::file_sha256(*arguments.sensor.file) : Result<std::string>("");
+  return arguments.sensor.file ? files::file_sha256(*arguments.sensor.file) : Result<std::string>("");
 }
 
 /// About how long each takes: as long as its file is large.

@@ -26,14 +26,17 @@ struct MovementArguments {
 OptionTable<measurement::MovementQualityOptions> options_table() {
   OptionTable<measurement::MovementQualityOptions> table;
   table.group(request::kWindowGroup)
-      .add({"--from", "S", "first second of the recording that counts", not_negative()},
-           [](auto& options) -> auto& { return options.window.from_s; })
-      .add({"--to", "S", "last second that counts", positive()},
-           [](auto& options) -> auto& { return options.window.to_s; })
+      .add(
+          {"--from", "S", "first second of the recording that counts", not_negative()},
+          [](auto& options) -> auto& { return options.window.from_s; })
+      .add(
+          {"--to", "S", "last second that counts", positive()},
+          [](auto& options) -> auto& { return options.window.to_s; })
       .group("")
       .add(request::resample_option(), &measurement::MovementQualityOptions::resample)
-      .add({"--cutoff", "HZ", "of the Savitzky–Golay filter behind the speed, Hz (20)", positive()},
-           [](auto& options) -> auto& { return options.movement.cutoff_hz; });
+      .add(
+          {"--cutoff", "HZ", "of the Savitzky–Golay filter behind the speed, Hz (20)", positive()},
+          [](auto& options) -> auto& { return options.movement.cutoff_hz; });
   return table;
 }
 

@@ -1,10 +1,10 @@
 #include <memory>
 #include <string>
 
+#include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/measure_options.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/reading_options.h"
-#include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/table_options.h"
 #include "apps/mbk/options/word_options.h"
 #include "mbk/base/core/option_checks.h"
@@ -78,10 +78,12 @@ Action add_robot_force(Command group) {
       .type_name("FILE")
       .check(not_empty());
   arguments->options.preprocess.force_source = ForceSource::virtual_sensor;
-  add_choice(command, "--force-source", arguments->options.preprocess.force_source, {ForceSource::virtual_sensor, ForceSource::observer},
+  add_choice(command, "--force-source", arguments->options.preprocess.force_source,
+             {ForceSource::virtual_sensor, ForceSource::observer},
              "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
              "(virtual)");
-  add_choice(command, "--acceleration", arguments->options.preprocess.acceleration, "where the acceleration comes from (derivative)");
+  add_choice(command, "--acceleration", arguments->options.preprocess.acceleration,
+             "where the acceleration comes from (derivative)");
   add_options(command, request::window_table(), arguments->options.preprocess.window);
   add_options(command, request::filter_table(), arguments->options.preprocess);
   add_option(command, request::resample_option(request::kFilterGroup), arguments->options.resample);

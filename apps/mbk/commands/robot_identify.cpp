@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/reading_options.h"
-#include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/table_options.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/measure/measurement/identify_robot.h"
@@ -184,21 +184,25 @@ OptionTable<RobotIdentifyArguments> model_table() {
             "as half of one (auto: found)",
             not_empty()},
            &Arguments::delay)
-      .add({"--method", "",
-            "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
-            "noise of the motion does not bias"},
-           [](auto& a) -> auto& { return a.options.fit.method; })
-      .add({"--consistent", "",
-            "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
-            "and drives that do not feed the motion; what the data leave open stays near the description"},
-           [](auto& a) -> auto& { return a.options.fit.consistent; })
-      .add({"--motion-cutoff", "HZ",
-            "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
-            "reference, or without one the band of the torque",
-            positive()},
-           [](auto& a) -> auto& { return a.options.preprocess.motion_cutoff; })
-      .add({"--hac-lag", "S", "reach of the residual's correlation in the standard errors (1)", positive()},
-           [](auto& a) -> auto& { return a.options.fit.hac_lag_s; });
+      .add(
+          {"--method", "",
+           "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
+           "noise of the motion does not bias"},
+          [](auto& a) -> auto& { return a.options.fit.method; })
+      .add(
+          {"--consistent", "",
+           "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
+           "and drives that do not feed the motion; what the data leave open stays near the description"},
+          [](auto& a) -> auto& { return a.options.fit.consistent; })
+      .add(
+          {"--motion-cutoff", "HZ",
+           "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
+           "reference, or without one the band of the torque",
+           positive()},
+          [](auto& a) -> auto& { return a.options.preprocess.motion_cutoff; })
+      .add(
+          {"--hac-lag", "S", "reach of the residual's correlation in the standard errors (1)", positive()},
+          [](auto& a) -> auto& { return a.options.fit.hac_lag_s; });
   return table;
 }
 

@@ -58,10 +58,12 @@ OptionTable<SensorCalibrateArguments> calibrate_table() {
       .add(
           {"--lever-arm-mm", "MM", "from the gauges to the load, kept for --sensor", positive()},
           [](auto& a) -> auto& { return a.options.lever_arm; }, kMillimetres)
-      .add({"--bits", "N", "of the converter; otherwise its step is looked for in the data", whole_number(2, 32)},
-           [](auto& a) -> auto& { return a.converter.bits; })
-      .add({"--range", "V", "of the converter, ± volts", positive(), "--bits"},
-           [](auto& a) -> auto& { return a.converter.range; })
+      .add(
+          {"--bits", "N", "of the converter; otherwise its step is looked for in the data", whole_number(2, 32)},
+          [](auto& a) -> auto& { return a.converter.bits; })
+      .add(
+          {"--range", "V", "of the converter, ± volts", positive(), "--bits"},
+          [](auto& a) -> auto& { return a.converter.range; })
       .add({"--sensor-frame", "",
             "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
             "link where q2 is there"},
@@ -70,8 +72,9 @@ OptionTable<SensorCalibrateArguments> calibrate_table() {
           {"--longest-delay-ms", "MS", "by which the voltage may come after a reference, either way (50; 0: none)",
            not_negative()},
           [](auto& a) -> auto& { return a.options.longest_delay; }, kMilliseconds)
-      .add({"--hac-lag", "S", "reach of the residual's correlation in the standard errors, s (1)", not_negative()},
-           [](auto& a) -> auto& { return a.options.hac_lag_s; });
+      .add(
+          {"--hac-lag", "S", "reach of the residual's correlation in the standard errors, s (1)", not_negative()},
+          [](auto& a) -> auto& { return a.options.hac_lag_s; });
   return table;
 }
 

@@ -15,6 +15,7 @@
 #include "apps/mbk/options/threads_option.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/present/report/schedule_text.h"
@@ -173,7 +174,7 @@ Result<std::string> scenario_sum(const std::string& scenario) {
   if (const auto* ready = laboratory::find_ready_scenario(scenario); ready != nullptr) {
     return recording::sha256(std::as_bytes(std::span(ready->text)));
   }
-  return store::file_sha256(scenario);
+  return files::file_sha256(scenario);
 }
 
 Result<std::string> specification_of(const SimulateArguments& arguments) {

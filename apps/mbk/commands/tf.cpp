@@ -64,8 +64,8 @@ Result<void> check_written(const TfArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, output, arguments.report); !ok || arguments.charts.empty())
     return ok;
   for (std::size_t k = 0; k < kChartNames.size(); ++k) {
-    if (auto ok = check_new_file(chart_file(arguments, k), "--charts", arguments.to.to.overwrite,
-                                 arguments.reading.files);
+    if (auto ok =
+            check_new_file(chart_file(arguments, k), "--charts", arguments.to.to.overwrite, arguments.reading.files);
         !ok) {
       return ok;
     }
@@ -105,8 +105,7 @@ int run(const TfArguments& given, const std::string& typed) {
   if (auto ok = write_charts(arguments, report::response_charts(*found, findings->response)); !ok) {
     return report_error(ok.error());
   }
-  std::string text =
-      arguments.to.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
+  std::string text = arguments.to.json ? result::to_json(*found, *findings) : report::transfer_function_text(*found);
   if (!arguments.to.json && findings->inverse) text += report::inverted_admittance_text(*findings->inverse);
   if (auto ok = arguments.to.write(text, files_of(arguments)); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;

@@ -12,13 +12,13 @@
 #include <thread>
 
 #include "apps/mbk/caller.h"
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/word_options.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
-#include "mbk/files/contents/sha256.h"
 #include "mbk/batch/job_events.h"
 #include "mbk/batch/merge.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace mbk::app {
 namespace {

@@ -9,12 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/robot_file.h"
 #include "apps/mbk/options/word_options.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/base/core/version.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/measure/preprocess/perturbation_only.h"
 #include "mbk/present/result/json.h"
@@ -52,7 +53,7 @@ void say_waiting() {
 
 /// What the file of an option says, as far as a result depends on it.
 Result<std::string> hash_of_file(const std::string& option, const std::filesystem::path& file) {
-  auto sum = store::file_sha256(file);
+  auto sum = files::file_sha256(file);
   if (!sum || option != "--robot" || file.extension() == ".json") return sum;
   const auto robot = describe_robot(file);  // a description may name a URDF beside it
   if (!robot) return tl::unexpected(robot.error());
@@ -277,7 +278,7 @@ Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::fi
   };
   auto recording = read_stored(measuring, file, unit.part, Reading::perturbation);
   if (!recording) {
-    const auto sum = MBK_TRY(store::file_sha256(file));
+    const auto sum = MBK_TRY(files::file_sha256(file));
     if (sum != unit.sha256) return damaged();
     // What is wrong with a recording is a result; that the disk failed for a moment is none.
     auto again = read_stored(measuring, file, unit.part, Reading::perturbation);

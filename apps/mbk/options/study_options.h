@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/terminal/command.h"
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/measure_options.h"
+#include "apps/mbk/terminal/command.h"
 #include "mbk/study/store/store.h"
 
 /// What the commands of `mbk study` share.

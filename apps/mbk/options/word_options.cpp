@@ -1,9 +1,9 @@
 #include "apps/mbk/options/word_options.h"
-#include "mbk/base/core/option_checks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "mbk/base/core/option_checks.h"
 
 namespace mbk::app {
 

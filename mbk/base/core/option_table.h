@@ -29,14 +29,14 @@ using OptionTexts = std::map<std::string, std::vector<std::string>>;
 
 /// Everything that is said of an option.
 struct OptionFacts {
-  std::string name;            ///< "--cutoff"
-  std::string value;           ///< placeholder, often the unit: "HZ", "S"; "": a flag. An enumeration fills it in itself
-  std::string help;            ///< with the default in brackets
-  OptionCheck check = {};      ///< which values it may have. An enumeration fills it in itself
-  std::string needs = {};      ///< another option without which it is wrong
-  std::string group = {};      ///< heading in --help; "": the first one
-  std::string excludes = {};   ///< another option beside which it is wrong
-  bool names_file = false;     ///< a result depends on what that file holds, not on its name
+  std::string name;           ///< "--cutoff"
+  std::string value;          ///< placeholder, often the unit: "HZ", "S"; "": a flag. An enumeration fills it in itself
+  std::string help;           ///< with the default in brackets
+  OptionCheck check = {};     ///< which values it may have. An enumeration fills it in itself
+  std::string needs = {};     ///< another option without which it is wrong
+  std::string group = {};     ///< heading in --help; "": the first one
+  std::string excludes = {};  ///< another option beside which it is wrong
+  bool names_file = false;    ///< a result depends on what that file holds, not on its name
   bool takes_several = false;  ///< values between commas, or the option several times
 };
 
@@ -122,7 +122,8 @@ class OptionTable {
       using Enum = typename option_values::ChoiceOf<Value>::Type;
       std::vector<std::string> words(kWordList<Enum>.begin(), kWordList<Enum>.end());
       if (facts.value == option_values::kAuto) words.insert(words.begin(), std::string(option_values::kAuto));
-      if (facts.value.empty() || facts.value == option_values::kAuto) facts.value = fmt::format("{}", fmt::join(words, "|"));
+      if (facts.value.empty() || facts.value == option_values::kAuto)
+        facts.value = fmt::format("{}", fmt::join(words, "|"));
       facts.check = one_of(words);
     }
     return add_row({std::move(facts),

@@ -62,18 +62,18 @@ OptionTable<measurement::ExploreOptions> course_table() {
       .add(
           {"--plateau-to", "MS", "its end, ms after the onset (300; 200 in a reach)", positive()},
           [](auto& options) -> auto& { return options.plateau.to_s; }, kMilliseconds)
-      .add({"--trigger", "EVENT",
-            "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
-            "(trigger)",
-            not_empty()},
-           [](auto& options) -> auto& { return options.reaches.trigger; })
-      .group("Change over time")
       .add(
-          {"--after-onset", "MS",
-           "M, B and K from so long after each step or pulse of the reference, before the person can "
-           "answer, ms; 100 to 150",
-           positive()},
-          &Options::after_onset_s, kMilliseconds);
+          {"--trigger", "EVENT",
+           "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
+           "(trigger)",
+           not_empty()},
+          [](auto& options) -> auto& { return options.reaches.trigger; })
+      .group("Change over time")
+      .add({"--after-onset", "MS",
+            "M, B and K from so long after each step or pulse of the reference, before the person can "
+            "answer, ms; 100 to 150",
+            positive()},
+           &Options::after_onset_s, kMilliseconds);
   return table;
 }
 
@@ -81,28 +81,34 @@ OptionTable<measurement::ExploreOptions> course_table() {
 
 const OptionTable<ExploreRequest>& explore_table() {
   static const auto kTable = [] {
-    const auto options = [](auto& request) -> auto& { return request.options; };
+    const auto options = [](auto& request) -> auto& {
+      return request.options;
+    };
     const char* const in_time = "Change over time";
     OptionTable<ExploreRequest> table;
     table.include(read_table(), &ExploreRequest::reading)
         .add({"--input", "NAME",
-              "another response than that of force to motion: from this channel, column, row or variable",
-              not_empty()},
+              "another response than that of force to motion: from this channel, column, row or variable", not_empty()},
              &ExploreRequest::input)
         .add({"--output", "NAME", "to this, likewise", not_empty()}, &ExploreRequest::output)
         .add({"--reference", "NAME", "what drives both, likewise", not_empty()}, &ExploreRequest::reference)
         .include(sensor_table(), &ExploreRequest::sensor)
-        .add(protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; })
-        .include(window_table(), [](auto& request) -> auto& { return request.options.preprocess.window; })
-        .add(resample_option(), [](auto& request) -> auto& { return request.options.resample; })
+        .add(
+            protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; })
+        .include(
+            window_table(), [](auto& request) -> auto& { return request.options.preprocess.window; })
+        .add(
+            resample_option(), [](auto& request) -> auto& { return request.options.resample; })
         .add(
             force_delay_option(), [](auto& request) -> auto& { return request.options.force_delay; }, kMilliseconds)
         .add(
             force_rotation_option(kWindowGroup), [](auto& request) -> auto& { return request.options.force_rotation; },
             kDegrees)
-        .add({"--only", "", "nothing but this part (all of them)"},
-             [](auto& request) -> auto& { return request.options.only; })
-        .include(response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
+        .add(
+            {"--only", "", "nothing but this part (all of them)"},
+            [](auto& request) -> auto& { return request.options.only; })
+        .include(
+            response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
         .include(course_table(), options)
         .group(in_time)
         .add({"--schedule", "NAME",
@@ -110,13 +116,14 @@ const OptionTable<ExploreRequest>& explore_table() {
               "not over time",
               not_empty()},
              &ExploreRequest::schedule)
-        .add({.name = "--align",
-              .value = "EVENT",
-              .help = "count time from this event, repetition by repetition, or from the onsets of the reference "
-                      "(reference)",
-              .check = not_empty(),
-              .excludes = "--schedule"},
-             [](auto& request) -> auto& { return request.options.align; });
+        .add(
+            {.name = "--align",
+             .value = "EVENT",
+             .help = "count time from this event, repetition by repetition, or from the onsets of the reference "
+                     "(reference)",
+             .check = not_empty(),
+             .excludes = "--schedule"},
+            [](auto& request) -> auto& { return request.options.align; });
     return table;
   }();
   return kTable;

@@ -68,13 +68,16 @@ OptionTable<preprocess::Options> source_table() {
 
 const OptionTable<MeasureRequest>& measure_table() {
   static const auto kTable = [] {
-    const auto preprocess = [](auto& request) -> auto& { return request.options.preprocess; };
+    const auto preprocess = [](auto& request) -> auto& {
+      return request.options.preprocess;
+    };
     OptionTable<MeasureRequest> table;
     table.include(read_table(), &MeasureRequest::reading)
         .include(sensor_table(), &MeasureRequest::sensor)
         .include(protocol_table(), preprocess)
         .include(filter_table(), preprocess)
-        .add(resample_option(kFilterGroup), [](auto& request) -> auto& { return request.options.resample; })
+        .add(
+            resample_option(kFilterGroup), [](auto& request) -> auto& { return request.options.resample; })
         .include(source_table(), preprocess)
         .group(kFilterGroup)
         .add({.name = "--robot",
@@ -89,13 +92,15 @@ const OptionTable<MeasureRequest>& measure_table() {
         .add(
             force_rotation_option(kFilterGroup), [](auto& request) -> auto& { return request.options.force_rotation; },
             kDegrees)
-        .include(identify_table(), [](auto& request) -> auto& { return request.options.identify; })
+        .include(
+            identify_table(), [](auto& request) -> auto& { return request.options.identify; })
         .group("Plausibility")
-        .add({.name = "--ignore-range",
-              .value = "NAMES",
-              .help = "plausible ranges that are not checked, by name, as in --ignore-range stiffness,motion",
-              .takes_several = true},
-             [](auto& request) -> auto& { return request.options.ignored_ranges; });
+        .add(
+            {.name = "--ignore-range",
+             .value = "NAMES",
+             .help = "plausible ranges that are not checked, by name, as in --ignore-range stiffness,motion",
+             .takes_several = true},
+            [](auto& request) -> auto& { return request.options.ignored_ranges; });
     return table;
   }();
   return kTable;
@@ -105,10 +110,11 @@ const OptionTable<MeasureRequest>& arm_table() {
   static const auto kTable = [] {
     OptionTable<MeasureRequest> table;
     table.group("Model")
-        .add_either({"--domain", "",
-                     "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not "
-                     "known), in the posture of the recording"},
-                    "hand", "joint", [](auto& request) -> auto& { return request.options.joint_domain; })
+        .add_either(
+            {"--domain", "",
+             "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not "
+             "known), in the posture of the recording"},
+            "hand", "joint", [](auto& request) -> auto& { return request.options.joint_domain; })
         .add({"--arm",
               "X,Y,UPPER,FORE",
               "the person's arm, where the recording does not hold it: place of the shoulder in the robot's frame, "

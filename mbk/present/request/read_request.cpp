@@ -19,33 +19,36 @@ const OptionTable<ReadRequest>& read_table() {
               "tau8, qr1 to qr8, ax, ay, Vx, Vy; one axis: time, x, F, xr, a; for mbk tf: input, output",
               not_empty()},
              &ReadRequest::channels)
-        .add({"--variable", "NAME", "which variable of a MAT file, where several could be meant", not_empty()},
-             [](auto& request) -> auto& { return request.options.variable; })
-        .add({"--trial", "N|NAME",
-              "which trial of a file or folder that holds several, by its number or name; otherwise all of them",
-              not_empty()},
-             [](auto& request) -> auto& { return request.options.trial; })
-        .add({"--side",
-              "right|left",
-              "whose hand is the hand, where a KINARM exam recorded both: right or left",
-              {[](const std::string& arm) {
-                return arm == "right" || arm == "left" ? "" : fmt::format("{} is neither right nor left", quoted(arm));
-              }}},
-             [](auto& request) -> auto& { return request.options.arm; })
-        .add({"--clock", "STREAM",
-              "the stream or topic whose time stamps the recording has, where its channels come from several: those "
-              "of the others are interpolated linearly",
-              not_empty()},
-             [](auto& request) -> auto& { return request.options.clock; })
-        .add({"--rate", "HZ", "sample rate, where the file holds no time", positive()},
-             [](auto& request) -> auto& { return request.options.rate; })
-        .add({"--axes",
-              "N",
-              "1 or 2; otherwise by the channels that are there",
-              {[](const std::string& n) {
-                return n == "1" || n == "2" ? "" : fmt::format("{} is neither 1 nor 2", quoted(n));
-              }}},
-             [](auto& request) -> auto& { return request.options.axes; })
+        .add(
+            {"--variable", "NAME", "which variable of a MAT file, where several could be meant", not_empty()},
+            [](auto& request) -> auto& { return request.options.variable; })
+        .add(
+            {"--trial", "N|NAME",
+             "which trial of a file or folder that holds several, by its number or name; otherwise all of them",
+             not_empty()},
+            [](auto& request) -> auto& { return request.options.trial; })
+        .add(
+            {"--side",
+             "right|left",
+             "whose hand is the hand, where a KINARM exam recorded both: right or left",
+             {[](const std::string& arm) {
+               return arm == "right" || arm == "left" ? "" : fmt::format("{} is neither right nor left", quoted(arm));
+             }}},
+            [](auto& request) -> auto& { return request.options.arm; })
+        .add(
+            {"--clock", "STREAM",
+             "the stream or topic whose time stamps the recording has, where its channels come from several: those "
+             "of the others are interpolated linearly",
+             not_empty()},
+            [](auto& request) -> auto& { return request.options.clock; })
+        .add(
+            {"--rate", "HZ", "sample rate, where the file holds no time", positive()},
+            [](auto& request) -> auto& { return request.options.rate; })
+        .add(
+            {"--axes", "N", "1 or 2; otherwise by the channels that are there", {[](const std::string& n) {
+               return n == "1" || n == "2" ? "" : fmt::format("{} is neither 1 nor 2", quoted(n));
+             }}},
+            [](auto& request) -> auto& { return request.options.axes; })
         .add({"--parts", "", "the FILEs are numbered parts of one record: join them"}, &ReadRequest::parts);
     return table;
   }();

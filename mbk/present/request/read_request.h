@@ -13,9 +13,9 @@ namespace mbk::request {
 /// Which recordings are read, and how.
 struct ReadRequest {
   std::vector<std::filesystem::path> files;
-  bool parts = false;             ///< the files are numbered parts of one record
-  std::string channels;           ///< channel map, as it is typed
-  recording::ReadOptions options; ///< but for the channel map
+  bool parts = false;              ///< the files are numbered parts of one record
+  std::string channels;            ///< channel map, as it is typed
+  recording::ReadOptions options;  ///< but for the channel map
 
   ReadRequest() { options.own_samples = true; }
 };

@@ -41,7 +41,7 @@ Result<RecordingReader> RecordingReader::of(const ReadRequest& request, const Se
                   file.string());
     }
     auto records = MBK_TRY(request.parts ? Result<std::vector<Record>>({{file, ""}})
-                                           : records_of(file, request.options.trial, options));
+                                         : records_of(file, request.options.trial, options));
     if (many && !request.parts) {
       for (const Record& one : records) {
         if (one.open) recording::rest(*one.open);
@@ -158,8 +158,7 @@ Result<std::vector<Recording>> read_recordings(const ReadRequest& request, const
   return all_of(request, with_sensor, &RecordingReader::read);
 }
 
-Result<std::vector<Recording>> read_perturbations(const ReadRequest& request,
-                                                  const SensorRequest& with_sensor) {
+Result<std::vector<Recording>> read_perturbations(const ReadRequest& request, const SensorRequest& with_sensor) {
   return all_of(request, with_sensor, &RecordingReader::read_perturbation);
 }
 

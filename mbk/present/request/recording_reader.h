@@ -23,8 +23,7 @@ namespace mbk::request {
 class RecordingReader {
  public:
   /// @fails  usage: the options; the calibration of --sensor cannot be read.
-  [[nodiscard]] static Result<RecordingReader> of(const ReadRequest& request,
-                                                  const SensorRequest& with_sensor = {});
+  [[nodiscard]] static Result<RecordingReader> of(const ReadRequest& request, const SensorRequest& with_sensor = {});
 
   /// Recordings: one for each FILE, or for each of its trials where it holds several; with --parts one of all.
   [[nodiscard]] int count() const { return parts_ ? 1 : static_cast<int>(records_.size()); }

@@ -61,10 +61,11 @@ const OptionTable<SensorRequest>& sensor_table() {
               .check = not_empty(),
               .names_file = true},
              &SensorRequest::file)
-        .add({"--lever-arm-mm", "MM",
-              "from the gauges to the hand; the slope is scaled with it, the zero is not (as in the calibration)",
-              positive(), sensor},
-             [](auto& request) -> auto& { return request.use.lever_arm; }, kMillimetres)
+        .add(
+            {"--lever-arm-mm", "MM",
+             "from the gauges to the hand; the slope is scaled with it, the zero is not (as in the calibration)",
+             positive(), sensor},
+            [](auto& request) -> auto& { return request.use.lever_arm; }, kMillimetres)
         .add_row({{"--sensor-zero",
                    "VX,VY|auto:S",
                    "voltage of no force in these recordings: auto:S is the mean of the first S seconds (as in the "
@@ -75,18 +76,20 @@ const OptionTable<SensorRequest>& sensor_table() {
                     read_zero(texts.back(), request.use);
                   },
                   [](const SensorRequest& request) { return !request.use.zero_voltage && !request.use.zero_from_s; }})
-        .add({"--sensor-frame",
-              "",
-              "link: the sensor turns with the last link, at q2; base: it does not; auto: link where q2 is there",
-              {},
-              sensor},
-             [](auto& request) -> auto& { return request.use.frame; })
-        .add_either({"--sensor-delay",
-                     "",
-                     "undo: move the force earlier by the delay that the calibration saw (keep)",
-                     {},
-                     sensor},
-                    "keep", "undo", [](auto& request) -> auto& { return request.use.undo_delay; });
+        .add(
+            {"--sensor-frame",
+             "",
+             "link: the sensor turns with the last link, at q2; base: it does not; auto: link where q2 is there",
+             {},
+             sensor},
+            [](auto& request) -> auto& { return request.use.frame; })
+        .add_either(
+            {"--sensor-delay",
+             "",
+             "undo: move the force earlier by the delay that the calibration saw (keep)",
+             {},
+             sensor},
+            "keep", "undo", [](auto& request) -> auto& { return request.use.undo_delay; });
     return table;
   }();
   return kTable;

@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
-#include "mbk/present/request/read_request.h"
 #include "mbk/base/core/result.h"
+#include "mbk/present/request/read_request.h"
 
 namespace mbk::request {
 

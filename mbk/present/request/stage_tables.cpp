@@ -42,10 +42,12 @@ const OptionTable<preprocess::Options>& filter_table() {
                     if (!options.no_lowpass) option_values::set(options.cutoff, texts, 1.0);
                   },
                   [](const Options& options) { return !options.no_lowpass && !options.cutoff; }})
-        .add({"--extension", "", "how signals are continued at their ends for the zero-phase filter (odd)"},
-             [](auto& options) -> auto& { return options.padding.extension; })
-        .add({"--padding", "N", "by how many samples (15)", whole_number(0, 1'000'000)},
-             [](auto& options) -> auto& { return options.padding.samples; })
+        .add(
+            {"--extension", "", "how signals are continued at their ends for the zero-phase filter (odd)"},
+            [](auto& options) -> auto& { return options.padding.extension; })
+        .add(
+            {"--padding", "N", "by how many samples (15)", whole_number(0, 1'000'000)},
+            [](auto& options) -> auto& { return options.padding.samples; })
         .add({"--every", "N",
               "the fit takes every so many of the filtered samples; otherwise ten for each period of the cutoff, and "
               "all in reference mode",

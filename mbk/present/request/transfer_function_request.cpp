@@ -105,7 +105,9 @@ const OptionTable<TransferFunctionRequest>& transfer_function_clock_table() {
     OptionTable<TransferFunctionRequest> table;
     OptionFacts resample = resample_option();
     resample.help += ", and srivc does without";
-    table.include(window_table(), [](auto& request) -> auto& { return request.options.window; })
+    table
+        .include(
+            window_table(), [](auto& request) -> auto& { return request.options.window; })
         .add(resample, &TransferFunctionRequest::resample)
         .add({"--sample-rate", "HZ|recorded",
               "leave samples out, behind a low-pass (oe and bj: down to 50 to 100; the others: recorded)", not_empty()},
@@ -129,30 +131,34 @@ const OptionTable<TransferFunctionRequest>& transfer_function_model_table() {
               "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
               "impedance"},
              &Request::invert)
-        .add({"--method", "",
-              "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
-              "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
-              "bj: Box-Jenkins, with a model of the noise"},
-             [](auto& request) -> auto& { return request.options.fit.method; })
-        .add({"--hold", std::string(option_values::kAuto),
-              "the input between its samples, for continuous time: zero keeps each value, first moves in "
-              "straight lines; auto sees it in the input's steps (auto)"},
-             [](auto& request) -> auto& { return request.options.fit.hold; })
-        .add({"--delay", "S|auto", "seconds by which the effect lags; auto finds it (0)", not_empty()},
-             &Request::delay)
-        .add({"--max-delay", "S",
-              "how far --delay auto looks, s (0.5, and no more than a tenth of the shortest recording)", positive()},
-             [](auto& request) -> auto& { return request.options.max_delay; })
+        .add(
+            {"--method", "",
+             "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
+             "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
+             "bj: Box-Jenkins, with a model of the noise"},
+            [](auto& request) -> auto& { return request.options.fit.method; })
+        .add(
+            {"--hold", std::string(option_values::kAuto),
+             "the input between its samples, for continuous time: zero keeps each value, first moves in "
+             "straight lines; auto sees it in the input's steps (auto)"},
+            [](auto& request) -> auto& { return request.options.fit.hold; })
+        .add({"--delay", "S|auto", "seconds by which the effect lags; auto finds it (0)", not_empty()}, &Request::delay)
+        .add(
+            {"--max-delay", "S",
+             "how far --delay auto looks, s (0.5, and no more than a tenth of the shortest recording)", positive()},
+            [](auto& request) -> auto& { return request.options.max_delay; })
         .add_row({{"--from-rest", "",
                    "the system is at rest at zero where a segment begins; otherwise an initial state and an offset are "
                    "found for each"},
                   [](Request& request, const auto& /*flag*/) { request.options.fit.free_start = false; },
                   [](const Request& request) { return request.options.fit.free_start; }})
-        .add({"--noise-order", "N", "greatest order of the noise model of rivc and bj (8)", whole_number(1, 50)},
-             [](auto& request) -> auto& { return request.options.fit.max_noise_order; })
-        .add({"--hac-lag", "S",
-              "reach of the residual's correlation in the standard errors; 0 takes it as white (1)", not_negative()},
-             [](auto& request) -> auto& { return request.options.fit.hac_lag_s; });
+        .add(
+            {"--noise-order", "N", "greatest order of the noise model of rivc and bj (8)", whole_number(1, 50)},
+            [](auto& request) -> auto& { return request.options.fit.max_noise_order; })
+        .add(
+            {"--hac-lag", "S", "reach of the residual's correlation in the standard errors; 0 takes it as white (1)",
+             not_negative()},
+            [](auto& request) -> auto& { return request.options.fit.hac_lag_s; });
     return table;
   }();
   return kTable;
@@ -180,8 +186,8 @@ Result<measurement::TransferFunctionMeasurement> transfer_function_options(Trans
   } else if (!request.sample_rate.empty()) {
     options.sample_rate_hz = number_in(request.sample_rate);
     if (!options.sample_rate_hz || !(*options.sample_rate_hz > 0.0)) {
-      return bad_usage(
-          fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'", mbk::quoted(request.sample_rate)));
+      return bad_usage(fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'",
+                                   mbk::quoted(request.sample_rate)));
     }
   }
   for (const double hz : request.start_poles_hz) fit.start_poles.push_back(2.0 * std::numbers::pi * hz);

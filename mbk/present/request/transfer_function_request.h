@@ -16,15 +16,15 @@ namespace mbk::request {
 /// From which recordings a transfer function is found, and how.
 struct TransferFunctionRequest {
   ReadRequest reading;
-  std::vector<std::filesystem::path> held_out;  ///< recordings that only judge the fit
+  std::vector<std::filesystem::path> held_out;                ///< recordings that only judge the fit
   std::string input = "input", output = "output", reference;  ///< as signals are named (signal_names.h)
   std::optional<Hertz> resample;                              ///< put the samples on an even clock first
   std::optional<Index> poles, zeros;
-  std::string orders;                         ///< "2:5" or "4/1,4/2": poles and zeros to choose from
-  std::string delay = "0";                    ///< [s], or "auto"
-  std::string sample_rate;                    ///< [Hz], or "recorded"; "": as options.sample_rate_hz says
-  std::vector<double> start_poles_hz;         ///< at which the search begins too
-  std::optional<AdmittanceOutput> invert;     ///< also the inverse
+  std::string orders;                      ///< "2:5" or "4/1,4/2": poles and zeros to choose from
+  std::string delay = "0";                 ///< [s], or "auto"
+  std::string sample_rate;                 ///< [Hz], or "recorded"; "": as options.sample_rate_hz says
+  std::vector<double> start_poles_hz;      ///< at which the search begins too
+  std::optional<AdmittanceOutput> invert;  ///< also the inverse
   measurement::TransferFunctionMeasurement options;
 };
 
