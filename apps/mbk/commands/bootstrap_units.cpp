@@ -73,7 +73,7 @@ Result<Draws> draws_here(const Bootstrap& bootstrap, bool quiet) {
 
 Result<Draws> draws_elsewhere(const Bootstrap& bootstrap, const EngineArguments& engine,
                               const std::filesystem::path& study, bool quiet, std::optional<int>& code) {
-  Request request{std::string(kBootstrapKind), specification_of(bootstrap).dump()};
+  batch::JobRequest request{std::string(kBootstrapKind), specification_of(bootstrap).dump()};
   request.title = fmt::format("mbk study summary --bootstrap {} --seed {}", bootstrap.draws, bootstrap.seed);
   for (int k = 0; k < bootstrap.draws; ++k) request.keys.push_back(std::to_string(k));
   request.weights.assign(request.keys.size(), 1.0);
@@ -87,7 +87,7 @@ Result<Draws> draws_elsewhere(const Bootstrap& bootstrap, const EngineArguments&
     code = carried->code;
     return bad_data("some draws are missing");
   }
-  const auto results = MBK_TRY(results_of(*carried->folder));
+  const auto results = MBK_TRY(batch::results_of(*carried->folder));
   Draws draws(results.size());
   for (std::size_t k = 0; k < draws.size(); ++k) {
     batch::ValueReader reader(results[k]);

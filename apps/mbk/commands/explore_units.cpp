@@ -139,7 +139,7 @@ Result<std::vector<ExploredRecord>> explored_elsewhere(const ExploringEach& each
   auto keys = MBK_TRY(keys_of(reader));
   const auto sensor = MBK_TRY(sensor_sum(arguments));
   const std::string listed = fmt::format("{}", fmt::join(keys, "\n"));
-  Request request;
+  batch::JobRequest request;
   request.kind = kExploreKind;
   request.specification = written({{"words", each.words},
                                    {"json", each.json},
@@ -157,14 +157,14 @@ Result<std::vector<ExploredRecord>> explored_elsewhere(const ExploringEach& each
     code = carried->code;
     return bad_data("some recordings are missing");
   }
-  const auto results = MBK_TRY(results_of(*carried->folder));
+  const auto results = MBK_TRY(batch::results_of(*carried->folder));
   std::vector<ExploredRecord> all(results.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     batch::ValueReader bytes(results[k]);
     bytes.get(all[k]);
     if (!bytes.complete()) return bad_data("a result in a shard cannot be read", "begin the job again");
   }
-  MBK_TRY(remove_job(*carried->folder, engine));
+  MBK_TRY(batch::remove_job(*carried->folder, engine));
   return all;
 }
 

@@ -191,7 +191,7 @@ Result<std::string> specification_of(const SimulateArguments& arguments) {
 int simulate_elsewhere(const SimulateArguments& arguments, const std::vector<Job>& jobs) {
   const auto specification = specification_of(arguments);
   if (!specification) return report_error(specification.error());
-  Request request{std::string(kSimulateKind), *specification};
+  batch::JobRequest request{std::string(kSimulateKind), *specification};
   request.folder = job_folder_here(request.kind, *specification);
   const fs::path folder = arguments.engine.folder.value_or(request.folder);
   // What a job that was interrupted has written may be there.
@@ -208,14 +208,14 @@ int simulate_elsewhere(const SimulateArguments& arguments, const std::vector<Job
   const auto carried = carry_out(arguments.engine, request, arguments.quiet);
   if (!carried) return report_error(carried.error());
   if (carried->code) return *carried->code;
-  const auto lines = results_of(*carried->folder);
+  const auto lines = batch::results_of(*carried->folder);
   if (!lines) return report_error(lines.error());
   if (!arguments.quiet) {
     std::string text;
     for (const std::string& line : *lines) text += line;
     if (auto ok = print_text(text); !ok) return report_error(ok.error());
   }
-  if (auto ok = remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
+  if (auto ok = batch::remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
   return kFine;
 }
 

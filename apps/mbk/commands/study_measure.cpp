@@ -216,7 +216,7 @@ int measure_as_job(store::Store& study, const GivenOptions& options, const std::
   if (!key) return report_error(key.error());
   const std::string options_sum = sum_of(measuring->key + '\n' + std::string(version()));
   constexpr std::size_t kDigits = 12;
-  Request request{std::string(kMeasureKind), measure_specification(study.folder(), options, *measuring)};
+  batch::JobRequest request{std::string(kMeasureKind), measure_specification(study.folder(), options, *measuring)};
   request.compute = measure_units(measuring, study.folder());
   request.folder = study.folder() / "jobs" / ("measure-" + options_sum.substr(0, kDigits));
   const std::filesystem::path job_folder = arguments.engine.folder.value_or(request.folder);

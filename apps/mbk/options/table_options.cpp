@@ -13,6 +13,7 @@ Option add(Command command, const OptionFacts& facts, std::function<void(const s
   if (facts.takes_several) {
     return command.add_option_function(facts.name, take, facts.help).delimiter(',').allow_extra_args(false);
   }
+  if (facts.repeats) return command.add_option_function(facts.name, take, facts.help).allow_extra_args(false);
   const auto take_one = [take = std::move(take)](const std::string& value) { take({value}); };
   return command.add_option_function(facts.name, take_one, facts.help);
 }

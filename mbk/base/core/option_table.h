@@ -37,7 +37,8 @@ struct OptionFacts {
   std::string group = {};     ///< heading in --help; "": the first one
   std::string excludes = {};  ///< another option beside which it is wrong
   bool names_file = false;    ///< a result depends on what that file holds, not on its name
-  bool takes_several = false;  ///< values between commas, or the option several times
+  bool takes_several = false;  ///< values between commas
+  bool repeats = false;        ///< it may be given several times
 };
 
 namespace option_values {
@@ -88,6 +89,8 @@ template <class Value>
 void set(Value& value, const std::vector<std::string>& texts, double scale) {
   if constexpr (kIsSet<Value>) {
     for (const std::string& text : texts) value.insert(*value_of<typename Value::value_type>(text));
+  } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+    value.insert(value.end(), texts.begin(), texts.end());
   } else {
     set(value, texts.empty() ? std::string() : texts.back(), scale);
   }
