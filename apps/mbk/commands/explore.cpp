@@ -9,17 +9,19 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/commands/explore_units.h"
 #include "apps/mbk/options/chart_files.h"
+#include "apps/mbk/options/engine_options.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/options/report_file.h"
 #include "apps/mbk/options/table_options.h"
 #include "apps/mbk/options/threads_option.h"
+#include "apps/mbk/terminal/progress.h"
 #include "mbk/files/recording/named_files.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/report/result_charts.h"
 #include "mbk/present/result/exploration_json.h"
+#include "mbk/study/workflow/explore_units.h"
 
 namespace mbk::app {
 namespace {
@@ -33,6 +35,27 @@ struct ExploreArguments : request::ExploreRequest {
   EngineArguments engine;
 };
 
+using Explored = Result<std::vector<workflow::ExploredRecord>>;
+
+Explored explored_here(const workflow::ExploringEach& each, const ExploreArguments& arguments) {
+  Progress progress(arguments.to.quiet);
+  return workflow::explored_here(each, arguments.threads,
+                                 [&](int done, int of, const std::string& file) { progress.count(done, of, file); });
+}
+
+/// @param code  what the command ends with where the job did not come to its end
+Explored explored_elsewhere(const workflow::ExploringEach& each, const ExploreArguments& arguments,
+                            std::optional<int>& code) {
+  auto job = MBK_TRY(workflow::explore_request(each));
+  job.folder = job_folder_here(job.kind, job.specification);
+  const auto carried = MBK_TRY(carry_out(arguments.engine, job, arguments.to.quiet));
+  code = carried.code;
+  if (code) return bad_data("some recordings are missing");
+  auto all = MBK_TRY(workflow::explored_of(*carried.folder));
+  MBK_TRY(batch::remove_job(*carried.folder, arguments.engine));
+  return all;
+}
+
 /// A result for each recording.
 int run_each(Command command, const ExploreArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.to.to, arguments.report); !ok) {
@@ -41,18 +64,17 @@ int run_each(Command command, const ExploreArguments& arguments) {
   if (arguments.reading.parts) {
     return report_error({ErrorKind::usage, "--parts joins recordings, and --each keeps them apart", "pass one", ""});
   }
-  const ExploringEach each{arguments, given_options(command, request::explore_table()), arguments.to.json,
-                           arguments.to.quiet};
+  const workflow::ExploringEach each{arguments, given_options(command, request::explore_table()), arguments.to.json};
   std::optional<int> code;
   const auto explored =
-      arguments.engine.kind ? explored_elsewhere(each, arguments.engine, code) : explored_here(each, arguments.threads);
+      arguments.engine.kind ? explored_elsewhere(each, arguments, code) : explored_here(each, arguments);
   if (code) return *code;
   if (!explored) return report_error(explored.error());
   int worst = kFine;
   bool all_usable = true;
   std::vector<std::string> texts;
   std::vector<Error> failed;
-  for (const ExploredRecord& one : *explored) {
+  for (const workflow::ExploredRecord& one : *explored) {
     if (one.failed) {
       failed.push_back(one.error);
       worst = std::max(worst, report_error(one.error));

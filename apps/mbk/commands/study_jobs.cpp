@@ -7,8 +7,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "mbk/files/recording/write_file.h"
 #include "mbk/batch/job_efficiency.h"
+#include "mbk/files/recording/write_file.h"
 
 namespace mbk::app {
 namespace {

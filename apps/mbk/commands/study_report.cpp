@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "apps/mbk/options/report_file.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/commands/study_listing.h"
+#include "apps/mbk/options/report_file.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/files/recording/write_file.h"

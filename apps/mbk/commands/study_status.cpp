@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/mbk/options/output.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_jobs.h"
+#include "apps/mbk/options/output.h"
 #include "apps/mbk/options/study_options.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/batch/job_efficiency.h"

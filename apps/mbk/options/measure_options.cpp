@@ -12,11 +12,15 @@ void add_measure_options(Command command, MeasureArguments& arguments) {
   add_options(command, request::measure_table(), arguments);
   command.add_flag("--pool", arguments.pool, "one fit over all FILEs; otherwise one result each and a summary")
       .group(request::kWindowGroup);
+  add_ranges_flag(command);
+  add_threads_option(command, arguments.threads, "files measured").group("Model");
+}
+
+void add_ranges_flag(Command command) {
   command
       .add_text_flag("--ranges", report::ranges_text,
                      "print the ranges that a hand or a joint must keep to, with where they come from")
       .group("Plausibility");
-  add_threads_option(command, arguments.threads, "files measured").group("Model");
 }
 
 }  // namespace mbk::app

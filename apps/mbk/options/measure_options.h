@@ -20,5 +20,7 @@ struct MeasureArguments : request::MeasureRequest {
 
 /// Adds FILE, the options of reading, sensor, preprocessing and identification, --pool and --threads.
 void add_measure_options(Command command, MeasureArguments& arguments);
+/// Adds --ranges, which prints them.
+void add_ranges_flag(Command command);
 
 }  // namespace mbk::app

@@ -159,6 +159,12 @@ class OptionTable {
     return *this;
   }
 
+  /// Of the row before: what means the same as its absence, where that is more than an equal value.
+  OptionTable& is_default_where(std::function<bool(const Options&)> is_default) {
+    rows_.back().is_default = std::move(is_default);
+    return *this;
+  }
+
   /// The rows of a part of these options.
   template <class Part, class Access>
   OptionTable& include(const OptionTable<Part>& part, Access access) {

@@ -46,6 +46,7 @@ OptionTable<preprocess::Options> protocol_table() {
             "in reference mode: W 101, 5 Hz, ẍ from the position (this one unless said) | W 151, 4.5 Hz, ẍ from "
             "the accelerometer"},
            &Options::procedure)
+      .is_default_where([](const Options& options) { return options.procedure != Procedure::chapter5; })
       .add(protocol_option(kWindowGroup), &Options::protocol)
       .include(window_table(), &Options::window);
   return table;

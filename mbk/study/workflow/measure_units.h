@@ -4,16 +4,16 @@
 #include <string>
 #include <string_view>
 
-#include "apps/mbk/options/study_options.h"
 #include "mbk/batch/work.h"
+#include "mbk/study/workflow/measuring.h"
 
 /// Measuring a study's recordings as the units of a job.
-namespace mbk::app {
+namespace mbk::workflow {
 
 inline constexpr std::string_view kMeasureKind = "measure";
 
 /// @param folder  of the study
-[[nodiscard]] std::string measure_specification(const std::filesystem::path& folder, const GivenOptions& options,
+[[nodiscard]] std::string measure_specification(const std::filesystem::path& folder, const OptionTexts& options,
                                                 const Measuring& measuring);
 /// @fails  as measuring_of; data: a file that the options name has changed since the job was begun.
 [[nodiscard]] Result<batch::UnitFunction> measure_units(const nlohmann::json& specification);
@@ -30,4 +30,4 @@ inline constexpr std::string_view kMeasureKind = "measure";
 /// @fails  data: no such bytes.
 [[nodiscard]] Result<store::UnitResult> result_from(const std::string& bytes);
 
-}  // namespace mbk::app
+}  // namespace mbk::workflow

@@ -1,4 +1,4 @@
-#include "apps/mbk/commands/measure_units.h"
+#include "mbk/study/workflow/measure_units.h"
 
 #include <fmt/format.h>
 
@@ -6,17 +6,17 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace mbk::app {
+namespace mbk::workflow {
 
 namespace fs = std::filesystem;
 
-std::string measure_specification(const fs::path& folder, const GivenOptions& options, const Measuring& measuring) {
-  GivenOptions whole = options;
+std::string measure_specification(const fs::path& folder, const OptionTexts& options, const Measuring& measuring) {
+  OptionTexts whole = options;
   std::error_code ignored;
-  for (const char* const name : {"--robot", "--sensor"}) {  // a task may run in another folder
-    const auto found = whole.find(name);
-    if (found == whole.end()) continue;
-    for (std::string& file : found->second) file = fs::absolute(file, ignored).string();
+  for (auto& [name, values] : whole) {
+    const auto* const row = measuring_table().find(name);
+    if (row == nullptr || !row->facts.names_file) continue;
+    for (std::string& file : values) file = fs::absolute(file, ignored).string();  // a task may run in another folder
   }
   return nlohmann::json{
       {"study", fs::absolute(folder, ignored).string()}, {"options", options_to_json(whole)}, {"key", measuring.key}}
@@ -68,4 +68,4 @@ Result<store::UnitResult> result_from(const std::string& bytes) {
   return store::UnitResult{bytes.substr(kHead + reason), bytes.front() == '1', bytes.substr(kHead, reason)};
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::workflow

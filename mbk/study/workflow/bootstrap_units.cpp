@@ -1,21 +1,16 @@
-#include "apps/mbk/commands/bootstrap_units.h"
+#include "mbk/study/workflow/bootstrap_units.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <span>
 #include <utility>
 
-#include "apps/mbk/terminal/progress.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "mbk/base/numeric/parallel.h"
-#include "mbk/files/contents/sha256.h"
 #include "mbk/batch/value_bytes.h"
 
-namespace mbk::app {
+namespace mbk::workflow {
 namespace {
 
-using Draws = std::vector<std::vector<double>>;
 using Json = nlohmann::json;
 
 Json rows_json(const Matrix& matrix) {
@@ -57,9 +52,8 @@ batch::UnitFunction units_of(std::vector<statistics::PeopleTable> tables, std::u
 
 }  // namespace
 
-Result<Draws> draws_here(const Bootstrap& bootstrap, bool quiet) {
+Result<Draws> draws_here(const Bootstrap& bootstrap, const std::function<void(int, int)>& progress) {
   Draws draws(static_cast<std::size_t>(bootstrap.draws));
-  Progress progress(quiet, "resampling: ");
   int done = 0;
   MBK_TRY(numeric::parallel_for(
       bootstrap.draws, 0,
@@ -67,36 +61,29 @@ Result<Draws> draws_here(const Bootstrap& bootstrap, bool quiet) {
         draws[static_cast<std::size_t>(k)] = statistics::bootstrap_draw(bootstrap.tables, bootstrap.seed, k);
         return {};
       },
-      [&](int /*k*/) { progress.count(++done, bootstrap.draws); }));
+      [&](int /*k*/) { progress(++done, bootstrap.draws); }));
   return draws;
 }
 
-Result<Draws> draws_elsewhere(const Bootstrap& bootstrap, const EngineArguments& engine,
-                              const std::filesystem::path& study, bool quiet, std::optional<int>& code) {
-  batch::JobRequest request{std::string(kBootstrapKind), specification_of(bootstrap).dump()};
+batch::JobRequest draws_request(const Bootstrap& bootstrap, const std::filesystem::path& study) {
+  batch::JobRequest request;
+  request.kind = kBootstrapKind;
+  request.specification = specification_of(bootstrap).dump();
   request.title = fmt::format("mbk study summary --bootstrap {} --seed {}", bootstrap.draws, bootstrap.seed);
   for (int k = 0; k < bootstrap.draws; ++k) request.keys.push_back(std::to_string(k));
   request.weights.assign(request.keys.size(), 1.0);
   request.compute = units_of(bootstrap.tables, bootstrap.seed);
-  constexpr std::size_t kDigits = 12;
-  const std::string sum = recording::sha256(std::as_bytes(std::span(request.specification)));
-  request.folder = study / "jobs" / fmt::format("{}-{}", kBootstrapKind, sum.substr(0, kDigits));
-  const auto carried = carry_out(engine, request, quiet);
-  if (!carried) return tl::unexpected(carried.error());
-  if (carried->code) {
-    code = carried->code;
-    return bad_data("some draws are missing");
-  }
-  const auto results = MBK_TRY(batch::results_of(*carried->folder));
+  request.folder = study / "jobs" / batch::job_name(request.kind, request.specification);
+  return request;
+}
+
+Result<Draws> draws_of(const batch::JobFolder& job) {
+  const auto results = MBK_TRY(batch::results_of(job));
   Draws draws(results.size());
   for (std::size_t k = 0; k < draws.size(); ++k) {
     batch::ValueReader reader(results[k]);
     reader.get(draws[k]);
     if (!reader.complete()) return bad_data("a draw in a shard cannot be read", "begin the job again");
-  }
-  if (!engine.keep) {
-    MBK_TRY(keep_record(*carried->folder, study));
-    MBK_TRY(carried->folder->remove());
   }
   return draws;
 }
@@ -114,4 +101,4 @@ Result<batch::UnitFunction> bootstrap_units(const Json& specification) {
   return units_of(std::move(tables), specification.at("seed").get<std::uint64_t>());
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::workflow

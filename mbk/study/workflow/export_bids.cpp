@@ -1,21 +1,19 @@
-#include "apps/mbk/commands/study_bids.h"
+#include "mbk/study/workflow/export_bids.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <utility>
 
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/output.h"
 #include "mbk/files/recording/write_bids.h"
 #include "mbk/study/store/identifying.h"
 #include "mbk/study/store/store_files.h"
 #include "mbk/study/store/trial_names.h"
+#include "mbk/study/workflow/measuring.h"
 
-namespace mbk::app {
+namespace mbk::workflow {
 namespace {
 
 namespace fs = std::filesystem;
@@ -102,52 +100,37 @@ void tell(Recording& recording, const store::StoredRecording& r) {
 
 }  // namespace
 
-int export_bids(const store::Store& study, const store::StudyList& list, const fs::path& folder, bool quiet) {
-  const auto defaults = default_options(study);
-  if (!defaults) return report_error(defaults.error());
-  const auto measuring = measuring_of(*defaults);
-  if (!measuring) return report_error(measuring.error());
+Result<ExportedBids> export_bids(const store::Store& study, const store::StudyList& list, const fs::path& folder) {
+  const auto defaults = MBK_TRY(default_options(study));
+  const auto measuring = MBK_TRY(measuring_of(defaults));
   const auto counts = [](const store::ListedRecording& one) { return !one.recording.excluded_why; };
   if (std::ranges::none_of(list.recordings, counts)) {
-    return report_error({ErrorKind::usage, "there is nothing to export: no recording that is not excluded",
-                         "'mbk study add' brings recordings in; 'mbk study list' shows them", ""});
+    return bad_usage("there is nothing to export: no recording that is not excluded",
+                     "'mbk study add' brings recordings in; 'mbk study list' shows them");
   }
-  auto made = NewFolder::of(folder);
-  if (!made) return report_error(made.error());
+  auto made = MBK_TRY(NewFolder::of(folder));
   const auto labels = labels_of(list);
-  int code = kFine, written = 0;
-  std::vector<std::int64_t> excluded;
-  std::set<std::string> lost;
+  ExportedBids exported;
   for (const store::ListedRecording& one : list.recordings) {
     const store::StoredRecording& r = one.recording;
     if (r.excluded_why) {
-      excluded.push_back(r.number);
+      exported.excluded.push_back(r.number);
       continue;
     }
-    auto recording = read_unchanged(study, **measuring, r);
+    auto recording = read_unchanged(study, *measuring, r);
     if (!recording) {
-      code = std::max(code, report_error(recording.error()));
+      exported.failed.push_back(recording.error());
       continue;
     }
     tell(*recording, r);
     const std::string name =
         fmt::format("sub-{:02}_ses-{}_task-{}_run-{}", r.participant, r.session, labels.at(r.condition), r.trial);
-    if (auto ok = recording::write_bids(*recording, made->path(), name, false); !ok) {
-      return report_error(ok.error());
-    }
-    for (std::string& what : recording::lost_in_bids(*recording)) lost.insert(std::move(what));
-    ++written;
+    MBK_TRY(recording::write_bids(*recording, made.path(), name, false));
+    for (std::string& what : recording::lost_in_bids(*recording)) exported.lost.insert(std::move(what));
+    ++exported.written;
   }
-  if (auto ok = made->keep(); !ok) return report_error(ok.error());
-  for (const std::string& one : lost) say("mbk: {}: not written: {}\n", folder.string(), one);
-  if (!excluded.empty() && !quiet) {
-    say("mbk: {} left out, since they are excluded: {}\n", counted(std::ssize(excluded), "recording", "recordings"),
-        fmt::format("{}", fmt::join(excluded, ", ")));
-  }
-  const std::string line =
-      fmt::format("{}: BIDS motion, {}\n", folder.string(), counted(written, "recording", "recordings"));
-  if (auto ok = print_text(line); !ok) return report_error(ok.error());
-  return code;
+  MBK_TRY(made.keep());
+  return exported;
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::workflow
