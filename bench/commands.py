@@ -1,4 +1,4 @@
-"""The whole commands that instructions.py counts and against.py times, and the recordings that they read."""
+"""The whole commands that instructions.py counts, and the recordings that they read."""
 
 import dataclasses
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Has a command become slower? Counts the instructions of whole commands and holds them to bench/instructions.json.
 
-usage: instructions.py [--build build/test] [--only NAME ...] [--repeat N] [--update] [--figures FILE]
+usage: instructions.py [--build build/release] [--only NAME ...] [--repeat N] [--update] [--figures FILE]
 
 Times of a shared machine differ by more than a change that matters; counts of instructions are the same on every
 machine that has valgrind and AVX2, with the same compiler, flags and libraries (bench/callgrind.py says why). What they
@@ -193,7 +193,7 @@ def count_all(programs, chosen, repeat):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=HERE.parent / "build/test", help="folder of a build (build/test)")
+    parser.add_argument("--build", type=Path, default=HERE.parent / "build/release", help="folder of a build (build/release)")
     parser.add_argument("--only", action="append", metavar="NAME", help="only this command; may be repeated")
     parser.add_argument("--repeat", type=int, default=1, help="so many runs of each, and how much they differ (1)")
     parser.add_argument("--update", action="store_true", help="write what is counted as the figures")

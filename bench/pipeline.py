@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
-"""The pipeline alone, from arrays in memory to M, B and K, on one core: mbk against NumPy and SciPy, and Octave.
+"""The pipeline alone, from arrays in memory to M, B and K, on one core: mbk against NumPy and SciPy.
 
 Eight signals (x, its two derivatives and the force, two axes) of 50 s at 1 kHz through Savitzky-Golay (6, 101) and a
 zero-phase Butterworth low-pass of order 5 at 5 Hz, then least squares on the first 40,000 samples: the published
 procedure (Dyck 2013, appendix C). mbk does it sample for sample, and as in its default mode, where the low-pass goes
-first and only every 20th row is evaluated. The others do it sample for sample.
+first and only every 20th row is evaluated. SciPy does it sample for sample.
 
 For SciPy every way that a skilled user would try is timed (savgol_filter, convolve1d, oaconvolve and numpy.convolve
 with weights of our own) and the fastest one counts. Programs take turns (A B A B ...), so that both meet the same
-state of the machine, and ratios are taken pair by pair. All must agree on M, B and K. Times are reported and never
+state of the machine, and ratios are taken pair by pair. Both must agree on M, B and K. Times are reported and never
 judged.
 
-usage: pipeline.py [--bin build/bench/bin] [--turns 21] [--octave octave-cli]
-It needs a Python with NumPy and SciPy; without Octave and its signal package that part is left out.
+usage: pipeline.py [--bin build/release/bin] [--turns 21]     with a Python that has NumPy and SciPy
 """
 
 import os
@@ -23,7 +22,6 @@ import argparse
 import json
 import math
 import pathlib
-import shutil
 import statistics
 import subprocess
 import sys
@@ -115,28 +113,11 @@ def ratios(name, pairs):
     print(f"  {name:<44}{min(values):10.1f}{statistics.median(values):10.1f}{max(values):10.1f}")
 
 
-def octave_times(octave, log, turns):
-    """Seconds of each turn of octave_pipeline.m, and its M, B and K; None where there is no Octave."""
-    if shutil.which(octave) is None:
-        return None
-    script = f"addpath('{HERE}'); octave_pipeline('{log}', {turns});"
-    ran = subprocess.run([octave, "--no-gui", "--quiet", "--eval", script], capture_output=True, text=True, check=False)
-    if ran.returncode != 0:
-        print(f"\n{octave} did not run octave_pipeline.m: {ran.stderr.strip().splitlines()[-1:]}")
-        return None
-    return json.loads(ran.stdout.strip().splitlines()[-1])
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--bin", type=pathlib.Path, default=HERE.parent / "build/bench/bin", help="folder of the programs")
+    parser.add_argument("--bin", type=pathlib.Path, default=HERE.parent / "build/release/bin", help="folder of the programs")
     parser.add_argument("--turns", type=int, default=21, help="of each (21)")
-    parser.add_argument("--octave", default="octave-cli", help="Octave's program")
     arguments = parser.parse_args()
-    for program in ("bench_pipeline", "make_log"):
-        if not (arguments.bin / program).exists():
-            sys.exit(f"pipeline.py: {arguments.bin / program} is not there; build the preset bench, or pass --bin")
-
     with tempfile.TemporaryDirectory() as folder:
         log = pathlib.Path(folder) / "log.mat"
         subprocess.run([arguments.bin / "make_log", "--protocol", "sinusoidal", "--out", log], check=True,
@@ -158,39 +139,22 @@ def main():
             ours.append(mbk.turn())
             theirs.append(scipy_pipeline(position, force, fastest))
         mbk.end()
-        octave = octave_times(arguments.octave, log, arguments.turns)
 
     print(f"  {'':<44}{'least':>10}{'median':>10}{'greatest':>10}")
     for name, of in (("mbk, sample for sample", "exact"), ("mbk, every 20th row", "default")):
         row(f"{name}: filters", [one[of]["filters_s"] for one in ours])
         row("  and least squares", [one[of]["all_s"] for one in ours])
-    row("mbk, the same with its signals in no cache", [one["from_memory"]["all_s"] for one in ours])
-    row("reading the four signals once from memory", [one["from_memory"]["reading_s"] for one in ours])
     row("SciPy: filters", [one["filters_s"] for one in theirs])
     row("  and least squares", [one["all_s"] for one in theirs])
-    if octave:
-        row("Octave: filters", octave["filters_s"])
-        row("  and least squares", octave["all_s"])
     print("\nSciPy over mbk, pair by pair\n")
     for part in ("filters", "all"):
         for name, of in (("sample for sample", "exact"), ("every 20th row", "default")):
             ratios(f"{part}, {name}", [(a[of][f"{part}_s"], b[f"{part}_s"]) for a, b in zip(ours, theirs)])
-    print("\nmbk over reading the four signals once from memory\n")
-    ratios("all, every 20th row", [(one["from_memory"]["reading_s"], one["from_memory"]["all_s"]) for one in ours])
-    if octave:
-        print("\nOctave over mbk, turn by turn\n")
-        for part in ("filters", "all"):
-            ratios(f"{part}, sample for sample", [(a["exact"][f"{part}_s"], b) for a, b in zip(ours, octave[f"{part}_s"])])
 
-    differences = {"SciPy": largest_difference(ours[-1]["exact"], theirs[-1])}
-    if octave:
-        differences["Octave"] = largest_difference(ours[-1]["exact"], octave)
-    print()
-    for name, difference in differences.items():
-        print(f"M, B and K of mbk, sample for sample, and of {name} differ by at most {difference:.1e} of the largest element")
+    difference = largest_difference(ours[-1]["exact"], theirs[-1])
+    print(f"\nM, B and K of mbk, sample for sample, and of SciPy differ by at most {difference:.1e} of the largest element")
     print(f"every 20th row against every row: {largest_difference(ours[-1]['default'], ours[-1]['exact']):.1e}")
-    limits = {"SciPy": AGREEMENT if fastest is not by_savgol_filter else 1e-4, "Octave": 1e-4}
-    if any(difference > limits[name] for name, difference in differences.items()):
+    if difference > (AGREEMENT if fastest is not by_savgol_filter else 1e-4):
         sys.exit("pipeline.py: the answers differ")
 
 

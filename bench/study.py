@@ -4,8 +4,8 @@ of a million numbers.
 
 Simulates a few trials and stores them again and again, each time with eight other bytes at its end, so that each has a
 hash of its own; files are in the page cache when they are measured. For the summary, results are written into the
-database of a study: --results of them with 32 outcomes each, of people in ten sessions (31,250 make a million rows;
-1,000,000 is the full form). Times are reported and never judged: the exit code is 0 unless a program fails.
+database of a study: --results of them with 32 outcomes each, of people in ten sessions (31,250 make a million rows).
+Times are reported and not judged: the exit code is 0 unless a program fails.
 
 usage: study.py [--bin build/release/bin] [--trials 1000] [--results 31250] [--threads 2]
 """

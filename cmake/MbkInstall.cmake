@@ -110,7 +110,7 @@ function(mbk_install)
   mbk_install_program_texts()
 
   # What scripts of one's own may rely on: docs/guide/schemas.md.
-  install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
 
   # The folders keep their places beside each other, so that the links between the documents hold.
   install(FILES README.md LICENSE CHANGELOG.md THIRD_PARTY_NOTICES.md packaging/copyright

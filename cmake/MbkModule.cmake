@@ -1,45 +1,3 @@
-# Most of what a source costs the compiler is what it includes and instantiates, which its neighbours do, too; so the
-# sources of a module are compiled several at a time. Each still includes what it uses: clang-tidy and the preset sanitize
-# compile them one by one.
-option(MBK_UNITY "Compile several sources of a module at a time" ON)
-# How much text an object is made of, in bytes, so that none takes more than 15 s: what is optimised little is compiled
-# faster. A module whose text takes longer says with OBJECTS how many there are.
-set(MBK_OBJECT_BYTES_library 110000)
-set(MBK_OBJECT_BYTES_loops 70000)
-set(MBK_OBJECT_BYTES_tests 140000)
-
-# mbk_unity(TARGET library|loops|tests [OBJECTS n] [ALONE SOURCE...]): the sources of TARGET, but for these, become objects
-# of about that size, or n of equal size.
-function(mbk_unity target kind)
-  cmake_parse_arguments(ARG "" "OBJECTS" "ALONE" ${ARGN})
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${MBK_UNITY} UNITY_BUILD_MODE GROUP)
-  get_target_property(sources ${target} SOURCES)
-  set(ends "")
-  set(total 0)
-  set(together "")
-  list(FILTER sources EXCLUDE REGEX "^\\$<TARGET_OBJECTS:")
-  foreach(source IN LISTS sources)
-    get_filename_component(path ${source} ABSOLUTE)
-    if(NOT EXISTS ${path})
-      set(path ${CMAKE_CURRENT_BINARY_DIR}/${source})  # the build writes it
-    endif()
-    get_filename_component(name ${source} NAME)
-    if(NOT name IN_LIST ARG_ALONE)
-      file(SIZE ${path} size)
-      math(EXPR total "${total} + ${size}")
-      list(APPEND together ${source})
-      list(APPEND ends ${total})
-    endif()
-  endforeach()
-  if(NOT ARG_OBJECTS)
-    math(EXPR ARG_OBJECTS "(${total} + ${MBK_OBJECT_BYTES_${kind}} - 1) / ${MBK_OBJECT_BYTES_${kind}}")
-  endif()
-  foreach(source end IN ZIP_LISTS together ends)
-    math(EXPR object "(${end} - 1) * ${ARG_OBJECTS} / ${total}")
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${target}_${object})
-  endforeach()
-endfunction()
-
 # Nothing of it is linked: an interface without libraries.
 function(mbk_is_header_only library result)
   get_target_property(type ${library} TYPE)
@@ -59,15 +17,14 @@ endfunction()
 # where one is missing here or runs upward. SOURCES are further files, which the build writes. LIBRARIES are outside
 # libraries that only the implementation uses, PRIVATE_HEADERS its own headers that are not installed; PUBLIC_LIBRARIES
 # are those that stand in its headers, TEST_LIBRARIES those that only its tests link. NOT_INSTALLED: a part of the
-# program that is no part of the library. LOOPS: it computes what a user waits for, so that it is optimised fully
-# (cmake/MbkPrecompile.cmake), but for the sources after NO_LOOPS; LOOPS with sources behind it: only these are. OBJECTS:
-# how many its other sources become, where their size does not say. ALONE: sources and tests that are compiled by
-# themselves, for they take long. TESTS_WAIT: its tests wait for a socket (label waits).
+# program that is no part of the library. LOOPS: its sources have numeric loops, and are compiled one by one at -O3.
+# TESTS_WAIT, TESTS_ALL: WAITS and ALL of its mbk_test.
 #
 # An application finds each as mbk::<name> (cmake/MbkInstall.cmake). Header-only LIBRARIES are built in and asked of
 # nobody; what is linked is passed on.
 function(mbk_module name)
-  cmake_parse_arguments(ARG "NOT_INSTALLED;TESTS_WAIT" "OBJECTS" "ALONE;DEPENDS;LOOPS;NO_LOOPS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "LOOPS;NOT_INSTALLED;TESTS_WAIT" "TESTS_ALL"
+                        "DEPENDS;SOURCES;PRIVATE_HEADERS;LIBRARIES;PUBLIC_LIBRARIES;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -87,28 +44,13 @@ function(mbk_module name)
   list(TRANSFORM ARG_DEPENDS PREPEND mbk:: OUTPUT_VARIABLE dependencies)
   if(sources)
     set(public PUBLIC)
-    set(kind library)
-    set(other_kind loops)
-    set(others ${ARG_LOOPS})
-    if("LOOPS" IN_LIST ARG_KEYWORDS_MISSING_VALUES)
-      set(kind loops)
-      set(other_kind library)
-      set(others ${ARG_NO_LOOPS})
-    endif()
-    if(others)
-      list(TRANSFORM others PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-      list(REMOVE_ITEM sources ${others})
-      add_library(mbk_${name}_${other_kind} OBJECT ${others})
-      target_compile_features(mbk_${name}_${other_kind} PRIVATE cxx_std_20)
-      target_include_directories(mbk_${name}_${other_kind} PRIVATE ${PROJECT_SOURCE_DIR})
-      target_link_libraries(mbk_${name}_${other_kind} PRIVATE mbk_settings ${private_libraries} ${dependencies} ${ARG_PUBLIC_LIBRARIES})
-      mbk_unity(mbk_${name}_${other_kind} ${other_kind} ALONE ${ARG_ALONE})
-      mbk_optimise(mbk_${name}_${other_kind} ${other_kind})
-      list(APPEND sources $<TARGET_OBJECTS:mbk_${name}_${other_kind}>)
-    endif()
     add_library(mbk_${name} STATIC ${sources})
-    mbk_unity(mbk_${name} ${kind} OBJECTS ${ARG_OBJECTS} ALONE ${ARG_ALONE})
-    mbk_optimise(mbk_${name} ${kind})
+    if(ARG_LOOPS)
+      set_target_properties(mbk_${name} PROPERTIES UNITY_BUILD OFF)
+      mbk_precompile(mbk_${name} loops)
+    else()
+      mbk_precompile(mbk_${name} library)
+    endif()
     target_link_libraries(mbk_${name} PRIVATE $<BUILD_INTERFACE:mbk_settings> ${private_libraries})
   else()
     add_library(mbk_${name} INTERFACE)
@@ -127,34 +69,36 @@ function(mbk_module name)
     if(ARG_TESTS_WAIT)
       set(wait WAITS)
     endif()
-    mbk_test(${name}_test ${wait} SOURCES ${tests} ALONE ${ARG_ALONE} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
+    if(ARG_TESTS_ALL)
+      list(APPEND wait ALL ${ARG_TESTS_ALL})
+    endif()
+    mbk_test(${name}_test ${wait} SOURCES ${tests} LIBRARIES mbk::${name} ${ARG_LIBRARIES} ${ARG_TEST_LIBRARIES})
   endif()
 endfunction()
 
-set(MBK_KEEPS_MEMORY
-    GLIBC_TUNABLES=glibc.malloc.mmap_threshold=134217728:glibc.malloc.trim_threshold=134217728:glibc.malloc.top_pad=16777216)
-
 # A GoogleTest program whose cases CTest sees one by one. A case skipped for want of MBK_DATA_DIR counts as skipped.
-# WAITS: it waits for a socket, which a busy machine may hold up; only tests with this label have a second chance
-# (.ci/run). OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers. ALONE: as above.
+# tools/test leaves out the labels waits and all, which only `tools/test --all` runs. WAITS: it waits for a socket or runs
+# in real time, so a busy machine may fail it (label waits; one second chance in .ci/run). ALL FILTER: these cases, as
+# --gtest_filter names them, have the label all; the reason stands beside the call. OWN_FLAGS: it is compiled otherwise than the rest, so that it has no precompiled headers.
 function(mbk_test name)
-  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "" "SOURCES;ALONE;LIBRARIES" ${ARGN})
-  set(labels "")
-  if(ARG_WAITS)
-    set(labels LABELS waits)
-  endif()
+  cmake_parse_arguments(ARG "WAITS;OWN_FLAGS" "ALL" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE mbk_settings ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
-  # What is tested is as users have it; the tests themselves compile faster so.
-  target_compile_options(${name} PRIVATE ${MBK_LITTLE_OPTIMISATION})
-  mbk_unity(${name} tests ALONE ${ARG_ALONE})
   if(NOT ARG_OWN_FLAGS)
     mbk_precompile(${name} tests)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-  # As in the program (apps/mbk/terminal/memory.cpp), memory that was freed serves again; to clear new pages took a quarter of some.
-  gtest_discover_tests(${name} TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST
-                       PROPERTIES TIMEOUT 300 ${labels} ENVIRONMENT ${MBK_KEEPS_MEMORY})
+  set(discover TEST_PREFIX ${name}/ DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+  if(ARG_WAITS)
+    gtest_discover_tests(${name} ${discover} LABELS waits)
+  elseif(ARG_ALL)
+    gtest_discover_tests(${name} TEST_FILTER ${ARG_ALL} TEST_LIST ${name}_all ${discover} LABELS all)
+    if(NOT ARG_ALL STREQUAL "*")
+      gtest_discover_tests(${name} TEST_FILTER -${ARG_ALL} ${discover})
+    endif()
+  else()
+    gtest_discover_tests(${name} ${discover})
+  endif()
 endfunction()
 
 # mbk_test_each_simd(TEST FILTER): the cases that FILTER names, as processors run them that have less than this one.

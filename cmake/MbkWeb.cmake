@@ -67,7 +67,7 @@ function(mbk_web_page name)
 endfunction()
 
 # The packages of all pages, what the pages share, and, with tests, the types of everything: those of the documents are
-# written from schemas/.
+# written from their schemas.
 if(MBK_WEB)
   set(packages "")
   set(install "")
@@ -106,13 +106,12 @@ if(MBK_WEB)
     mbk_web_page(${page})
   endforeach()
   if(MBK_BUILD_TESTS)
-    file(GLOB schemas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/schemas/*.schema.json)
     add_custom_command(
       OUTPUT ${MBK_WEB_FOLDER}/checked
-      COMMAND ${MBK_NODE_COMMAND} types.mjs ${PROJECT_SOURCE_DIR}/schemas shared/src/documents.ts
+      COMMAND ${MBK_NODE_COMMAND} types.mjs ${PROJECT_BINARY_DIR}/schemas shared/src/documents.ts
       COMMAND ${MBK_NODE_COMMAND} node_modules/typescript/bin/tsc --noEmit
       COMMAND ${CMAKE_COMMAND} -E touch checked
-      DEPENDS ${schemas} ${MBK_WEB_FOLDER}/settings ${MBK_WEB_FOLDER}/shared/copied ${MBK_WEB_FOLDER}/report/copied
+      DEPENDS ${PROJECT_BINARY_DIR}/schemas.done ${MBK_WEB_FOLDER}/settings ${MBK_WEB_FOLDER}/shared/copied ${MBK_WEB_FOLDER}/report/copied
               ${MBK_WEB_FOLDER}/console/copied ${MBK_WEB_FOLDER}/reproduction/copied
       WORKING_DIRECTORY ${MBK_WEB_FOLDER}
       COMMENT "Checking the types of web/"

@@ -2,7 +2,7 @@
 """Modules use only what they declare, and only lower layers.   usage: layering.py [ROOT]
 
 Reads wings and layers from mbk/CMakeLists.txt (mbk_wing), what each module declares from its CMakeLists.txt
-(mbk_module ... DEPENDS) and every #include in the tree. Each line that it prints says where, what and how to mend it;
+(mbk_module ... DEPENDS) and every #include in the tree, and holds the map in docs/house.md to the folders. Each line that it prints says where, what and how to mend it;
 exit 1 where there is one.
 """
 
@@ -54,7 +54,22 @@ class Tree:
                                 f"'{module}' declares '{other}' but includes none of its headers; "
                                 f"take '{other}' out of DEPENDS")
         self.check_names()
+        self.check_map()
         return self.problems
+
+    def check_map(self):
+        """docs/house.md has one row for each module."""
+        path = self.root / "docs/house.md"
+        rows = [(number, match[1]) for number, line in enumerate(path.read_text().splitlines(), start=1)
+                if (match := re.match(r"\| [^|]*\| `(\w+)` \|", line))]
+        shown = [module for _, module in rows]
+        for number, module in rows:
+            if module not in self.declared:
+                self.report(path, number, f"there is no module '{module}'; take its row out")
+            elif shown.count(module) > 1:
+                self.report(path, number, f"'{module}' has {shown.count(module)} rows; keep one")
+        for module in sorted(self.declared.keys() - set(shown)):
+            self.report(path, 1, f"'{module}' has no row in the map of modules; say what it holds")
 
     def module_folders(self):
         """Every folder of a wing that has something in it, and each wing that is a module itself."""

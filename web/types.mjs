@@ -2,12 +2,13 @@
 // Every schema becomes a type named by its title, every definition one named as it is.
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
+import { isDeepStrictEqual } from "node:util";
 import { compile } from "json-schema-to-typescript";
 
 const [folder, out] = process.argv.slice(2);
 const definitions = {};
 const define = (name, schema) => {
-  if (name in definitions) throw new Error(`two schemas define ${name}`);
+  if (name in definitions && !isDeepStrictEqual(definitions[name], schema)) throw new Error(`two schemas define ${name}`);
   definitions[name] = schema;
 };
 

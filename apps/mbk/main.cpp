@@ -17,7 +17,6 @@
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/terminal/help.h"
 #include "apps/mbk/terminal/last_words.h"
-#include "apps/mbk/terminal/memory.h"
 #include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/process.h"
@@ -68,7 +67,6 @@ constexpr std::string_view kNoMemory =
 }
 
 int run(int argc, char** argv) {
-  mbk::app::prefer_large_pages();
   const char* const simd = std::getenv("MBK_SIMD");
   if (simd != nullptr && !mbk::value_of<mbk::Simd>(simd)) {
     mbk::app::say("mbk: MBK_SIMD is '{}', which is none of {}; unset it for what this processor has\n", simd,

@@ -18,7 +18,6 @@ import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
-import formulas
 import pygments
 import pygments.formatters
 import pygments.lexers
@@ -85,7 +84,6 @@ class Reference:
 class Site:
     def __init__(self, reference, out):
         self.reference, self.out = reference, out
-        self.formulas = []  # TeX and remark of each, in the order of their places
         self.pages = {}  # name of a page without ending → its text
         self.shown = []  # files and folders that need a page of their own
 
@@ -139,11 +137,11 @@ class Site:
         self.pages[page] = self.rewritten((ROOT / path).read_text(), path, page) + more
 
     def rewritten(self, text, path, page):
-        """A document with its links led into the site and its formulas marked."""
+        """A document with its links led into the site."""
         out, fence, quoted = [], None, []
         for line in [*text.splitlines(), None]:
             if quoted and (line is None or not line.startswith(">")):
-                out.append(self.formula(quoted))
+                out.append(formula(quoted))
                 quoted = []
             if line is None:
                 break
@@ -153,7 +151,7 @@ class Site:
             elif opened and line.strip() == fence:
                 fence = None
             elif fence is None:
-                if path.as_posix().startswith("docs/theory/") and line.startswith("> ") and formulas.is_formula(line[2:]):
+                if path.as_posix().startswith("docs/theory/") and line.startswith("> "):
                     quoted.append(line[2:])
                     continue
                 line = self.with_links(line, path, page)
@@ -194,17 +192,6 @@ class Site:
             raise SystemExit(f"{path}: '{target}' leads to nothing")
         return found.relative_to(ROOT)
 
-    def formula(self, lines):
-        places = []
-        for line in lines:
-            try:
-                tex, remark = formulas.to_tex(line)
-            except formulas.NotAFormula as error:
-                raise SystemExit(f"not a formula that can be typeset: {line}\n{error}") from error
-            self.formulas.append(tex)
-            places.append((len(self.formulas) - 1, remark))
-        return "\n@@" + ";".join(f"{place}|{remark}" for place, remark in places) + "@@\n"
-
     # Folders of documents: their README is the index, in whose order the pages stand
 
     def add_folder(self, folder):
@@ -242,7 +229,7 @@ class Site:
     # The library
 
     def add_library(self):
-        text = (ROOT / "CONTRIBUTING.md").read_text()
+        text = (ROOT / "docs/house.md").read_text()
         holds = dict(re.findall(r"^\| [^|]*\| `(\w+)` \| (.*?) \|$", text, re.MULTILINE))
         rows = []
         lists = re.sub(r"#[^\n]*", "", (ROOT / "mbk/CMakeLists.txt").read_text())
@@ -256,7 +243,7 @@ class Site:
             "# C++ library\n"
             + self.rewritten(
                 "What an application may use: the public headers, with their equations, units, signs and the ways in which "
-                "they fail. A module uses only modules of lower layers ([why](docs/adr/0004-layers.md)); how to link them "
+                "they fail. A module uses only modules of lower layers ([why](docs/decisions.md#modules-layers-and-wings)); how to link them "
                 "is in [install.md](docs/guide/install.md), programs to begin with in "
                 "[use_the_library](examples/use_the_library/README.md).\n", pathlib.Path("CONTRIBUTING.md"), "library")
             + "\n" + " · ".join(self.outward("library", f"api/{file}", label) for file, label in (
@@ -293,17 +280,10 @@ class Site:
     # All of it
 
     def write(self):
-        typeset = formulas.typeset(self.formulas)
-
-        def placed(match):
-            parts = [one.split("|", 1) for one in match.group(1).split(";")]
-            return formulas.block([typeset[int(place)] for place, _ in parts], [remark for _, remark in parts])
-
         kept = set()
         for name, text in self.pages.items():
             file = self.out / f"{name}.md"
             kept.add(file)
-            text = re.sub(r"@@((?:\d+\|[^@;]*;?)+)@@", placed, text)
             if not file.exists() or file.read_text() != text:  # Sphinx reads again what is newer
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text(text)
@@ -312,6 +292,14 @@ class Site:
                 file.unlink()
         pictures = self.out / "guide/pictures"
         shutil.copytree(ROOT / "docs/guide/pictures", pictures, dirs_exist_ok=True)
+
+
+def formula(lines):
+    """Formulas as the documents write them, in Unicode, one below the other; what stands behind _ and ^ is moved."""
+    text = html.escape("\n".join(lines).replace("**", ""))
+    for sign, tag in (("_", "sub"), ("\\^", "sup")):
+        text = re.sub(sign + r"(?:\{([^}]*)\}|([A-Za-z0-9α-ω]+))", lambda found: f"<{tag}>{found[1] or found[2]}</{tag}>", text)
+    return f'\n<div class="formula">{text}</div>\n'
 
 
 def with_subscripts(text):
@@ -455,8 +443,10 @@ def main():
     site = Site(Reference(tag_file, out.parent / "html/api"), out)
     landing = ROOT / "docs/site/index.md"
     site.pages["index"] = site.rewritten(landing.read_text(), pathlib.Path("docs/theory/landing.md"), "index")
-    for folder in ("docs/guide", "docs/theory", "docs/adr"):
+    for folder in ("docs/guide", "docs/theory"):
         site.add_folder(folder)
+    for name in ("docs/house.md", "docs/decisions.md"):
+        site.add(pathlib.Path(name))
     site.add_examples()
     site.add_commands(mbk)
     site.pages.update(python_pages.pages(mbk))

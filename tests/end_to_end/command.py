@@ -1,7 +1,7 @@
 """What every end-to-end test needs: the built programs, a folder of its own, and what a refusal must look like.
 
 The programs are named by the environment: MBK and MAKE_LOG (set by CTest). By hand:
-  MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/info_test.py
+  MBK=build/release/bin/mbk MAKE_LOG=build/release/bin/make_log python3 tests/end_to_end/info_test.py
 """
 
 import functools

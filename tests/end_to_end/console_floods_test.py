@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""STOP while the console is flooded, and the page for its token's holder: each flood of bench/floods.py, a few stops.
+"""STOP while the console is flooded, and the page for its token's holder: each flood of floods.py, a few stops.
 
 MBK_STOPS sets how many stops there are during each (2); what is told of times is not judged.
 """
@@ -9,10 +9,8 @@ import pathlib
 import resource
 import sys
 
+import floods
 from command import Case, main, program
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
-import floods  # noqa: E402
 
 STOPS = int(os.environ.get("MBK_STOPS", "2"))
 MOST_LOGGED = 8000.0  # bytes a second; six lines of each kind in ten seconds, and the page's holder refused nowhere

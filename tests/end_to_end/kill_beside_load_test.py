@@ -2,7 +2,7 @@
 """Sessions with a robot behind UDP that are killed (SIGKILL) beside programs that go before all that is not in real time.
 
 While it runs next to nothing else comes to run, so it runs alone. The full form (killing.py has the variables):
-  MBK_KILLS=100 MBK=build/test/bin/mbk MBK_UDP_ROBOT=build/test/bin/mbk_udp_robot \\
+  MBK_KILLS=100 MBK=build/release/bin/mbk MBK_UDP_ROBOT=build/release/bin/mbk_udp_robot \\
     python3 tests/end_to_end/kill_beside_load_test.py
 """
 

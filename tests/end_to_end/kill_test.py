@@ -2,7 +2,7 @@
 """Sessions in real time that are killed from outside (SIGKILL) at moments drawn by lot, and disks that refuse.
 
 The full form (killing.py has the variables):
-  MBK_KILLS=100 MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/kill_test.py
+  MBK_KILLS=100 MBK=build/release/bin/mbk MAKE_LOG=build/release/bin/make_log python3 tests/end_to_end/kill_test.py
 """
 
 import concurrent.futures
@@ -13,7 +13,6 @@ import resource
 import signal
 import subprocess
 import sys
-import time
 
 from command import BAD_DATA, Case, FINE, WRONG_USAGE, main, program, run
 from killing import AT_A_TIME, EXPERIMENT, KILLS, Killing, MOST_LOST, Run, SEED, Stalls, digest, times_of
@@ -29,7 +28,7 @@ class Kill(Killing):
         """Killed after the recording had its name and before the journal was removed."""
         _, target = self.whole_run()
         session = Run(self.folder, "cut")
-        time.sleep(1.0)
+        session.wait_for_ticks()
         session.kill()
         self.mbk("recover", session.journal, "--keep")
         made = digest(session.target)
@@ -46,7 +45,7 @@ class Kill(Killing):
 
     def test_a_journal_that_is_there_is_not_overwritten(self):
         session = Run(self.folder, "cut")
-        time.sleep(1.0)
+        session.wait_for_ticks()
         session.kill()
         before = digest(session.journal)
         self.refused(WRONG_USAGE, "run", "experiment.toml", "--fast", "--out", session.target, folder=self.folder,

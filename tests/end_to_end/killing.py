@@ -123,6 +123,11 @@ class Run:
         while not part.exists() and not self.target.exists() and self.process.poll() is None:
             time.sleep(0.0002)
 
+    def wait_for_ticks(self):
+        """Until the journal holds blocks of ticks, however long a busy machine takes."""
+        while self.process.poll() is None and not (self.journal.exists() and self.journal.stat().st_size > 50_000):
+            time.sleep(0.01)
+
     def kill(self):
         killed = time.monotonic()
         self.process.send_signal(signal.SIGKILL)

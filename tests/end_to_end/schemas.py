@@ -2,6 +2,7 @@
 
 import functools
 import json
+import os
 import pathlib
 import re
 
@@ -11,7 +12,7 @@ try:
 except ImportError as error:
     raise SystemExit(f"{error}; Debian's packages are python3-fastjsonschema and python3-jsonschema") from error
 
-FOLDER = pathlib.Path(__file__).resolve().parents[2] / "schemas"
+FOLDER = pathlib.Path(os.environ["MBK"]).resolve().parents[1] / "schemas"
 
 
 def read(uri):

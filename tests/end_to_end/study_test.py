@@ -489,12 +489,10 @@ class Waiting(StudyCase):
                 fcntl.flock(lock, fcntl.LOCK_EX)
                 waits = subprocess.Popen([command.program("MBK"), "study", *what, "--study", self.study],
                                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-                began = time.monotonic()
                 self.assertIn("waiting for another process", waits.stderr.readline())
-                self.assertLess(time.monotonic() - began, 5.0)
                 self.assertIsNone(waits.poll())
                 release()
-                self.assertEqual((waits.wait(timeout=20), waits.stderr.read()), (FINE, ""))
+                self.assertEqual((waits.wait(timeout=120), waits.stderr.read()), (FINE, ""))
                 waits.stderr.close()
         holder.close()
 

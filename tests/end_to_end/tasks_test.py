@@ -3,7 +3,7 @@
 been read in a help text before, and the steps (help texts read, commands run) are counted. The counts are those of
 docs/guide/tasks.md; tests/web/tasks_test.mjs does the tasks of a browser.
 
-  MBK=build/test/bin/mbk MAKE_LOG=build/test/bin/make_log python3 tests/end_to_end/tasks_test.py    prints the counts
+  MBK=build/release/bin/mbk MAKE_LOG=build/release/bin/make_log python3 tests/end_to_end/tasks_test.py    prints the counts
 """
 
 import json
@@ -12,7 +12,6 @@ import re
 import signal
 import subprocess
 import time
-import unittest
 
 from command import FINE, NOT_USABLE, Case, main, make_log, program, run, table_of, write_csv
 
@@ -209,22 +208,6 @@ class Tasks(Case):
         self.newcomer.do("recover", journal.name)
         self.assertIn("interrupted", self.mbk("info", self.folder / "cut.h5").out)
         self.in_steps(3)
-
-
-class TheNewcomer(unittest.TestCase):
-    """The rule itself: what was not read cannot be used."""
-
-    def test_knows_nothing_unread(self):
-        case = Tasks("test_see_what_is_in_a_file")
-        case.setUp()
-        self.addCleanup(case.doCleanups)
-        with self.assertRaises(AssertionError):
-            case.newcomer.do("info", "x.mat")
-        case.newcomer.help("info")
-        with self.assertRaises(AssertionError):
-            case.newcomer.do("info", "x.mat", "--no-such-option")
-        with self.assertRaises(AssertionError):
-            case.newcomer.help("no-such-command")
 
 
 if __name__ == "__main__":

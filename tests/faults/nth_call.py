@@ -9,7 +9,7 @@ ramp with the motors off; and every tick that the robot saw is in the recording 
 
 Without options it tries what 40 s allow, taken evenly from all. --all tries every n (of allocations the first of each
 chain of calls that leads to one, and of what is called more than 3000 times as many, taken evenly):
-  MBK=build/test/bin/mbk FAILING_CALLS=build/test/tests/faults/failing_calls.so tests/faults/nth_call.py --all
+  MBK=build/release/bin/mbk FAILING_CALLS=build/release/tests/faults/failing_calls.so tests/faults/nth_call.py --all
 """
 
 import argparse

@@ -1,6 +1,6 @@
 // What the tests of reports and console share: the programs, a browser without a network, and reading numbers off a page.
 //
-// Run in the build folder of the pages, where the packages are: cd build/test/web, then
+// Run in the build folder of the pages, where the packages are: cd build/release/web, then
 //   MBK=$PWD/../bin/mbk MAKE_LOG=$PWD/../bin/make_log node ../../../tests/web/report_test.mjs
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
@@ -43,7 +43,7 @@ process.on("exit", () => {
 const pictures = join(process.cwd(), "screenshots");
 mkdirSync(pictures, { recursive: true });
 
-/** Where MBK_SCREENSHOTS is set, a picture of the page to be looked at, in build/test/web/screenshots. */
+/** Where MBK_SCREENSHOTS is set, a picture of the page to be looked at, in build/release/web/screenshots. */
 export async function screenshot(page, name, options = {}) {
   if (process.env.MBK_SCREENSHOTS) await page.screenshot({ path: join(pictures, `${name}.png`), ...options });
 }

@@ -450,10 +450,8 @@ void DecimatedChain::for_rows(Index begin, Index behind, Index rows, Use&& use) 
   }
 }
 
-void DecimatedChain::run(const FourColumns& columns, Index length, const FourValues& less, const Passed& passed,
-                         double* values) const {
-  constexpr Index kTold = 1 << 18;  // samples that are said to be passed at once, or more
-  constexpr Index kChunk = 64;      // blocks that stay in the first cache
+void DecimatedChain::run(const FourColumns& columns, Index length, const FourValues& less, double* values) const {
+  constexpr Index kChunk = 64;  // blocks that stay in the first cache
   const Index n = length - 2 * half_, rows = (n - 1) / every_ + 1, count = divided_up(length - first_, filter_.length);
   const auto width = static_cast<Index>(kLanes * smoothing_.size());
   const auto states = static_cast<Index>(filter_.states);
@@ -472,7 +470,7 @@ void DecimatedChain::run(const FourColumns& columns, Index length, const FourVal
   Interleaved back(past + kChunk, 4 * states);
   std::fill_n(back.row(0), past * back.width(), 0.0);
   std::vector<double> at_end(static_cast<std::size_t>(back.width()));
-  for (Index begin = 0, ready = 0, told = 0; begin < count; begin += kChunk) {
+  for (Index begin = 0, ready = 0; begin < count; begin += kChunk) {
     const Index some = std::min(kChunk, count - begin);
     take_blocks(columns, length, less, begin, begin + some, moments.row(before_ + begin));
     advance_modes(filter_, Looking::back, some, moments.row(before_ + begin), back.row(past));
@@ -490,11 +488,6 @@ void DecimatedChain::run(const FourColumns& columns, Index length, const FourVal
     });
     ready = soon;
     std::copy_n(back.row(some), past * back.width(), back.row(0));
-    const Index read = std::min(length, first_ + (begin + some) * filter_.length);
-    if (passed && (read - told >= kTold || read == length)) {
-      passed(told, read);
-      told = read;
-    }
   }
 
   const End start = end_of(columns, length, less, false, -first_);

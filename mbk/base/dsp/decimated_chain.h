@@ -41,8 +41,7 @@ class DecimatedChain {
   [[nodiscard]] Index shortest() const;
 
   /// @param values  of row 0, `every`, …: 4·derivatives for each, derivative by derivative
-  void run(const FourColumns& columns, Index length, const FourValues& less, const Passed& passed,
-           double* values) const;
+  void run(const FourColumns& columns, Index length, const FourValues& less, double* values) const;
 
  private:
   using Complex = std::complex<double>;

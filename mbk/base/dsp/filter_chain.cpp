@@ -270,7 +270,7 @@ Result<void> filter_all(const FilterChain& chain, std::span<const Column> column
 
 /// Every so many rows, where blocks of samples can do; whether they can.
 Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> columns,
-                           std::span<const FilterOutput> outputs, Index every, Hertz rate, const Passed& passed,
+                           std::span<const FilterOutput> outputs, Index every, Hertz rate,
                            std::span<double* const> to) {
   const Index length = columns.front().size(), count = (length - chain.smoothing.window) / every + 1;
   for (const Batch& batch : batches_of(outputs)) {
@@ -280,7 +280,7 @@ Result<bool> filter_blocks(const FilterChain& chain, std::span<const Column> col
     const FourValues reference = values_at(lanes, 0);
     const std::size_t width = kLanes * batch.derivatives.size();
     const auto values = std::make_unique_for_overwrite<double[]>(width * static_cast<std::size_t>(count));
-    blocks->run(lanes, length, reference, passed, values.get());
+    blocks->run(lanes, length, reference, values.get());
     for (std::size_t order = 0; order < batch.derivatives.size(); ++order) {
       std::array<double*, kLanes> lane_to{};
       for (const auto& [from, target] : batch.outputs) {
@@ -309,12 +309,12 @@ Result<Index> rows_left(const FilterChain& chain, Index samples, Index every) {
 
 Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                  std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
-                                 const Passed& passed, std::span<double* const> to) {
+                                 std::span<double* const> to) {
   const auto length = MBK_TRY(length_of(columns));
   const auto rows = MBK_TRY(rows_left(chain, length, every));
   if (every == 1) return filter_all(chain, columns, outputs, sample_rate, to);
 
-  const auto some = MBK_TRY(filter_blocks(chain, columns, outputs, every, sample_rate, passed, to));
+  const auto some = MBK_TRY(filter_blocks(chain, columns, outputs, every, sample_rate, to));
   if (some) return {};
   Matrix all(length - chain.smoothing.window + 1, static_cast<Index>(outputs.size()));
   MBK_TRY(filter_all(chain, columns, outputs, sample_rate, columns_of(all)));
@@ -325,12 +325,11 @@ Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Colum
 }
 
 Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
-                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
-                                   const Passed& passed) {
+                                   std::span<const FilterOutput> outputs, Hertz sample_rate, Index every) {
   const auto length = MBK_TRY(length_of(columns));
   const auto rows = MBK_TRY(rows_left(chain, length, every));
   Matrix answer(rows, static_cast<Index>(outputs.size()));
-  MBK_TRY(smooth_then_lowpass(chain, columns, outputs, sample_rate, every, passed, columns_of(answer)));
+  MBK_TRY(smooth_then_lowpass(chain, columns, outputs, sample_rate, every, columns_of(answer)));
   return answer;
 }
 

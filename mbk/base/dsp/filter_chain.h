@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <span>
 
 #include "mbk/base/core/linear_algebra.h"
@@ -27,9 +26,6 @@ struct FilterOutput {
 
 using Column = Eigen::Map<const Vector>;
 
-/// Called with each range of samples [first, end) that has been read.
-using Passed = std::function<void(Index, Index)>;
-
 /// savitzky_golay and then filter_zero_phase, to rounding, in two passes over the data.
 /// The Savitzky–Golay sums Σ_j C(j, k) x[i + j], k = 0…N, run from sample to sample by Pascal's rule,
 ///   C(j, k) = C(j + 1, k) − C(j, k − 1),
@@ -40,19 +36,18 @@ using Passed = std::function<void(Index, Index)>;
 /// blocks of samples are kept as a few moments, and no other row is computed (decimated_chain.h). Where blocks cannot
 /// do, every row is.
 /// @param columns of equal length L, evenly sampled
-/// @param passed  where only every Nth row is asked for, of four columns after the other
 /// @returns ⌈(L − W + 1)/every⌉×outputs; row i belongs to sample half window + i·every.   Offline: allocates.
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
 [[nodiscard]] Result<Matrix> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                  std::span<const FilterOutput> outputs, Hertz sample_rate,
-                                                 Index every = 1, const Passed& passed = {});
+                                                 Index every = 1);
 inline constexpr double kDecimationError = 1e-7;
 
 /// The same, to where it is wanted.
 /// @param to  of each output, room for as many numbers as there are rows
 [[nodiscard]] Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
-                                               const Passed& passed, std::span<double* const> to);
+                                               std::span<double* const> to);
 
 /// Rows that the filters leave of so many samples.   @fails as smooth_then_lowpass
 [[nodiscard]] Result<Index> rows_left(const FilterChain& chain, Index samples, Index every);

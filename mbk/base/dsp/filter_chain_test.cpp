@@ -192,22 +192,6 @@ TEST(FilterChain, GoesThroughALongSignalInBlocksThatLeaveNoTrace) {
   }
 }
 
-TEST(FilterChain, SaysOnceOfEverySampleThatItWasReadWhereOnlySomeRowsAreAskedFor) {
-  constexpr Index kLength = 600'000;
-  const std::vector<Vector> all = signals(kLength, 2, 8);
-  std::vector<int> read(kLength, 0);
-  int calls = 0;
-  const Passed passed = [&](Index first, Index end) {
-    for (Index i = first; i < end; ++i) ++read[static_cast<std::size_t>(i)];
-    ++calls;
-  };
-  const std::vector<FilterOutput> outputs = {{0, 0}, {1, 1}};
-  const auto told = smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), outputs, kRate, 20, passed);
-  EXPECT_EQ(told.value(), smooth_then_lowpass(chain({6, 101}, 5.0), columns_of(all), outputs, kRate, 20).value());
-  EXPECT_TRUE(std::ranges::all_of(read, [](int times) { return times == 1; }));
-  EXPECT_GT(calls, 1);
-}
-
 TEST(FilterChain, RefusesWhatItCannotFilter) {
   const auto all = signals(110, 2, 6);
   const std::vector<FilterOutput> outputs = {{0, 0}};

@@ -45,8 +45,7 @@ Vector hann_window(Index length) {
   return window;
 }
 
-Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate, Hertz resolution,
-                       const std::function<void(Index)>& reached) {
+Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate, Hertz resolution) {
   if (!(sample_rate.value > 0.0 && resolution.value > 0.0)) {
     return bad_usage(fmt::format("sample rate {:g} Hz and resolution {:g} Hz must be positive", sample_rate.value,
                                  resolution.value));
@@ -68,9 +67,7 @@ Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate
     if (pieces % 2 == 0) transform.imaginary().setZero();
     transform.run();
     both += transform.real().cwiseAbs2() + transform.imaginary().cwiseAbs2();
-    if (reached) reached(start);
   }
-  if (reached) reached(signal.size());
   Vector power = both.head(lines);
   power.segment(1, lines - 2) = 0.5 * (power.segment(1, lines - 2) + both.tail(lines - 2).reverse());
   power *= 1.0 / (sample_rate.value * window.squaredNorm() * static_cast<double>(pieces));

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
@@ -17,10 +15,8 @@ struct Spectrum {
 /// Welch's estimate (Welch 1967): Hann windows that overlap by half, the mean of each removed.
 /// @param signal evenly sampled    @param resolution wanted spacing of lines; the segments are about rate/resolution
 /// samples long, shortened to the signal where it is shorter and rounded down to a length made of 2, 3 and 5.
-/// @param reached  called with samples before which none is read any more, at last with the size of the signal
 /// @fails fewer than 8 samples; resolution or rate not positive.
-[[nodiscard]] Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate, Hertz resolution,
-                                     const std::function<void(Index)>& reached = {});
+[[nodiscard]] Result<Spectrum> welch(const Eigen::Ref<const Vector>& signal, Hertz sample_rate, Hertz resolution);
 
 /// The frequency below which that fraction of the power lies, looking only at lines up to `limit`.
 [[nodiscard]] Hertz power_quantile(const Spectrum& spectrum, double fraction, Hertz limit);

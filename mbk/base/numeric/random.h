@@ -1,8 +1,7 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
+#include <random>
 
 namespace mbk::numeric {
 
@@ -28,11 +27,7 @@ class Random {
   double normal();
 
  private:
-  [[nodiscard]] std::uint64_t draw();
-
-  static constexpr std::size_t kWords = 312;
-  std::array<std::uint64_t, kWords> words_{};
-  std::size_t next_ = kWords;
+  std::mt19937_64 draw_;
 };
 
 }  // namespace mbk::numeric

@@ -9,7 +9,7 @@
 #include "mbk/model/robot/workspace.h"
 
 namespace mbk::control {
-namespace reach_servo {
+namespace {
 
 /// From 1 to 0, at rest at both ends.
 double fading(double share) noexcept {
@@ -17,7 +17,7 @@ double fading(double share) noexcept {
   return 1.0 - s * s * (3.0 - 2.0 * s);
 }
 
-}  // namespace reach_servo
+}  // namespace
 
 ReachServo::ReachServo(const perturbation::ReachSchedule& schedule, const robot::Geometry& geometry,
                        const Vector2d& home, JointPositionControl law, double sample_time)
@@ -173,9 +173,9 @@ Vector2d ReachServo::step(const Vector2d& measured) noexcept {
   ++ticks_;
   if (phase_ == Phase::displacing) return torque;
   if (phase_ != Phase::releasing) return Vector2d::Zero();
-  const double fading = reach_servo::fading((t - end) / kRelease);
+  const double fade = fading((t - end) / kRelease);
   if (t - end >= kRelease) enter(Phase::away);
-  return fading * torque;
+  return fade * torque;
 }
 
 }  // namespace mbk::control

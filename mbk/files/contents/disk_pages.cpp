@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
@@ -20,9 +19,6 @@ constexpr std::array kSignals = {&PreparedTrial::position,          &PreparedTri
                                  &PreparedTrial::acceleration,      &PreparedTrial::force_hand_on_robot,
                                  &PreparedTrial::force_sensitivity, &PreparedTrial::reference,
                                  &PreparedTrial::reference_motion};
-
-/// Whether there can be any to let go of.
-std::atomic<bool> any_taken = false;
 
 std::uintptr_t page_size() {
   static const auto kSize = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
@@ -56,13 +52,6 @@ bool write_all(int descriptor, const char* from, std::size_t count, std::size_t 
   return true;
 }
 
-/// Whether a page is in memory as it stands in a file (Documentation/admin-guide/mm/pagemap.rst of Linux). One that was
-/// written to is no longer the file's.
-bool is_from_file(std::uint64_t entry) {
-  constexpr unsigned kOfFile = 61, kPresent = 63;
-  return (entry >> kOfFile & 1U) != 0 && (entry >> kPresent & 1U) != 0;
-}
-
 }  // namespace
 
 DiskPages::~DiskPages() {
@@ -85,7 +74,6 @@ Index DiskPages::take(double* first, Index count) {
             ::mmap(at(pages.begin), pages.size(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, descriptor_,
                    static_cast<off_t>(size_)) == MAP_FAILED;
   if (failed_) return 0;
-  any_taken = true;
   size_ += pages.size();
   return static_cast<Index>((pages.end - Pages::address_of(first)) / sizeof(double));
 }
@@ -129,7 +117,6 @@ void DiskPages::arrived(Coming& coming) {
                           static_cast<off_t>(coming.offset)) == MAP_FAILED) {
     whole = 0;
   }
-  any_taken = any_taken || whole > 0;
   if (!read_back(at(pages.begin + whole), written - whole, coming.offset + whole)) throw std::bad_alloc();
 }
 
@@ -146,40 +133,6 @@ bool DiskPages::read_back(void* to, std::size_t count, std::size_t offset) const
 
 void DiskPages::take(PreparedTrial& trial) {
   for (const auto signal : kSignals) take((trial.*signal).data(), (trial.*signal).size());
-}
-
-void let_go(const PreparedTrial& trial) {
-  for (const auto signal : kSignals) let_go((trial.*signal).data(), (trial.*signal).size());
-}
-
-void let_go(const double* first, Index count) {
-  // With each page that is read the kernel maps those around it, up to what was written at a time.
-  constexpr Index kAround = 1 << 17;
-  const Pages pages(first - kAround, count + 2 * kAround);
-  if (!any_taken || count == 0) return;
-  const int map = ::open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
-  if (map < 0) return;
-  std::array<std::uint64_t, 1024> entries;
-  for (std::uintptr_t begin = pages.begin; begin < pages.end; begin += entries.size() * page_size()) {
-    const std::size_t wanted = std::min<std::size_t>(entries.size(), (pages.end - begin) / page_size());
-    const ssize_t got = ::pread(map, entries.data(), wanted * sizeof(std::uint64_t),
-                                static_cast<off_t>(begin / page_size() * sizeof(std::uint64_t)));
-    const auto known = got > 0 ? entries.begin() + got / static_cast<ssize_t>(sizeof(std::uint64_t)) : entries.begin();
-    for (auto from = std::find_if(entries.begin(), known, is_from_file); from != known;) {
-      const auto to = std::find_if_not(from, known, is_from_file);
-      ::madvise(at(begin + static_cast<std::size_t>(from - entries.begin()) * page_size()),
-                static_cast<std::size_t>(to - from) * page_size(), MADV_DONTNEED);
-      from = std::find_if(to, known, is_from_file);
-    }
-  }
-  ::close(map);
-}
-
-void InPassing::let_go_before(Index row) {
-  for (const Columns& columns : columns_) {
-    for (Index k = 0; k < columns.cols(); ++k) let_go(columns.col(k).segment(done_, row - done_));
-  }
-  done_ = row;
 }
 
 }  // namespace mbk::recording

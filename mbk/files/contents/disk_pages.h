@@ -1,12 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <functional>
-#include <utility>
-#include <vector>
 
-#include "mbk/base/core/columns.h"
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/model/trial/prepared_trial.h"
 
@@ -16,8 +11,9 @@ namespace mbk::recording {
 inline constexpr Index kLong = 1 << 20;
 
 /// A file without a name, in TMPDIR or else /var/tmp, that holds the numbers of long columns. Their memory becomes a
-/// private view of that file: whoever reads them finds them where they stood, and what nobody reads takes no memory.
-/// The file is gone with its last view. Where it cannot be made or the disk is full, numbers stay in memory.
+/// private view of that file: whoever reads them finds them where they stood, and the system may take the memory of
+/// unchanged numbers for other things until they are read. The file is gone with its last view. Where it cannot be made
+/// or the disk is full, numbers stay in memory.
 class DiskPages {
  public:
   DiskPages() = default;
@@ -55,55 +51,6 @@ class DiskPages {
   int descriptor_ = -1;
   bool failed_ = false;
   std::size_t size_ = 0;
-};
-
-/// The numbers are read no more for now: those that stand unchanged in a file leave the memory, and come back when they
-/// are read. With all others nothing happens.
-void let_go(const double* first, Index count);
-inline void let_go(const Eigen::Ref<const Vector>& numbers) {
-  let_go(numbers.data(), numbers.size());
-}
-/// Of the signals of a trial.
-void let_go(const PreparedTrial& trial);
-
-/// Calls use(part, begin) with one piece of a column after another, and lets go of each. A short column is one piece.
-/// @param overlap  numbers that a piece has in common with the next
-template <class Use>
-void in_pieces(const Eigen::Ref<const Vector>& numbers, Index overlap, const Use& use) {
-  constexpr Index kAtOnce = 1 << 19;
-  for (Index begin = 0; begin + overlap < numbers.size(); begin += kAtOnce) {
-    const auto part = numbers.segment(begin, std::min(kAtOnce + overlap, numbers.size() - begin));
-    use(part, begin);
-    let_go(part);
-  }
-}
-
-/// For a walk along a column: lets go of what lies before the number that it has reached.
-[[nodiscard]] inline std::function<void(Index)> let_go_behind(const Eigen::Ref<const Vector>& numbers) {
-  return [first = numbers.data(), count = numbers.size(), done = Index{0}](Index reached) mutable {
-    constexpr Index kAtOnce = 1 << 18;
-    if (reached < count && reached - done < kAtOnce) return;
-    let_go(first + done, reached - done);
-    done = reached;
-  };
-}
-
-/// Lets go of what lies behind a walk along columns.
-class InPassing {
- public:
-  explicit InPassing(std::vector<Columns> columns, Index begin = 0) : columns_(std::move(columns)), done_(begin) {}
-  /// The rows before that one were read; a walk may begin anew.
-  void reached(Index row) {
-    if (row < done_) done_ = row;
-    if (row - done_ >= kAtOnce) let_go_before(row);
-  }
-  /// The walk ends before that row.
-  void let_go_before(Index row);
-
- private:
-  static constexpr Index kAtOnce = 1 << 18;
-  std::vector<Columns> columns_;
-  Index done_;
 };
 
 }  // namespace mbk::recording

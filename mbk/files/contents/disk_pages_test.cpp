@@ -41,17 +41,8 @@ TEST_F(DiskPagesOf, NumbersLeaveThemWhereTheyStood) {
   EXPECT_EQ(values_, numbers());
 }
 
-TEST_F(DiskPagesOf, WhatIsLetGoTakesNoMemoryAndComesBack) {
-  EXPECT_EQ(values_.sum(), numbers().sum());
-  EXPECT_GT(in_memory(), 8);
-  let_go(values_);
-  EXPECT_LE(in_memory(), kPagesAtTheEnds);
-  EXPECT_EQ(values_, numbers());
-}
-
 TEST_F(DiskPagesOf, ChangedNumbersKeepTheChange) {
   values_[kCount / 2] = 42.0;
-  let_go(values_);
   EXPECT_EQ(values_[kCount / 2], 42.0);
   values_[kCount / 2] = numbers()[kCount / 2];
   EXPECT_EQ(values_, numbers());
@@ -62,29 +53,6 @@ TEST_F(DiskPagesOf, AColumnThatGrowsKeepsItsNumbers) {
   EXPECT_EQ(values_.head(kCount), numbers());
   values_.conservativeResize(kCount / 2);
   EXPECT_EQ(values_, numbers().head(kCount / 2));
-}
-
-TEST_F(DiskPagesOf, AWalkHoldsNoMoreThanItsBlocks) {
-  InPassing passing({values_});
-  const Vector expected = numbers();
-  Index wrong = 0;
-  for (Index row = 0; row < kCount; ++row) {
-    passing.reached(row);
-    wrong += values_[row] != expected[row] ? 1 : 0;
-  }
-  EXPECT_EQ(wrong, 0);
-  const Index all = kCount / 512;  // pages of 4 kB
-  EXPECT_LT(in_memory(), all * 3 / 4);
-  passing.let_go_before(kCount);
-  EXPECT_LE(in_memory(), kPagesAtTheEnds);
-}
-
-TEST(DiskPages, NumbersInMemoryAreNotLetGo) {
-  Vector on_disk = numbers();
-  DiskPages().take(on_disk.data(), kCount);
-  const Vector values = numbers();
-  let_go(values);
-  EXPECT_EQ(values, numbers());
 }
 
 TEST(DiskPages, NumbersStayInMemoryWhereNoFileCanBe) {

@@ -11,7 +11,6 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/own_samples.h"
 
 namespace mbk::recording {
@@ -216,7 +215,6 @@ Inspection inspect(const Recording& recording) {
   facts.samples = recording.samples();
   inspect_time(recording.time, facts);
   find_non_finite("time", recording.time, numeric::finite_extremes(recording.time), facts.non_finite);
-  let_go(recording.time);
   find_missing(recording, facts.missing);
   for (const Channel& channel : recording.channels) {
     const numeric::Extremes finite = numeric::finite_extremes(channel.values);
@@ -225,7 +223,6 @@ Inspection inspect(const Recording& recording) {
     here.updates = channel.updates;
     here.update_hz = facts.rate_hz / channel.updates.interval;
     here.stale = stale_text(channel, facts.rate_hz);
-    let_go(channel.values);
   }
   return facts;
 }
@@ -240,7 +237,6 @@ std::vector<ChannelFacts> clipped_channels(const Recording& recording, double fr
     if (!can_clip(channel.name) || begin >= end) continue;
     const auto values = channel.values.segment(begin, end - begin);
     const ChannelFacts facts = inspect_channel(channel, values, numeric::finite_extremes(values));
-    let_go(channel.values);
     if (facts.clipped) clipped.push_back(facts);
   }
   return clipped;

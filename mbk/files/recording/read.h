@@ -19,23 +19,57 @@ namespace mbk::recording {
 /// Whatever is read of it opens nothing anew. May be used by several threads.
 class RecordingFile;
 
+/// How a file is to be read. Every default is right for a file that names its channels, holds one trial and has a time
+/// for each sample; then
+///
+///   const auto recording = mbk::recording::read("log.mat", {});
+///   if (!recording) std::fputs(recording.error().line().c_str(), stderr);
+///
+/// is all that is needed.
 struct ReadOptions {
-  std::vector<ChannelSource> channels;  ///< empty: the file is recognised automatically
-  std::vector<std::string> requested;   ///< channels that are taken by name, beside those of the map; empty: without a
-                                        ///< map all, and with one none
-  std::optional<Hertz> rate;            ///< needed where the file holds no time; must agree with the time where it does
-  int axes = 0;  ///< what x and xr mean: 1 position, reference; 2 hand_x, reference_x; 0 by the channels found
-  bool own_samples = false;  ///< measured channels that are held or lack samples are taken at their own samples
-                             ///< (`at_own_samples`): for whoever computes something of them
-  std::vector<std::string> commands;  ///< channels that may be commands, beside torques and `input`: they stay as held
-  bool untimed = false;  ///< rows without a time and a rate are taken as they are; otherwise that is an error
-  std::string variable;  ///< the MAT variable that is meant, where several could be
-  std::string clock;     ///< the stream or topic whose time stamps the recording has, where channels come from several;
-                         ///< "": they must come from one
-  std::string trial;     ///< which record of a file or folder that holds several (`list_trials`); "": its only one
-  std::vector<std::string> joints;  ///< names of the robot's joints, in its order: a file that names joints gives these
-                                    ///< as joint_1, torque_1, …; empty: in the order of the file
-  std::string arm;  ///< "right" or "left": whose hand is the hand in a file of two arms; "": the only one
+  /// Which column or variable of the file is which channel, in which unit and with which sign: what --channels says
+  /// (channel_map.h reads that text). Empty: the file is recognised by its names.
+  std::vector<ChannelSource> channels;
+
+  /// Channels that are taken by the name that they have in the file, beside those of `channels`. Empty: all that are
+  /// recognised if there is no map, and none if there is one.
+  std::vector<std::string> requested;
+
+  /// Sample rate. Needed if the file holds neither time nor rate; there is no default. If the file holds a time, the
+  /// rate must agree with it to 0.1 %.
+  std::optional<Hertz> rate;
+
+  /// What the short names x and xr mean: 1 for position and reference of one axis, 2 for hand_x and reference_x of a
+  /// plane. 0: as the channels of the file show.
+  int axes = 0;
+
+  /// Take a measured channel that is held, or that lacks samples, at its own samples (`at_own_samples`). For whoever
+  /// computes something of the recording; false keeps every value as recorded.
+  bool own_samples = false;
+
+  /// Channels that may be commands, beside torques and `input`. A command that is held is exact, so it is not treated
+  /// as a measurement that was updated too seldom.
+  std::vector<std::string> commands;
+
+  /// Accept rows without time and rate and count them, as for loads on a force sensor. false: that is an error.
+  bool untimed = false;
+
+  /// The variable of a MAT file, if several could be meant. "": the only one.
+  std::string variable;
+
+  /// The stream or topic whose time stamps the recording has, if channels come from several; the others are
+  /// interpolated linearly. "": all channels must come from one, and nothing is put on another clock.
+  std::string clock;
+
+  /// The record, if a file or folder holds several (`trials_of` lists them). "": its only one.
+  std::string trial;
+
+  /// Names of the robot's joints, in the order of its chain: a file that names joints then gives these as joint_1,
+  /// torque_1, … Empty: in the order of the file.
+  std::vector<std::string> joints;
+
+  /// "right" or "left": which arm to analyse, if a file holds two. "": the only one.
+  std::string arm;
 };
 
 /// Opens a recording: any format of `file_formats()`, which the content decides, never the name of the file.

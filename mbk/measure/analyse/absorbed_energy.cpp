@@ -44,10 +44,6 @@ struct Exchange {
   [[nodiscard]] Index samples() const { return clock->size(); }
   [[nodiscard]] double time(Index i) const { return (*clock)[i] - (*clock)[0]; }  ///< [s] from the first sample
   [[nodiscard]] double step(Index i) const { return time(i + 1) - time(i); }
-  /// For a walk along the samples.
-  [[nodiscard]] recording::InPassing in_passing(Index begin = 0) const {
-    return recording::InPassing({*clock, position, force}, begin);
-  }
   /// −∫ F_h·dx, whether or not there is a break.
   [[nodiscard]] double work(Index i) const {
     double sum = 0.0;
@@ -66,8 +62,7 @@ class Intervals {
  public:
   static constexpr Index kBlock = 1 << 18;
   /// @param at_once  samples of a block
-  explicit Intervals(const Exchange& exchange, Index at_once = kBlock)
-      : exchange_(exchange), at_once_(at_once), passing_(exchange.in_passing()) {}
+  explicit Intervals(const Exchange& exchange, Index at_once = kBlock) : exchange_(exchange), at_once_(at_once) {}
 
   /// Interval i, of which the values below speak from now on; false where its energy or velocity is not known
   /// throughout.
@@ -82,20 +77,12 @@ class Intervals {
   /// The sum of the velocities at both ends, along an axis.
   [[nodiscard]] double velocities(Index axis) const { return velocity_(at_, axis) + velocity_(at_ + 1, axis); }
 
-  /// Nobody walks on from here.
-  void leave() {
-    passing_.let_go_before(
-        std::min(exchange_.samples(), begin_ + velocity_.rows() + exchange_.smoothing.half_window()));
-  }
-
  private:
   /// Rows from a little before sample i on, so that a few steps back need no other block; all of a short recording.
   void load(Index i) {
     const Index samples = exchange_.samples();
     begin_ = samples <= at_once_ ? 0 : std::max<Index>(0, i - std::max<Index>(1, at_once_ / 8));
     const Index end = std::min(samples, begin_ + at_once_);
-    if (velocity_.rows() == 0) passing_ = exchange_.in_passing(begin_);
-    passing_.reached(begin_);
     differentiate(end);
     integrate(end);
   }
@@ -143,7 +130,6 @@ class Intervals {
   Matrix velocity_;
   Eigen::ArrayXd squared_;  ///< NaN where the interval is not known
   Eigen::ArrayXd path_, absorbed_;
-  recording::InPassing passing_;
 };
 
 Index last_sample(const Segment& segment, Index every) {
@@ -186,15 +172,12 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
 
   exchange.unbroken.resize(static_cast<std::size_t>(samples - 1));
   const double longest = 1.5 / trial.recording_rate;
-  recording::InPassing passing = exchange.in_passing();
   for (Index i = 0; i + 1 < samples; ++i) {
-    passing.reached(i);
     const double step = exchange.step(i);
     const bool unbroken = step > 0.0 && step <= longest && std::isfinite(exchange.work(i));
     exchange.unbroken[static_cast<std::size_t>(i)] = unbroken;
     if (!unbroken) exchange.breaks.push_back(i);
   }
-  passing.let_go_before(samples);
   exchange.smoothing = {trial.preparation.smoothing_order, trial.preparation.smoothing_window};
   exchange.rate = Hertz(trial.recording_rate);
   MBK_TRY(dsp::savitzky_golay_weights(exchange.smoothing, 1));
@@ -315,7 +298,6 @@ Division divide(const std::shared_ptr<const Exchange>& exchange, Intervals& inte
       block = outline(std::move(block), [exchange, range] {
         Intervals here(*exchange, 2 * (range.last - range.first + 2));
         auto inside = sums_of(*exchange, here, range).first;
-        here.leave();
         return inside;
       });
     }
@@ -377,9 +359,7 @@ Afterwards walk_again(const Exchange& exchange, Intervals& intervals, double fir
 EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) {
   EnergyCurve curve;
   double absorbed = 0.0, of_curl = 0.0;
-  recording::InPassing passing = exchange.in_passing();
   const auto running = [&](Index begin, Eigen::Ref<Matrix> sums) {
-    passing.reached(begin);
     for (Index row = 0; row < sums.rows(); ++row) {
       if (begin + row > 0) {
         absorbed += exchange.absorbed(begin + row - 1);
@@ -419,7 +399,6 @@ Vector centre_of(const impedance::Model& model, const Exchange& exchange) {
   Vector mean(exchange.position.cols());
   for (Index k = 0; k < mean.size(); ++k) {
     mean[k] = exchange.position.col(k).segment(first, last - first + 1).mean();
-    recording::let_go(exchange.position.col(k));
   }
   return mean;
 }

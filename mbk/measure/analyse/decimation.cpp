@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mbk/base/core/nan.h"
-#include "mbk/files/contents/disk_pages.h"
 
 namespace mbk::analyse {
 namespace {
@@ -58,23 +57,16 @@ std::vector<Rows> pieces_between_gaps(const Vector& time) {
   constexpr double kSeen = 1.0 / 500.0;  // of the plot's width
   const Index samples = time.size();
   if (samples == 0) return {};
-  const auto each_piece = [&time](const auto& use) {  // of the steps, and the first of them
-    recording::in_pieces(time, 1, [&use](const auto& part, Index begin) {
-      use((part.tail(part.size() - 1) - part.head(part.size() - 1)).cwiseAbs(), begin);
-    });
-  };
-  double sum = 0.0;
-  each_piece([&sum](const auto& steps, Index) { sum += steps.sum(); });
+  const auto steps = (time.tail(samples - 1) - time.head(samples - 1)).cwiseAbs();
+  const double sum = steps.sum();
   const double usual = samples > 1 ? sum / static_cast<double>(samples - 1) : 0.0;
   const double seen = std::max(kSeen * sum, 2.0 * usual);
   std::vector<Rows> pieces = {{0, samples, 0}};
-  each_piece([&](const auto& steps, Index begin) {
-    for (Index i = 0; i < steps.size(); ++i) {
-      if (!(steps[i] > seen)) continue;
-      pieces.back().end = begin + i + 1;
-      pieces.push_back({begin + i + 1, samples, begin + i + 1});
-    }
-  });
+  for (Index i = 0; i < steps.size(); ++i) {
+    if (!(steps[i] > seen)) continue;
+    pieces.back().end = i + 1;
+    pieces.push_back({i + 1, samples, i + 1});
+  }
   return pieces;
 }
 

@@ -14,7 +14,6 @@
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/model/trial/filtered_band.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -44,12 +43,9 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
   const Segment &first = trial.segments.front(), &last = trial.segments.back();
   const Index begin = first.first_sample, end = last.first_sample + (last.size() - 1) * trial.preparation.every + 1;
   if (begin < 0 || end > recording.samples() || end - begin < 2) return std::nullopt;
-  bool unbroken = true;
-  recording::in_pieces(recording.time.segment(begin, end - begin), 1, [&](const auto& time, Index) {
-    const auto steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
-    unbroken = unbroken && steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5;
-  });
-  if (!unbroken) return std::nullopt;
+  const auto time = recording.time.segment(begin, end - begin);
+  const auto steps = time.tail(time.size() - 1) - time.head(time.size() - 1);
+  if (!(steps.minCoeff() > 0.0 && steps.maxCoeff() * trial.recording_rate <= 1.5)) return std::nullopt;
   Window window;
   window.rate = trial.recording_rate;
   for (const auto& [quantity, values] : {std::pair{&kPositionChannels, &window.position},
@@ -59,10 +55,7 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
     if (all.size() == 0) return std::nullopt;
     *values = all.part(begin, end - begin);
     for (Index axis = 0; axis < values->cols(); ++axis) {
-      bool finite = true;
-      recording::in_pieces(values->col(axis), 0,
-                           [&](const auto& piece, Index) { finite = finite && piece.allFinite(); });
-      if (!finite) return std::nullopt;
+      if (!values->col(axis).allFinite()) return std::nullopt;
     }
   }
   return window;
@@ -71,11 +64,9 @@ std::optional<Window> window_of(const Recording& recording, const PreparedTrial&
 double total_variance(const Columns& signal) {
   double sum = 0.0;
   for (Index axis = 0; axis < signal.cols(); ++axis) {
-    double total = 0.0;
-    recording::in_pieces(signal.col(axis), 0, [&](const auto& piece, Index) { total += piece.sum(); });
-    const double mean = total / static_cast<double>(signal.rows());
-    recording::in_pieces(signal.col(axis), 0,
-                         [&](const auto& piece, Index) { sum += (piece.array() - mean).square().sum(); });
+    const auto values = signal.col(axis).array();
+    const double mean = values.sum() / static_cast<double>(signal.rows());
+    sum += (values - mean).square().sum();
   }
   return sum / static_cast<double>(signal.rows());
 }
@@ -84,9 +75,7 @@ double total_variance(const Columns& signal) {
 /// 1 nothing in common. Every `step`-th sample. All of them in one walk, as a long signal comes from the disk.
 Vector unlike_itself(const Columns& signal, Index first_lag, Index lags, Index step, double variance) {
   Vector sums = Vector::Zero(lags), counts = Vector::Zero(lags), distances(lags);
-  recording::InPassing passing({signal});
   for (Index i = 0; i + first_lag < signal.rows(); i += step) {
-    passing.reached(i);
     const Index there = std::min(lags, signal.rows() - first_lag - i);
     std::fill_n(distances.data(), there, 0.0);
     for (Index axis = 0; axis < signal.cols(); ++axis) {
@@ -99,7 +88,6 @@ Vector unlike_itself(const Columns& signal, Index first_lag, Index lags, Index s
       counts[k] += 1.0;
     }
   }
-  passing.let_go_before(signal.rows());
   return sums.array() / (2.0 * variance * counts.array());
 }
 
@@ -149,7 +137,6 @@ std::optional<Periods> periods_of(const Columns& reference, double rate) {
   Matrix some((reference.rows() - 1) / step + 1, reference.cols());
   for (Index axis = 0; axis < some.cols(); ++axis) {
     some.col(axis) = reference.col(axis)(Eigen::seqN(0, some.rows(), step));
-    recording::let_go(reference.col(axis));
   }
   const Vector coarse = unlike_by_lag(std::move(some), longest / step, variance);
   bool went_away = false;
@@ -269,14 +256,11 @@ LineSpectra line_spectra(std::span<const Recording* const> recordings, std::span
     length = periods->length;
     rate = window->rate;
     found.harmonics = std::move(own);
-    recording::InPassing passing({window->position, window->force}, periods->begin);
     for (Index one = 0; one < periods->count; ++one) {
       const Index begin = periods->begin + one * length;
-      passing.reached(begin);
       found.position.emplace_back(amplitudes(window->position.middle_rows(begin, length))(found.harmonics, Eigen::all));
       found.force.emplace_back(amplitudes(window->force.middle_rows(begin, length))(found.harmonics, Eigen::all));
     }
-    passing.let_go_before(periods->begin + periods->count * length);
   }
   if (found.periods() < kMinPeriods) return {};
   found.period_s = static_cast<double>(length) / rate;

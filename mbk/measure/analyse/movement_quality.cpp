@@ -9,7 +9,7 @@
 #include "mbk/base/dsp/savitzky_golay.h"
 
 namespace mbk::analyse {
-namespace movement_detail {
+namespace {
 
 constexpr double kTopFrequency = 10.0;  ///< [Hz]
 constexpr double kAmplitude = 0.05;     ///< of the largest, above which the spectrum counts
@@ -41,10 +41,9 @@ std::optional<double> force_angle(const Matrix& force, const Matrix& position) {
   return sum / way;
 }
 
-}  // namespace movement_detail
+}  // namespace
 
 Result<double> spectral_arc_length(const Vector& speed, Hertz rate) {
-  using namespace movement_detail;
   MBK_TRY(check_speed(speed));
   if (!(rate.value >= 2.0 * kTopFrequency)) {
     return bad_data(fmt::format("{:.4g} Hz do not show a spectrum up to {:.0f} Hz", rate.value, kTopFrequency),
@@ -73,7 +72,6 @@ Result<double> spectral_arc_length(const Vector& speed, Hertz rate) {
 }
 
 Result<double> log_dimensionless_jerk(const Vector& speed, Hertz rate) {
-  using namespace movement_detail;
   MBK_TRY(check_speed(speed));
   const double T = 1.0 / rate.value, duration = T * static_cast<double>(speed.size());
   const double peak = speed.maxCoeff();
@@ -133,7 +131,6 @@ std::vector<numeric::RowRange> find_reaches(const Vector& speed, Hertz rate, con
 
 Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& force_hand_on_robot,
                                          const Matrix& target, Hertz rate, const MovementOptions& options) {
-  using namespace movement_detail;
   if (!(options.cutoff_hz > 0.0) || !(options.cutoff_hz < 0.5 * rate.value)) {
     return bad_usage(
         fmt::format("a cutoff of {:.4g} Hz is not between 0 and half of {:.4g} Hz", options.cutoff_hz, rate.value));

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/analyse/advice.h"
 #include "mbk/measure/analyse/axis_maps.h"
 #include "mbk/measure/analyse/channel_cure.h"
@@ -97,7 +96,6 @@ std::optional<Warning> check_columns(const Recording& recording, int axes) {
   std::vector<double> squares;  // Σ (x − x̄)²
   for (const Column& column : columns) {
     squares.push_back(numeric::variance(*column.values) * static_cast<double>(column.values->size() - 1));
-    recording::let_go(*column.values);
   }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     for (std::size_t k = i + 1; k < columns.size(); ++k) {

@@ -11,7 +11,6 @@
 #include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::analyse {
@@ -137,12 +136,6 @@ AssumptionTest line_of(const Matrix& signals, double rate) {
   return result;
 }
 
-bool is_finite(const Eigen::Ref<const Vector>& signal) {
-  bool finite = true;
-  recording::in_pieces(signal, 0, [&](const auto& piece, Index) { finite = finite && first_non_finite(piece) < 0; });
-  return finite;
-}
-
 }  // namespace
 
 std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> recordings,
@@ -158,22 +151,17 @@ std::optional<AssumptionTest> test_tremor(std::span<const Recording* const> reco
     const Index begin = std::max<Index>(0, std::llround(trial.preparation.from_s * rate)),
                 end = std::min<Index>(recording.samples(), std::llround(trial.preparation.to_s * rate) + 1);
     if (static_cast<double>(end - begin) < kShortest * rate) continue;
-    double longest = -std::numeric_limits<double>::infinity();
-    recording::in_pieces(recording.time.segment(begin, end - begin), 1, [&](const auto& time, Index) {
-      longest = std::max(longest, (time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff());
-    });
-    if (longest * rate > 1.5) continue;
+    const auto time = recording.time.segment(begin, end - begin);
+    if ((time.tail(time.size() - 1) - time.head(time.size() - 1)).maxCoeff() * rate > 1.5) continue;
     Matrix signals(end - begin, reference.cols() + 1);
     bool finite = true;
     for (Index axis = 0; axis < reference.cols(); ++axis) {
       signals.col(axis) = reference.col(axis).segment(begin, end - begin);
-      finite = finite && is_finite(signals.col(axis));
-      recording::let_go(reference.col(axis));
+      finite = finite && first_non_finite(signals.col(axis)) < 0;
     }
     for (Index axis = 0; finite && axis < trial.axes; ++axis) {
       signals.col(reference.cols()) = force.col(axis).segment(begin, end - begin);
-      recording::let_go(force.col(axis));
-      if (!is_finite(signals.col(reference.cols()))) continue;
+      if (first_non_finite(signals.col(reference.cols())) >= 0) continue;
       const AssumptionTest found = line_of(signals, rate);
       if (!clearest || found.p_value < clearest->p_value) clearest = found;
     }

@@ -15,7 +15,7 @@
 #include "mbk/measure/explore/reference_onsets.h"
 
 namespace mbk::explore {
-namespace after_onset_detail {
+namespace {
 
 constexpr double kBaseline = 0.1;    ///< [s]
 constexpr double kSmoothing = 0.03;  ///< [s], between the first and the last sample of the filter
@@ -184,10 +184,9 @@ double handle_mass_of(std::span<const ExplorationTrial> trials) {
   return one ? *first : 0.0;
 }
 
-}  // namespace after_onset_detail
+}  // namespace
 
 Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials, double window_s) {
-  using namespace after_onset_detail;
   if (trials.empty()) return bad_usage("there is no trial whose onsets could be found");
   if (!(window_s > 2.0 * kSmoothing)) {
     return bad_usage(

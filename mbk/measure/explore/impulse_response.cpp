@@ -13,7 +13,7 @@
 #include "mbk/measure/explore/response_model.h"
 
 namespace mbk::explore {
-namespace impulse_response_detail {
+namespace {
 
 constexpr std::array kMemories = {0.02, 0.04, 0.06, 0.08, 0.12, 0.16, 0.2};  // [s]
 constexpr Index kFolds = 8;
@@ -82,10 +82,9 @@ std::vector<ExplainedForce> judged(const Matrix& Y, const Matrix& predicted, con
   return explained;
 }
 
-}  // namespace impulse_response_detail
+}  // namespace
 
 Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, const ImpulseResponseOptions& options) {
-  using namespace impulse_response_detail;
   const Index n = signals.axes;
   const double T = signals.sample_time;
   std::vector<Index> memories;

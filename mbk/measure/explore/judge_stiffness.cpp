@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 namespace mbk::explore {
-namespace judge_detail {
+namespace {
 
 constexpr double kWarnOfMotion = 0.02, kTooMuchMotion = 0.1;
 constexpr double kWarnOfReach = 0.9, kTooLittleReach = 0.5, kTooFar = 1.1;
 constexpr double kWarnOfError = 0.2, kTooMuchError = 0.5;
 constexpr double kNotLinear = 0.01;
 
-}  // namespace judge_detail
+}  // namespace
 
 StiffnessVerdict judge_stiffness(const StiffnessRegression& fit, double motion_share) {
-  using namespace judge_detail;
   StiffnessVerdict verdict;
   if (motion_share > kWarnOfMotion) {
     verdict.warnings.push_back(

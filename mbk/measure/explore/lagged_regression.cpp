@@ -10,7 +10,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
-namespace lagged_detail {
+namespace {
 
 /// The ranges where their rows stand under each other.
 std::vector<RowRange> stacked(const std::vector<RowRange>& ranges) {
@@ -59,7 +59,7 @@ Matrix coloured_backward(Matrix columns, const Vector& filter, const std::vector
   return columns;
 }
 
-}  // namespace lagged_detail
+}  // namespace
 
 Index row_count(const std::vector<RowRange>& ranges) {
   Index count = 0;
@@ -310,12 +310,12 @@ LaggedFit fit_lagged(const Matrix& Z, const Matrix& R, const Matrix& Y, const st
   fit.coefficients = A * numeric::products_of(R, Y);
   fit.residual = Y - Z * fit.coefficients;
   for (Index j = 0; j < q; ++j) {
-    const Vector noise = lagged_detail::autoregression_of(fit.residual.col(j), ranges);
+    const Vector noise = autoregression_of(fit.residual.col(j), ranges);
     const Matrix innovations = whitened(fit.residual.col(j), noise, ranges);
     const double left = std::max(1.0, static_cast<double>(N - p - noise.size() + 1));
     const double variance = innovations.squaredNorm() / std::max(1.0, static_cast<double>(innovations.rows())) *
                             static_cast<double>(N) / left;
-    const Matrix coloured = lagged_detail::coloured_backward(R, noise, ranges);
+    const Matrix coloured = coloured_backward(R, noise, ranges);
     fit.covariance.push_back(variance * (A * numeric::gram_of({coloured}) * A.transpose()));
     fit.noise.push_back(noise);
   }
@@ -328,7 +328,7 @@ Matrix whitened(const Matrix& columns, const Vector& filter, const std::vector<R
   for (const RowRange& range : ranges) count += std::max<Index>(0, range.size() - order);
   Matrix result(count, columns.cols());
   Index row = 0;
-  for (const RowRange& range : lagged_detail::stacked(ranges)) {
+  for (const RowRange& range : stacked(ranges)) {
     const Index size = range.size() - order;
     if (size <= 0) continue;
     auto block = result.middleRows(row, size);
@@ -351,7 +351,7 @@ AccountedFor accounted_for(const Vector& y, const Vector& e, const std::vector<R
   result.rmse = numeric::root_mean_square(error);
   const Vector influence = -100.0 * (error.array().square() - ratio * signal.array().square()) / power;
   constexpr double kLags = 0.5;  // [s]
-  const auto under = lagged_detail::stacked(ranges);
+  const auto under = stacked(ranges);
   const Index lags = std::min<Index>(N - 1, std::llround(kLags / sample_time));
   const Matrix variance = numeric::long_run_covariance(
       1, under, lags, [&](const RowRange& range) { return Matrix(influence.segment(range.begin, range.size())); });

@@ -14,7 +14,7 @@
 #include "mbk/measure/explore/lagged_regression.h"
 
 namespace mbk::explore {
-namespace limb_signals_detail {
+namespace {
 
 constexpr double kRowsPerBand = 2.5;          ///< rate over kResponseBand
 constexpr double kBack = 1.0, kAhead = 0.05;  ///< what of the reference explains the motion of an instant [s]
@@ -72,10 +72,9 @@ void explain(const Matrix& reference, LimbSignals& signals) {
   signals.identification = rows_inside(signals.identification, signals.pieces, back, ahead);
 }
 
-}  // namespace limb_signals_detail
+}  // namespace
 
 Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
-  using namespace limb_signals_detail;
   if (trials.empty()) return bad_usage("there is no trial whose response could be found");
   LimbSignals signals;
   signals.axes = trials.front().axes;

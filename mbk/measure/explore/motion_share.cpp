@@ -7,7 +7,7 @@
 #include "mbk/model/trial/plateau_stiffness.h"
 
 namespace mbk::explore {
-namespace motion_share_detail {
+namespace {
 
 constexpr double kEndSlope = 0.02;  // [s] over which the velocity at an end of the window is taken
 
@@ -24,10 +24,9 @@ Vector slope_of(const Matrix& values, double sample_time) {
   return sum / squares;
 }
 
-}  // namespace motion_share_detail
+}  // namespace
 
 void MotionShare::add(const Matrix& place, double sample_time, const Vector& commanded) {
-  using namespace motion_share_detail;
   const Index axes = commanded.size();
   if (squares_.size() == 0) squares_ = velocity_ = acceleration_ = Matrix::Zero(axes, axes);
   const Index rows = place.rows();

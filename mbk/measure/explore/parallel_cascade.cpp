@@ -15,7 +15,7 @@
 #include "mbk/measure/explore/second_order_reflex.h"
 
 namespace mbk::explore {
-namespace parallel_cascade_detail {
+namespace {
 
 constexpr double kIntrinsicMemory = 0.04;  ///< [s]: no reflex is as fast (Kearney, Stein & Parameswaran 1997)
 constexpr double kEarliest = 0.04, kLatest = 0.2, kLongest = 0.99;  ///< lags of a reflex [s]
@@ -535,10 +535,10 @@ class Cascade {
   ParallelCascadeEstimate result_;
 };
 
-}  // namespace parallel_cascade_detail
+}  // namespace
 
 Result<ParallelCascadeEstimate> parallel_cascade(const LimbSignals& signals) {
-  return parallel_cascade_detail::Cascade(signals).run();
+  return Cascade(signals).run();
 }
 
 }  // namespace mbk::explore

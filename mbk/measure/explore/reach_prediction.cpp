@@ -8,7 +8,7 @@
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::explore {
-namespace reach_prediction {
+namespace {
 
 constexpr Index kMinReaches = 8;
 
@@ -44,7 +44,7 @@ struct PastAndFuture {
   }
 };
 
-}  // namespace reach_prediction
+}  // namespace
 
 Result<Vector> ReachPrediction::past_of(const RecordedReach& reach) const {
   if (reach.position.cols() != axes_) return bad_data("reaches of different axes");
@@ -76,7 +76,6 @@ Vector ReachPrediction::future_of(const RecordedReach& reach) const {
 
 Result<ReachPrediction> ReachPrediction::create(std::span<const RecordedReach> undisturbed, double sample_time,
                                                 const ReachPredictionOptions& options) {
-  using namespace reach_prediction;
   if (!(sample_time > 0.0 && options.past > 0.0 && options.future > 0.0 && options.step >= sample_time &&
         options.max_components >= 0)) {
     return bad_usage("past, future and step of a prediction are not above 0");

@@ -7,7 +7,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
-namespace response_model_detail {
+namespace {
 
 /// Of a limb that is M, B and K to be called something else. Far below the few per cent at which that is meant to
 /// happen: directions that the motion hardly excites see a noise that no short autoregression knows exactly.
@@ -17,10 +17,9 @@ Vector deviations(const Matrix& covariance) {
   return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
-}  // namespace response_model_detail
+}  // namespace
 
 ResponseModel fit_response_model(const Matrix& D, const LaggedFit& fit, Index n) {
-  using namespace response_model_detail;
   ResponseModel model;
   const Index r = D.rows();
   for (Matrix* of : {&model.M, &model.B, &model.K, &model.M_half_width, &model.B_half_width, &model.K_half_width}) {

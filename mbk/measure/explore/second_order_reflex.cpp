@@ -10,7 +10,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
-namespace second_order_reflex_detail {
+namespace {
 
 /// Impulse response of 1/(s² + 2ζs + 1) at time t, in units of 1/ω.
 double impulse(double t, double damping) {
@@ -165,12 +165,11 @@ class Search {
   std::vector<Vector> wanted_;   ///< r
 };
 
-}  // namespace second_order_reflex_detail
+}  // namespace
 
 std::optional<SecondOrderReflex> fit_second_order(const Matrix& directions, const Matrix& coefficients,
                                                   const std::vector<Matrix>& covariance, double sample_time,
                                                   Index first, double freedom) {
-  using namespace second_order_reflex_detail;
   const Index n = coefficients.cols(), r = coefficients.rows();
   const double begin = sample_time * static_cast<double>(first);
   const double end = sample_time * static_cast<double>(first + directions.rows());

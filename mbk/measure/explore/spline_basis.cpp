@@ -5,7 +5,7 @@
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::explore {
-namespace spline_basis_detail {
+namespace {
 
 /// Knot k of the whole sequence, with degree + 1 equal ones at each end.
 double knot(const SplineBasis& basis, Index k) {
@@ -14,10 +14,9 @@ double knot(const SplineBasis& basis, Index k) {
   return interior < static_cast<Index>(basis.knots.size()) ? basis.knots[static_cast<std::size_t>(interior)] : 1.0;
 }
 
-}  // namespace spline_basis_detail
+}  // namespace
 
 ActiveSplines active_splines(const SplineBasis& basis, double s) {
-  using namespace spline_basis_detail;
   ActiveSplines active;
   active.first = std::ranges::upper_bound(basis.knots, s) - basis.knots.begin();
   const Index interval = active.first + basis.degree;  // knot(interval) ≤ s < knot(interval + 1)
@@ -52,7 +51,6 @@ SplineBasis even_splines(Index cells, int degree) {
 }
 
 Matrix in_finer_splines(const SplineBasis& coarse, const SplineBasis& fine) {
-  using namespace spline_basis_detail;
   Vector places(fine.size());  // Greville's, at which the collocation matrix can be inverted
   for (Index k = 0; k < fine.size(); ++k) {
     places[k] = 0.0;

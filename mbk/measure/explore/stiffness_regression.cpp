@@ -10,7 +10,7 @@
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {
-namespace stiffness_regression {
+namespace {
 
 constexpr double kOneLine = 0.05;        // smallest over largest eigenvalue of Σ z zᵀ
 constexpr double kSameDirection = 0.02;  // of |z|: commands that are repetitions of each other
@@ -71,10 +71,9 @@ double bell_mccaffrey(const Matrix& a, const Matrix& d, Index k) {
   return std::pow(a.col(k).squaredNorm(), 2) / squared;
 }
 
-}  // namespace stiffness_regression
+}  // namespace
 
 Result<StiffnessRegression> regress_stiffness(std::span<const DisplacedHand> displaced) {
-  using namespace stiffness_regression;
   const auto n = static_cast<Index>(displaced.size());
   if (n < kMinDisplacements) {
     return bad_data(fmt::format("{} displacements are fewer than {}", n, kMinDisplacements), "repeat them more often");

@@ -13,7 +13,7 @@
 #include "mbk/measure/explore/varying_regression.h"
 
 namespace mbk::explore {
-namespace time_course_detail {
+namespace {
 
 constexpr double kRowsPerBand = 4.0;  ///< rate over the band: half power at 1.6 times its top
 constexpr Index kEnds = 6;            ///< rows at each end of a trial that the low-pass made of what it added there
@@ -176,10 +176,9 @@ void set_courses(const VaryingFit& constants, const VaryingFit& fit, const Matri
   }
 }
 
-}  // namespace time_course_detail
+}  // namespace
 
 Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseVariable& variable, double band_hz) {
-  using namespace time_course_detail;
   const auto course = MBK_TRY(course_rows(signals, variable, band_hz));
   const VaryingRows& rows = course.rows;
   const Index n = signals.axes, p = 3 * n + 1;

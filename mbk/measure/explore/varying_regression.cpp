@@ -9,7 +9,7 @@
 #include "mbk/base/numeric/dense.h"
 
 namespace mbk::explore {
-namespace varying_detail {
+namespace {
 
 constexpr Index kCells = 48;
 constexpr Index kEven[] = {2, 3, 4, 6, 8, 12, 16, 24};  ///< intervals at equal distances that are tried
@@ -362,7 +362,7 @@ class Chooser {
   std::vector<Products> fine_products_;
 };
 
-}  // namespace varying_detail
+}  // namespace
 
 Matrix varying_columns(const Matrix& Z, const SplineBasis& basis, const Vector& s) {
   const Index p = Z.cols();
@@ -377,8 +377,8 @@ Matrix varying_columns(const Matrix& Z, const SplineBasis& basis, const Vector& 
 }
 
 std::vector<Vector> noise_of(const VaryingRows& rows, const VaryingModel& model) {
-  const Matrix Z = varying_columns(rows.Z, model.basis, rows.s) *
-                   varying_detail::folding(model.basis.size(), rows.Z.cols(), model.varying);
+  const Matrix Z =
+      varying_columns(rows.Z, model.basis, rows.s) * folding(model.basis.size(), rows.Z.cols(), model.varying);
   const Matrix residual = rows.Y - Z * numeric::PivotedQr(Z).solve(rows.Y);
   std::vector<Vector> noise;
   for (Index i = 0; i < rows.Y.cols(); ++i) {
@@ -389,23 +389,23 @@ std::vector<Vector> noise_of(const VaryingRows& rows, const VaryingModel& model)
       pieces.push_back(piece);
       shortest = std::min(shortest, range.size());
     }
-    noise.push_back(dsp::autoregression(pieces, std::min(varying_detail::kMaxOrder, shortest / 3)));
+    noise.push_back(dsp::autoregression(pieces, std::min(kMaxOrder, shortest / 3)));
   }
   return noise;
 }
 
 ChosenSplines choose_splines(const VaryingRows& rows, const std::vector<Vector>& noise,
                              const std::vector<Index>& varying) {
-  ChosenSplines cubic = varying_detail::Chooser(rows, noise, 3, varying.front()).choose(varying);
+  ChosenSplines cubic = Chooser(rows, noise, 3, varying.front()).choose(varying);
   if (cubic.model.basis.size() == 1) return cubic;
-  ChosenSplines straight = varying_detail::Chooser(rows, noise, 1, varying.front()).choose(varying);
+  ChosenSplines straight = Chooser(rows, noise, 1, varying.front()).choose(varying);
   ChosenSplines& best = straight.bic < cubic.bic ? straight : cubic;
   best.bic_last = std::min(cubic.bic_last, straight.bic_last);
   return best;
 }
 
 VaryingFit fit_varying(const VaryingRows& rows, const VaryingModel& model, const std::vector<Vector>& noise) {
-  const Matrix fold = varying_detail::folding(model.basis.size(), rows.Z.cols(), model.varying);
+  const Matrix fold = folding(model.basis.size(), rows.Z.cols(), model.varying);
   const Matrix Z = varying_columns(rows.Z, model.basis, rows.s) * fold,
                R = varying_columns(rows.R, model.basis, rows.s) * fold;
   const Index p = Z.cols(), q = rows.Y.cols();

@@ -16,7 +16,6 @@
 #include "mbk/base/numeric/least_squares.h"
 #include "mbk/base/numeric/long_run_covariances.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/measure/identify/fit_checks.h"
 #include "mbk/measure/identify/instruments.h"
 #include "mbk/measure/identify/missing_dynamics.h"
@@ -391,9 +390,6 @@ Result<Identification> Fitter::identify(Method method) {
     const Vector& fraction = coherent_fraction(method);
     if (result.instrument) result.instrument->coherent_residual = fraction;
     result.response = response_in(residuals(method), fraction);
-    for (const auto& one : estimates_) {
-      if (one) recording::let_go(one->residuals.data(), one->residuals.size());
-    }
   }
   if (is_full(*fit)) {
     const TestedAssumptions& tested = assumptions_tested(method, *fit);

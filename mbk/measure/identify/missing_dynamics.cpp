@@ -139,7 +139,6 @@ class Tester {
       force_.row(k) = r_.Y.row(i);
     }
     measured_.position.rowwise() -= measured_.position.colwise().mean().eval();
-    let_go(r_);
   }
 
   /// The position behind 1/(1 + sτ) at the thinned rows, from rest at the beginning of each range.
@@ -207,7 +206,6 @@ class Tester {
     explained_ = measured_;
     if (r_.reference.size() == 0) return;
     const Matrix X = reference_around();
-    let_go(r_);  // from here on there are rows of their own
     const Index half = rows() / 2, rest = rows() - half;
     const Index lags = measured_.lagging.cols(), columns = 4 * n_ + lags;
     Matrix motion(rows(), columns);

@@ -81,7 +81,6 @@ Regression stacked(const std::vector<PreparedTrial>& trials, bool with_rest) {
     (segment->purpose == Purpose::identification ? r.identification : r.validation).push_back({row, row + size});
     written = row + size;
   }
-  for (const PreparedTrial& trial : trials) recording::let_go(trial);
   r.centre = Vector::Zero(n);
   Index count = 0;
   for (const RowRange& range : r.identification.empty() ? r.validation : r.identification) {
@@ -102,7 +101,6 @@ void centre_reference(Regression& r, const std::vector<RowRange>& ranges) {
   auto motion = r.reference.leftCols(3 * r.axes());
   const Vector mean = SelectedRows(r.reference, ranges)->leftCols(motion.cols()).colwise().mean();
   motion.rowwise() -= mean.transpose();
-  recording::let_go(r.reference.data(), r.reference.size());
 }
 
 void put_on_disk(Matrix& columns) {
@@ -113,12 +111,6 @@ void put_on_disk(Regression& r) {
   if (r.Z.rows() < kLong) return;
   recording::DiskPages disk;
   for (Matrix* part : {&r.Z, &r.Y, &r.reference, &r.force_sensitivity}) disk.take(part->data(), part->size());
-}
-
-void let_go(const Regression& r) {
-  for (const Matrix* part : {&r.Z, &r.Y, &r.reference, &r.force_sensitivity}) {
-    recording::let_go(part->data(), part->size());
-  }
 }
 
 std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b) {

@@ -39,10 +39,9 @@ struct Regression {
 /// Takes the mean of the rows that count from the known perturbation, its derivatives too.
 void centre_reference(Regression& r, const std::vector<RowRange>& ranges);
 
-/// Puts the columns of a long one on disk, and lets go of them until they are read again (disk_pages.h).
+/// Puts the columns of a long one on disk, from where the system reads them again as they are used (disk_pages.h).
 void put_on_disk(Regression& r);
 void put_on_disk(Matrix& columns);
-void let_go(const Regression& r);
 
 /// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
 /// at the split.

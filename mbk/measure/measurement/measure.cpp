@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/analyse/absorbed_energy.h"
 #include "mbk/measure/analyse/analyse_joint_domain.h"
@@ -309,7 +308,6 @@ Result<Passivity> judge_passivity(const std::vector<Source>& sources, const std:
   Passivity passivity;
   passivity.band = analyse::coherent_band(trials);
   PassivityBand band = passivity.band.value_or(analyse::excited_band(trials));
-  for (const PreparedTrial& trial : trials) recording::let_go(trial);
   if (options.band) band = analyse::asked_band(options.band->first, options.band->second, passivity.band);
   auto models = MBK_TRY(analyse::model_passivities({first, other}, band));
   passivity.models = std::move(models);
@@ -467,7 +465,6 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     measured.joints = std::move(joints);
   }
   if (auto ok = add_consistent_model(trials, measured); !ok) return sources[0].in_file(ok.error());
-  for (const PreparedTrial& trial : trials) recording::let_go(trial);
   if (options.passivity) {
     auto passivity = judge_passivity(sources, trials, spectra, options, measured);
     if (!passivity) {

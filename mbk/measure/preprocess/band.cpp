@@ -7,7 +7,6 @@
 
 #include "mbk/base/dsp/spectrum.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/files/contents/disk_pages.h"
 
 namespace mbk::preprocess {
 namespace {
@@ -23,7 +22,7 @@ Result<dsp::Spectrum> spectrum_of(const Columns& signals, const std::vector<Cut>
   for (const Cut& cut : cuts) {
     for (Index axis = 0; axis < signals.cols(); ++axis) {
       const auto signal = signals.col(axis).segment(cut.begin, cut.end - cut.begin);
-      auto spectrum = MBK_TRY(dsp::welch(signal, sample_rate, resolution, recording::let_go_behind(signal)));
+      auto spectrum = MBK_TRY(dsp::welch(signal, sample_rate, resolution));
       if (sum.density.size() == 0) {
         sum = std::move(spectrum);
       } else {

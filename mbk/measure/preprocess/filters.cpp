@@ -8,7 +8,6 @@
 
 #include "mbk/base/dsp/butterworth.h"
 #include "mbk/base/dsp/filter_chain.h"
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/model/trial/filtered_band.h"
 
 namespace mbk::preprocess {
@@ -114,10 +113,7 @@ Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan
   }
   const Index computed = signals.force_sensitivity.cols();
   for (Index k = 0; k < computed; ++k) outputs.push_back({static_cast<Index>(columns.size()) - computed + k, 0});
-  const auto passed = [&](Index first, Index end) {
-    for (const dsp::Column& column : columns) recording::let_go(column.segment(first, end - first));
-  };
-  return dsp::smooth_then_lowpass(chain, columns, outputs, rate, filters.every, passed, to);
+  return dsp::smooth_then_lowpass(chain, columns, outputs, rate, filters.every, to);
 }
 
 Result<Matrix> filter_values(const Matrix& signals, const FilterPlan& filters, Hertz rate,

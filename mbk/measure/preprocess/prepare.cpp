@@ -93,16 +93,6 @@ Result<void> heed_exclusions(const Recording& recording, const Clock& clock, con
   return {};
 }
 
-/// Every so many samples, in passing.
-void take_every(const Eigen::Ref<const Vector>& samples, Index first, Index every, Eigen::Ref<Vector> to) {
-  constexpr Index kAtOnce = 1 << 14;
-  for (Index begin = 0; begin < to.size(); begin += kAtOnce) {
-    const Index count = std::min(kAtOnce, to.size() - begin), from = first + begin * every;
-    to.segment(begin, count) = samples(Eigen::seqN(from, count, every));
-    recording::let_go(samples.segment(from, (count - 1) * every + 1));
-  }
-}
-
 }  // namespace
 
 Result<PreparedTrial> prepare(const Recording& recording, const Inspection& inspection, const Options& options,
@@ -160,7 +150,6 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   const std::vector<Cut> whole = plan.cuts;
   MBK_TRY(heed_exclusions(recording, clock, how, plan, trial.warnings));
   MBK_TRY(check_clock(clock, inspection, plan, trial.warnings));
-  recording::let_go(recording.time);
   MBK_TRY(check_finite(clock, signals, plan, recording.warnings));
   MBK_TRY(check_alive(signals, plan));
   warn_of_small_motion(signals, plan, trial.warnings);
@@ -202,9 +191,10 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
     const auto to = columns_from(row, {&trial.position, &trial.velocity, &trial.acceleration,
                                        &trial.force_hand_on_robot, &trial.reference_motion, &trial.force_sensitivity});
     MBK_TRY(filter_cut(signals, cut, filters, plan.trim, rate, options.padding, with_reference, to));
-    take_every(recording.time, first, every, trial.time.segment(row, rows));
+    const auto kept = Eigen::seqN(first, rows, every);
+    trial.time.segment(row, rows) = recording.time(kept);
     for (Index axis = 0; axis < trial.reference.cols(); ++axis) {
-      take_every(signals.reference.col(axis), first, every, trial.reference.col(axis).segment(row, rows));
+      trial.reference.col(axis).segment(row, rows) = signals.reference.col(axis)(kept);
     }
     append_segments(cut, first, every, row, rows, trial.segments);
     row += rows;

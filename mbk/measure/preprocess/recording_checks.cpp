@@ -8,7 +8,6 @@
 #include <limits>
 #include <string>
 
-#include "mbk/files/contents/disk_pages.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
@@ -146,7 +145,6 @@ Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>
 Result<void> check_reference(const Clock& clock, const Signals& signals, const WindowLimits& limits) {
   for (Index axis = 0; axis < signals.reference.cols(); ++axis) {
     const Index first = first_non_finite(signals.reference.col(axis));
-    recording::let_go(signals.reference.col(axis));
     for (Index i = std::max<Index>(first, 0); first >= 0 && i < signals.reference.rows(); ++i) {
       const double at = clock.seconds(i);
       const bool outside = (limits.from_s && at < *limits.from_s) || (limits.to_s && at >= *limits.to_s);
@@ -182,7 +180,6 @@ Result<void> check_finite(const Clock& clock, const Signals& signals, const Wind
     for (Index axis = 0; axis < columns->cols(); ++axis) {
       for (const Cut& cut : plan.cuts) {
         const Index bad = first_non_finite(columns->col(axis).segment(cut.begin, cut.end - cut.begin));
-        recording::let_go(columns->col(axis));
         if (bad < 0) continue;
         const Index sample = cut.begin + bad;
         const std::string name(quantity.name(signals.axes, axis));
@@ -206,7 +203,6 @@ void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::v
         const double change = std::abs(piece[i] - piece[i - 1]);
         if (change > 0.0) step = std::min(step, change);
       }
-      recording::let_go(piece);
     }
   }
   if (motion < kStepsEnough * step) {

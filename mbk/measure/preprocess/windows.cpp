@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <numeric>
 
-#include "mbk/files/contents/disk_pages.h"
-
 namespace mbk::preprocess {
 namespace {
 
@@ -35,14 +33,11 @@ Index changed_rows(const Columns& reference, Index begin, Index end) {
 /// Maximal runs [begin, end) within [first, last) in which the reference differs from its value at `rest`.
 std::vector<Segment> displacements(const Columns& reference, Index rest, Index first, Index last) {
   std::vector<Segment> runs;
-  recording::InPassing passing({reference}, first);
   for (Index i = first; i < last; ++i) {
-    passing.reached(i);
     if (!differs(reference, i, rest)) continue;
     if (runs.empty() || runs.back().end != i) runs.push_back({i, i, Purpose::identification});
     runs.back().end = i + 1;
   }
-  passing.let_go_before(std::max(first, last));
   return runs;
 }
 
@@ -50,15 +45,12 @@ std::vector<Segment> displacements(const Columns& reference, Index rest, Index f
 /// to that, whereas the first sample of a window may lie inside a pulse.
 Segment longest_rest(const Columns& reference, Index from, Index to) {
   Segment longest{from, from, Purpose::identification};
-  recording::InPassing passing({reference}, from);
   for (Index begin = from; begin < to;) {
-    passing.reached(begin);
     Index end = begin + 1;
     while (end < to && !differs(reference, end, begin)) ++end;
     if (end - begin > longest.size()) longest = {begin, end, Purpose::identification};
     begin = end;
   }
-  passing.let_go_before(std::max(from, to));
   return longest;
 }
 
@@ -118,7 +110,6 @@ std::pair<Index, Index> steady_range(const Columns& reference, Index from, Index
     const auto body = reference.col(k).segment(half, last + 1 - half);
     low[k] = body.minCoeff();
     high[k] = body.maxCoeff();
-    recording::let_go(body);
   }
   const Vector margin = 0.25 * (high - low);
   const auto outside = [&](Index i) {
@@ -133,7 +124,6 @@ std::pair<Index, Index> steady_range(const Columns& reference, Index from, Index
       break;
     }
   }
-  for (Index k = 0; k < reference.cols(); ++k) recording::let_go(reference.col(k));
   return {first, last + 1};
 }
 
@@ -142,12 +132,9 @@ std::pair<Index, Index> steady_range(const Columns& reference, Index from, Index
 ProtocolFinding detect_protocol(const Columns& reference) {
   if (reference.rows() < 2) return {Protocol::free, "no reference was recorded"};
   Index changes = 0;
-  recording::InPassing passing({reference});
   for (Index begin = 1; begin < reference.rows(); begin += kTogether) {
-    passing.reached(begin);
     changes += changed_rows(reference, begin, std::min(begin + kTogether, reference.rows()));
   }
-  passing.let_go_before(reference.rows());
   if (changes == 0) return {Protocol::free, "the reference never changes"};
   const double share = static_cast<double>(changes) / static_cast<double>(reference.rows() - 1);
   if (share < 0.02) {

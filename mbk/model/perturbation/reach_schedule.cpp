@@ -12,7 +12,7 @@
 #include "mbk/model/perturbation/directions.h"
 
 namespace mbk::perturbation {
-namespace reach_schedule {
+namespace {
 
 Result<void> check_counts(const ReachSchedule::Options& o) {
   if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
@@ -75,7 +75,7 @@ std::vector<ReachSchedule::Reach> ordered(const ReachSchedule::Options& o) {
   return reaches;
 }
 
-}  // namespace reach_schedule
+}  // namespace
 
 ReachSchedule::ReachSchedule(const Options& options, std::vector<Reach> reaches)
     : options_(options),
@@ -93,8 +93,8 @@ ReachSchedule::ReachSchedule(const Options& options, std::vector<Reach> reaches)
 }
 
 Result<ReachSchedule> ReachSchedule::create(const Options& options) {
-  MBK_TRY(reach_schedule::check(options));
-  ReachSchedule schedule(options, reach_schedule::ordered(options));
+  MBK_TRY(check(options));
+  ReachSchedule schedule(options, ordered(options));
   if (schedule.to_trigger_ + schedule.displaced_for() > options.interval) {
     return bad_usage(fmt::format("a displacement of {:g} s lasts beyond the interval of {:g} s",
                                  schedule.displaced_for(), options.interval));

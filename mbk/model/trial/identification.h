@@ -208,38 +208,88 @@ struct Replicates {
   std::uint64_t seed = 1;
 };
 
-/// An impedance, how sure it is, how well it fits, and whether it may be used.
+/// An impedance, how certain it is, how well it fits, and whether it may be used. n is the number of axes, 1 or 2.
 struct Identification {
+  /// M ẍ + B ẋ + K (x − x₀) = −F: M [kg], B [N·s/m], K [N/m], x₀ [m], or their rotational units (`units_of(motion)`).
+  /// Every number is NaN if the regressors could not be distinguished; `usable` is then false.
   impedance::Model model;
-  Matrix covariance;                    ///< of `parameters`, 3n²+n square
-  std::vector<std::string> parameters;  ///< m_xx m_xy m_yx m_yy b_… k_… x0 y0; one axis: m b k x0
-  impedance::Model judged;              ///< behind `fit`: from the data that are there to identify, and nothing else
-  impedance::Model standard_error;      ///< √ of its diagonal, in the model's shape
-  /// The part of it that the robot's coefficients have, where the force rests on a model of the robot.
+
+  /// Of `parameters`, in their order, 3n² + n square. Holds for coloured residuals (Newey & West), widened so that
+  /// ±1.96 standard errors are a 95 % interval at this length of data.
+  Matrix covariance;
+
+  /// Names of the rows of `covariance`: m_xx m_xy m_yx m_yy b_… k_… x0 y0; with one axis m b k x0.
+  std::vector<std::string> parameters;
+
+  /// The model behind `fit`, from the data that are there to identify and nothing else. Equals `model` unless the
+  /// parameters were made from all data.
+  impedance::Model judged;
+
+  /// √ of the diagonal of `covariance`, in the shape of the model.
+  impedance::Model standard_error;
+
+  /// The part of it that comes from the coefficients of the robot. Absent unless the force rests on a model of the
+  /// robot.
   std::optional<impedance::Model> standard_error_of_robot;
+
+  /// How the model was found, and why that way in words; the rule is empty if the method was asked for.
   Method method = Method::least_squares;
-  std::string method_rule;                     ///< why that method, in words; empty: it was asked for
-  std::optional<InstrumentCheck> instrument;   ///< with instrumental variables only
-  std::optional<UnmodelledResponse> response;  ///< where the reference is known
-  std::vector<AssumptionTest> assumptions;     ///< those that could be tested
-  std::optional<Replicates> replicates;        ///< where a bootstrap was asked for
+  std::string method_rule;
+
+  /// Strength and validity of the instruments. Only with instrumental variables.
+  std::optional<InstrumentCheck> instrument;
+
+  /// What follows the perturbation and is neither inertia nor damping nor stiffness. Only if the reference is known.
+  std::optional<UnmodelledResponse> response;
+
+  /// One test for each assumption of the model that these data can contradict.
+  std::vector<AssumptionTest> assumptions;
+
+  /// The bootstrap's models. Absent unless one was asked for.
+  std::optional<Replicates> replicates;
+
   Structure structure = Structure::full;
-  double hac_lag_s = 0;    ///< reach of the autocovariance in the standard errors [s]
-  double handle_mass = 0;  ///< [kg] subtracted from the diagonal of M
+
+  /// Reach of the residual's autocovariance in the standard errors [s].
+  double hac_lag_s = 0;
+
+  /// What was subtracted from the diagonal of M [kg], and where it comes from.
+  double handle_mass = 0;
   HandleMassSource handle_mass_from = HandleMassSource::none;
-  std::optional<ParametersFrom> parameters_from;  ///< absent: a stored result does not say
+
+  /// Which data made the parameters. Absent: a stored result does not say.
+  std::optional<ParametersFrom> parameters_from;
+
+  /// How well the model explains the force, on held-out data if there are any.
   Fit fit;
+
+  /// Whether the perturbation moved the limb enough, and in enough directions.
   Excitation excitation;
+
+  /// The same fit on fewer rows. Absent unless it was asked for.
   std::optional<DecimationCheck> decimation;
-  Index samples = 0;                        ///< behind the parameters
-  std::vector<Preparation> preparations;    ///< one per pooled trial
-  std::vector<TrialConditions> conditions;  ///< one per pooled trial
+
+  /// Number of rows behind the parameters.
+  Index samples = 0;
+
+  /// How each pooled trial was prepared and under which conditions it was recorded, in their order.
+  std::vector<Preparation> preparations;
+  std::vector<TrialConditions> conditions;
+
+  /// The files, and the duration [s] and rate [Hz] of each.
   std::vector<SourceFile> sources;
-  std::vector<double> durations, rates;  ///< per source: [s] and [Hz]
+  std::vector<double> durations, rates;
+
   int axes = 2;
   Motion motion = Motion::translation;
-  std::vector<std::string> notes;  ///< what the reader said of the recordings
+
+  /// What the reader said of the recordings.
+  std::vector<std::string> notes;
+
+  /// Why the answer needs care. Scripts test `code`; `message` is for people.
   std::vector<Warning> warnings;
+
+  /// false: the numbers must not be used; `warnings` says why. A command then exits with 4.
   bool usable = true;
 };
 

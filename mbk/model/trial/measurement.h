@@ -14,21 +14,43 @@
 
 namespace mbk {
 
-/// What `measure` found for one recording, or for several pooled.
+/// What `measure` found for one recording, or for several that were pooled. Only `identification` is always there; an
+/// optional part is absent if it was not asked for or cannot be known from the recording.
 struct Measurement {
+  /// M, B, K and x₀ with their covariance, fit and warnings, and whether they may be used.
   Identification identification;
-  std::optional<Findings> findings;  ///< absent where they were not asked for, or with one axis
-  /// The other method on the same rows; absent where no reference was recorded.
+
+  /// Ellipses of M, B and K with intervals. Absent with one axis.
+  std::optional<Findings> findings;
+
+  /// The other method on the same rows: least squares beside instrumental variables, or the reverse. Absent if no
+  /// reference was recorded.
   std::optional<Identification> alternative;
+
+  /// The parameter in which the two methods differ most clearly, and whether that is significant (99 %).
   std::optional<Disagreement> disagreement;
-  std::optional<BootstrapFindings> bootstrap;  ///< where it was asked for
-  std::optional<ConsistentFit> consistent;     ///< nearest to the model that describes the limb
+
+  /// Intervals from data drawn again and again. Absent unless `identify.bootstrap` is above 0.
+  std::optional<BootstrapFindings> bootstrap;
+
+  /// The nearest model that a limb of masses, dampers and springs can have: symmetric M and K, none of M, B and K with
+  /// a negative direction. For simulation; the identification remains the estimate.
+  std::optional<ConsistentFit> consistent;
+
+  /// Two statements: whether the hand delivered energy in this trial, and at which frequencies the model can. Absent if
+  /// `passivity` was false. Neither guarantees that a robot coupled to this person is stable.
   std::optional<Passivity> passivity;
-  std::optional<JointDomain> joints;  ///< where it was asked for
-  /// Where the force was computed and a sensor recorded it too: how both agree, and the model by the sensor.
+
+  /// The same at shoulder and elbow. Absent unless `joint_domain` was set.
+  std::optional<JointDomain> joints;
+
+  /// If the force was computed from motor torques and a sensor recorded it too: how well both agree, and the model that
+  /// the sensor gives.
   std::optional<ForceComparison> force_comparison;
   std::optional<Identification> by_sensor;
-  std::vector<Energy> energies;  ///< one for each recording, beside the passivity
+
+  /// Energy that the limb absorbed, one for each recording, in their order. Empty if `passivity` was false.
+  std::vector<Energy> energies;
 };
 
 }  // namespace mbk

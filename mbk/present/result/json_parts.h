@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "mbk/base/core/linear_algebra.h"
-#include "mbk/base/core/version.h"
+#include "mbk/base/document/json_values.h"
 #include "mbk/model/trial/chart.h"
 #include "mbk/model/trial/identification.h"
 #include "mbk/model/trial/prepared_trial.h"
@@ -20,50 +17,16 @@
 /// What every JSON document of mbk is put together from. For the sources of this module only.
 namespace mbk::result {
 
-using Json = nlohmann::ordered_json;
-
-/// null where a number is undefined.
-inline Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-inline Json list(const Vector& values) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(number(value));
-  return array;
-}
-
-inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of what is only there to be looked at
-
-/// The number with so many digits; null where it is undefined.
-inline Json rounded(double value, int digits) {
-  if (!std::isfinite(value)) return nullptr;
-  const std::string text = fmt::format("{:.{}g}", value, digits);
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
-}
-
-inline Json rounded(const Vector& values, int digits = kDigits) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(rounded(value, digits));
-  return array;
-}
-
-/// [low, high]
-inline Json interval(const std::pair<double, double>& value, double scale = 1.0) {
-  return Json::array({number(scale * value.first), number(scale * value.second)});
-}
-
-inline Json rows(const Matrix& matrix) {
-  Json array = Json::array();
-  for (Index i = 0; i < matrix.rows(); ++i) array.push_back(list(matrix.row(i).transpose()));
-  return array;
-}
-
-/// Names of files and channels may hold bytes that are not UTF-8, which JSON cannot say: they become U+FFFD.
-inline std::string dumped(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+using document::dumped;
+using document::header;
+using document::interval;
+using document::Json;
+using document::kDigits;
+using document::kTimeDigits;
+using document::list;
+using document::number;
+using document::rounded;
+using document::rows;
 
 inline Json units_json(Motion motion) {
   const Units units = units_of(motion);
@@ -77,10 +40,6 @@ inline Json units_json(Motion motion) {
 /// What the fit was judged on.
 inline const char* validated_on(bool held_out) {
   return held_out ? "held-out" : "in-sample";
-}
-
-inline Json header(const char* schema) {
-  return {{"schema", schema}, {"software", fmt::format("mbk {}", version())}};
 }
 
 inline Json inputs_json(const std::vector<SourceFile>& sources) {

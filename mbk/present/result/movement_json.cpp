@@ -2,43 +2,82 @@
 
 #include <numbers>
 
-#include "mbk/present/result/json_parts.h"
+#include "mbk/present/result/described.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
+namespace mbk {
 
-std::string to_json(std::span<const MovementQuality> all) {
-  Json json = header("mbk.movement/1");
-  json["recordings"] = Json::array();
-  for (const MovementQuality& one : all) {
-    Json recording = {
-        {"file", one.source.path},  {"sha256", one.source.sha256},        {"format", one.source.format},
-        {"axes", one.axes},         {"rate_hz", number(one.rate_hz)},     {"from_s", number(one.from_s)},
-        {"to_s", number(one.to_s)}, {"cutoff_hz", number(one.cutoff_hz)}, {"rest_speed", number(one.rest_speed)}};
-    if (!one.source.trial.empty()) recording["trial"] = one.source.trial;
-    recording["reaches"] = Json::array();
-    const auto maybe = [](const std::optional<double>& value, double scale = 1.0) {
-      return value ? number(scale * *value) : Json(nullptr);
-    };
-    for (const Reach& reach : one.reaches) {
-      recording["reaches"].push_back({{"begin_s", number(reach.begin_s)},
-                                      {"end_s", number(reach.end_s)},
-                                      {"sparc", number(reach.sparc)},
-                                      {"ldlj", number(reach.ldlj)},
-                                      {"peaks", reach.peaks},
-                                      {"mean_speed", number(reach.mean_speed)},
-                                      {"peak_speed", number(reach.peak_speed)},
-                                      {"path", number(reach.path)},
-                                      {"distance", number(reach.distance)},
-                                      {"path_ratio", maybe(reach.path_ratio)},
-                                      {"endpoint_error", maybe(reach.endpoint_error)},
-                                      {"robot_work_J", maybe(reach.robot_work)},
-                                      {"force_angle_deg", maybe(reach.force_angle, 180.0 / std::numbers::pi)}});
-    }
-    recording["notes"] = one.notes;
-    recording["warnings"] = warnings_json(one.warnings);
-    json["recordings"].push_back(std::move(recording));
-  }
-  return dumped(json);
+using document::Fields;
+
+void describe(Fields<Reach>& fields) {
+  fields.type("Reach", "One movement from rest to rest.");
+  fields.add("begin_s", &Reach::begin_s, "from the recording's first sample [s]");
+  fields.add("end_s", &Reach::end_s, "[s]");
+  fields.add("sparc", &Reach::sparc, "spectral arc length of the speed");
+  fields.add("ldlj", &Reach::ldlj, "log dimensionless jerk");
+  fields.add("peaks", &Reach::peaks, "of the speed");
+  fields.add("mean_speed", &Reach::mean_speed, "[m/s or rad/s]");
+  fields.add("peak_speed", &Reach::peak_speed, "[m/s or rad/s]");
+  fields.add("path", &Reach::path, "length of the way [m or rad]");
+  fields.add("distance", &Reach::distance, "straight from begin to end [m or rad]");
+  fields.add_or_null("path_ratio", &Reach::path_ratio, "path/distance; null where the hand returns");
+  fields.add_or_null("endpoint_error", &Reach::endpoint_error,
+                     "from the reference at the end [m or rad]; null without one");
+  fields.add_or_null("robot_work_J", &Reach::robot_work, "done by the robot on the hand; null without a force");
+  fields.add_or_null(
+      "force_angle_deg",
+      [](const Reach& reach) -> std::optional<double> {
+        if (!reach.force_angle) return std::nullopt;
+        return 180.0 / std::numbers::pi * *reach.force_angle;
+      },
+      "mean angle of the force of the hand to its motion; null without a force or with one axis");
 }
 
-}  // namespace mbk::result
+void describe(Fields<MovementQuality>& fields) {
+  using From = const MovementQuality&;
+  fields.type("MovementRecording");
+  fields.add(
+      "file", [](From one) { return one.source.path; }, "path, as it was given");
+  fields.add(
+      "sha256", [](From one) { return one.source.sha256; },
+      "of the file's bytes, in hexadecimal; empty where it was not a file");
+  fields.add(
+      "format", [](From one) { return one.source.format; }, "empty where it is not known");
+  fields.add("axes", &MovementQuality::axes);
+  fields.add("rate_hz", &MovementQuality::rate_hz, "sample rate [Hz]");
+  fields.add("from_s", &MovementQuality::from_s, "start of the analysed interval [s]");
+  fields.add("to_s", &MovementQuality::to_s, "its end [s]");
+  fields.add("cutoff_hz", &MovementQuality::cutoff_hz, "of the filter behind the speed [Hz]");
+  fields.add("rest_speed", &MovementQuality::rest_speed, "below it the hand is at rest [m/s or rad/s]");
+  fields.add_if([](From one) { return !one.source.trial.empty(); }, "trial", [](From one) { return one.source.trial; },
+                "which of the trials that the file holds; absent where it holds one");
+  fields.add("reaches", &MovementQuality::reaches);
+  fields.add("notes", &MovementQuality::notes);
+  fields.add("warnings", &MovementQuality::warnings);
+}
+
+namespace result {
+namespace {
+
+struct Movement {
+  std::vector<MovementQuality> recordings;
+};
+
+void describe(Fields<Movement>& fields) {
+  fields.type("Movement", "What `mbk movement --json` writes: reaches of recordings and their quality. SI units.");
+  fields.header("mbk.movement/1");
+  fields.add("recordings", &Movement::recordings);
+}
+
+}  // namespace
+
+std::string to_json(std::span<const MovementQuality> all) {
+  return document::document(Movement{{all.begin(), all.end()}});
+}
+
+void add_movement_schema(document::Schemas& schemas) {
+  schemas["movement"] = document::schema_of<Movement>();
+}
+
+}  // namespace result
+}  // namespace mbk

@@ -8,7 +8,7 @@
 #include "mbk/base/core/option_limits.h"
 
 namespace mbk::participant {
-namespace reaching {
+namespace {
 
 /// Durations and lengths stay within it: a draw far out is no reach any more.
 constexpr double kLeast = 0.7, kMost = 1.3;
@@ -44,13 +44,12 @@ Result<void> check(const Reaching::Options& o) {
   return {};
 }
 
-}  // namespace reaching
+}  // namespace
 
 Reaching::Reaching(const Options& options)
     : options_(options), back_({1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, options.way_back) {}
 
 Result<Reaching> Reaching::create(const Options& options, std::uint64_t seed, std::uint32_t stream) {
-  using namespace reaching;
   MBK_TRY(check(options));
   Reaching made(options);
   numeric::Random random(seed, stream);
