@@ -8,15 +8,15 @@
 #include "mbk/experiment/drivers/bridge_check.h"
 #include "mbk/experiment/session/robot_check.h"
 
-namespace mbk::app {
+namespace mbk::session {
 
 /// What `mbk robot check` looked at; empty: it was not asked for.
 struct RobotCheckReport {
   struct Setup {
     std::string file, text;
-    std::vector<session::Finding> findings;
+    std::vector<Finding> findings;
     std::string live_text;
-    std::optional<std::vector<session::Finding>> live;
+    std::optional<std::vector<Finding>> live;
   };
   struct Link {
     std::string address;
@@ -26,7 +26,7 @@ struct RobotCheckReport {
   struct Timing {
     realtime::Machine machine;
     realtime::Lateness lateness;
-    std::vector<session::Finding> findings;
+    std::vector<Finding> findings;
   };
   std::optional<Setup> setup;
   std::optional<Link> link;
@@ -41,4 +41,4 @@ struct RobotCheckReport {
 /// Schema "mbk.robot_check/1".
 [[nodiscard]] std::string json_of(const RobotCheckReport& report);
 
-}  // namespace mbk::app
+}  // namespace mbk::session

@@ -1,4 +1,4 @@
-#include "apps/mbk/commands/robot_check_report.h"
+#include "mbk/experiment/session/robot_check_report.h"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,12 @@
 #include "mbk/base/core/version.h"
 #include "mbk/experiment/session/machine_check.h"
 
-namespace mbk::app {
+namespace mbk::session {
 namespace {
 
 using drivers::BridgeReport;
 using drivers::RuleFinding;
 using drivers::RuleVerdict;
-using session::Finding;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::size_t kColumns = 80;
@@ -181,7 +180,7 @@ OrderedJson timing_json(const RobotCheckReport::Timing& timing) {
 }
 
 bool any_wrong(const std::vector<Finding>& findings) {
-  return session::worst(findings) == Finding::Verdict::wrong;
+  return worst(findings) == Finding::Verdict::wrong;
 }
 
 }  // namespace
@@ -203,7 +202,7 @@ std::string text_of(const RobotCheckReport& report) {
   }
   if (report.link) text += link_text(*report.link);
   if (report.timing) {
-    text += session::lateness_text(report.timing->machine, report.timing->lateness);
+    text += lateness_text(report.timing->machine, report.timing->lateness);
     text += findings_text(report.timing->findings);
   }
   return text;
@@ -220,4 +219,4 @@ std::string json_of(const RobotCheckReport& report) {
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::session
