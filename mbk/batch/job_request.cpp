@@ -30,7 +30,7 @@ struct Measured {
   std::int64_t memory_mb = 0;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
+double taken_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
@@ -40,14 +40,14 @@ Measured measured_cost(const JobRequest& request) {
   const auto begin = std::chrono::steady_clock::now();
   double weight = 0.0;
   const std::size_t count = std::min(kUnits, request.keys.size());
-  for (std::size_t k = 0; k < count && seconds_since(begin) < kLongest; ++k) {
+  for (std::size_t k = 0; k < count && taken_since(begin) < kLongest; ++k) {
     const std::size_t unit = count == 1 ? 0 : k * (request.keys.size() - 1) / (count - 1);
     // What fails here fails in its chunk, too, and is told there.
     std::ignore = request.compute(static_cast<std::int64_t>(unit), request.keys[unit]);
     weight += request.weights[unit];
   }
   Measured measured;
-  measured.s_per_weight = std::max(seconds_since(begin), 1e-6) / weight;
+  measured.s_per_weight = std::max(taken_since(begin), 1e-6) / weight;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   constexpr std::int64_t kKilobytes = 1024, kBeside = 256;  // half as much again, and [MB]
@@ -190,7 +190,7 @@ Result<std::vector<std::string>> results_of(const JobFolder& folder) {
     return {};
   }));
   if (merged.missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
-  note_merged(folder, seconds_since(begin));
+  note_merged(folder, taken_since(begin));
   return results;
 }
 

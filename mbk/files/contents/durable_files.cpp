@@ -18,9 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A descriptor that is closed.
-struct Descriptor {
+struct OpenedFile {
   int value = -1;
-  ~Descriptor() {
+  ~OpenedFile() {
     if (value >= 0) ::close(value);
   }
 };
@@ -64,7 +64,7 @@ Result<void> make_folder(const fs::path& folder) {
 }
 
 Result<void> read_pieces(const fs::path& file, const std::function<Result<void>(std::span<const std::byte>)>& take) {
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // a pipe's writer might never come
+  const OpenedFile in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // a pipe's writer might never come
   if (in.value < 0) return cannot("cannot be read", file, errno);
   struct stat status {};
   if (::fstat(in.value, &status) != 0) return cannot("cannot be read", file, errno);
@@ -81,7 +81,7 @@ Result<void> read_pieces(const fs::path& file, const std::function<Result<void>(
 }
 
 Result<CopiedFile> copy_hashed(const fs::path& from, const fs::path& to) {
-  Descriptor out{::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
+  OpenedFile out{::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
   if (out.value < 0) return cannot("cannot be written", to, errno);
   CopiedFile copied;
   recording::Sha256 sum;
@@ -111,7 +111,7 @@ Result<void> rename_on_disk(const fs::path& from, const fs::path& to) {
 }
 
 Result<void> flush_folder(const fs::path& folder) {
-  const Descriptor opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  const OpenedFile opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (opened.value < 0) return cannot("cannot be written", folder, errno);
   const int code = sync_file(opened.value);
   if (code != 0 && code != EINVAL) return cannot("cannot be written", folder, code);  // EINVAL: it cannot say so
