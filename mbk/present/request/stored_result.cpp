@@ -1,10 +1,10 @@
-#include "apps/mbk/commands/stored_result.h"
+#include "mbk/present/request/stored_result.h"
 
-#include "apps/mbk/options/output.h"
 #include "mbk/files/contents/read_text.h"
+#include "mbk/measure/analyse/ellipses.h"
 #include "mbk/measure/analyse/judge_passivity.h"
 
-namespace mbk::app {
+namespace mbk::request {
 
 Result<std::vector<result::StoredResult>> stored_results(const std::filesystem::path& file) {
   const auto text = MBK_TRY(read_text(file));
@@ -38,4 +38,18 @@ Result<Passivity> passivity_of(const result::StoredResult& stored, const AskedBa
   return passivity;
 }
 
-}  // namespace mbk::app
+Result<Measurement> restored(result::StoredResult stored) {
+  Measurement measured;
+  if (stored.passivity.energy || stored.passivity.judged) {
+    auto passivity = MBK_TRY(passivity_of(stored, {}));
+    measured.passivity = std::move(passivity);
+  }
+  measured.identification = std::move(stored.identification);
+  measured.alternative = std::move(stored.alternative);
+  if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
+    measured.findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
+  }
+  return measured;
+}
+
+}  // namespace mbk::request

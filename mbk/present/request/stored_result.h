@@ -7,10 +7,11 @@
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
+#include "mbk/model/trial/measurement.h"
 #include "mbk/model/trial/passivity.h"
 #include "mbk/present/result/json.h"
 
-namespace mbk::app {
+namespace mbk::request {
 
 /// A band that an option asks for.
 using AskedBand = std::optional<std::pair<Hertz, Hertz>>;
@@ -23,4 +24,7 @@ using AskedBand = std::optional<std::pair<Hertz, Hertz>>;
 /// @fails  usage: no band is asked for, and the result holds neither one in which its models were judged nor energy.
 [[nodiscard]] Result<Passivity> passivity_of(const result::StoredResult& stored, const AskedBand& asked);
 
-}  // namespace mbk::app
+/// As `measure` made it, as far as it was stored.   @fails  as passivity_of and analyse::analyse_ellipses
+[[nodiscard]] Result<Measurement> restored(result::StoredResult stored);
+
+}  // namespace mbk::request
