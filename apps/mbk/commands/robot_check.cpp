@@ -7,12 +7,12 @@
 
 #include "apps/mbk/commands/robot_commands.h"
 #include "apps/mbk/options/output_options.h"
-#include "apps/mbk/options/scenario_argument.h"
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/session/live_check.h"
 #include "mbk/experiment/session/machine_check.h"
 #include "mbk/experiment/session/robot_check_report.h"
+#include "mbk/simulate/laboratory/named_scenario.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::app {
@@ -47,7 +47,7 @@ Result<drivers::UdpAddress> address_of(const std::string& given) {
 }
 
 Result<session::RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments) {
-  const auto text = MBK_TRY(read_scenario_text(arguments.file));
+  const auto text = MBK_TRY(laboratory::read_scenario_text(arguments.file));
   const auto setup = MBK_TRY(session::read_robot_setup(text.text, text.file, laboratory::read_simulation));
   if (arguments.live && !setup.has_device) {
     return tl::unexpected(
@@ -133,7 +133,7 @@ Action add_robot_check(Command group) {
   const Option file =
       command
           .add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
-          .check(suggests(ready_scenario_names()));
+          .check(suggests(laboratory::ready_scenario_names()));
   command.add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
       .type_name("S")
       .expected(0, 1)

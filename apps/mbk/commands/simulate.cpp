@@ -11,7 +11,7 @@
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/readers_option.h"
-#include "apps/mbk/options/scenario_argument.h"
+#include "mbk/simulate/laboratory/named_scenario.h"
 #include "apps/mbk/options/threads_option.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/numeric/parallel.h"
@@ -54,13 +54,13 @@ fs::path file_name(const SimulateArguments& arguments, const std::string& trial,
 }
 
 Result<std::vector<Job>> jobs_of(const SimulateArguments& arguments) {
-  const auto scenarios = MBK_TRY(read_scenario_argument(arguments.scenario));
+  const auto scenarios = MBK_TRY(laboratory::read_scenario_argument(arguments.scenario));
   std::vector<laboratory::Scenario> chosen;
   for (const std::string& name : arguments.trials) {
     if (std::ranges::count(arguments.trials, name) > 1) {
       return bad_usage(fmt::format("trial '{}' is asked for twice", name), "name each --trial once");
     }
-    const auto trial = MBK_TRY(find_trial(scenarios, name));
+    const auto trial = MBK_TRY(laboratory::find_trial(scenarios, name));
     chosen.push_back(trial);
   }
   std::vector<Job> jobs;
@@ -294,7 +294,7 @@ Action add_simulate(Command app) {
       "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
       "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
   command.add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a ready scenario")
-      .check(suggests(ready_scenario_names()));
+      .check(suggests(laboratory::ready_scenario_names()));
   command
       .add_option("--out", arguments->out,
                   "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
@@ -317,7 +317,7 @@ Action add_simulate(Command app) {
   command.add_flag("--facts", arguments->facts, "what the perturbation demands: peaks, speed, band; simulates nothing");
   command.add_option("--show", *shown, "print a ready scenario")
       .type_name("NAME")
-      .check(suggests(ready_scenario_names()));
+      .check(suggests(laboratory::ready_scenario_names()));
   command.add_flag("--quiet", arguments->quiet, "no progress and no summary");
   return [arguments, shown] {
     if (arguments->list) return list();

@@ -5,7 +5,6 @@
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output_options.h"
 #include "apps/mbk/options/reading_options.h"
-#include "apps/mbk/options/scenario_argument.h"
 #include "apps/mbk/options/table_options.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/measure/calibration/spring_constant.h"
@@ -13,6 +12,7 @@
 #include "mbk/present/report/springs_text.h"
 #include "mbk/present/request/spring_request.h"
 #include "mbk/present/result/springs_json.h"
+#include "mbk/simulate/laboratory/named_scenario.h"
 
 namespace mbk::app {
 namespace {
@@ -30,11 +30,12 @@ struct FindArguments : request::SpringDesignRequest {
 
 /// The springs of a scenario's [rig].
 Result<std::vector<Spring>> springs_of_scenario(const FieldArguments& arguments) {
-  const auto scenarios = MBK_TRY(read_scenario_argument(arguments.scenario));
+  const auto scenarios = MBK_TRY(laboratory::read_scenario_argument(arguments.scenario));
   if (arguments.trial.empty() && scenarios.size() > 1) {
     return bad_usage(fmt::format("{} has {} trials", arguments.scenario, scenarios.size()), "choose one by --trial");
   }
-  const auto chosen = MBK_TRY(arguments.trial.empty() ? scenarios.front() : find_trial(scenarios, arguments.trial));
+  const auto chosen =
+      MBK_TRY(arguments.trial.empty() ? scenarios.front() : laboratory::find_trial(scenarios, arguments.trial));
   const auto* planar = std::get_if<laboratory::PlanarTrial>(&chosen.trial);
   const auto* rig = planar == nullptr ? nullptr : std::get_if<laboratory::RigPlan>(&planar->load);
   if (rig == nullptr || rig->springs.empty()) {
@@ -109,7 +110,7 @@ Action add_field(Command springs) {
       "the hand. K is minus the gradient of the force at the place where the force is zero.");
   const Option scenario =
       command.add_option("SCENARIO.toml", arguments->scenario, "a scenario with [[rig.spring]], or a ready one's name")
-          .check(suggests(ready_scenario_names()));
+          .check(suggests(laboratory::ready_scenario_names()));
   command.add_option("--trial", arguments->trial, "which [[trial]] of it").type_name("NAME").needs(scenario);
   add_options(command, request::spring_field_table(), *arguments);
   command.add_flag("--json", arguments->json, "for machines: schema mbk.springs/1");

@@ -7,7 +7,7 @@
 #include "mbk/base/core/result.h"
 #include "mbk/simulate/laboratory/scenario.h"
 
-namespace mbk::app {
+namespace mbk::laboratory {
 
 /// A file's text, and how messages call it.
 struct ScenarioText {
@@ -21,13 +21,13 @@ struct ScenarioText {
 
 /// The trials behind a SCENARIO argument.
 /// @fails  as read_scenario_text, read_scenarios.
-[[nodiscard]] Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument);
+[[nodiscard]] Result<std::vector<Scenario>> read_scenario_argument(const std::string& argument);
 
 /// What `mbk simulate --list` names.
 [[nodiscard]] std::vector<std::string> ready_scenario_names();
 
 /// The one that is called so. @fails  usage: none is; the message names those that there are.
-[[nodiscard]] Result<laboratory::Scenario> find_trial(const std::vector<laboratory::Scenario>& scenarios,
+[[nodiscard]] Result<Scenario> find_trial(const std::vector<Scenario>& scenarios,
                                                       const std::string& name);
 
-}  // namespace mbk::app
+}  // namespace mbk::laboratory

@@ -1,17 +1,16 @@
-#include "apps/mbk/options/scenario_argument.h"
+#include "mbk/simulate/laboratory/named_scenario.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/mbk/options/output.h"
 #include "mbk/files/contents/read_text.h"
 
-namespace mbk::app {
+namespace mbk::laboratory {
 
 Result<ScenarioText> read_scenario_text(const std::string& argument) {
-  if (const auto* ready = laboratory::find_ready_scenario(argument)) {
+  if (const auto* ready = find_ready_scenario(argument)) {
     return ScenarioText{std::string(ready->text), std::string(ready->name) + ".toml"};
   }
   std::error_code error;
@@ -24,24 +23,24 @@ Result<ScenarioText> read_scenario_text(const std::string& argument) {
   return ScenarioText{*std::move(text), argument};
 }
 
-Result<std::vector<laboratory::Scenario>> read_scenario_argument(const std::string& argument) {
+Result<std::vector<Scenario>> read_scenario_argument(const std::string& argument) {
   const auto text = MBK_TRY(read_scenario_text(argument));
-  return laboratory::read_scenarios(text.text, text.file);
+  return read_scenarios(text.text, text.file);
 }
 
 std::vector<std::string> ready_scenario_names() {
   std::vector<std::string> names;
-  for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) names.emplace_back(one.name);
+  for (const ReadyScenario& one : ready_scenarios()) names.emplace_back(one.name);
   return names;
 }
 
-Result<laboratory::Scenario> find_trial(const std::vector<laboratory::Scenario>& scenarios, const std::string& name) {
-  const auto found = std::ranges::find(scenarios, name, &laboratory::Scenario::name);
+Result<Scenario> find_trial(const std::vector<Scenario>& scenarios, const std::string& name) {
+  const auto found = std::ranges::find(scenarios, name, &Scenario::name);
   if (found != scenarios.end()) return *found;
   std::string known;
-  for (const laboratory::Scenario& one : scenarios) known += (known.empty() ? "" : ", ") + one.name;
+  for (const Scenario& one : scenarios) known += (known.empty() ? "" : ", ") + one.name;
   return bad_usage(fmt::format("there is no trial '{}' in {}", name, scenarios.front().protocol),
                    known.empty() ? "it has no [[trial]]" : "there are: " + known);
 }
 
-}  // namespace mbk::app
+}  // namespace mbk::laboratory
