@@ -8,6 +8,7 @@
 #include "mbk/study/workflow/bootstrap_units.h"
 #include "mbk/study/workflow/explore_units.h"
 #include "mbk/study/workflow/measure_units.h"
+#include "mbk/study/workflow/simulate_recordings.h"
 
 namespace mbk::app {
 
@@ -21,7 +22,7 @@ Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use) {
     if (kind == workflow::kMeasureKind) compute = workflow::measure_units(json);
     if (kind == workflow::kBootstrapKind) compute = workflow::bootstrap_units(json);
     if (kind == workflow::kExploreKind) compute = workflow::explore_units(json);
-    if (kind == kSimulateKind) compute = simulate_units(json);
+    if (kind == workflow::kSimulateKind) compute = workflow::simulate_units(json);
   } catch (const nlohmann::json::exception&) {
     return bad_data("the job's specification cannot be read", "begin the job again", folder.folder().string());
   }
