@@ -82,8 +82,4 @@ if(MBK_BUILD_TESTS)
   # mujocoConfig.cmake names a folder that its package does not have.
   find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h)
   find_library(MUJOCO_LIBRARY mujoco)
-  # An independent solver for tests/conic, if it is installed; OpenMP only to limit it to one thread.
-  find_path(CSDP_INCLUDE_DIR csdp/declarations.h)
-  find_library(CSDP_LIBRARY sdp)
-  find_package(OpenMP REQUIRED COMPONENTS CXX)
 endif()

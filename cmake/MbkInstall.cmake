@@ -1,6 +1,6 @@
 # What `cmake --install` puts where. Components: program (what runs: mbk, its manual pages, its completion, the schemas of
-# what it writes, the documents), development (what an application is built with: libraries, headers, the CMake package
-# mbk) and mpi (mbk_mpi, where Open MPI is: what `--engine mpi` starts, so that nothing else needs it).
+# what it writes, the documents), and development (what an application is built with: libraries, headers, the CMake
+# package mbk).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -103,10 +103,6 @@ function(mbk_install)
   # `mbk validate faults --link udp` looks for the other program beside itself.
   install(TARGETS mbk mbk_misbehaving_robot RUNTIME COMPONENT program)
   install(FILES apps/misbehaving_robot/mbk_misbehaving_robot.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-  if(TARGET mbk_mpi)
-    install(TARGETS mbk_mpi RUNTIME COMPONENT mpi)
-    install(FILES apps/mbk_mpi/mbk_mpi.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT mpi)
-  endif()
   mbk_install_program_texts()
 
   # What scripts of one's own may rely on: docs/guide/schemas.md.

@@ -1,6 +1,5 @@
 # Debian packages from the components of MbkInstall: mbk, which a laboratory installs, libmbk-dev, which only those need
-# who write programs: it brings compiler packages along, python3-mbk, where the module of Python is built, and mbk-mpi,
-# where Open MPI is, which clusters without a scheduler need.
+# who write programs: it brings compiler packages along, and python3-mbk, where the module of Python is built.
 # tools/package makes them.
 set(MBK_MAINTAINER "The mbk authors <maintainers@mbk.example>" CACHE STRING "Maintainer of the Debian packages")
 
@@ -15,9 +14,6 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_COMPONENTS_ALL program development)
 if(MBK_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
-endif()
-if(TARGET mbk_mpi)
-  list(APPEND CPACK_COMPONENTS_ALL mpi)
 endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -54,14 +50,6 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-xarray, mbk")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "What the program mbk computes, for Python: recordings as NumPy arrays without
 a copy, each command as a function with the same options, results with units,
 tables for notebooks and pandas, and plots.")
-
-set(CPACK_DEBIAN_MPI_PACKAGE_NAME mbk-mpi)
-set(CPACK_DEBIAN_MPI_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_MPI_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "mbk (= ${version}), openmpi-bin")
-set(CPACK_COMPONENT_MPI_DESCRIPTION "What mbk starts for --engine mpi: a small program that hands the chunks
-of a job out to the ranks of a run of Open MPI, each of which does its chunks
-by mbk.")
 
 # The packages that hold what the libraries link, asked of dpkg.
 find_program(MBK_DPKG_QUERY dpkg-query)

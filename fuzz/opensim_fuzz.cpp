@@ -2,7 +2,6 @@
 #include "mbk/files/tables/capture_tables.h"
 #include "mbk/files/tables/delsys.h"
 #include "mbk/files/tables/lvm.h"
-#include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
 #include "mbk/files/tables/physiology_tables.h"
 
@@ -29,13 +28,7 @@ std::vector<std::string> seeds() {
       "arm.acq\n2 msec/sample\n2 channels\nx\nmm\nF\nN\nmin\tCH1\tCH2\t\n\t2\t2\t\n0\t1\t2\t\n0.1\t3\t4\t\n",
       "Interval=\t0.002 s\nChannelTitle=\tx\tF\nRange=\t10 mm\t5 V\nUnitName=\t*\tN\n0\t1\t2\t#* go\n0.002\t3\t4\n",
       "\"INFORMATION\"\n\"CHANNEL\"\t\"1\"\n\"Waveform\"\n\"\"\n\"F\"\n\"N\"\n\"START\"\t0\t0.1\n1\n\"START\"\t9\t0."
-      "1\n2\n",
-      "# Created by Octave 7\n# name: t\n# type: matrix\n# rows: 2\n# columns: 2\n 0 1\n 2 NA\n\n\n"
-      "# name: r\n# type: range\n# base, limit, increment\n0 5 1\n\n# name: s\n# type: scalar struct\n# ndims: 2\n 1 "
-      "1\n"
-      "# length: 2\n# name: x\n# type: scalar\n1.5\n\n# name: n\n# type: string\n# elements: 1\n# length: 2\nab\n\n"
-      "# name: c\n# type: cell\n# rows: 1\n# columns: 1\n# name: <cell-element>\n# type: scalar\n1\n\n"
-      "# name: i\n# type: int32 matrix\n# ndims: 2\n 2 1\n  1\n  2\n\n"};
+      "1\n2\n"};
 }
 
 }  // namespace mbk::fuzz
@@ -44,7 +37,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace mbk::recording;  // NOLINT(google-build-using-namespace): that is what is tried
   const auto bytes = mbk::fuzz::bytes_of(data, size);
   const auto text = mbk::fuzz::text_of(data, size);
-  if (looks_like_octave_text(text)) mbk::fuzz::check_decoded(decode_octave_text(bytes), size);
   if (looks_like_opensim(text)) mbk::fuzz::check_decoded(decode_opensim(bytes), size);
   if (looks_like_lvm(text)) {
     auto records = decode_lvm(bytes);

@@ -64,14 +64,12 @@ struct Values {
 };
 
 void check_values(std::string_view bytes) {
-  batch::ValueReader reader(bytes);
   Values values;
-  reader.get(values);
+  const bool whole = batch::from_bytes(bytes, values);
   require(values.named.size() <= bytes.size() && values.matrix.size() <= std::ssize(bytes), "no more than there is");
-  if (!reader.complete()) return;
-  batch::ValueWriter writer;
-  writer.put(values);
-  require(writer.take().size() <= bytes.size(), "what is read can be written");
+  if (!whole) return;
+  Values again;
+  require(batch::from_bytes(batch::to_bytes(values), again), "what is read can be written and read again");
 }
 
 }  // namespace
@@ -87,9 +85,7 @@ std::vector<std::string> seeds() {
   std::ifstream in(folder / "000003.0123456789abcdef.shard", std::ios::binary);
   std::string shard{std::istreambuf_iterator<char>(in), {}};
   fs::remove_all(folder);
-  batch::ValueWriter values;
-  values.put(Values{1.5, {{"a", true}}, {{"b", {1.0, 2.0}}}, Eigen::MatrixXd::Ones(2, 3)});
-  return {shard, values.take()};
+  return {shard, batch::to_bytes(Values{1.5, {{"a", true}}, {{"b", {1.0, 2.0}}}, Eigen::MatrixXd::Ones(2, 3)})};
 }
 
 }  // namespace mbk::fuzz

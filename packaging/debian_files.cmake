@@ -12,14 +12,6 @@ file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/copyright ${development}/doc/libmbk-dev
 file(COPY_FILE ${CPACK_MBK_CHANGELOG} ${program}/doc/mbk/changelog.Debian)
 file(COPY_FILE ${CPACK_MBK_CHANGELOG} ${development}/doc/libmbk-dev/changelog.Debian)
 
-set(mpi ${CPACK_TEMPORARY_DIRECTORY}/mpi/usr/share)
-if(EXISTS ${mpi})
-  file(MAKE_DIRECTORY ${mpi}/lintian/overrides ${mpi}/doc/mbk-mpi)
-  file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/lintian-overrides ${mpi}/lintian/overrides/mbk-mpi)
-  file(COPY_FILE ${CMAKE_CURRENT_LIST_DIR}/copyright ${mpi}/doc/mbk-mpi/copyright)
-  file(COPY_FILE ${CPACK_MBK_CHANGELOG} ${mpi}/doc/mbk-mpi/changelog.Debian)
-endif()
-
 # Debian keeps packages of Python in one place for all versions.
 set(python ${CPACK_TEMPORARY_DIRECTORY}/python/usr)
 if(EXISTS ${python})
@@ -32,5 +24,5 @@ if(EXISTS ${python})
 endif()
 
 file(GLOB compressed ${program}/man/man1/*.1 ${program}/doc/mbk/changelog* ${development}/doc/libmbk-dev/changelog*
-     ${python}/share/doc/python3-mbk/changelog* ${mpi}/man/man1/*.1 ${mpi}/doc/mbk-mpi/changelog*)
+     ${python}/share/doc/python3-mbk/changelog*)
 execute_process(COMMAND gzip -9n ${compressed} COMMAND_ERROR_IS_FATAL ANY)

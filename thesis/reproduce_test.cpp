@@ -141,7 +141,7 @@ TEST(ReproductionCsv, HasARowForEachCellAndQuotesCommas) {
 TEST(ReproductionPage, HoldsTheDocumentAndNothingOfItCanEndItsElement) {
   Reproduction reproduction = made(printed(), {"table-3.6"});
   reproduction.exhibits[0].title = "</script><b>";
-  const auto html = page(reproduction, result::to_json(reproduction));
+  const auto html = page(reproduction);
   ASSERT_TRUE(html);
   EXPECT_THAT(*html, HasSubstr("\\u003c/script>"));
   EXPECT_EQ(html->find("</script><b>"), std::string::npos);

@@ -1,9 +1,8 @@
 #include "thesis/thesis_page.h"
 
-#include <nlohmann/json.hpp>
-
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/html.h"
+#include "mbk/present/result/reproduction_json.h"
 
 #ifdef MBK_WEB
 extern "C" const char kReproductionPageBegin[], kReproductionPageEnd[];  // page.S
@@ -22,13 +21,12 @@ std::string_view page_template() {
 
 }  // namespace
 
-Result<std::string> page(const Reproduction& reproduction, std::string_view document) {
-  nlohmann::ordered_json drawings = nlohmann::ordered_json::object();
+Result<std::string> page(const Reproduction& reproduction) {
+  result::Drawings drawings;
   for (const Exhibit& exhibit : reproduction.exhibits) {
     for (const Chart& chart : exhibit.charts) drawings[exhibit.id].push_back(report::chart_svg(chart));
   }
-  return report::filled_page(page_template(),
-                             "{\"reproduction\":" + std::string(document) + ",\"drawings\":" + drawings.dump() + "}");
+  return report::filled_page(page_template(), result::page_json(reproduction, drawings));
 }
 
 }  // namespace mbk::thesis

@@ -1,7 +1,7 @@
 // TypeScript types of the documents, from their JSON Schemas.   usage: node types.mjs FOLDER OUT.ts
 // Every schema becomes a type named by its title, every definition one named as it is.
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
-import { basename, join } from "node:path";
+import { join } from "node:path";
 import { isDeepStrictEqual } from "node:util";
 import { compile } from "json-schema-to-typescript";
 
@@ -12,23 +12,11 @@ const define = (name, schema) => {
   definitions[name] = schema;
 };
 
-const documents = new Map(readdirSync(folder).filter((file) => file.endsWith(".schema.json")).sort()
-  .map((file) => [file, JSON.parse(readFileSync(join(folder, file), "utf8"))]));
-const typeName = (title) => title.replace(/(?:^| )(\w)/g, (_, first) => first.toUpperCase());
-
-/** The schema with each reference into this one collection. What stands beside a reference is for readers only. */
-function gathered(schema, file) {
-  if (Array.isArray(schema)) return schema.map((one) => gathered(one, file));
-  if (schema === null || typeof schema !== "object") return schema;
-  if (typeof schema.$ref !== "string") return Object.fromEntries(Object.entries(schema).map(([key, value]) => [key, gathered(value, file)]));
-  const [other, pointer = ""] = schema.$ref.split("#");
-  const name = pointer.replace("/definitions/", "") || typeName(documents.get(basename(other || file)).title);
-  return { $ref: `#/definitions/${name}` };
-}
-
-for (const [file, { $schema: _, title, definitions: own = {}, ...document }] of documents) {
-  for (const [name, schema] of Object.entries(own)) define(name, gathered(schema, file));
-  if (title) define(typeName(title), gathered(document, file));
+// What stands beside a reference is for readers only.
+const withoutMore = (_, value) => (typeof value?.$ref === "string" ? { $ref: value.$ref } : value);
+for (const file of readdirSync(folder).sort()) {
+  const { $schema: _, title, definitions, ...document } = JSON.parse(readFileSync(join(folder, file), "utf8"), withoutMore);
+  for (const [name, schema] of Object.entries({ ...definitions, [title]: document })) define(name, schema);
 }
 
 const types = await compile({ definitions }, "Documents", {

@@ -323,7 +323,7 @@ std::string describe_commands() {
   const Parser parser("mbk");
   add_help(parser.command());
   const Actions unused = add_commands("", parser.command(), "");
-  return commands_json(describe(parser.command()), std::string(version()));
+  return commands_json(describe(parser.command()));
 }
 
 }  // namespace mbk::app

@@ -11,10 +11,10 @@
 #include <cstdio>
 #include <string>
 
-#include "mbk/base/realtime/clock.h"
 #include "mbk/base/realtime/thread_setup.h"
 #include "mbk/simulate/laboratory/find_scenario.h"
 #include "mbk/simulate/laboratory/simulated_device.h"
+#include "mbk/validate/robot_event.h"
 #include "mbk/validate/rule_breakers.h"
 #include "mbk/validate/udp_fault_kinds.h"
 
@@ -50,20 +50,13 @@ void end_by_signal(unsigned longest) {
   alarm(longest);
 }
 
-void say_listening(const std::string& address, std::uint16_t port) {
-  fmt::print(R"({{"event":"listening","address":"{}","port":{}}})"
-             "\n",
-             address, port);
+void print(const std::string& line) {
+  std::fputs(line.c_str(), stdout);
   std::fflush(stdout);
 }
 
-void say(std::string_view event, const RobotTruth& t) {
-  fmt::print(R"({{"event":"{}","ns":{},"tick":{},"motors_on":{},"fault_began":{},"told_off":{},"torque_off":{},)"
-             R"("last_command":{},"speed_m_per_s":{:.6g},"force_N":{:.6g},"missed":{},"stalled":{}}})"
-             "\n",
-             event, realtime::monotonic_ns(), t.ticks, t.motors_on, t.fault_began, t.told_off, t.torque_off,
-             t.last_command, t.speed, t.force, t.missed, t.stalled);
-  std::fflush(stdout);
+void say(std::string_view event, const RobotTruth& truth) {
+  print(validation::event_line(event, truth));
 }
 
 int report(const Error& error) {
@@ -117,7 +110,7 @@ int run(const Arguments& arguments) {
   if (!served) return report(served.error());
   serving = served->get();
   end_by_signal(arguments.longest);
-  say_listening(arguments.address, serving->local().port);
+  print(validation::listening_line(arguments.address, serving->local().port));
   serving->serve();
   say("end", serving->truth());
   return 0;
@@ -140,7 +133,7 @@ int run_breaker(const Arguments& arguments) {
   auto served = drivers::UdpRobot::create(**robot, *local, 1.0 / scenario->rate.value, &link);
   if (!served) return report(served.error());
   end_by_signal(arguments.longest);
-  say_listening(arguments.address, served->local().port);
+  print(validation::listening_line(arguments.address, served->local().port));
   (void)realtime::prepare_thread();  // where that is refused it is held up more often
   const std::atomic<bool> no_button{false};
   served->serve(over, no_button);

@@ -175,7 +175,7 @@ MBK_API const mbk_error* mbk_answer_error(const mbk_answer* answer, size_t k);
 MBK_API void mbk_answer_free(mbk_answer* answer);
 
 /* Every command with its options, defaults and explanations, and whether it can be called: the document that
-   `mbk manual --json` writes (schemas/commands.schema.json). NULL where there is not enough memory for it. */
+   `mbk manual --json` writes (schema `commands`). NULL where there is not enough memory for it. */
 MBK_API const char* mbk_commands(void);
 
 #ifdef __cplusplus

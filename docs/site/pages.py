@@ -18,6 +18,7 @@ import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
 
+import document_pages
 import pygments
 import pygments.formatters
 import pygments.lexers
@@ -450,6 +451,7 @@ def main():
     site.add_examples()
     site.add_commands(mbk)
     site.pages.update(python_pages.pages(mbk))
+    site.pages.update(document_pages.pages(pathlib.Path(mbk).resolve().parents[1] / "schemas"))
     site.add_library()
     for name in ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md"):
         site.add(pathlib.Path(name))

@@ -16,7 +16,6 @@ std::vector<std::string> work_command(const JobFolder& folder, const EngineOptio
 
 Result<std::unique_ptr<Engine>> make_engine(const JobFolder& folder, const EngineOptions& options) {
   if (options.kind == EngineKind::slurm) return make_slurm_engine(folder, options);
-  if (options.kind == EngineKind::mpi) return make_mpi_engine(folder, options);
   return make_local_engine(folder, options);
 }
 

@@ -13,11 +13,11 @@
 namespace mbk::batch {
 
 /// What runs the chunks.
-enum class EngineKind { local, slurm, mpi };
+enum class EngineKind { local, slurm };
 
 [[nodiscard]] constexpr auto word_table(EngineKind) {
   using enum EngineKind;
-  return std::to_array<Word<EngineKind>>({{local, "local"}, {slurm, "slurm"}, {mpi, "mpi"}});
+  return std::to_array<Word<EngineKind>>({{local, "local"}, {slurm, "slurm"}});
 }
 
 /// What is known of a chunk that was handed out and has not ended.
@@ -56,12 +56,12 @@ class Engine {
 struct EngineOptions {
   EngineKind kind = EngineKind::local;
   std::filesystem::path program;  ///< mbk
-  int tasks = 0;                  ///< chunks at a time; 0: local, mpi: as many as there are cores; slurm: no limit
+  int tasks = 0;                  ///< chunks at a time; 0: local: as many as there are cores; slurm: no limit
   double heartbeat_s = 20.0;
   double longest_chunk_s = 0.0;    ///< expected; for the time that is asked for
   std::int64_t memory_mb = 0;      ///< that a task needs
   std::string partition, account;  ///< of Slurm; empty: as SBATCH_PARTITION and SBATCH_ACCOUNT or the site say
-  std::vector<std::string> extra;  ///< further options of sbatch or mpirun
+  std::vector<std::string> extra;  ///< further options of sbatch
   double settle_s = 10.0;          ///< of Slurm
 };
 

@@ -14,7 +14,6 @@ inline constexpr std::int64_t kMaxChunks = 20'000;
 
 [[nodiscard]] std::unique_ptr<Engine> make_local_engine(const JobFolder& folder, const EngineOptions& options);
 [[nodiscard]] Result<std::unique_ptr<Engine>> make_slurm_engine(const JobFolder& folder, const EngineOptions& options);
-[[nodiscard]] Result<std::unique_ptr<Engine>> make_mpi_engine(const JobFolder& folder, const EngineOptions& options);
 
 /// MaxArraySize of Slurm's controller.   @fails  as make_engine
 [[nodiscard]] Result<std::int64_t> max_array_size();

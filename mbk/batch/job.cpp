@@ -19,6 +19,7 @@
 
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
+#include "mbk/batch/job_status.h"
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 
@@ -195,20 +196,9 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
   job.id = sum.hex();
   MBK_TRY(write_whole(folder / kUnits, units));
   MBK_TRY(write_whole(folder / kChunks, chunks));
-  const nlohmann::ordered_json json = {
-      {"schema", "mbk.job/1"},
-      {"id", job.id},
-      {"title", job.title},
-      {"kind", job.kind},
-      {"program", job.program},
-      {"simd", job.simd},
-      {"units", job.units},
-      {"chunks", job.chunks},
-      {"memory_mb", job.memory_mb},
-      {"specification", nlohmann::ordered_json::parse(job.specification, nullptr, false)}};
-  if (json.at("specification").is_discarded()) return bad_data("the job's specification is no JSON");
+  if (!document::Json::accept(job.specification)) return bad_data("the job's specification is no JSON");
   // The job is there once this file is.
-  MBK_TRY(write_whole(folder / kJob, json.dump(2) + "\n"));
+  MBK_TRY(write_whole(folder / kJob, document::document(job)));
   made.job_ = std::move(job);
   return made;
 }

@@ -11,7 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "mbk/batch/job_events.h"
 #include "mbk/batch/merge.h"
 #include "mbk/files/contents/sha256.h"
 
@@ -120,8 +119,13 @@ const OptionTable<JobOptions>& job_table() {
     OptionTable<JobOptions> table;
     table.group("Many processes and machines")
         .add({"--engine", "",
-              "processes on this machine (local), a job array (slurm), mpirun (mpi); without it: within this process"},
+              "processes on this machine (local), a job array (slurm); without it: within this process"},
              &JobOptions::kind)
+        .check([](const std::string& given) -> std::string {
+          if (given != "mpi") return one_of({kWordList<EngineKind>.begin(), kWordList<EngineKind>.end()}).wrong(given);
+          return "mpi is no engine any more; begin the job with local or slurm, and add workers with "
+                 "'mpirun -n N mbk work FOLDER'";
+        })
         .add({"--tasks", "N", "processes at a time (as many as there are cores; slurm: no limit)",
               whole_number(1, 100'000)},
              &JobOptions::tasks)
@@ -143,7 +147,7 @@ const OptionTable<JobOptions>& job_table() {
         .add({"--account", "NAME", "of Slurm (SBATCH_ACCOUNT)"}, &JobOptions::account)
         .add({.name = "--engine-option",
               .value = "OPTION",
-              .help = "passed on to sbatch or mpirun; may be repeated",
+              .help = "passed on to sbatch; may be repeated",
               .repeats = true},
              &JobOptions::extra)
         .add({"--detach", "",
@@ -168,7 +172,6 @@ Result<CarriedOut> carry_out(const JobOptions& options, const JobRequest& reques
   const auto engine = MBK_TRY(make_engine(folder, engine_of));
   RunOptions run_options;
   run_options.silence_s = options.silence_s;
-  run_options.engine = word_of(*options.kind);
   run_options.detach = options.detach;
   run_options.stop = std::move(stop);
   run_options.progress = std::move(progress);
@@ -177,7 +180,6 @@ Result<CarriedOut> carry_out(const JobOptions& options, const JobRequest& reques
 }
 
 Result<std::vector<std::string>> results_of(const JobFolder& folder) {
-  const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> results;
   const auto merged = MBK_TRY(merge(folder, [&](MergedUnit unit) -> Result<void> {
     if (!unit.differing.empty()) {
@@ -190,7 +192,6 @@ Result<std::vector<std::string>> results_of(const JobFolder& folder) {
     return {};
   }));
   if (merged.missing_chunks > 0) return bad_data("some of its chunks are missing", "", folder.folder().string());
-  note_merged(folder, taken_since(begin));
   return results;
 }
 

@@ -96,6 +96,7 @@ Result<std::vector<FinishedTask>> finished_tasks(const JobFolder& folder) {
   std::vector<FinishedTask> tasks;
   for (const ShardFile& file : files) {
     if (file.state != ShardFile::State::whole || file.chunk < 0 || file.chunk >= std::ssize(chunks)) continue;
+    if (!tasks.empty() && tasks.back().chunk == file.chunk) continue;
     const Chunk& chunk = chunks[static_cast<std::size_t>(file.chunk)];
     const auto end = check_shard(folder, chunk, file.path);
     if (end) tasks.push_back({chunk.number, chunk.expected_s, *end});

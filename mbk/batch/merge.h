@@ -44,7 +44,7 @@ struct FinishedTask {
   ShardEnd end;
 };
 
-/// By chunk and shard; shards that are damaged are passed over.
+/// By chunk; shards that are damaged are passed over, and of a chunk that was done twice the first counts.
 [[nodiscard]] Result<std::vector<FinishedTask>> finished_tasks(const JobFolder& folder);
 
 /// What is told of each unit, in the order of their numbers.

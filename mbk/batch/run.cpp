@@ -10,13 +10,11 @@
 #include <cerrno>
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <system_error>
 #include <thread>
 
-#include "mbk/batch/job_events.h"
 #include "mbk/batch/merge.h"
 #include "mbk/batch/shard.h"
 #include "mbk/batch/work.h"
@@ -73,7 +71,7 @@ class Keeper {
 
 /// What is known of a chunk.
 struct Known {
-  bool finished = false, handed_out = false, begun = false, given_up = false;
+  bool finished = false, handed_out = false, given_up = false;
   int losses = 0;               ///< one after the other, without a unit done
   std::int64_t units_left = 0;  ///< done by processes that ended
   std::optional<Clock::time_point> gone_since;
@@ -84,18 +82,12 @@ struct Known {
 class Run {
  public:
   Run(const JobFolder& folder, Engine& engine, const RunOptions& options, std::vector<Chunk> chunks)
-      : folder_(folder),
-        engine_(engine),
-        options_(options),
-        chunks_(std::move(chunks)),
-        known_(chunks_.size()),
-        events_(folder) {
+      : folder_(folder), engine_(engine), options_(options), chunks_(std::move(chunks)), known_(chunks_.size()) {
     state_.chunks = folder.job().chunks;
     state_.units = folder.job().units;
   }
 
   Result<RunReport> to_end() {
-    events_.add(EventKind::taken_up, -1, options_.engine);
     MBK_TRY(look());
     finished_before_ = state_.finished_units;
     cost_before_ = finished_cost_;
@@ -146,7 +138,6 @@ class Run {
       const Chunk& chunk = chunks_[static_cast<std::size_t>(file.chunk)];
       const auto end = check_shard(folder_, chunk, file.path);
       if (!end) {
-        events_.add(EventKind::lost, chunk.number, end.error().message);
         fs::path aside = file.path;
         aside.replace_extension(kDamagedEnd);
         ++state_.losses[end.error().message];
@@ -154,7 +145,6 @@ class Run {
         continue;
       }
       known.finished = true;
-      events_.add(EventKind::finished, chunk.number);
       if (known.given_up) --state_.given_up;
       known.given_up = false;
       ++state_.finished;
@@ -164,10 +154,7 @@ class Run {
     }
     for (const auto& [chunk, bytes] : parts) {
       Known& known = known_[static_cast<std::size_t>(chunk)];
-      if (known.bytes != bytes) {
-        known.grew = Clock::now();
-        note_begun(known, chunk);
-      }
+      if (known.bytes != bytes) known.grew = Clock::now();
       known.bytes = bytes;
     }
     return {};
@@ -190,7 +177,6 @@ class Run {
         known.handed_out = true;
         known.gone_since.reset();
         ++(found->second.running ? state_.running : state_.waiting);
-        if (found->second.running) note_begun(known, number);
         if (!found->second.why.empty()) state_.trouble = "tasks wait: " + found->second.why;
         if (!found->second.running) {
           known.grew.reset();
@@ -211,9 +197,7 @@ class Run {
     }
     if (!silent.empty()) {
       engine_.cancel(silent);
-      for (const std::int64_t number : silent) {
-        note_loss(number, fmt::format("no sign of life for {:g} s", options_.silence_s));
-      }
+      state_.losses[fmt::format("no sign of life for {:g} s", options_.silence_s)] += std::ssize(silent);
     }
     if (too_many_losses()) {
       engine_.cancel_all();
@@ -225,22 +209,9 @@ class Run {
     for (const std::int64_t number : missing) {
       Known& known = known_[static_cast<std::size_t>(number)];
       known.handed_out = true;
-      known.begun = false;
       known.grew.reset();
-      events_.add(EventKind::handed_out, number);
     }
     return {};
-  }
-
-  void note_begun(Known& known, std::int64_t number) {
-    if (known.begun) return;
-    known.begun = true;
-    events_.add(EventKind::begun, number);
-  }
-
-  void note_loss(std::int64_t number, const std::string& why) {
-    ++state_.losses[why];
-    events_.add(EventKind::lost, number, why);
   }
 
   void lose(Known& known, std::int64_t number, std::vector<std::int64_t>& missing) {
@@ -254,11 +225,10 @@ class Run {
     known.units_left = left;
     something_done_ = something_done_ || left > 0;
     const std::string why = engine_.why_ended(number);
-    note_loss(number, why.empty() ? "ended without a result" : why);
+    ++state_.losses[why.empty() ? "ended without a result" : why];
     if (known.losses >= options_.attempts) {
       known.given_up = true;
       ++state_.given_up;
-      events_.add(EventKind::given_up, number);
     } else {
       missing.push_back(number);
     }
@@ -287,7 +257,6 @@ class Run {
   }
 
   void say() {
-    events_.flush();
     if (seconds_since(said_) < 1.0) return;
     said_ = Clock::now();
     write_down();
@@ -302,8 +271,6 @@ class Run {
   RunReport ended(RunEnd how) {
     state_.running = how == RunEnd::detached ? state_.running : 0;
     write_down();
-    events_.add(EventKind::left);
-    events_.flush();
     return {how, state_};
   }
 
@@ -312,7 +279,6 @@ class Run {
   const RunOptions& options_;
   std::vector<Chunk> chunks_;
   std::vector<Known> known_;
-  JobEventWriter events_;
   JobState state_;
   bool answered_ = false, something_done_ = false;
   std::int64_t losses_ = 0;
@@ -322,24 +288,6 @@ class Run {
 };
 
 }  // namespace
-
-std::string to_json(const JobState& state) {
-  nlohmann::ordered_json json = {{"schema", "mbk.job_state/1"},
-                                 {"chunks", state.chunks},
-                                 {"finished", state.finished},
-                                 {"running", state.running},
-                                 {"waiting", state.waiting},
-                                 {"given_up", state.given_up},
-                                 {"units", state.units},
-                                 {"finished_units", state.finished_units},
-                                 {"failed_units", state.failed_units},
-                                 {"elapsed_s", state.elapsed_s},
-                                 {"units_per_s", state.units_per_s},
-                                 {"left_s", state.left_s},
-                                 {"losses", state.losses}};
-  if (!state.trouble.empty()) json["trouble"] = state.trouble;
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 std::string to_text(const JobState& state) {
   std::string text =

@@ -31,7 +31,6 @@ enum class Stop { no, cancel, leave };
 struct RunOptions {
   int attempts = 6;          ///< of a chunk whose processes end without having done any unit of it
   double silence_s = 300.0;  ///< a running process whose shard does not grow for so long is taken for dead
-  std::string engine;        ///< its name, for the job's notes
   bool detach = false;       ///< hands out what is missing, and does not wait
   std::function<Stop()> stop = [] { return Stop::no; };
   std::function<void(const JobState&)> progress = [](const JobState&) {};
@@ -45,8 +44,7 @@ struct RunReport {
 };
 
 /// Hands out the chunks that are missing, until every one has a whole shard, and again those whose process ended. What
-/// an earlier process finished or still runs counts. A shard that is damaged is set aside. What happens is noted
-/// (job_events.h).
+/// an earlier process finished or still runs counts. A shard that is damaged is set aside.
 /// @fails  data: another process looks after this job; another program's job; the engine takes nothing.
 [[nodiscard]] Result<RunReport> run(const JobFolder& folder, Engine& engine, const RunOptions& options);
 

@@ -50,13 +50,9 @@ TEST(ValueBytes, EveryMemberComesBackToTheBit) {
   static_assert(value_detail::member_count<Inner>() == 3);
   static_assert(value_detail::member_count<Outer>() == 10);
   const Outer before = an_outer();
-  ValueWriter writer;
-  writer.put(before);
-  const std::string bytes = writer.take();
+  const std::string bytes = to_bytes(before);
   Outer after;
-  ValueReader reader(bytes);
-  reader.get(after);
-  ASSERT_TRUE(reader.complete());
+  ASSERT_TRUE(from_bytes(bytes, after));
   EXPECT_EQ(after.count, -7);
   ASSERT_TRUE(after.perhaps);
   EXPECT_EQ(after.perhaps->first, 0.1);
@@ -70,26 +66,17 @@ TEST(ValueBytes, EveryMemberComesBackToTheBit) {
   EXPECT_EQ(after.by_name, before.by_name);
   EXPECT_EQ(after.colour, Colour::green);
   EXPECT_EQ(after.bits, before.bits);
-  ValueWriter again;
-  again.put(after);
-  EXPECT_EQ(again.take(), bytes);
+  EXPECT_EQ(to_bytes(after), bytes);
 }
 
 TEST(ValueBytes, EveryCutIsSeenAndAsksForNoMemory) {
-  ValueWriter writer;
-  writer.put(an_outer());
-  const std::string bytes = writer.take();
+  const std::string bytes = to_bytes(an_outer());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     Outer after;
-    ValueReader reader(std::string_view(bytes).substr(0, size));
-    reader.get(after);
-    EXPECT_FALSE(reader.complete()) << size;
+    EXPECT_FALSE(from_bytes(std::string_view(bytes).substr(0, size), after)) << size;
   }
   Outer after;
-  const std::string longer = bytes + "x";
-  ValueReader reader(longer);
-  reader.get(after);
-  EXPECT_FALSE(reader.complete());
+  EXPECT_FALSE(from_bytes(bytes + "x", after));
 }
 
 }  // namespace

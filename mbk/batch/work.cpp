@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -93,6 +94,21 @@ class Heartbeat {
   std::thread thread_;
 };
 
+/// The first chunk from `begin` on, and then from 0, of which there is no shard, whole or not.
+Result<std::optional<std::int64_t>> free_chunk(const JobFolder& folder, std::int64_t begin) {
+  const std::int64_t count = folder.job().chunks;
+  std::vector<bool> taken(static_cast<std::size_t>(count));
+  const auto files = MBK_TRY(list_shards(folder));
+  for (const ShardFile& file : files) {
+    if (file.chunk >= 0 && file.chunk < count) taken[static_cast<std::size_t>(file.chunk)] = true;
+  }
+  for (std::int64_t k = 0; k < count; ++k) {
+    const std::int64_t chunk = (begin + k) % count;
+    if (!taken[static_cast<std::size_t>(chunk)]) return chunk;
+  }
+  return std::nullopt;
+}
+
 constexpr int kEndsOfOneUnit = 3;
 
 }  // namespace
@@ -148,6 +164,17 @@ Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitF
                               {"cpu_s", cpu_seconds()}};
   MBK_TRY(shard->finish(end.dump()));
   return done;
+}
+
+Result<void> work_on_free_chunks(const JobFolder& folder, const UnitFunction& compute, const WorkOptions& options,
+                                 const std::function<Result<void>(std::int64_t, const ChunkDone&)>& done) {
+  std::int64_t begin = std::random_device()() % std::max<std::int64_t>(folder.job().chunks, 1);
+  while (const auto chunk = MBK_TRY(free_chunk(folder, begin))) {
+    const auto did = MBK_TRY(work(folder, *chunk, compute, options));
+    MBK_TRY(done(*chunk, did));
+    begin = *chunk;
+  }
+  return {};
 }
 
 }  // namespace mbk::batch

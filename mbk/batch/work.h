@@ -26,6 +26,14 @@ struct ChunkDone {
 [[nodiscard]] Result<ChunkDone> work(const JobFolder& folder, std::int64_t chunk, const UnitFunction& compute,
                                      const WorkOptions& options = {});
 
+/// Does chunks that no process has begun, one after the other, until there are none; from one drawn at random, so that
+/// several workers seldom begin the same. If two do, their results are the same.
+/// @param done  called after each chunk
+/// @fails  as work; as done: the first failure.
+[[nodiscard]] Result<void> work_on_free_chunks(
+    const JobFolder& folder, const UnitFunction& compute, const WorkOptions& options,
+    const std::function<Result<void>(std::int64_t chunk, const ChunkDone& done)>& done);
+
 /// How many units of a chunk processes have done that ended before the chunk did.
 [[nodiscard]] std::int64_t units_left_done(const JobFolder& folder, const Chunk& chunk);
 

@@ -46,15 +46,12 @@ auto each_run(const Options& options, int count, const Work& work)
   if (!options.elsewhere) return each_run_here(options, count, work);
   const auto gave = MBK_TRY(options.elsewhere(count, [&](int i) -> Result<std::string> {
     const auto run = MBK_TRY(work(i));
-    batch::ValueWriter writer;
-    writer.put(run);
-    return writer.take();
+    return batch::to_bytes(run);
   }));
   std::vector<typename std::invoke_result_t<Work, int>::value_type> runs(gave.size());
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    batch::ValueReader reader(gave[k]);
-    reader.get(runs[k]);
-    if (!reader.complete()) return bad_data("what another process gave cannot be read", "begin the job again");
+    if (!batch::from_bytes(gave[k], runs[k]))
+      return bad_data("what another process gave cannot be read", "begin the job again");
   }
   return runs;
 }

@@ -15,8 +15,6 @@
 
 namespace mbk::validation {
 
-inline constexpr double kTick = 1e-3;  ///< of the sessions in which faults come [s]
-
 /// What the robot is told to do while a fault comes.
 enum class TrialKind { position, force };
 
@@ -52,11 +50,20 @@ enum class Onset {
   ending,      ///< in the last tenth of a second before the trial is over
 };
 
-/// A kind of fault: what it is, and what is documented of it.
+[[nodiscard]] constexpr auto word_table(Onset) {
+  using enum Onset;
+  return std::to_array<Word<Onset>>({{beginning, "beginning"},
+                                     {anywhere, "anywhere"},
+                                     {perturbing, "perturbing"},
+                                     {moving, "moving"},
+                                     {ending, "ending"}});
+}
+
+/// A kind of fault: what it is, and what is documented of it; a row of tables/faults.toml.
 struct FaultKind {
-  std::string_view name;
-  Onset onset;
-  std::array<int, 2> detection;         ///< ticks to the trip at most, in a trial of positions and of forces
+  std::string name;
+  Onset onset = Onset::anywhere;
+  std::array<int, 2> detection{};       ///< ticks to the trip at most, in a trial of positions and of forces
   std::vector<safety::Reason> reasons;  ///< every one that is right
   std::function<void(FaultRun&, numeric::Random&)> make;
 };

@@ -7,6 +7,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/core/units.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::validation {

@@ -21,6 +21,15 @@ enum class Expected {
   not_detected  ///< cannot be seen from outside; `bound` says what limits the harm
 };
 
+[[nodiscard]] constexpr auto word_table(Expected) {
+  using enum Expected;
+  return std::to_array<Word<Expected>>({{trip, "trip"},
+                                        {at_stop, "at-stop"},
+                                        {refusal, "refusal"},
+                                        {no_harm, "no-harm"},
+                                        {not_detected, "not-detected"}});
+}
+
 /// Who knows after the stop that the motors are off.
 enum class SafeState {
   confirmed,      ///< the robot says so, and it is true
@@ -29,15 +38,21 @@ enum class SafeState {
   unresolved      ///< confirmed although a torque may be left, which is smaller than what motion shows
 };
 
-/// A kind of fault of a robot behind UDP: what it is, and what is documented of it.
+[[nodiscard]] constexpr auto word_table(SafeState) {
+  using enum SafeState;
+  return std::to_array<Word<SafeState>>(
+      {{confirmed, "confirmed"}, {not_confirmed, "not-confirmed"}, {either, "either"}, {unresolved, "unresolved"}});
+}
+
+/// A kind of fault of a robot behind UDP: what it is, and what is documented of it; a row of tables/udp_faults.toml.
 struct UdpFaultKind {
-  std::string_view name;  ///< for the command line: "latched-frozen-answer"
-  std::string_view what;  ///< what happens, physically
-  Expected expected;
-  std::array<int, 2> detection;           ///< ticks to the trip at most, in a trial of positions and of forces
+  std::string name;  ///< for the command line: "latched-frozen-answer"
+  std::string what;  ///< what happens, physically
+  Expected expected = Expected::trip;
+  std::array<int, 2> detection{};         ///< ticks to the trip at most, in a trial of positions and of forces
   std::vector<std::string_view> reasons;  ///< words of every safety::Reason that is right
-  SafeState safe_state;
-  std::string_view bound;     ///< what stays the robot's duty, or limits the harm
+  SafeState safe_state = SafeState::confirmed;
+  std::string bound;          ///< what stays the robot's duty, or limits the harm
   std::uint16_t version = 1;  ///< of the robot's states
   std::function<void(RobotFault&, numeric::Random&)> make;
 };

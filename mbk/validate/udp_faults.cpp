@@ -13,11 +13,12 @@
 #include <thread>
 
 #include "mbk/base/core/words.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/batch/child_process.h"
 #include "mbk/experiment/safety/gate.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/batch/child_process.h"
 #include "mbk/validate/rows.h"
 #include "mbk/validate/temporary_folder.h"
 #include "mbk/validate/udp_fault_kinds.h"

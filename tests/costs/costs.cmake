@@ -7,7 +7,7 @@
 # this file after the tests that it names; a name that is no test is passed over.
 set(costs
     109 install
-    76 instructions
+    40 instructions
     75 package/lintian
     66 end_to_end/statements
     53 validation_test/Coverage.NominalNinetyFivePercentIntervalsHoldTheTruthThatOften
@@ -66,7 +66,6 @@ set(costs
     10 teleop_test/AdmissibleSet.AgreesWithDecisionsOfSingleValues
     10 thesis_test/ApparatusExhibits.FindTheRobotAndWhatFrictionIsTakenForWithoutCoulomb
     10 thesis_test/VirtualSensorExhibits.FindTheRelaxedArmByBothMethods
-    9 bench/instructions
     9 bindings/octave
     9 thesis_test/Reproduce.ComputesTheSameOnAnyNumberOfThreads
     9 validation_test/ReflexStudy.RefutesNothingInAFewRuns

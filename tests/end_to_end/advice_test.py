@@ -10,6 +10,7 @@ import re
 import tempfile
 import unittest
 
+import schemas
 from command import NOT_USABLE, Case, flat, main, run, write_csv
 from help_tree import every_command
 from mistakes import as_option, first_options, right_map
@@ -17,9 +18,9 @@ from explore_test import trial
 from tf_test import oscillator
 
 ROOT = pathlib.Path(__file__).parents[2]
-CODES = json.loads((ROOT / "schemas/common.schema.json").read_text(encoding="utf-8"))["definitions"]["WarningCode"]["enum"]
+CODES = schemas.validator("result").schema["definitions"]["WarningCode"]["enum"]
 
-OF_OTHER_PROGRAMS = ("mpi_engine.cpp", "slurm_engine.cpp")  # which call mpirun and sbatch with options of theirs
+OF_OTHER_PROGRAMS = ("slurm_engine.cpp",)  # which calls sbatch with options of its own
 
 ADVICE = {}  # code: a function of the test case, which raises it and follows its advice
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""--engine: the same bytes from processes, from a job array of a real Slurm, from ranks of Open MPI, whatever ends."""
+"""--engine: the same bytes from processes, from a job array of a real Slurm, whatever ends."""
 
-import contextlib
 import json
 import os
 import pathlib
@@ -23,7 +22,6 @@ import private_slurm  # noqa: E402
 import study as studies  # noqa: E402
 from processes import ended_by_kill, processes_of, workers_of  # noqa: E402
 
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 RUNS = 32  # of 40 ms
 VALIDATE = ("validate", "reliability", "--runs", str(RUNS), "--json", "--quiet")
 SHORT = ("--chunk-units", "3")
@@ -110,11 +108,7 @@ class Engines:
         ran = self.job("study", "measure", "--study", there, "--chunk-units", "1")
         self.assertIn("4 measured: 4 usable", ran.out)
         self.assertEqual(self.exported(there), self.exported(here))
-        left = list((there / "jobs").iterdir())
-        self.assertEqual([path.suffix for path in left], [".json"], "of a finished job its record stays alone")
-        record = json.loads(left[0].read_text(encoding="utf-8"))
-        command.schemas.check(record)
-        self.assertEqual((record["engine"], record["finished_units"], len(record["tasks"])), (self.engine[1], 4, 4))
+        self.assertFalse((there / "jobs").exists())
         self.mbk("study", "check", "--study", there)
         self.assertIn("nothing new", self.job("study", "measure", "--study", there).out)
 
@@ -204,9 +198,25 @@ class Local(Engines, JobCase):
         for shard in (job / "shards").iterdir():
             shard.unlink()
         shutil.copy(self.trials[1], self.folder / "one.csv")
-        self.mbk("work", job, "--chunk", 0, folder=self.folder)
-        self.assertIn("failed: 1 × ", status := self.mbk("study", "status", "--job", job).out)
-        self.assertIn("has changed since the job was begun", status)
+        self.assertIn("1 failed", self.mbk("work", job, "--chunk", 0, folder=self.folder).out)
+        self.assertIn("has changed since the job was begun", self.job(*explore, code=BAD_DATA).err)
+
+    def test_workers_that_someone_else_starts_share_a_job(self):
+        self.job(*VALIDATE, *SHORT, "--keep-job", code=self.judged)
+        shards = next(self.folder.rglob("shards"))
+        for shard in shards.iterdir():
+            shard.unlink()
+        workers = [subprocess.Popen([program("MBK"), "work", str(shards.parent)], stdout=subprocess.PIPE)
+                   for _ in range(2)]
+        did = [worker.communicate(timeout=120)[0].decode().splitlines() for worker in workers]
+        self.assertEqual([worker.returncode for worker in workers], [FINE, FINE])
+        self.assertTrue(all(did), "each did a part")
+        self.assertEqual({line.split(":")[0] for lines in did for line in lines},
+                         {f"chunk {number}" for number in range(len({path.stem for path in shards.iterdir()}))})
+        self.assertEqual(self.job(*VALIDATE, *SHORT, code=self.judged).out, self.table)
+
+    def test_mpi_is_told_what_to_do_instead(self):
+        self.refused(WRONG_USAGE, *VALIDATE, "--engine", "mpi", folder=self.folder, says="mpirun -n N mbk work FOLDER")
 
     def test_progress_as_json_lines(self):
         ran = self.job(*VALIDATE, "--chunk-units", "12", "--progress-json", code=self.judged)
@@ -240,7 +250,7 @@ class Local(Engines, JobCase):
         status = self.mbk("study", "status", "--study", study, "--json").json
         job = status["jobs"][0]
         self.assertEqual((job["finished"], job["finished_units"], len(job["tasks"])), (2, 4, 2))
-        self.assertEqual(sum(task["units"] for task in job["efficiency"]["tasks"]), 4)
+        self.assertEqual(sum(task["units"] for task in job["tasks"]), 4)
         self.assertIn("2 of 2 chunks", self.mbk("work", job["folder"], "--status").out)
         lines = (pathlib.Path(job["folder"]) / "progress.jsonl").read_text(encoding="utf-8").splitlines()
         for line in lines:
@@ -352,45 +362,6 @@ class Slurm(Engines, JobCase):
         out, err = began.communicate(timeout=150)
         self.assertEqual(began.returncode, self.judged, err)
         self.assertEqual(out.decode(), self.table)
-
-
-@unittest.skipUnless(shutil.which("mpirun") and pathlib.Path(program("MBK")).with_name("mbk_mpi").exists(),
-                     "no mpirun, or mbk was built without it")
-class Mpi(Engines, JobCase):
-    engine = ("--engine", "mpi", "--tasks", "1")
-    environment = MPI
-
-    def stop_one_that_has_not_begun(self, began):
-        """Whether a process of a chunk could be stopped before it had a shard."""
-        seen = set(workers_of(self.folder))
-        while began.poll() is None:
-            for worker in set(workers_of(self.folder)) - seen:
-                seen.add(worker)
-                with contextlib.suppress(ProcessLookupError, FileNotFoundError, ValueError):
-                    os.kill(worker, signal.SIGSTOP)
-                    words = pathlib.Path(f"/proc/{worker}/cmdline").read_bytes().split(b"\0")
-                    chunk = words[words.index(b"--chunk") + 1].decode()
-                    if not any(self.folder.rglob(f"shards/{chunk}.*")):
-                        return True
-                    os.kill(worker, signal.SIGCONT)
-        return False
-
-    def test_a_process_that_hangs_before_it_has_begun_is_replaced(self):
-        for _ in range(5):
-            began = self.begin(*VALIDATE, *SHORT, "--silence", "1")
-            self.wait_for(lambda: self.shards() or began.poll() is not None)
-            stopped = self.stop_one_that_has_not_begun(began)
-            out, err = began.communicate(timeout=120)
-            self.assertEqual(began.returncode, self.judged, err)
-            self.assertEqual(out.decode(), self.table)
-            if stopped:
-                return
-        self.fail("no process could be stopped before it had begun")
-
-    def test_oversubscribed(self):
-        ran = self.mbk(*VALIDATE, *SHORT, "--engine", "mpi", "--tasks", "7", "--engine-option=--oversubscribe",
-                       code=self.judged, environment=MPI, folder=self.folder)
-        self.assertEqual(ran.out, self.table)
 
 
 if __name__ == "__main__":

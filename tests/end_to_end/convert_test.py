@@ -196,7 +196,7 @@ class Refusals(Case):
                 ((log, log), "is what is read, and would be lost"),
                 ((log, log, "--overwrite"), "is what is read, and would be lost"),
                 ((log, there), "--overwrite"),
-                ((log, self.folder / "out.xls"), ["'.xls' is not a format that is written", ".h5, .mat, .csv or .mcap"]),
+                ((log, self.folder / "out.xls"), ["'.xls' is not a format that is written", ".h5, .mat or .csv"]),
                 ((log, self.folder / "out"), "does not say a format"),
                 ((log, self.folder / "out.mat", "--format", "mat4"), ["'mat4'", "mat73"])):
             with self.subTest(arguments[1:]):

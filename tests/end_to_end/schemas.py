@@ -15,23 +15,17 @@ except ImportError as error:
 FOLDER = pathlib.Path(os.environ["MBK"]).resolve().parents[1] / "schemas"
 
 
-def read(uri):
-    return json.loads(pathlib.Path(uri.removeprefix("file://")).read_text(encoding="utf-8"))
-
-
 @functools.lru_cache(maxsize=None)
 def validator(name):
-    uri = (FOLDER / f"{name}.schema.json").as_uri()
-    schema = read(uri)
+    schema = json.loads((FOLDER / f"{name}.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft7Validator.check_schema(schema)
-    return jsonschema.Draft7Validator(schema, resolver=jsonschema.RefResolver(uri, schema))
+    return jsonschema.Draft7Validator(schema)
 
 
 @functools.lru_cache(maxsize=None)
 def quick(name):
     """Does the same in less time, and says little of what is wrong."""
-    uri = (FOLDER / f"{name}.schema.json").as_uri()
-    return fastjsonschema.compile({**read(uri), "$id": uri}, handlers={"file": read})
+    return fastjsonschema.compile(validator(name).schema)
 
 
 def check(document, name=None):

@@ -162,7 +162,7 @@ class Refusals(Case):
         scenario, out = self.file("mine.toml", SHORT), self.folder / "r.mat"
         self.refused(WRONG_USAGE, "simulate", says="scenario")
         self.refused(WRONG_USAGE, "simulate", scenario, says="--out")
-        self.refused(WRONG_USAGE, "simulate", scenario, "--out", self.folder / "r.c3d", says=[".c3d", ".h5, .mat, .csv or .mcap"])
+        self.refused(WRONG_USAGE, "simulate", scenario, "--out", self.folder / "r.c3d", says=[".c3d", ".h5, .mat or .csv"])
         self.refused(WRONG_USAGE, "simulate", scenario, "--out", out, "--trial", "x", says="[[trial]]")
         self.refused(WRONG_USAGE, "simulate", TABLE, "--out", out, "--trial", "x", says="config_1")
         self.refused(WRONG_USAGE, "simulate", TABLE, "--out", out, "--trial", "config_1", "--trial", "config_1",

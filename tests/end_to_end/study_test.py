@@ -18,7 +18,6 @@ import re
 import resource
 import shutil
 import signal
-import socket
 import sqlite3
 import subprocess
 import time
@@ -570,14 +569,6 @@ class Pages(StudyCase):
         change = area["participants"][0]["changes"][0]
         self.assertEqual((change["verdict"], change["mdc95"]), ("unknown", None))
         self.assertIn("only 1 person has two sessions", area["why_unknown"])
-
-    def test_do_not_name_the_computers_of_the_laboratory(self):
-        self.do("add", *self.trials[:3], "--participant", 7)
-        self.do("measure", "--quiet", "--engine", "local", "--chunk-units", 1)
-        page = self.document()
-        self.assertEqual([one["host"] for one in page["jobs"][0]["hosts"]], ["machine 1"])
-        self.assertEqual({one["host"] for one in page["jobs"][0]["tasks"]}, {"machine 1"})
-        self.assertNotIn(socket.gethostname(), json.dumps(page["jobs"]))
 
     def test_of_nothing(self):
         document = self.document()

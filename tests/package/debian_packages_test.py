@@ -14,7 +14,6 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 TOOLS = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "file", "readelf")
 SKIPPED = 77
-MPI = pathlib.Path(os.environ["BUILD"], "bin/mbk_mpi").exists()
 PYTHON = pathlib.Path(os.environ["BUILD"], "python/mbk/__init__.py").exists()
 
 
@@ -46,10 +45,8 @@ class Packages(unittest.TestCase):
     def contents(self, package):
         return [line.split()[-1] for line in ran("dpkg-deb", "--contents", self.packages[package]).splitlines()]
 
-    def test_there_are_two_and_those_of_python_and_mpi_where_they_are_built(self):
+    def test_there_are_two_and_that_of_python_where_it_is_built(self):
         sections = {"mbk": "science", "libmbk-dev": "libdevel"}
-        if MPI:
-            sections["mbk-mpi"] = "science"
         if PYTHON:
             sections["python3-mbk"] = "python"
         self.assertEqual(sorted(self.packages), sorted(sections))
@@ -98,17 +95,6 @@ class Packages(unittest.TestCase):
         self.assertIn(", stripped", ran("file", self.mbk))
         self.assertNotIn("RUNPATH", ran("readelf", "--dynamic", self.mbk))
         self.assertNotIn(str(SOURCE).encode(), self.mbk.read_bytes())
-
-    @unittest.skipUnless(MPI, "this build has no MPI")
-    def test_only_mbk_mpi_needs_mpi(self):
-        self.assertIn("./usr/bin/mbk_mpi", self.contents("mbk-mpi"))
-        self.assertIn("./usr/share/man/man1/mbk_mpi.1.gz", self.contents("mbk-mpi"))
-        self.assertNotIn("./usr/bin/mbk_mpi", self.contents("mbk"))
-        self.assertNotIn("mpi", self.field("mbk", "Depends"))
-        depends = self.field("mbk-mpi", "Depends")
-        self.assertIn(f"mbk (= {self.field('mbk', 'Version')})", depends)
-        self.assertRegex(depends, r"\blibopenmpi3\b")
-        self.assertRegex(depends, r"\bopenmpi-bin\b")
 
     @unittest.skipUnless(PYTHON, "this build has no module of Python")
     def test_python_finds_the_package_and_what_it_links(self):

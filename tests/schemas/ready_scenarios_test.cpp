@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <variant>
 #include <vector>
@@ -60,8 +61,8 @@ TEST_P(ReadyScenario, EveryDocumentOfItFitsItsSchema) {
     EXPECT_TRUE(fits_its_schema(result::to_json(measured)));
     EXPECT_TRUE(fits_its_schema(result::to_json({measured, measured}, {{}, "two of one", {}})));
     ASSERT_TRUE(measured.passivity);
-    EXPECT_TRUE(fits_its_schema(
-        result::passivity_to_json(measured.identification.sources, *measured.passivity, measured.energies)));
+    EXPECT_TRUE(fits_its_schema(result::to_json(std::array{
+        result::PassivityDocument{measured.identification.sources, *measured.passivity, measured.energies}})));
     if (measured.findings) {
       EXPECT_TRUE(
           fits_its_schema(result::to_json(std::vector{measured.identification}, std::vector{*measured.findings})));

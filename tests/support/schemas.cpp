@@ -24,56 +24,44 @@ const std::set<std::string, std::less<>> kHeld = {"type",     "enum",     "requi
 const std::set<std::string, std::less<>> kSaid = {"$schema", "title", "description", "definitions"};
 
 /// The schema with what it refers to in place of each reference, which RapidJSON would ignore where it is not found.
-Json expanded(const Json& schema, const std::string& in) {
+Json expanded(const Json& schema, const Json& whole, const std::string& in) {
   if (!schema.is_object()) return schema;  // additionalProperties: false
   if (const auto reference = schema.find("$ref"); reference != schema.end()) {
-    const auto text = reference->get<std::string>();
-    const std::size_t hash = std::min(text.find('#'), text.size());
-    const std::string other = hash == 0 ? in : text.substr(0, hash);
-    return expanded(file(other).at(Json::json_pointer(hash < text.size() ? text.substr(hash + 1) : "")), other);
+    return expanded(whole.at(Json::json_pointer(reference->get<std::string>().substr(1))), whole, in);
   }
-  Json whole = Json::object();
+  Json made = Json::object();
   for (const auto& [key, value] : schema.items()) {
     if (kSaid.contains(key)) continue;
     if (!kHeld.contains(key)) throw std::runtime_error(fmt::format("{}: nothing checks '{}'", in, key));
     if (key == "properties") {
-      whole[key] = Json::object();
-      for (const auto& [name, property] : value.items()) whole[key][name] = expanded(property, in);
+      made[key] = Json::object();
+      for (const auto& [name, property] : value.items()) made[key][name] = expanded(property, whole, in);
     } else if (key == "anyOf" || key == "oneOf") {
-      for (const Json& one : value) whole[key].push_back(expanded(one, in));
+      for (const Json& one : value) made[key].push_back(expanded(one, whole, in));
     } else if (key == "items" || key == "additionalProperties") {
-      whole[key] = expanded(value, in);
+      made[key] = expanded(value, whole, in);
     } else {
-      whole[key] = value;
+      made[key] = value;
     }
   }
-  return whole;
+  return made;
 }
 
 const rapidjson::SchemaDocument& schema(const std::string& name) {
   static std::map<std::string, std::unique_ptr<rapidjson::SchemaDocument>> schemas;
   auto& found = schemas[name];
   if (!found) {
-    const std::string of = name + ".schema.json";
+    std::ifstream stream(std::filesystem::path(MBK_SCHEMAS) / (name + ".schema.json"));
+    if (!stream) throw std::runtime_error(fmt::format("there is no schema {}", name));
+    const Json whole = Json::parse(stream);
     rapidjson::Document document;
-    document.Parse(expanded(file(of), of).dump().c_str());
+    document.Parse(expanded(whole, whole, name).dump().c_str());
     found = std::make_unique<rapidjson::SchemaDocument>(document);
   }
   return *found;
 }
 
 }  // namespace
-
-const Json& file(const std::string& name) {
-  static std::map<std::string, Json> files;
-  const auto [found, is_new] = files.try_emplace(name);
-  if (is_new) {
-    std::ifstream stream(std::filesystem::path(MBK_SCHEMAS) / name);
-    if (!stream) throw std::runtime_error(fmt::format("there is no schema {}", name));
-    found->second = Json::parse(stream);
-  }
-  return found->second;
-}
 
 testing::AssertionResult fits(std::string_view document, const std::string& name) {
   rapidjson::Document read;

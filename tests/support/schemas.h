@@ -6,12 +6,8 @@
 #include <string>
 #include <string_view>
 
-/// Documents of mbk against their JSON Schemas in the folder schemas/.
+/// Documents of mbk against their JSON Schemas in the folder schemas/ of the build.
 namespace mbk::schemas {
-
-/// The schema in schemas/`name`, as it stands there.
-/// @throws std::runtime_error where there is none.
-[[nodiscard]] const nlohmann::json& file(const std::string& name);
 
 /// Whether a document fits schemas/`name`.schema.json; if not, where it does not and which keyword of the schema says
 /// so. Not fitting is also what is no JSON.

@@ -1,55 +1,72 @@
 #include "apps/mbk/commands/commands_json.h"
 
-#include <nlohmann/json.hpp>
-
 #include "apps/mbk/call.h"
 
 namespace mbk::app {
-namespace {
 
-using OrderedJson = nlohmann::ordered_json;
+using document::Fields;
+using document::through;
 
-OrderedJson option_json(const OptionText& option) {
-  OrderedJson json;
-  if (!option.names.empty()) json["names"] = option.names;
-  json["value"] = option.value;
-  json["description"] = option.description;
-  if (!option.names.empty()) json["group"] = option.group;
-  json["required"] = option.required;
-  json["repeats"] = option.repeats;
-  json["needs"] = option.needs;
-  json["excludes"] = option.excludes;
-  json["words"] = option.values.words;
-  json["files"] = option.values.files;
-  json["folders"] = option.values.folders;
-  json["extensions"] = option.values.extensions;
-  return json;
+void describe(Fields<OptionText>& fields) {
+  const auto is_option = [](const OptionText& option) { return !option.names.empty(); };
+  fields.type("Option", "An option, a flag or an argument, in the words of --help.");
+  fields.add_unless_empty("names", &OptionText::names, "\"-h\", \"--help\"; absent where it is an argument");
+  fields.add("value", &OptionText::value, "placeholder, such as HZ or default|reference; empty for a flag");
+  fields.add("description", &OptionText::description);
+  fields.add_if(is_option, "group", &OptionText::group, "heading of --help that it stands under");
+  fields.add("required", &OptionText::required);
+  fields.add("repeats", &OptionText::repeats, "takes several values, or may be given several times");
+  fields.add("needs", &OptionText::needs, "what must be given with it");
+  fields.add("excludes", &OptionText::excludes, "what must not be given with it");
+  fields.add("words", through(&OptionText::values, &Values::words), "fixed values");
+  fields.add("files", through(&OptionText::values, &Values::files), "a value may be the name of a file");
+  fields.add("folders", through(&OptionText::values, &Values::folders), "a value is the name of a folder");
+  fields.add("extensions", through(&OptionText::values, &Values::extensions),
+             "of those files, without the dot; empty: any");
 }
 
-OrderedJson command_json(const CommandText& command) {
-  OrderedJson json;
-  json["path"] = std::vector<std::string>(command.path.begin() + 1, command.path.end());  // without "mbk"
-  json["summary"] = command.description;
-  json["footer"] = command.footer;
-  json["callable"] = command.commands.empty() && can_be_called(command.path[1]);
-  json["arguments"] = OrderedJson::array();
-  for (const OptionText& positional : command.positionals) json["arguments"].push_back(option_json(positional));
-  json["options"] = OrderedJson::array();
-  for (const OptionText& option : command.options) json["options"].push_back(option_json(option));
-  return json;
+void describe(Fields<CommandText>& fields) {
+  using From = const CommandText&;
+  fields.type("Command");
+  fields.add(
+      "path", [](From one) { return std::vector<std::string>(one.path.begin() + 1, one.path.end()); },
+      "as it is typed: \"springs\", \"field\"");
+  fields.add("summary", &CommandText::description);
+  fields.add("footer", &CommandText::footer, "examples and exit codes");
+  fields.add(
+      "callable", [](From one) { return one.commands.empty() && can_be_called(one.path[1]); },
+      "whether it can be called in a process, as Python, MATLAB and C do: false for a command that has others below "
+      "it, and for those that need a process of their own");
+  fields.add("arguments", &CommandText::positionals);
+  fields.add("options", &CommandText::options);
+}
+
+namespace {
+
+struct Commands {
+  std::vector<const CommandText*> commands;
+};
+
+void describe(Fields<Commands>& fields) {
+  fields.type("Commands",
+              "What `mbk manual --json` writes: every command with its arguments and options, as --help lists them. "
+              "Functions of other languages are made of it.");
+  fields.header("mbk.commands/1");
+  fields.add("commands", &Commands::commands);
 }
 
 }  // namespace
 
-std::string commands_json(const CommandText& root, const std::string& version) {
-  OrderedJson json;
-  json["schema"] = "mbk.commands/1";
-  json["software"] = "mbk " + version;
-  json["commands"] = OrderedJson::array();
+std::string commands_json(const CommandText& root) {
+  Commands all;
   for_each_command(root, [&](const CommandText& command) {
-    if (command.path.size() > 1) json["commands"].push_back(command_json(command));
+    if (command.path.size() > 1) all.commands.push_back(&command);
   });
-  return json.dump(2) + "\n";
+  return document::document(all);
+}
+
+void add_commands_schema(document::Schemas& schemas) {
+  schemas["commands"] = document::schema_of<Commands>();
 }
 
 }  // namespace mbk::app

@@ -8,8 +8,8 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/measure/analyse/analyse_width.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/text.h"
@@ -142,12 +142,11 @@ std::string text_of(const std::vector<Compared>& all, const std::vector<WidthFin
 }
 
 std::string json_of(const std::vector<Compared>& all, const std::vector<WidthFindings>& widths) {
-  std::vector<std::string> documents;
+  std::vector<result::Comparison> comparisons;
   for (std::size_t k = 0; k < widths.size(); ++k) {
-    documents.push_back(
-        result::width_to_json(identification(all.front()).sources, identification(all[k + 1]).sources, widths[k]));
+    comparisons.push_back({identification(all.front()).sources, identification(all[k + 1]).sources, widths[k]});
   }
-  return result::one_or_list_json("mbk.comparisons/1", documents);
+  return result::to_json(comparisons);
 }
 
 int run(const CompareArguments& arguments, const std::string& typed) {

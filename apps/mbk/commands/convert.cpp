@@ -178,12 +178,11 @@ int run(ConvertArguments arguments) {
 
 Action add_convert(Command app) {
   auto arguments = std::make_shared<ConvertArguments>();
-  const Command command = app.add_command("convert", "a recording in another format: HDF5, MAT, CSV, MCAP, BIDS");
+  const Command command = app.add_command("convert", "a recording in another format: HDF5, MAT, CSV, BIDS");
   command.footer(
       "Examples:\n"
       "  mbk convert log.mat log.h5\n"
-      "      the end of the second name says the format: .h5 (or .hdf5), .mat (v5), .csv or .mcap (for\n"
-      "      Foxglove and PlotJuggler)\n"
+      "      the end of the second name says the format: .h5 (or .hdf5), .mat (v5) or .csv\n"
       "  mbk convert trial.csv trial.mat --format mat73\n"
       "  mbk convert --parts log_1.mat log_2.mat log_3.mat whole.h5\n"
       "  mbk convert log.h5 data_set --bids sub-07_ses-2_task-reach_run-1\n"

@@ -138,7 +138,7 @@ Action add_explore(Command app, const std::string& typed) {
       "  mbk explore log.mat --report log.html\n"
       "      the same to be looked at: Bode plots with bands, coherence, Nyquist plots, impulse responses\n"
       "  mbk explore --each trials/*.h5 --json --engine local\n"
-      "      a result for each file, by as many processes as there are cores; or by slurm, or mpi\n"
+      "      a result for each file, by as many processes as there are cores; or by slurm\n"
       "  mbk explore ankle.csv --channels x=2,F=3 --method welch --max-frequency 30\n"
       "  mbk explore arm.mat --input torque --output acceleration --rate 500\n\n"
       "FILEs are of one limb in one condition. Trials with other phases of a periodic perturbation are\n"

@@ -148,11 +148,9 @@ int run(const PassivityArguments& arguments) {
   if (answers->found.empty()) return code;
   std::string shown;
   if (arguments.output.json) {
-    std::vector<std::string> documents;
-    for (const LimbAnswer& one : answers->found) {
-      documents.push_back(result::passivity_to_json(one.sources, one.passivity, one.energies));
-    }
-    shown = result::one_or_list_json("mbk.passivities/1", documents);
+    std::vector<result::PassivityDocument> documents;
+    for (const LimbAnswer& one : answers->found) documents.push_back({one.sources, one.passivity, one.energies});
+    shown = result::to_json(documents);
   } else {
     for (const LimbAnswer& one : answers->found) shown += (shown.empty() ? "" : "\n") + text_of(one);
   }

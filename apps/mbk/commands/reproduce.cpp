@@ -84,7 +84,7 @@ Result<void> write_all(const Reproduction& made, const ReproduceArguments& argum
     MBK_TRY(write_exhibit(exhibit, arguments));
   }
   MBK_TRY(recording::write_file(arguments.folder / "reproduction.json", arguments.overwrite, document));
-  const auto page = MBK_TRY(thesis::page(made, document));
+  const auto page = MBK_TRY(thesis::page(made));
   return recording::write_file(arguments.folder / "index.html", arguments.overwrite, page);
 }
 

@@ -6,7 +6,7 @@
 #include "mbk/measure/identify/base_parameters.h"
 #include "mbk/model/robot_file/robot_file.h"
 #include "mbk/present/report/robot_description_text.h"
-#include "mbk/present/result/robot_description_json.h"
+#include "mbk/present/result/robot_json.h"
 
 namespace mbk::app {
 namespace {

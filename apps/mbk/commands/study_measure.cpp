@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/options/engine_options.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/options/table_options.h"
@@ -66,10 +65,7 @@ int measure_as_job(store::Store& study, const std::string& key, const OptionText
     if (!collected) return report_error(collected.error());
     tally += *collected;
     if (carried->code) return said_of(tally, carried->code);
-    if (!arguments.engine.keep) {
-      if (auto ok = keep_record(*carried->folder, study.folder()); !ok) return report_error(ok.error());
-      if (auto ok = carried->folder->remove(); !ok) return report_error(ok.error());
-    }
+    if (auto ok = batch::remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
     // What could not be read is not tried again at once.
     if (arguments.engine.keep || tally.unread > 0) return said_of(tally);
   }

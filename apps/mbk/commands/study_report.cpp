@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/report_file.h"
 #include "mbk/base/core/option_checks.h"
@@ -43,21 +42,14 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
   }
   statistics::add_matrix_numbers(columns);
   const auto options = MBK_TRY(statistics_options(arguments.comparing));
-  const auto statistics = statistics::study_statistics(columns, options);
-  if (!statistics) return tl::unexpected(statistics.error());
-  const std::string summary =
-      store::to_json(list, store::summarise_outcomes(columns), statistics::to_json(*statistics));
+  auto statistics = MBK_TRY(statistics::study_statistics(columns, options));
   const std::string command = command_of(arguments, list);
-  auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), *statistics,
+  auto report = MBK_TRY(longitudinal::study_report(std::move(list), std::move(columns), std::move(statistics),
                                                    arguments.participant, arguments.outcome));
   report.command = command;
   report.note = printable(arguments.note);
-  if (!arguments.participant) {
-    auto jobs = MBK_TRY(job_documents(study.folder()));
-    report.jobs = std::move(jobs);
-  }
   return arguments.participant ? longitudinal::participant_report_json(report, *arguments.participant)
-                               : longitudinal::study_report_json(report, summary);
+                               : longitudinal::study_report_json(report);
 }
 
 int run_report(const StudyReportArguments& arguments) {
@@ -84,7 +76,7 @@ Action add_study_report(Command group) {
   command.footer(
       "Examples:\n"
       "  mbk study report --out study.html\n"
-      "      reliability, participants, sessions, ellipses, what does not count and why, jobs of --engine\n"
+      "      reliability, participants, sessions, ellipses, what does not count and why\n"
       "  mbk study report --participant 7 --out participant_7.html\n"
       "      what changed since the first session, and whether it is more than the minimal detectable change\n"
       "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"

@@ -1,17 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/study_options.h"
 #include "mbk/base/core/option_checks.h"
-#include "mbk/batch/job_efficiency.h"
-#include "mbk/batch/run.h"
+#include "mbk/batch/job_status.h"
 
 namespace mbk::app {
 namespace {
@@ -27,45 +25,30 @@ struct StatusArguments {
 Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
   if (arguments.job) return std::vector{*arguments.job};
   const auto study = MBK_TRY(open_study(arguments.study));
-  return job_folders(study.folder());
-}
-
-nlohmann::ordered_json json_of(const batch::JobFolder& folder, const batch::JobState& state,
-                               const batch::JobEfficiency& efficiency) {
-  auto json = nlohmann::ordered_json::parse(batch::to_json(state));
-  json["folder"] = folder.folder().string();
-  json["title"] = folder.job().title;
-  json["tasks"] = nlohmann::ordered_json::array();
-  for (const batch::TaskEfficiency& one : efficiency.tasks) {
-    json["tasks"].push_back({{"chunk", one.task.chunk},
-                             {"host", one.task.end.host},
-                             {"units", one.task.end.units},
-                             {"failed", one.task.end.failed},
-                             {"expected_s", one.task.expected_s},
-                             {"wall_s", one.task.end.wall_s},
-                             {"cpu_s", one.task.end.cpu_s}});
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (auto at = fs::directory_iterator(study.folder() / "jobs", error); !error && at != fs::directory_iterator();
+       at.increment(error)) {
+    if (batch::JobFolder::is_there(at->path())) folders.push_back(at->path());
   }
-  json["efficiency"] = nlohmann::ordered_json::parse(batch::to_json(efficiency));
-  return json;
+  std::ranges::sort(folders);
+  return folders;
 }
 
 int run(const StatusArguments& arguments) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
   std::string text = jobs->empty() ? "no job is under way\n" : "";
-  nlohmann::ordered_json json = {{"schema", "mbk.study_status/1"}, {"jobs", nlohmann::ordered_json::array()}};
+  std::vector<batch::JobStatus> all;
   for (const fs::path& one : *jobs) {
     const auto folder = batch::JobFolder::open(one);
     if (!folder) return report_error(folder.error());
-    const auto state = batch::state_of(*folder);
-    if (!state) return report_error(state.error());
-    const auto efficiency = batch::job_efficiency(*folder);
-    if (!efficiency) return report_error(efficiency.error());
-    json["jobs"].push_back(json_of(*folder, *state, *efficiency));
-    text += fmt::format("{}\n  {}\n  {}\n{}", folder->job().title, folder->folder().string(), batch::to_text(*state),
-                        batch::to_text(*efficiency));
+    const auto status = batch::status_of(*folder);
+    if (!status) return report_error(status.error());
+    all.push_back(*status);
+    text += fmt::format("{}\n  {}\n  {}\n", status->title, status->folder, batch::to_text(status->state));
   }
-  if (arguments.json) text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (arguments.json) text = batch::to_json(all);
   if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -79,7 +62,7 @@ Action add_study_status(Command group) {
       "Examples:\n"
       "  mbk study status\n"
       "  mbk study status --json\n"
-      "      with the time that each finished task waited and worked, and why tasks were lost\n"
+      "      with the time that each finished task took\n"
       "  mbk study status --job mbk-jobs/validate-recovery-0123456789ab/stage-0\n"
       "      a job of another command");
   add_study_option(command, arguments->study);

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/commands/study_jobs.h"
 #include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/engine_options.h"
 #include "apps/mbk/terminal/progress.h"
@@ -119,10 +118,7 @@ Result<std::optional<int>> resample(const SummaryArguments& arguments, const sto
         carry_out(arguments.engine, workflow::draws_request(bootstrap, study.folder()), arguments.output.quiet));
     if (carried.code) return carried.code;
     draws = MBK_TRY(workflow::draws_of(*carried.folder));
-    if (!arguments.engine.keep) {
-      MBK_TRY(keep_record(*carried.folder, study.folder()));
-      MBK_TRY(carried.folder->remove());
-    }
+    MBK_TRY(batch::remove_job(*carried.folder, arguments.engine));
   } else {
     Progress progress(arguments.output.quiet, "resampling: ");
     draws = MBK_TRY(workflow::draws_here(bootstrap, [&](int done, int of) { progress.count(done, of); }));
@@ -166,7 +162,7 @@ int run_summary(const SummaryArguments& arguments) {
     });
   }
   const auto outcomes = store::summarise_outcomes(columns);
-  const std::string text = arguments.output.json ? store::to_json(*list, outcomes, statistics::to_json(*found))
+  const std::string text = arguments.output.json ? statistics::to_json(*list, outcomes, *found)
                                                  : summary_text(*list, outcomes, *found, !options->outcomes.empty());
   if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
   return kFine;

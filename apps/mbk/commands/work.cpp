@@ -45,7 +45,7 @@ int run(const WorkArguments& arguments) {
   const auto folder = batch::JobFolder::open(arguments.folder);
   if (!folder) return report_error(folder.error());
   if (arguments.cancel) return cancel(*folder);
-  if (!arguments.chunk) return show_state(*folder, arguments.json);
+  if (arguments.status || arguments.json) return show_state(*folder, arguments.json);
   if (arguments.with_parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() == 1) return kBadData;  // it is gone already
@@ -60,14 +60,16 @@ int run(const WorkArguments& arguments) {
                                      simd_of_job, word_of(simd())),
                          fmt::format("begin it with MBK_SIMD={}", word_of(simd())), folder->folder().string()});
   }
-  batch::ChunkDone done;
+  const auto done = [](std::int64_t chunk, const batch::ChunkDone& did) {
+    return print_text(fmt::format("chunk {}: {} units, {} failed\n", chunk, did.units, did.failed));
+  };
+  const batch::WorkOptions options{arguments.heartbeat_s};
   const auto worked = with_units(*folder, [&](const batch::UnitFunction& compute) -> Result<void> {
-    done = MBK_TRY(batch::work(*folder, *arguments.chunk, compute, {arguments.heartbeat_s}));
-    return {};
+    if (!arguments.chunk) return batch::work_on_free_chunks(*folder, compute, options, done);
+    const auto did = MBK_TRY(batch::work(*folder, *arguments.chunk, compute, options));
+    return done(*arguments.chunk, did);
   });
   if (!worked) return report_error(worked.error());
-  const std::string text = fmt::format("chunk {}: {} units, {} failed\n", *arguments.chunk, done.units, done.failed);
-  if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -75,21 +77,24 @@ int run(const WorkArguments& arguments) {
 
 Action add_work(Command app) {
   auto arguments = std::make_shared<WorkArguments>();
-  const Command command = app.add_command("work", "a part of a job that --engine began");
+  const Command command = app.add_command("work", "work on a job that --engine began");
   command.footer(
       "Examples:\n"
       "  mbk work arms/jobs/measure --status\n"
       "      how far it is\n"
       "  mbk work arms/jobs/measure --chunk 12\n"
-      "      what a task of Slurm or a rank of MPI does; by hand, too\n"
+      "      what a task of Slurm does; by hand, too\n"
+      "  mpirun -n 64 mbk work arms/jobs/measure\n"
+      "      64 workers, by MPI or by srun: each does chunks that nobody has begun, until there are none\n"
       "  mbk work arms/jobs/measure --cancel\n"
       "      ends the tasks that wait or run in Slurm; what they finished stays\n\n"
       "A chunk's results stand in the job's folder, shards/CHUNK.*.shard; the command that began the job collects\n"
       "them. A chunk that is done twice gives the same bytes.");
   command.add_option("FOLDER", arguments->folder, "the job's folder").required().check(not_empty());
-  const Option chunk = command.add_option("--chunk", arguments->chunk, "which part, from 0")
-                           .type_name("K")
-                           .check(whole_number(0, 1'000'000'000));
+  const Option chunk =
+      command.add_option("--chunk", arguments->chunk, "only this part, from 0 (all that nobody has begun)")
+          .type_name("K")
+          .check(whole_number(0, 1'000'000'000));
   command.add_option("--heartbeat", arguments->heartbeat_s, "between two signs of life in the shard (20)")
       .type_name("S")
       .check(positive());

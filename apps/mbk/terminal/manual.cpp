@@ -53,7 +53,7 @@ int write_pages(const CommandText& root, const std::filesystem::path& folder, bo
 int run(const ManualArguments& arguments, Command app) {
   const CommandText root = describe(app);
   if (arguments.json) {
-    if (auto ok = print_text(commands_json(root, std::string(version()))); !ok) return report_error(ok.error());
+    if (auto ok = print_text(commands_json(root)); !ok) return report_error(ok.error());
     return kFine;
   }
   if (arguments.pages) {

@@ -27,38 +27,40 @@ _ATTRIBUTE = {"from": "from_", "import": "import_", "class": "class_"}  # names 
 
 
 @functools.lru_cache(maxsize=None)
-def _schema(name: str) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((SCHEMAS / name).read_text(encoding="utf-8"))
-    return found
+def _schema(name: str) -> _Field | None:
+    file = SCHEMAS / f"{name}.schema.json"
+    if not file.exists():
+        return None
+    schema = json.loads(file.read_text(encoding="utf-8"))
+    return _Field(schema, schema["definitions"])
 
 
 class _Field:
     """A place in a schema: what a description says of it, and what is below it."""
 
-    def __init__(self, node: dict[str, Any], file: str, description: str = "") -> None:
+    def __init__(self, node: dict[str, Any], types: dict[str, Any], description: str = "", within: str = "") -> None:
+        self.types = types
+        self.type, self.within = "", within  # the names of its type and of the type that it is a field of
         while "$ref" in node:
             description = description or node.get("description", "")
-            target, _, pointer = node["$ref"].partition("#")
-            file = target or file
-            node = _schema(file)
-            for step in pointer.split("/"):
-                node = node[step] if step else node
-        self.node, self.file = node, file
+            self.type = node["$ref"].rpartition("/")[2]
+            node = types[self.type]
+        self.node = node
         self.description: str = description or node.get("description", "")
 
     def _options(self) -> Iterator[_Field]:
         yield self
         for key in ("anyOf", "oneOf"):
             for one in self.node.get(key, ()):
-                yield from _Field(one, self.file, self.description)._options()
+                yield from _Field(one, self.types, self.description, self.within)._options()
 
     def below(self, name: str) -> _Field | None:
         for option in self._options():
             node = option.node.get("properties", {}).get(name)
             if node is not None:
-                return _Field(node, option.file)
+                return _Field(node, self.types, within=option.type)
             if name.isdecimal() and isinstance(option.node.get("items"), dict):
-                return _Field(option.node["items"], option.file, option.description)
+                return _Field(option.node["items"], self.types, option.description)
         return None
 
     @property
@@ -138,7 +140,7 @@ class Part:
                 value = value.get(name, {})
         del value
         assert field is not None
-        if self._units and name in self._units and field.file == "common.schema.json":
+        if self._units and name in self._units and field.within == "Model":
             return self._units[name]
         described = _UNIT.findall(field.description)
         unit: str = described[-1] if described else ""
@@ -217,9 +219,7 @@ class Document(Part):
     def _read(self) -> None:
         values = json.loads(self.json)
         match = re.fullmatch(r"mbk\.(\w+)/\d+", values.get("schema", ""))
-        file = f"{match[1]}.schema.json" if match else ""
-        field = _Field(_schema(file), file) if file and (SCHEMAS / file).exists() else None
-        Part.__init__(self, values, field, values.get("units") or {})
+        Part.__init__(self, values, _schema(match[1]) if match else None, values.get("units") or {})
 
     def to_dict(self) -> dict[str, Any]:
         """What ``--json`` prints, as dictionaries and lists; a copy of its own each time."""

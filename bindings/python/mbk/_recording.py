@@ -284,7 +284,7 @@ class Recording:
         return xarray.Dataset(variables, coords={"time": ("time", self.time, {"units": "s"})}, attrs=self.metadata)
 
     def save(self, file: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Writes it to a file; the end of its name says the format: .h5, .mat, .csv or .mcap."""
+        """Writes it to a file; the end of its name says the format: .h5, .mat or .csv."""
         import mbk
 
         mbk.convert(self, file, overwrite=overwrite)

@@ -475,10 +475,6 @@ std::string Section::required_text(std::string_view key) const {
   return find_text(key, Need::required).value_or("");
 }
 
-std::optional<std::string> Section::optional_text(std::string_view key) const {
-  return find_text(key, Need::optional);
-}
-
 std::vector<double> Section::numbers(std::string_view key, std::vector<double> fallback, Range allowed,
                                      std::size_t count) const {
   return find_numbers(key, allowed, count, Need::optional).value_or(std::move(fallback));

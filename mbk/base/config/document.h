@@ -107,7 +107,6 @@ class Section {
 
   [[nodiscard]] std::string text(std::string_view key, std::string_view fallback) const;
   [[nodiscard]] std::string required_text(std::string_view key) const;
-  [[nodiscard]] std::optional<std::string> optional_text(std::string_view key) const;
 
   /// One of a few words: s.choice("kind", {{"multisine", Kind::multisine}, {"pulses", Kind::pulses}}, Kind::pulses)
   template <class Value>

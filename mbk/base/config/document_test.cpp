@@ -73,7 +73,6 @@ TEST(Section, GivesFallbacksInSiUnitsWhereNothingStands) {
   EXPECT_EQ(s.integer("seed", ~std::uint64_t{0}, 0, ~std::uint64_t{0}), ~std::uint64_t{0});
   EXPECT_TRUE(s.flag("gravity", true));
   EXPECT_EQ(s.text("name", "anybody"), "anybody");
-  EXPECT_EQ(s.optional_text("note"), std::nullopt);
   EXPECT_EQ(s.choice("kind", {{"multisine", Kind::multisine}, {"pulses", Kind::pulses}}, Kind::pulses), Kind::pulses);
   EXPECT_THAT(s.numbers("masses_kg", {1.0, 2.0}), ElementsAre(1.0, 2.0));
   EXPECT_EQ(s.vector2("centre_mm", {0.1, 0.2}), Eigen::Vector2d(0.1, 0.2));
@@ -102,7 +101,7 @@ K_N_per_mm = [[1, 2.0], [3, 4]]
   EXPECT_EQ(s.integer("seed", std::uint64_t{1}, 0, ~std::uint64_t{0}), 9223372036854775807u);
   EXPECT_FALSE(s.flag("gravity", true));
   EXPECT_EQ(s.required_text("name"), "Anna");
-  EXPECT_EQ(s.optional_text("note"), "calm");
+  EXPECT_EQ(s.text("note", ""), "calm");
   EXPECT_EQ(s.required_choice<Kind>("kind", {{"pulses", Kind::pulses}, {"multisine", Kind::multisine}}),
             Kind::multisine);
   EXPECT_THAT(s.numbers("masses_g", {}, above(0), 3), ElementsAre(1.0, 2.0, 0.5));

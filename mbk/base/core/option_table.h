@@ -159,6 +159,12 @@ class OptionTable {
     return *this;
   }
 
+  /// Of the row before: another test of its values.
+  OptionTable& check(std::function<std::string(const std::string& given)> wrong) {
+    rows_.back().facts.check.wrong = std::move(wrong);
+    return *this;
+  }
+
   /// Of the row before: what means the same as its absence, where that is more than an equal value.
   OptionTable& is_default_where(std::function<bool(const Options&)> is_default) {
     rows_.back().is_default = std::move(is_default);

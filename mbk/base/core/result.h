@@ -56,10 +56,12 @@ Value taken(tl::expected<Value, Error>&& result) {
 ///     MBK_TRY(check(recording));
 ///
 /// A statement expression, which GCC and Clang know; write it only as a whole statement or a whole initialiser.
-#define MBK_TRY(...)                                                                          \
-  __extension__({                                                                             \
-    auto mbk_result = (__VA_ARGS__);                                                          \
-    if (!mbk_result) [[unlikely]]                                                             \
-      return ::tl::unexpected<::mbk::Error>(std::move(mbk_result).error());                   \
-    ::mbk::taken(std::move(mbk_result));                                                      \
+#define MBK_TRY(...) MBK_TRY_NAMED(__COUNTER__, __VA_ARGS__)
+#define MBK_TRY_NAMED(number, ...) MBK_TRY_AS(mbk_result_##number, __VA_ARGS__)
+#define MBK_TRY_AS(result, ...)                                                                      \
+  __extension__({                                                                                    \
+    auto result = (__VA_ARGS__);                                                                     \
+    if (!result) [[unlikely]]                                                                        \
+      return ::tl::unexpected<::mbk::Error>(std::move(result).error());                              \
+    ::mbk::taken(std::move(result));                                                                 \
   })

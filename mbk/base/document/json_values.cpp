@@ -42,6 +42,18 @@ Json rows(const Matrix& matrix) {
   return array;
 }
 
+Json columns(const Matrix& matrix) {
+  Json array = Json::array();
+  for (Index k = 0; k < matrix.cols(); ++k) array.push_back(list(matrix.col(k)));
+  return array;
+}
+
+Json rounded_columns(const Matrix& matrix, int digits) {
+  Json array = Json::array();
+  for (Index k = 0; k < matrix.cols(); ++k) array.push_back(rounded(Vector(matrix.col(k)), digits));
+  return array;
+}
+
 std::string software() {
   return fmt::format("mbk {}", version());
 }
@@ -52,6 +64,10 @@ Json header(const std::string& schema) {
 
 std::string dumped(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string compact(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 Json nullable(Json schema) {

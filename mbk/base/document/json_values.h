@@ -26,6 +26,8 @@ inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of numbers that are the
 [[nodiscard]] Json interval(const std::pair<double, double>& value, double scale = 1.0);
 
 [[nodiscard]] Json rows(const Matrix& matrix);
+[[nodiscard]] Json columns(const Matrix& matrix);
+[[nodiscard]] Json rounded_columns(const Matrix& matrix, int digits = kDigits);
 
 /// "mbk 1.0.0"
 [[nodiscard]] std::string software();
@@ -36,6 +38,9 @@ inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of numbers that are the
 /// As text that ends with a line end. File and channel names may hold bytes that are not UTF-8, which JSON cannot hold:
 /// each becomes U+FFFD.
 [[nodiscard]] std::string dumped(const Json& json);
+
+/// The same without blanks and line ends.
+[[nodiscard]] std::string compact(const Json& json);
 
 /// A schema that takes null, too.
 [[nodiscard]] Json nullable(Json schema);

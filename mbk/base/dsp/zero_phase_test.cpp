@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "mbk/base/dsp/causal_filter.h"
+
 namespace mbk::dsp {
 namespace zero_phase_test {
 

@@ -131,13 +131,6 @@ IntegerPolynomial primitive(const Polynomial& p) {
   return result;
 }
 
-bool are_surely_coprime(const IntegerPolynomial& first, const IntegerPolynomial& second) {
-  if (first.empty() || second.empty()) return false;
-  const Residues a = modulo(first, kPrime), b = modulo(second, kPrime);
-  // a common divisor keeps its degree only where the leading coefficients stay
-  return a.back() != 0 && b.back() != 0 && gcd_modulo(a, b, kPrime).size() == 1;
-}
-
 std::optional<IntegerPolynomial> exact_quotient(IntegerPolynomial a, const IntegerPolynomial& b) {
   if (a.size() < b.size()) return a.empty() ? std::optional(a) : std::nullopt;
   IntegerPolynomial quotient(a.size() - b.size() + 1);

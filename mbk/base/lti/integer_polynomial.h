@@ -15,10 +15,6 @@ using IntegerPolynomial = std::vector<Integer>;  // ascending, the last one not 
 /// The multiple of p by a positive number whose coefficients are whole and have no common divisor.
 [[nodiscard]] IntegerPolynomial primitive(const Polynomial& p);
 
-/// a and b are proven to have no common root, by their remainders modulo a prime. Almost always true where they have
-/// none, and quick; false says nothing.
-[[nodiscard]] bool are_surely_coprime(const IntegerPolynomial& a, const IntegerPolynomial& b);
-
 /// The greatest common divisor over the rationals, primitive, its leading coefficient positive: from its remainders
 /// modulo primes, put together until it divides both (Brown 1971). Neither may be empty.
 [[nodiscard]] IntegerPolynomial greatest_common_divisor(const IntegerPolynomial& a, const IntegerPolynomial& b);

@@ -193,18 +193,6 @@ Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const M
   return result;
 }
 
-Matrix replicate_covariance(const Matrix& replicates) {
-  const Matrix centred = replicates.colwise() - replicates.rowwise().mean();
-  return centred * centred.transpose() / static_cast<double>(std::max<Index>(replicates.cols() - 1, 1));
-}
-
-std::pair<double, double> percentile_interval(const Vector& replicates, double confidence) {
-  const std::vector<double> values = sorted(replicates);
-  if (values.empty()) return kNoInterval;
-  const double tail = 0.5 * (1.0 - confidence);
-  return {quantile(values, tail), quantile(values, 1.0 - tail)};
-}
-
 std::pair<double, double> bias_corrected_interval(double estimate, const Vector& replicates, double confidence) {
   const std::vector<double> values = sorted(replicates);
   if (values.empty() || !std::isfinite(estimate)) return kNoInterval;

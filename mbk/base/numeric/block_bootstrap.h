@@ -70,14 +70,8 @@ struct BlockBootstrap {
                                                      const std::vector<RowRange>& ranges,
                                                      const BlockBootstrapOptions& options);
 
-/// Covariance of replicates about their mean, divided by their number less one.   @param replicates k×B
-[[nodiscard]] Matrix replicate_covariance(const Matrix& replicates);
-
-/// From the quantile (1 − confidence)/2 of the replicates to 1 minus that, linear between order statistics.
-/// NaN where there is no replicate or one is not a number.
-[[nodiscard]] std::pair<double, double> percentile_interval(const Vector& replicates, double confidence);
-
-/// The percentile interval, moved for a bias of the median (Efron 1981): with z₀ = Φ⁻¹(share of replicates below the
+/// The interval between quantiles of the replicates, linear between order statistics, moved for a bias of the median
+/// (Efron 1981): with z₀ = Φ⁻¹(share of replicates below the
 /// estimate) its quantiles are Φ(2 z₀ ± z). It follows any monotone change of scale, as from a stiffness to its
 /// logarithm. Where all replicates are on one side of the estimate it is the smallest or largest of them alone.
 [[nodiscard]] std::pair<double, double> bias_corrected_interval(double estimate, const Vector& replicates,

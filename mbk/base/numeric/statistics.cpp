@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/complement.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
@@ -171,20 +167,6 @@ double normal_quantile(double p) {
   if (p <= 0.0) return -kInfinity;
   if (p >= 1.0) return kInfinity;
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * p);
-}
-
-double student_quantile(double p, int degrees_of_freedom) {
-  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), p);
-}
-
-double chi_square_quantile(double p, int degrees_of_freedom) {
-  return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), p);
-}
-
-double f_probability_above(double value, double numerator, double denominator) {
-  if (!(value > 0.0)) return 1.0;
-  if (!std::isfinite(value)) return 0.0;
-  return boost::math::cdf(boost::math::complement(boost::math::fisher_f(numerator, denominator), value));
 }
 
 double quantile(const Eigen::Ref<const Vector>& sorted, double p) {

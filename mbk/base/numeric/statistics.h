@@ -43,18 +43,6 @@ struct Extremes {
 /// Φ⁻¹(p); −∞ for p ≤ 0, ∞ for p ≥ 1.
 [[nodiscard]] double normal_quantile(double p);
 
-/// t with P(T ≤ t) = p for Student's T.
-/// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
-[[nodiscard]] double student_quantile(double p, int degrees_of_freedom);
-
-/// x with P(X ≤ x) = p for χ² of so many degrees of freedom.
-/// @param p in (0, 1)    @param degrees_of_freedom ≥ 1
-[[nodiscard]] double chi_square_quantile(double p, int degrees_of_freedom);
-
-/// P(X > value) for Fisher's F of so many degrees of freedom, which need not be whole; 1 where value is not above 0.
-/// @param numerator, denominator > 0
-[[nodiscard]] double f_probability_above(double value, double numerator, double denominator);
-
 /// The value below which a share p of sorted values lies, by straight lines between them; NaN where there are none.
 /// @param sorted rising    @param p in [0, 1]
 [[nodiscard]] double quantile(const Eigen::Ref<const Vector>& sorted, double p);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/random.h"
 
 namespace mbk::numeric {

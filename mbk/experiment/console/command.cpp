@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+
+#include "mbk/experiment/console/messages.h"
 
 namespace mbk::console {
 namespace {
@@ -55,6 +56,24 @@ bool knows(Action action, std::string_view key) {
 }
 
 }  // namespace
+
+void describe(document::Fields<Command>& fields) {
+  const auto known = [](std::string_view key) {
+    return [key](const Command& command) { return knows(command.action, key); };
+  };
+  const auto end = [](double Window::*of) {
+    return
+        [of](const Command& command) { return command.window ? std::optional((*command.window).*of) : std::nullopt; };
+  };
+  fields.type("ConsoleCommand", "What a page tells the console of `mbk run`.");
+  fields.add("command", &Command::action);
+  fields.add_if(known("text"), "text", &Command::text, "of a note; why something is excluded");
+  fields.add_if(known("code"), "code", &Command::text, "of a reset: the one that a state holds");
+  fields.add_if(known("attempt"), "attempt", &Command::attempt, "of what is excluded or included: its number");
+  fields.add_number("from_s", end(&Window::from),
+                    "of the window that is excluded, where it is not the whole trial [s]");
+  fields.add_number("to_s", end(&Window::to), "[s]");
+}
 
 Result<Command> parse_command(std::string_view json) {
   const auto parsed = MBK_TRY(parse(json));

@@ -2,16 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include "mbk/experiment/console/messages.h"
+
 namespace mbk::console {
 namespace {
 
-TEST(Command, EveryActionHasANameThatLeadsBackToIt) {
-  for (const Action action : {Action::stop, Action::end, Action::start, Action::repeat, Action::next, Action::abort,
-                              Action::reset, Action::control}) {
-    const auto command = parse_command(R"({"command":")" + std::string(word_of(action)) + R"("})");
-    ASSERT_TRUE(command) << command.error().line();
-    EXPECT_EQ(command->action, action);
-    EXPECT_EQ(command->text, "");
+TEST(Command, EveryActionIsReadAsItsSchemaHasIt) {
+  for (const auto& [action, word] : kWords<Action>) {
+    Command command{action, "because", 3, {}};
+    if (action == Action::exclude) command.window = Window{1.5, 4.0};
+    const std::string text = *message(command);
+    const auto parsed = parse_command(text);
+    ASSERT_TRUE(parsed) << text << ": " << parsed.error().line();
+    EXPECT_EQ(*message(*parsed), text);
   }
 }
 

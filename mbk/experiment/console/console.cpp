@@ -5,23 +5,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
-#include "mbk/base/core/version.h"
 #include "mbk/base/realtime/rest.h"
 #include "mbk/experiment/console/frame.h"
+#include "mbk/experiment/console/messages.h"
 #include "mbk/experiment/console/page.h"
-#include "mbk/experiment/control/sequencer.h"
 #include "mbk/experiment/safety/trip.h"
-#include "mbk/measure/preprocess/exclusions.h"
-#include "mbk/present/result/json.h"
 
 namespace mbk::console {
 namespace {
 
-using Json = nlohmann::json;
 using journal::Tick;
 
 constexpr std::size_t kMaxPending = 8192;  // samples of a frame, at most
@@ -30,20 +25,7 @@ constexpr std::uint64_t kDiskBeats = 120;
 constexpr std::size_t kMaxReports = 30;  // that can still be opened: of a session of months the last ones
 constexpr std::size_t kShownNotes = 20;  // in a state, and their bytes
 constexpr std::size_t kShownNoteBytes = 8 << 10;
-constexpr std::size_t kMaxWindows = 20;    // that are excluded of a trial
-constexpr std::size_t kLongestText = 600;  // in a state, of each sentence [bytes]
-
-Json times_json(const realtime::CycleRecord& record) {
-  Json bins = Json::array();
-  for (int bin = 0; bin < std::ssize(record.bins()); ++bin) {
-    const std::uint64_t count = record.bins()[static_cast<std::size_t>(bin)];
-    if (count > 0) bins.push_back({1e-3 * record.edge(bin), 1e-3 * record.edge(bin + 1), count});
-  }
-  return {{"median_us", 1e-3 * record.quantile(0.5)},
-          {"p999_us", 1e-3 * record.quantile(0.999)},
-          {"worst_us", 1e-3 * static_cast<double>(record.worst())},
-          {"bins", std::move(bins)}};
-}
+constexpr std::size_t kMaxWindows = 20;  // that are excluded of a trial
 
 bool answers(Question question, Action action) {
   switch (question) {
@@ -57,26 +39,6 @@ bool answers(Question question, Action action) {
       return action == Action::reset || action == Action::abort;
   }
   return false;
-}
-
-/// Where a trip has a value, its sentence is whole only with the outcome.
-std::string sentence_of(const safety::Trip& trip) {
-  if (trip.reason == safety::Reason::none) return "";
-  const bool whole = safety::unit(trip.reason).empty() || trip.limit != 0.0 || trip.value != 0.0;
-  return whole ? safety::sentence(trip) : std::string(word_of(trip.reason));
-}
-
-/// At most so much of it, cut between two characters of UTF-8.
-std::string beginning(std::string text) {
-  if (text.size() <= kLongestText) return text;
-  std::size_t end = kLongestText;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
-  text.resize(end);
-  return text + " …";
-}
-
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string axis_name(Eigen::Index axis) {
@@ -122,7 +84,7 @@ Console::Console(const std::vector<session::Plan>& plans, session::LoopFlags& fl
     : flags_(flags), protocol_(plans.empty() ? "" : plans.front().trial.protocol) {
   for (const session::Plan& plan : plans) {
     const protocol::Trial& trial = plan.trial;
-    Listed listed;
+    ListedTrial listed;
     listed.name = trial.name.empty() ? trial.protocol : trial.name;
     listed.condition = trial.condition;
     listed.home = trial.home;
@@ -185,17 +147,15 @@ void Console::begin(std::size_t index, const journal::Header& header, const std:
   recording_notes_ = notes_.size();
   recording_note_bytes_ = 0;
   for (const std::string& note : notes_) recording_note_bytes_ += note.size();
-  estimate_ = std::make_shared<std::string>(R"({"type":"estimate"})");
-  Listed& listed = trials_[index];
+  estimate_ = message(NewestEstimate{});
+  ListedTrial& listed = trials_[index];
   listed.progress = Progress::running;
   listed.recording = target.string();
   listed.ending.clear();
   listed.report = 0;
-  attempts_.push_back({.trial = index, .recording = target.string()});
-  if (attempts_.size() > kMaxAttempts) {
-    attempts_.pop_front();
-    ++forgotten_attempts_;
-  }
+  const int number = attempts_.empty() ? 1 : attempts_.back().number + 1;
+  attempts_.push_back({.number = number, .trial = index, .name = listed.name, .recording = target.string()});
+  if (attempts_.size() > kMaxAttempts) attempts_.pop_front();
   running_ = changed_ = session_changed_ = true;
   said_.clear();
 }
@@ -242,7 +202,7 @@ void Console::watch_throwing(std::span<const Tick> ticks) {
 void Console::finish(const session::TrialOutcome& outcome) {
   live_->finish();
   const std::scoped_lock lock(mutex_);
-  Listed& listed = trials_[current_];
+  ListedTrial& listed = trials_[current_];
   trip_ = outcome.trip;
   listed.progress = trip_.reason == safety::Reason::none ? Progress::done : Progress::stopped;
   listed.recording = outcome.recording.string();
@@ -266,8 +226,7 @@ void Console::judge(Judgement judgement) {
 
 void Console::show_texts(const Texts& texts) {
   const std::scoped_lock lock(mutex_);
-  texts_ = std::make_shared<std::string>(dump(
-      {{"type", "texts"}, {"language", texts.language}, {"sentences", texts.sentences}, {"trials", texts.trials}}));
+  texts_ = message(texts);
 }
 
 Console::Times Console::times(bool watched) {
@@ -286,7 +245,7 @@ void Console::show_report(std::string html, std::string why) {
   while (reports_.size() > kMaxReports) {
     const int oldest = reports_.begin()->first;
     reports_.erase(reports_.begin());
-    const auto of = std::ranges::find(trials_, oldest, &Listed::report);
+    const auto of = std::ranges::find(trials_, oldest, &ListedTrial::report);
     if (of == trials_.end()) continue;  // the trial was repeated
     of->report = 0;
     of->report_missing = "no longer kept here; 'mbk measure --report' makes it again";
@@ -354,11 +313,9 @@ std::vector<std::string> Console::take_notes() {
 std::vector<Exclusion> Console::take_exclusions() {
   const std::scoped_lock lock(mutex_);
   std::vector<Exclusion> taken;
-  for (Attempt& attempt : attempts_) {
+  for (PerformedTrial& attempt : attempts_) {
     if (!std::exchange(attempt.changed, false)) continue;
-    std::vector<preprocess::ExcludedWindow> windows;
-    for (const auto& [window, why] : attempt.windows) windows.push_back({window.from, window.to, why});
-    taken.push_back({attempt.recording, attempt.excluded, preprocess::excluded_windows_text(windows)});
+    taken.push_back({attempt.recording, attempt.excluded, preprocess::excluded_windows_text(attempt.windows)});
   }
   return taken;
 }
@@ -434,11 +391,11 @@ Result<void> Console::note(const std::string& text) {
 }
 
 Result<void> Console::exclude(const Command& command) {
-  const int place = command.attempt - 1 - forgotten_attempts_;
+  const int place = attempts_.empty() ? -1 : command.attempt - attempts_.front().number;
   if (place < 0 || place >= std::ssize(attempts_)) {
     return bad_usage(fmt::format("there is no trial number {} on this page", command.attempt));
   }
-  Attempt& attempt = attempts_[static_cast<std::size_t>(place)];
+  PerformedTrial& attempt = attempts_[static_cast<std::size_t>(place)];
   if (!attempt.over) return bad_usage("the trial still runs", "exclude it when it is over");
   if (command.action == Action::include) {
     attempt.excluded.clear();
@@ -451,7 +408,7 @@ Result<void> Console::exclude(const Command& command) {
   } else if (attempt.windows.size() == kMaxWindows) {
     return bad_usage(fmt::format("{} windows of this trial are excluded already", kMaxWindows), "exclude the trial");
   } else {
-    attempt.windows.emplace_back(*command.window, command.text);
+    attempt.windows.push_back({command.window->from, command.window->to, command.text});
   }
   attempt.changed = session_changed_ = true;
   wake();
@@ -468,102 +425,19 @@ void Console::decide(Action action) {
 }
 
 void Console::estimated(const LiveEstimate::Estimate& estimate) {
-  std::string json = fmt::format(R"({{"type":"estimate","final":{},"from_s":{:.3f},"perturbed_s":{:.3f},)",
-                                 estimate.final, estimate.from, estimate.perturbed);
-  if (estimate.measured) {
-    json += "\"result\":" + result::to_json(*estimate.measured) + "}";
-  } else {
-    json += "\"why\":" + dump(estimate.measured.error().line()) + "}";
-  }
+  Message made = message(NewestEstimate{&estimate});
   const std::scoped_lock lock(mutex_);
-  estimate_ = std::make_shared<std::string>(std::move(json));
+  estimate_ = std::move(made);
 }
 
 std::string Console::state() {
   const std::scoped_lock lock(mutex_);
-  return state_locked();
+  return *message(*this);
 }
 
-std::string Console::state_locked() const {
-  Json trials = Json::array();
-  for (const Listed& listed : trials_) {
-    constexpr std::array<const char*, 4> kProgress = {"waiting", "running", "done", "stopped"};
-    trials.push_back({{"name", listed.name},
-                      {"condition", listed.condition},
-                      {"duration_s", listed.duration},
-                      {"home_m", {listed.home[0], listed.home[1]}},
-                      {"reference_unit", listed.force ? "N" : "m"},
-                      {"task", listed.task},
-                      {"progress", kProgress[static_cast<std::size_t>(listed.progress)]},
-                      {"recording", listed.recording},
-                      {"ending", beginning(listed.ending)},
-                      {"report", listed.report},
-                      {"report_missing", beginning(listed.report_missing)}});
-  }
-  const bool held = flags_.operator_stop && trip_.reason == safety::Reason::none && !running_;
-  const Server::Status status = server_ ? server_->status() : Server::Status{};
-  return dump({{"type", "state"},
-               {"protocol", protocol_},
-               {"software", fmt::format("mbk {}", version())},
-               {"trials", std::move(trials)},
-               {"current", current_},
-               {"running", running_},
-               {"phase", word_of(static_cast<control::Phase>(last_.phase))},
-               {"perturbing", running_ && last_.perturbing()},
-               {"time_s", last_.time},
-               {"perturbation_s", last_.perturbation_time},
-               {"duration_s", expected_duration_},
-               {"ticks", ticks_},
-               {"over", over_},
-               {"question", word_of(question_)},
-               {"reset_code", reset_code_},
-               {"said", beginning(said_)},
-               {"safety",
-                {{"tripped", trip_.reason != safety::Reason::none || held},
-                 {"reason", held ? word_of(safety::Reason::operator_stop) : word_of(trip_.reason)},
-                 {"sentence", held ? "stopped while nothing ran: nothing begins before a reset" : sentence_of(trip_)},
-                 {"cut", last_.cut != 0},
-                 {"enabled", last_.enabled != 0}}},
-               {"robot",
-                {{"motors", word_of(robot_.motors)},
-                 {"confirmed_off", robot_.confirmed_off ? Json(*robot_.confirmed_off) : Json()},
-                 {"stop_button", robot_.stop_button},
-                 {"link", robot_.link},
-                 {"fault", robot_.fault},
-                 {"sentence", beginning(robot_.sentence)}}},
-               {"times", {{"compute", times_json(times_.compute)}, {"lateness", times_json(times_.lateness)}}},
-               {"dropped_ticks", dropped_ticks_},
-               {"skipped_samples", skipped_samples_},
-               {"disk_free_bytes", disk_free_},
-               {"notes", shown_notes_},
-               {"note_count", note_count_},
-               {"viewers", status.viewers},
-               {"dropped_frames", status.dropped_frames},
-               {"refused", status.refused},
-               {"participant", server_ ? participant_address() : ""},
-               {"viewing", server_ ? viewing_address() : ""}});
-}
-
-std::string Console::session_locked() const {
-  Json attempts = Json::array();
-  int number = forgotten_attempts_;
-  for (const Attempt& attempt : attempts_) {
-    Json windows = Json::array();
-    for (const auto& [window, why] : attempt.windows) {
-      windows.push_back({{"from_s", window.from}, {"to_s", window.to}, {"why", beginning(why)}});
-    }
-    attempts.push_back({{"number", ++number},
-                        {"trial", attempt.trial},
-                        {"name", trials_[attempt.trial].name},
-                        {"recording", attempt.recording},
-                        {"duration_s", attempt.duration},
-                        {"grade", word_of(attempt.judgement.grade)},
-                        {"why", beginning(attempt.judgement.why)},
-                        {"vaf", attempt.judgement.vaf},
-                        {"excluded", beginning(attempt.excluded)},
-                        {"windows", std::move(windows)}});
-  }
-  return dump({{"type", "session"}, {"attempts", std::move(attempts)}});
+/// A stop while nothing runs.
+bool Console::held() const {
+  return flags_.operator_stop && trip_.reason == safety::Reason::none && !running_;
 }
 
 void Console::beat() {
@@ -579,14 +453,18 @@ void Console::beat() {
     geometry = geometry_;
     estimate = std::exchange(estimate_, nullptr);
     texts = std::exchange(texts_, nullptr);
-    if (std::exchange(session_changed_, false)) session = std::make_shared<std::string>(session_locked());
+    if (std::exchange(session_changed_, false)) {
+      PerformedTrials performed;
+      for (const PerformedTrial& attempt : attempts_) performed.attempts.push_back(&attempt);
+      session = message(performed);
+    }
     if (beats_ % kDiskBeats == 0) {
       std::error_code error;
       const auto folder = target_.parent_path();
       const auto space = std::filesystem::space(folder.empty() ? std::filesystem::path(".") : folder, error);
       if (!error) disk_free_ = space.available;
     }
-    if (changed_ || beats_ % kStateBeats == 0) state = std::make_shared<std::string>(state_locked());
+    if (changed_ || beats_ % kStateBeats == 0) state = message(*this);
     changed_ = false;
     ++beats_;
   }

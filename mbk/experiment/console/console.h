@@ -23,6 +23,12 @@
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/measure/measurement/measure.h"
+#include "mbk/measure/preprocess/exclusions.h"
+
+namespace mbk::document {
+template <class T>
+class Fields;
+}
 
 namespace mbk::console {
 
@@ -61,6 +67,40 @@ struct Judgement {
   std::vector<double> vaf;  ///< variance accounted for on each axis [%]; empty: not measured
 
   [[nodiscard]] static Judgement of(const conduct::Performed& performed);
+};
+
+enum class Progress { waiting, running, done, stopped };
+
+[[nodiscard]] constexpr auto word_table(Progress) {
+  using enum Progress;
+  return std::to_array<Word<Progress>>(
+      {{waiting, "waiting"}, {running, "running"}, {done, "done"}, {stopped, "stopped"}});
+}
+
+/// A trial of the session.
+struct ListedTrial {
+  std::string name, condition;
+  double duration = 0.0;  ///< of the perturbation [s]
+  Eigen::Vector2d home;   ///< [m]
+  bool force = false;     ///< the perturbation is a force
+  std::string task;       ///< of the participant: the key of its text
+  Progress progress = Progress::waiting;
+  std::string recording, ending;
+  int report = 0;  ///< its number, from 1; 0: none
+  std::string report_missing;
+};
+
+/// A trial that was begun; each repetition is another one.
+struct PerformedTrial {
+  int number;         ///< in the session, from 1
+  std::size_t trial;  ///< in the list
+  std::string name, recording;
+  bool over = false;
+  double duration = 0.0;  ///< [s]
+  Judgement judgement;
+  std::string excluded;                             ///< why; empty: it is not
+  std::vector<preprocess::ExcludedWindow> windows;  ///< that are excluded
+  bool changed = false;                             ///< and nobody has taken that yet
 };
 
 /// What the operator has said of a recording: it is excluded, or windows of it, as metadata have it.
@@ -159,29 +199,8 @@ class Console {
   [[nodiscard]] std::string state();
 
  private:
-  enum class Progress { waiting, running, done, stopped };
-  struct Listed {
-    std::string name, condition;
-    double duration = 0.0;  ///< of the perturbation [s]
-    Eigen::Vector2d home;   ///< [m]
-    bool force = false;     ///< the perturbation is a force
-    std::string task;       ///< of the participant: the key of its text
-    Progress progress = Progress::waiting;
-    std::string recording, ending;
-    int report = 0;  ///< its number, from 1; 0: none
-    std::string report_missing;
-  };
-  /// A trial that was begun; each repetition is another one.
-  struct Attempt {
-    std::size_t trial;  ///< in the list
-    std::string recording;
-    bool over = false;
-    double duration = 0.0;  ///< [s]
-    Judgement judgement;
-    std::string excluded;                                 ///< why; empty: it is not
-    std::vector<std::pair<Window, std::string>> windows;  ///< that are excluded, and why
-    bool changed = false;                                 ///< and nobody has taken that yet
-  };
+  /// As pages get it as the state.
+  friend void describe(document::Fields<Console>& fields);
 
   Console(const std::vector<session::Plan>& plans, session::LoopFlags& flags);
   Page page(std::string_view path);
@@ -194,13 +213,12 @@ class Console {
   void beat();
   void estimated(const LiveEstimate::Estimate& estimate);
   void watch_throwing(std::span<const journal::Tick> ticks);
-  [[nodiscard]] std::string state_locked() const;
-  [[nodiscard]] std::string session_locked() const;
+  [[nodiscard]] bool held() const;
 
   session::LoopFlags& flags_;
   std::string protocol_, reset_code_, said_;
   std::mutex mutex_;
-  std::vector<Listed> trials_;
+  std::vector<ListedTrial> trials_;
   Page operator_page_;
   std::map<int, Page> reports_;  // the last ones, by number
   int last_report_ = 0;
@@ -208,8 +226,7 @@ class Console {
   std::deque<std::string> shown_notes_;
   std::size_t shown_note_bytes_ = 0, recording_notes_ = 0, recording_note_bytes_ = 0;  // the last two: of one recording
   std::uint64_t note_count_ = 0;
-  std::deque<Attempt> attempts_;  // the last ones
-  int forgotten_attempts_ = 0;    // before them
+  std::deque<PerformedTrial> attempts_;  // the last ones; their numbers have no gap
   RobotStatus robot_;
   std::size_t current_ = 0;
   bool running_ = false, changed_ = true, session_changed_ = true, over_ = false;

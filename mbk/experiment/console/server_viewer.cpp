@@ -5,6 +5,7 @@
 #include <boost/beast/websocket.hpp>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/experiment/console/messages.h"
 #include "mbk/experiment/console/server_parts.h"
 
 namespace mbk::console {
@@ -101,9 +102,7 @@ class Server::Implementation::Viewer : public std::enable_shared_from_this<Viewe
     if (said_control_ == control && said_dropped_ == outbox_.dropped()) return;
     said_control_ = control;
     said_dropped_ = outbox_.dropped();
-    put(Topic::you, std::make_shared<std::string>(
-                        fmt::format(R"({{"type":"you","control":"{}","may_control":{},"dropped_frames":{}}})", control,
-                                    rights_ == Rights::control, said_dropped_)));
+    put(Topic::you, message(You{control, rights_ == Rights::control, said_dropped_}));
   }
 
   void close() { beast::get_lowest_layer(socket_).close(); }
@@ -225,10 +224,7 @@ std::string_view Server::Implementation::control_for(const Viewer& viewer) const
 void Server::Implementation::receive(Viewer& viewer, std::string_view text, bool is_text) {
   const auto refusal = [&](Refusal kind, const std::string& why) {
     refuse(kind, why);
-    std::string quoted;
-    for (const char c : printable(why)) quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
-    viewer.put(Topic::refusal,
-               std::make_shared<std::string>(fmt::format(R"({{"type":"refused","why":"{}"}})", quoted)));
+    viewer.put(Topic::refusal, message(Refused{printable(why)}));
   };
   const bool in_time = viewer.messages.take();
   auto command = is_text ? parse_command(text) : bad_usage("a message is no text", "reload the page");

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/core/words.h"
 #include "mbk/experiment/protocol/experiment.h"
 
 namespace mbk::session {
@@ -30,6 +32,11 @@ struct Finding {
   Verdict verdict = Verdict::fine;
   std::string text;  ///< a sentence with numbers and units, and what to do where it is not fine
 };
+
+[[nodiscard]] constexpr auto word_table(Finding::Verdict) {
+  using enum Finding::Verdict;
+  return std::to_array<Word<Finding::Verdict>>({{fine, "fine"}, {doubtful, "doubtful"}, {wrong, "wrong"}});
+}
 
 /// The worst of them; fine where there are none.
 [[nodiscard]] Finding::Verdict worst(const std::vector<Finding>& findings);

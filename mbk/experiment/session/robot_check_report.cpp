@@ -3,11 +3,169 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "mbk/base/core/version.h"
 #include "mbk/experiment/session/machine_check.h"
+
+namespace mbk {
+
+using document::Fields;
+using document::through;
+
+namespace drivers {
+
+void describe(Fields<RuleFinding>& fields) {
+  using From = const RuleFinding&;
+  fields.type("RuleFinding");
+  fields.add("rule", &RuleFinding::rule);
+  fields.add(
+      "requirement", [](From one) { return text_of(one.rule).rule; }, "the rule in words");
+  fields.add("verdict", &RuleFinding::verdict);
+  fields.add("seen", &RuleFinding::seen, "with numbers and units; why, where it was not tested");
+  fields.add_if([](From one) { return one.verdict == RuleVerdict::failed; }, "mend",
+                [](From one) { return text_of(one.rule).mend; }, "what to do; absent where it has not failed");
+}
+
+}  // namespace drivers
+
+namespace realtime {
+namespace {
+
+struct Bin {
+  std::optional<double> up_to;
+  std::uint64_t count;
+};
+
+void describe(Fields<Bin>& fields) {
+  fields.type("LatenessBin");
+  fields.add_or_null("up_to_s", &Bin::up_to, "upper edge [s]; null: all above");
+  fields.add("count", &Bin::count);
+}
+
+}  // namespace
+
+void describe(Fields<Lateness>& fields) {
+  using From = const Lateness&;
+  const auto quantile = [](double share) {
+    return [share](From lateness) { return 1e-9 * lateness.record.quantile(share); };
+  };
+  fields.type("Lateness");
+  fields.add_number(
+      "rate_hz", [](From lateness) { return 1.0 / lateness.period; }, "[Hz]");
+  fields.add_number("duration_s", &Lateness::duration, "that was measured [s]");
+  fields.add_or_null(
+      "priority", [](From lateness) { return lateness.setup.fifo ? std::optional(lateness.priority) : std::nullopt; },
+      "of SCHED_FIFO; null: no real-time scheduling was granted");
+  fields.add("locked_memory", through(&Lateness::setup, &ThreadSetup::locked_memory));
+  fields.add("wake_ups", [](From lateness) { return lateness.record.count(); });
+  fields.add("missed", &Lateness::missed, "ticks that went by without a wake-up");
+  fields.add_number("median_s", quantile(0.5), "right to 5 % [s]");
+  fields.add_number("p99_9_s", quantile(0.999), "that 99.9 % kept within, right to 5 % [s]");
+  fields.add_number(
+      "longest_s", [](From lateness) { return 1e-9 * static_cast<double>(lateness.record.worst()); }, "[s]");
+  fields.add("histogram", [](From lateness) {
+    std::vector<Bin> bins;
+    for (std::size_t i = 0; i < lateness.histogram.size(); ++i) {
+      const bool ends = i < Lateness::kEdges.size();
+      bins.push_back({ends ? std::optional(Lateness::kEdges[i]) : std::nullopt, lateness.histogram[i]});
+    }
+    return bins;
+  });
+}
+
+void describe(Fields<Machine>& fields) {
+  fields.type("Machine", "null or empty: the system does not say.");
+  fields.add("kernel", &Machine::kernel);
+  fields.add_or_null("preempt_rt", &Machine::preempt_rt);
+  fields.add("governors", &Machine::governors);
+  fields.add_or_null("idle_latency_s", &Machine::idle_latency, "[s]");
+  fields.add_or_null("swap_bytes", &Machine::swap);
+  fields.add_or_null("timer_slack_s", &Machine::timer_slack, "[s]");
+  fields.add_or_null("virtual_machine", &Machine::virtual_machine);
+  fields.add_or_null("processor_quota", &Machine::processor_quota,
+                     "that the control group allows, in processors; null: no limit");
+  fields.add("clock_source", &Machine::clock_source);
+  fields.add("processors", &Machine::processors);
+  fields.add_or_null("load", &Machine::load, "over one minute");
+}
+
+}  // namespace realtime
+
+namespace session {
+
+void describe(Fields<Finding>& fields) {
+  fields.type("CheckFinding");
+  fields.add("verdict", &Finding::verdict);
+  fields.add("text", &Finding::text, "a sentence with numbers and units, and what to do where it is not fine");
+}
+
+namespace {
+
+struct WatchdogFinding {
+  double asked, found;
+};
+
+void describe(Fields<WatchdogFinding>& fields) {
+  fields.type("WatchdogFinding");
+  fields.add_number("asked_s", &WatchdogFinding::asked, "[s]");
+  fields.add_number("found_s", &WatchdogFinding::found, "from the last command to the state that says so [s]");
+}
+
+}  // namespace
+
+void describe(Fields<RobotCheckReport::Setup>& fields) {
+  using Setup = RobotCheckReport::Setup;
+  fields.type("SetupCheck", "Of FILE.");
+  fields.add("file", &Setup::file);
+  fields.add("findings", &Setup::findings);
+  fields.add("live", &Setup::live, "of the readings; absent without --live");
+}
+
+void describe(Fields<RobotCheckReport::Link>& fields) {
+  using Link = RobotCheckReport::Link;
+  using drivers::BridgeCheckOptions;
+  using drivers::BridgeReport;
+  fields.type("LinkCheck", "Of --link: the rules that a robot's program has to keep.");
+  fields.add("address", &Link::address);
+  fields.add("motors", through(&Link::options, &BridgeCheckOptions::motors),
+             "also the rules for which the motors go on");
+  fields.add("conforms", through(&Link::report, &BridgeReport::conforms), "every rule was tested and passed");
+  fields.add("rules", through(&Link::report, &BridgeReport::findings));
+  fields.add("states", through(&Link::report, &BridgeReport::states), "that came and were believed");
+  fields.add_number("expected_rate_hz", through(&Link::options, &BridgeCheckOptions::rate), "[Hz]");
+  fields.add_or_null("rate_hz", through(&Link::report, &BridgeReport::rate), "of the states [Hz]");
+  fields.add_or_null("median_answer_s", through(&Link::report, &BridgeReport::median_answer),
+                     "from a command to the state that obeys it [s]");
+  fields.add_or_null("longest_answer_s", through(&Link::report, &BridgeReport::longest_answer), "[s]");
+  fields.add("watchdogs", [](const Link& link) {
+    std::vector<WatchdogFinding> all;
+    for (const auto& [asked, found] : link.report.watchdogs) all.push_back({asked, found});
+    return all;
+  });
+}
+
+void describe(Fields<RobotCheckReport::Timing>& fields) {
+  using Timing = RobotCheckReport::Timing;
+  fields.type("TimingCheck",
+              "Of --rt: how late a loop was woken while it was measured, and what of the machine may hold it up.");
+  fields.add("lateness", &Timing::lateness);
+  fields.add("machine", &Timing::machine);
+  fields.add("findings", &Timing::findings);
+}
+
+void describe(Fields<RobotCheckReport>& fields) {
+  fields.type(
+      "Robot check",
+      "What `mbk robot check --json` writes: whether a robot is described, wired and reached as it should be. A "
+      "part that was not asked for is absent.");
+  fields.header("mbk.robot_check/1");
+  fields.add("setup", &RobotCheckReport::setup);
+  fields.add("link", &RobotCheckReport::link);
+  fields.add("timing", &RobotCheckReport::timing);
+}
+
+}  // namespace session
+}  // namespace mbk
 
 namespace mbk::session {
 namespace {
@@ -15,7 +173,6 @@ namespace {
 using drivers::BridgeReport;
 using drivers::RuleFinding;
 using drivers::RuleVerdict;
-using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::size_t kColumns = 80;
 
@@ -103,82 +260,6 @@ std::string link_text(const RobotCheckReport::Link& link) {
   return text;
 }
 
-OrderedJson findings_json(const std::vector<Finding>& findings) {
-  OrderedJson all = OrderedJson::array();
-  for (const Finding& one : findings) {
-    const char* word = one.verdict == Finding::Verdict::fine       ? "fine"
-                       : one.verdict == Finding::Verdict::doubtful ? "doubtful"
-                                                                   : "wrong";
-    all.push_back({{"verdict", word}, {"text", one.text}});
-  }
-  return all;
-}
-
-template <class Value>
-OrderedJson optional_json(const std::optional<Value>& value) {
-  return value ? OrderedJson(*value) : OrderedJson(nullptr);
-}
-
-OrderedJson link_json(const RobotCheckReport::Link& link) {
-  const BridgeReport& report = link.report;
-  OrderedJson rules = OrderedJson::array();
-  for (const RuleFinding& one : report.findings) {
-    const auto& [rule, mend] = drivers::text_of(one.rule);
-    rules.push_back(
-        {{"rule", word_of(one.rule)}, {"requirement", rule}, {"verdict", word_of(one.verdict)}, {"seen", one.seen}});
-    if (one.verdict == RuleVerdict::failed) rules.back()["mend"] = mend;
-  }
-  OrderedJson watchdogs = OrderedJson::array();
-  for (const auto& [asked, found] : report.watchdogs) watchdogs.push_back({{"asked_s", asked}, {"found_s", found}});
-  return {{"address", link.address},
-          {"motors", link.options.motors},
-          {"conforms", report.conforms()},
-          {"rules", std::move(rules)},
-          {"states", report.states},
-          {"expected_rate_hz", link.options.rate},
-          {"rate_hz", optional_json(report.rate)},
-          {"median_answer_s", optional_json(report.median_answer)},
-          {"longest_answer_s", optional_json(report.longest_answer)},
-          {"watchdogs", std::move(watchdogs)}};
-}
-
-OrderedJson lateness_json(const realtime::Lateness& lateness) {
-  OrderedJson histogram = OrderedJson::array();
-  for (std::size_t i = 0; i < lateness.histogram.size(); ++i) {
-    histogram.push_back({{"up_to_s", i < realtime::Lateness::kEdges.size() ? OrderedJson(realtime::Lateness::kEdges[i])
-                                                                           : OrderedJson(nullptr)},
-                         {"count", lateness.histogram[i]}});
-  }
-  return {{"rate_hz", 1.0 / lateness.period},
-          {"duration_s", lateness.duration},
-          {"priority", lateness.setup.fifo ? OrderedJson(lateness.priority) : OrderedJson(nullptr)},
-          {"locked_memory", lateness.setup.locked_memory},
-          {"wake_ups", lateness.record.count()},
-          {"missed", lateness.missed},
-          {"median_s", 1e-9 * lateness.record.quantile(0.5)},
-          {"p99_9_s", 1e-9 * lateness.record.quantile(0.999)},
-          {"longest_s", 1e-9 * static_cast<double>(lateness.record.worst())},
-          {"histogram", std::move(histogram)}};
-}
-
-OrderedJson timing_json(const RobotCheckReport::Timing& timing) {
-  const realtime::Machine& machine = timing.machine;
-  return {{"lateness", lateness_json(timing.lateness)},
-          {"machine",
-           {{"kernel", machine.kernel},
-            {"preempt_rt", optional_json(machine.preempt_rt)},
-            {"governors", machine.governors},
-            {"idle_latency_s", optional_json(machine.idle_latency)},
-            {"swap_bytes", optional_json(machine.swap)},
-            {"timer_slack_s", optional_json(machine.timer_slack)},
-            {"virtual_machine", optional_json(machine.virtual_machine)},
-            {"processor_quota", optional_json(machine.processor_quota)},
-            {"clock_source", machine.clock_source},
-            {"processors", machine.processors},
-            {"load", optional_json(machine.load)}}},
-          {"findings", findings_json(timing.findings)}};
-}
-
 bool any_wrong(const std::vector<Finding>& findings) {
   return worst(findings) == Finding::Verdict::wrong;
 }
@@ -209,14 +290,11 @@ std::string text_of(const RobotCheckReport& report) {
 }
 
 std::string json_of(const RobotCheckReport& report) {
-  OrderedJson json{{"schema", "mbk.robot_check/1"}, {"software", fmt::format("mbk {}", version())}};
-  if (report.setup) {
-    json["setup"] = {{"file", report.setup->file}, {"findings", findings_json(report.setup->findings)}};
-    if (report.setup->live) json["setup"]["live"] = findings_json(*report.setup->live);
-  }
-  if (report.link) json["link"] = link_json(*report.link);
-  if (report.timing) json["timing"] = timing_json(*report.timing);
-  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+  return document::document(report);
+}
+
+void add_robot_check_schema(document::Schemas& schemas) {
+  schemas["robot_check"] = document::schema_of<RobotCheckReport>();
 }
 
 }  // namespace mbk::session

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/document/fields.h"
 #include "mbk/base/realtime/machine.h"
 #include "mbk/experiment/drivers/bridge_check.h"
 #include "mbk/experiment/session/robot_check.h"
@@ -40,5 +41,7 @@ struct RobotCheckReport {
 
 /// Schema "mbk.robot_check/1".
 [[nodiscard]] std::string json_of(const RobotCheckReport& report);
+
+void add_robot_check_schema(document::Schemas& schemas);
 
 }  // namespace mbk::session

@@ -39,12 +39,6 @@ namespace mbk::recording {
 /// @fails  a name or key that would not be found again.
 [[nodiscard]] Result<std::string> encode_csv(const Recording& recording);
 
-/// MCAP with the messages that robots have, as CDR: WrenchStamped of force_*, PoseStamped of hand_*, JointState of
-/// joint_* and torque_*; the exact times and all other channels are messages of a type of mbk's own, and so are events.
-/// The stamps count from metadata `start` where that is a time, else from 1970.
-/// @fails  as metadata_with_units does; a name that cannot be that of a field.
-[[nodiscard]] Result<std::string> encode_mcap(const Recording& recording);
-
 /// Appends the shortest digits that give the number back.
 void append_number(std::string& text, double value);
 

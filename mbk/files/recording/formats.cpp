@@ -26,7 +26,6 @@
 #include "mbk/files/tables/delsys.h"
 #include "mbk/files/tables/lvm.h"
 #include "mbk/files/tables/npy.h"
-#include "mbk/files/tables/octave_text.h"
 #include "mbk/files/tables/opensim.h"
 #include "mbk/files/tables/physiology_tables.h"
 #include "mbk/files/xdf/xdf.h"
@@ -78,6 +77,7 @@ bool begins_as_xdf(OpenFile& file) {
 }
 
 bool begins_as_table(OpenFile& file) {
+  if (file.begin().starts_with(kOctaveText)) return false;  // whose variables are not columns of one table
   return is_text(file.begin()) || looks_like_utf16(file.begin_bytes());
 }
 
@@ -166,8 +166,6 @@ constexpr auto kFormats = std::to_array<FileFormat>({
     {"XDF", ".xdf .xdfz", "Lab Streaming Layer", begins_as_xdf, decode_xdf_file},
     {"MCAP", ".mcap", "ROS 2", begins_as<looks_like_mcap>, in_passing<decode_mcap>},
     {"ROS bag", ".bag", "ROS 1", begins_as<looks_like_bag>, in_passing<decode_bag>},
-    {"Octave text", "", "Octave's save without options", text_begins_as<looks_like_octave_text>,
-     whole<decode_octave_text>},
     {"TRC", ".trc", "marker paths of OpenSim", text_begins_as<looks_like_trc>, whole<decode_trc>},
     {"OpenSim", ".sto .mot", "OpenSim's storages and motions", text_begins_as<looks_like_opensim>,
      whole<decode_opensim>},

@@ -132,6 +132,7 @@ constexpr auto kSignatures = std::to_array<Signature>({
      {"a program", kNoNumbers}},
     {"MZ"sv, {"a program of Windows", kNoNumbers}},
     // text
+    {kOctaveText, {"Octave's text format", "save it with 'save -v7 trial.mat'"}},
     {"<?xml"sv, {"an XML document", "export the samples as CSV, MAT or C3D from the program that wrote it"}},
     {"<!DOCTYPE"sv, {"a web page", kNoNumbers}},
     {"<!doctype"sv, {"a web page", kNoNumbers}},

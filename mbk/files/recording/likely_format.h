@@ -15,6 +15,9 @@ struct LikelyFormat {
   std::string_view way_out;  ///< how its data can be had: "save the sheet as CSV (File > Save As)"
 };
 
+/// How Octave's text format begins.
+inline constexpr std::string_view kOctaveText = "# Created by Octave";
+
 /// What a file most likely is that no reader takes, by its content alone; nothing where the content says nothing.
 [[nodiscard]] std::optional<LikelyFormat> likely_format(std::span<const std::byte> file);
 

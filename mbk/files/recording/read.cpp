@@ -173,10 +173,6 @@ std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& o
   return decoded ? trials_of_map(decoded->contents, options.channels) : std::vector<TrialName>();
 }
 
-std::string_view begin_of(const RecordingFile& file) {
-  return file.begin();
-}
-
 void rest(const RecordingFile& file) {
   file.rest();
 }

@@ -83,9 +83,6 @@ struct ReadOptions {
 /// The same for a channel map, which may leave a dimension of an array over (slices.h): each of its indices is a trial.
 [[nodiscard]] std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& options);
 
-/// The first bytes; none of a folder.
-[[nodiscard]] std::string_view begin_of(const RecordingFile& file);
-
 /// Closes the file until it is read: for whoever holds hundreds of them.
 void rest(const RecordingFile& file);
 

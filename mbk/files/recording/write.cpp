@@ -25,7 +25,6 @@ constexpr auto kExtensions = std::to_array<Extension>({
     {".h5", Format::hdf5},
     {".hdf5", Format::hdf5},
     {".csv", Format::csv},
-    {".mcap", Format::mcap},
 });
 
 Result<std::string> encode(const Recording& recording, Format format) {
@@ -36,8 +35,6 @@ Result<std::string> encode(const Recording& recording, Format format) {
       return encode_mat_hdf5(recording);
     case Format::hdf5:
       return encode_hdf5(recording);
-    case Format::mcap:
-      return encode_mcap(recording);
     case Format::csv:
       break;
   }
@@ -79,8 +76,6 @@ std::string_view text(Format format) {
       return "MAT v7.3";
     case Format::hdf5:
       return "HDF5";
-    case Format::mcap:
-      return "MCAP";
     case Format::csv:
       break;
   }
@@ -92,14 +87,14 @@ Result<Format> format_of(const std::filesystem::path& file, std::string_view nam
   if (const auto by_name = value_of<Format>(name == "mat" ? "mat5" : name)) return *by_name;
   if (!name.empty()) {
     return bad_usage(fmt::format("'{}' is not a format that is written", printable(std::string(name))),
-                     "choose mat5, mat73, hdf5, csv or mcap");
+                     "choose mat5, mat73, hdf5 or csv");
   }
   const auto by_extension = std::ranges::find(kExtensions, extension, &Extension::name);
   if (by_extension != kExtensions.end()) return by_extension->format;
   return fail(ErrorKind::usage,
               extension.empty() ? "the name does not say a format"
                                 : fmt::format("'{}' is not a format that is written", printable(extension)),
-              "let it end with .h5, .mat, .csv or .mcap", file.string());
+              "let it end with .h5, .mat or .csv", file.string());
 }
 
 std::vector<std::string> lost_frames(const Recording& recording, std::string_view format) {

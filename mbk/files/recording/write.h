@@ -18,18 +18,17 @@ enum class Format {
   mat73,  ///< .mat, asked for by name: HDF5 within
   hdf5,   ///< .h5, .hdf5
   csv,    ///< .csv
-  mcap,   ///< .mcap
 };
 
 [[nodiscard]] constexpr auto word_table(Format) {
   using enum Format;
-  return std::to_array<Word<Format>>({{mat5, "mat5"}, {mat73, "mat73"}, {hdf5, "hdf5"}, {csv, "csv"}, {mcap, "mcap"}});
+  return std::to_array<Word<Format>>({{mat5, "mat5"}, {mat73, "mat73"}, {hdf5, "hdf5"}, {csv, "csv"}});
 }
 
-/// "MAT v5", "MAT v7.3", "HDF5", "CSV", "MCAP".
+/// "MAT v5", "MAT v7.3", "HDF5", "CSV".
 [[nodiscard]] std::string_view text(Format format);
 
-/// The format that the end of a file's name says, or that `name` says ("mat", "mat5", "mat73", "hdf5", "csv", "mcap").
+/// The format that the end of a file's name says, or that `name` says ("mat", "mat5", "mat73", "hdf5", "csv").
 /// @fails  usage: neither says one that is known; those that are known are named.
 [[nodiscard]] Result<Format> format_of(const std::filesystem::path& file, std::string_view name = "");
 

@@ -27,11 +27,8 @@ struct Kind {
   Format format;
   const char* file;
 };
-constexpr std::array<Kind, 5> kKinds{{{Format::mat5, "a.mat"},
-                                      {Format::mat73, "a73.mat"},
-                                      {Format::hdf5, "a.h5"},
-                                      {Format::csv, "a.csv"},
-                                      {Format::mcap, "a.mcap"}}};
+constexpr std::array<Kind, 4> kKinds{
+    {{Format::mat5, "a.mat"}, {Format::mat73, "a73.mat"}, {Format::hdf5, "a.h5"}, {Format::csv, "a.csv"}}};
 
 /// Recordings of every kind that the channel table knows, with everything that their values may be.
 class RandomRecording {
@@ -254,7 +251,7 @@ TEST(Write, RefusesKeysThatAFormatCannotHold) {
     const auto ok = write(recording, folder / kind.file, kind.format, true);
     return ok ? "" : ok.error().line();
   };
-  const auto [mat, mat73, hdf5, csv, mcap] = kKinds;
+  const auto [mat, mat73, hdf5, csv] = kKinds;
   EXPECT_THAT(said(mat, "a b"), HasSubstr("'a b' cannot be the name of a MATLAB field"));
   EXPECT_THAT(said(mat73, "a b"), HasSubstr("'a b' cannot be the name of a MATLAB field"));
   EXPECT_EQ(said(hdf5, "a b/ü"), "");
@@ -263,14 +260,13 @@ TEST(Write, RefusesKeysThatAFormatCannotHold) {
   EXPECT_THAT(said(csv, "a b"), HasSubstr("'a b' cannot be written as a comment"));
   EXPECT_THAT(said(csv, "a:b"), HasSubstr("without spaces and colons"));
   EXPECT_EQ(said(csv, "größe"), "");
-  EXPECT_EQ(said(mcap, "a b/ü"), "");
 }
 
 TEST(Write, SaysWhichFramesAreLost) {
   Recording recording = example();
   recording.channels[2].frame = "tool";
   EXPECT_THAT(lost_in(recording, Format::hdf5), ElementsAre());
-  for (const Format format : {Format::mat5, Format::mat73, Format::csv, Format::mcap}) {
+  for (const Format format : {Format::mat5, Format::mat73, Format::csv}) {
     EXPECT_THAT(lost_in(recording, format), ElementsAre(StartsWith("the frame of force_x ('tool')")));
   }
 }
@@ -392,7 +388,6 @@ TEST(FormatOf, GoesByTheNameThatIsGivenThenByTheEndOfTheFile) {
   EXPECT_EQ(format_of("x.y/a.csv"), Format::csv);
   EXPECT_EQ(format_of("a.mat", "mat73"), Format::mat73);
   EXPECT_EQ(format_of("a", "csv"), Format::csv);
-  EXPECT_EQ(format_of("a.mcap"), Format::mcap);
   EXPECT_EQ(format_of("a.csv", "mat"), Format::mat5);
 }
 
@@ -402,10 +397,9 @@ TEST(FormatOf, RefusesWhatItDoesNotKnow) {
     EXPECT_TRUE(!format && format.error().kind == ErrorKind::usage);
     return format ? "" : format.error().line();
   };
-  EXPECT_EQ(said("a.xls", ""),
-            "a.xls: '.xls' is not a format that is written; let it end with .h5, .mat, .csv or .mcap");
-  EXPECT_EQ(said("a", ""), "a: the name does not say a format; let it end with .h5, .mat, .csv or .mcap");
-  EXPECT_EQ(said("a.mat", "mat4"), "'mat4' is not a format that is written; choose mat5, mat73, hdf5, csv or mcap");
+  EXPECT_EQ(said("a.xls", ""), "a.xls: '.xls' is not a format that is written; let it end with .h5, .mat or .csv");
+  EXPECT_EQ(said("a", ""), "a: the name does not say a format; let it end with .h5, .mat or .csv");
+  EXPECT_EQ(said("a.mat", "mat4"), "'mat4' is not a format that is written; choose mat5, mat73, hdf5 or csv");
 }
 
 }  // namespace write_test

@@ -21,12 +21,12 @@ namespace mbk::recording {
 /// The same while the file is read, of which a part is in memory; all of it is read.
 [[nodiscard]] Result<Contents> decode_mcap(FileInPassing& file);
 
-/// The name of the metadata record by which mbk knows its own files, and of the one that has their metadata.
+/// The name of the metadata record by which mbk knows files that it wrote itself until version 0.1, and of the one that has their metadata.
 inline constexpr std::string_view kMcapLayoutRecord = "mbk.recording", kMcapMetadataRecord = "mbk.metadata";
 /// How an MCAP file begins and ends.
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
-/// The kinds of records.
+/// The kinds of records that are read.
 enum class McapRecord : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -34,12 +34,7 @@ enum class McapRecord : std::uint8_t {
   channel = 0x04,
   message = 0x05,
   chunk = 0x06,
-  message_index = 0x07,
-  chunk_index = 0x08,
-  statistics = 0x0B,
   metadata = 0x0C,
-  metadata_index = 0x0D,
-  summary_offset = 0x0E,
   data_end = 0x0F,
 };
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
 

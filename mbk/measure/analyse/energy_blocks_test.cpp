@@ -117,8 +117,7 @@ TEST(Account, AddsUpAndKeepsTheSign) {
   EXPECT_DOUBLE_EQ(one.shortage_at_end, 0.25);
   EXPECT_DOUBLE_EQ(one.shortage_largest, 1.0);  // 3 J generated after 3 m²/s
   EXPECT_EQ(one.blocks, 3);
-  EXPECT_EQ(shortage_name(one.shortage_at_end), "shortage");
-  EXPECT_EQ(shortage_name(account(blocks({1.0, 2.0})).shortage_at_end), "excess");
+  EXPECT_LT(account(blocks({1.0, 2.0})).shortage_at_end, 0.0);  // an excess
 }
 
 TEST(Verdict, IsThatOfTheBounds) {

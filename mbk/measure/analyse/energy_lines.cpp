@@ -13,6 +13,7 @@
 
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/fourier.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/trial/filtered_band.h"
 #include "mbk/model/trial/quantity_channels.h"

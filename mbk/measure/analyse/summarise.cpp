@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::analyse {

@@ -10,6 +10,7 @@
 
 #include "mbk/base/dsp/cross_spectrum.h"
 #include "mbk/base/dsp/spectrum.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/trial/quantity_channels.h"
 

@@ -11,6 +11,7 @@
 #include "mbk/base/core/units.h"
 #include "mbk/base/dsp/savitzky_golay.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/reference_onsets.h"
 

@@ -9,6 +9,7 @@
 
 #include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/lagged_regression.h"
 #include "mbk/measure/explore/response_model.h"

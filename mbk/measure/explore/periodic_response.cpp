@@ -13,6 +13,7 @@
 
 #include "mbk/base/dsp/fourier.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/alike.h"
 #include "mbk/measure/explore/period.h"

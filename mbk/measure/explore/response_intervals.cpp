@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {

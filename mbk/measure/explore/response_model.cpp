@@ -4,6 +4,7 @@
 
 #include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {

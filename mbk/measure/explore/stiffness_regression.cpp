@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::explore {

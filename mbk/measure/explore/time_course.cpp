@@ -9,6 +9,7 @@
 #include "mbk/base/core/units.h"
 #include "mbk/base/dsp/decimate.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/explore/varying_regression.h"
 

@@ -9,6 +9,7 @@
 #include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/numeric/column_products.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::identify {

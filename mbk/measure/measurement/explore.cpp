@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/files/recording/channel_table.h"
 #include "mbk/files/recording/inspect.h"

@@ -40,35 +40,8 @@ TEST(AxisPair, InterleavedAxesTogetherAreTheSignal) {
   }
 }
 
-TEST(AxisPair, HadamardExperimentsAreUncorrelatedTogetherButNotAlone) {
-  const auto experiments = hadamard_experiments(sines(3), sines(4)).value();
-  for (const double delay : {0.0, 0.1, 0.333, 2.0, 7.77}) {
-    const double one = correlation(experiments[0], delay), other = correlation(experiments[1], delay);
-    EXPECT_NEAR(one + other, 0.0, kRounding) << delay;
-    EXPECT_GT(std::abs(one), 0.01) << delay;
-  }
-}
-
-TEST(AxisPair, PeakNormIsThatOfACircleAndOfADenseGrid) {
-  const Multisine cosine = Multisine::create(kPeriod, {{3, 0.5, 0.0}}).value();
-  const Multisine sine = Multisine::create(kPeriod, {{3, 0.5, 1.5707963267948966}}).value();
-  EXPECT_NEAR(peak_norm({cosine, sine}).value(), 0.5, 1e-15);
-  const AxisPair pair{sines(5), sines(6)};
-  double largest = 0.0;
-  for (int k = 0; k < 100000; ++k) {
-    largest = std::max(largest, std::hypot(pair.first.at(1e-4 * k).value, pair.second.at(1e-4 * k).value));
-  }
-  EXPECT_GE(peak_norm(pair).value(), largest * (1.0 - 1e-12));
-  EXPECT_LE(peak_norm(pair).value(), largest * (1.0 + 1e-5));  // (ω·50 µs)²/2 = 4e-7 of either axis
-  EXPECT_NEAR(peak_norm(pair.scaled(0.01)).value(), 0.01 * peak_norm(pair).value(), 1e-12);
-}
-
 TEST(AxisPair, RefusesAxesThatDoNotFit) {
   EXPECT_FALSE(interleaved(sines(1, {4})));
-  EXPECT_FALSE(hadamard_experiments(sines(1, {1, 2}), sines(1, {1, 3})));
-  const Multisine other = Multisine::create(5.0, {{1, 1.0, 0.0}}).value();
-  EXPECT_FALSE(hadamard_experiments(sines(1, {1}), other));
-  EXPECT_FALSE(peak_norm({sines(1, {1}), other}));
 }
 
 }  // namespace axis_pair_test

@@ -39,16 +39,6 @@ double angular_frequency(int harmonic, double period) {
   return 2.0 * std::numbers::pi * harmonic / period;
 }
 
-Result<Multisine> multiplied(const Multisine& signal, const OptimalPowerOptions& options, bool inverse) {
-  std::vector<Multisine::Line> lines = signal.lines();
-  for (Multisine::Line& line : lines) {
-    const std::complex<double> H = transfer(options, angular_frequency(line.harmonic, signal.period()));
-    line.amplitude *= inverse ? 1.0 / std::abs(H) : std::abs(H);
-    line.phase += inverse ? -std::arg(H) : std::arg(H);
-  }
-  return Multisine::create(signal.period(), std::move(lines));
-}
-
 }  // namespace
 
 Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmonics,
@@ -106,28 +96,6 @@ Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmon
   return fail(ErrorKind::not_usable,
               fmt::format("the shares of power are {:.1e} from optimal after {} steps", power.gap, kMaxIterations),
               "leave out lines that stand close to others");
-}
-
-Result<Multisine> limited_signal(const Multisine& position, const OptimalPowerOptions& options) {
-  MBK_TRY(check(options));
-  return multiplied(position, options, false);
-}
-
-Result<Multisine> optimal_multisine(double period, const std::vector<int>& harmonics,
-                                    const OptimalPowerOptions& options, const SignalLimit& limit,
-                                    const LowCrestOptions& phases) {
-  if (!(limit.value > 0.0 && std::isfinite(limit.value))) {
-    return bad_usage(fmt::format("limit {} of the signal is not above 0", limit.value));
-  }
-  const auto power = MBK_TRY(optimal_power(period, harmonics, options));
-  std::vector<Multisine::Line> lines;
-  for (std::size_t i = 0; i < harmonics.size(); ++i) {
-    lines.push_back({harmonics[i], std::sqrt(2.0 * power.shares[static_cast<Index>(i)]), 0.0});
-  }
-  const auto flat = MBK_TRY(Multisine::create(period, std::move(lines)));
-  const auto limited = MBK_TRY(with_low_crest_phases(flat, phases));
-  const double reached = limit.measure == SignalLimit::Measure::rms ? limited.root_mean_square() : limited.peak();
-  return multiplied(limited.scaled(limit.value / reached), options, true);
 }
 
 }  // namespace mbk::perturbation

@@ -64,23 +64,4 @@ struct OptimalPower {
 [[nodiscard]] Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmonics,
                                                  const OptimalPowerOptions& options = {});
 
-/// How large the limited signal may become: its root mean square or its peak over a period, in its unit.
-struct SignalLimit {
-  enum class Measure { rms, peak };
-  Measure measure = Measure::peak;
-  double value = 0.0;  ///< [m, m/s or N] > 0
-};
-
-/// The position multisine [m] whose limited signal has the shares of `optimal_power`, phases of low crest factor, and
-/// exactly reaches the limit. The shares are optimal for a limited root mean square; under a limited peak the phases
-/// make that root mean square as large as they can.
-/// @fails  as optimal_power and with_low_crest_phases; the limit is not above 0.
-[[nodiscard]] Result<Multisine> optimal_multisine(double period, const std::vector<int>& harmonics,
-                                                  const OptimalPowerOptions& options, const SignalLimit& limit,
-                                                  const LowCrestOptions& phases = {});
-
-/// The limited signal that belongs to a position multisine: itself, its velocity, or the force M ẍ + B ẋ + K x.
-/// @fails  force is limited and no nominal impedance given, or one not finite.
-[[nodiscard]] Result<Multisine> limited_signal(const Multisine& position, const OptimalPowerOptions& options);
-
 }  // namespace mbk::perturbation

@@ -12,11 +12,6 @@
 
 namespace mbk {
 
-/// What a shortage of passivity is called: below 0 it is an excess of as much.
-[[nodiscard]] constexpr std::string_view shortage_name(double shortage) {
-  return shortage < 0.0 ? "excess" : "shortage";
-}
-
 /// What an interval of absorbed energy says; one that is not known says nothing.
 [[nodiscard]] constexpr Verdict verdict_of(const Interval& absorbed95) {
   if (absorbed95.first > 0.0) return Verdict::passive;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/present/report/layout.h"
 

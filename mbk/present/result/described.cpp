@@ -1,8 +1,12 @@
 #include "mbk/present/result/described.h"
 
+#include "mbk/base/core/units.h"
+
 namespace mbk {
 
 using document::Fields;
+using document::Json;
+using document::through;
 
 void describe(Fields<Warning>& fields) {
   fields.type("Warning", "Why an answer needs care.");
@@ -12,8 +16,7 @@ void describe(Fields<Warning>& fields) {
   const auto former = [](const Warning& warning) {
     return std::string(warning.was.empty() ? former_word_of(warning.code) : warning.was);
   };
-  fields.add_if([former](const Warning& warning) { return !former(warning).empty(); }, "was", former,
-                "the code until the version before, where it changed");
+  fields.add_unless_empty("was", former, "the code until the version before, where it changed");
 }
 
 void describe(Fields<SourceFile>& fields) {
@@ -21,8 +24,168 @@ void describe(Fields<SourceFile>& fields) {
   fields.add("file", &SourceFile::path, "path, as it was given");
   fields.add("sha256", &SourceFile::sha256, "of the file's bytes, in hexadecimal; empty where it was not a file");
   fields.add("format", &SourceFile::format, "\"CSV\", \"MAT level 5\"; empty where it is not known");
-  fields.add_if([](const SourceFile& source) { return !source.trial.empty(); }, "trial", &SourceFile::trial,
-                "which of the trials that the file holds; absent where it holds one");
+  fields.add_unless_empty("trial", &SourceFile::trial,
+                          "which of the trials that the file holds; absent where it holds one");
 }
 
+void describe(Fields<Error>& fields) {
+  fields.type("Failure");
+  fields.add("file", &Error::where, "and the place in it");
+  fields.add("message", &Error::message);
+  fields.add("try", &Error::remedy);
+}
+
+void describe(Fields<Units>& fields) {
+  fields.type("Units", "Of inertia, damping, stiffness, position and force: those of translation or of rotation.");
+  const auto unit = [&fields](const char* name, const char* Units::*of) {
+    const Json both = {units_of(Motion::translation).*of, units_of(Motion::rotation).*of};
+    fields.add_as(name, {{"enum", both}}, of);
+  };
+  unit("M", &Units::inertia);
+  unit("B", &Units::damping);
+  unit("K", &Units::stiffness);
+  unit("x0", &Units::position);
+  unit("force", &Units::force);
+}
+
+void describe(Fields<Preparation>& fields) {
+  using How = const Preparation&;
+  fields.type("Preparation", "How the signals were made, so that any number can be reproduced.");
+  fields.add("protocol", &Preparation::protocol);
+  fields.add("protocol_rule", &Preparation::protocol_rule, "why that protocol");
+  fields.add("window_rule", &Preparation::window_rule, "which samples count");
+  fields.add_number("from_s", &Preparation::from_s, "first sample that counts, from the recording's first [s]");
+  fields.add_number("to_s", &Preparation::to_s, "last sample that counts [s]");
+  fields.group("savitzky_golay", [](Fields<Preparation>& part) {
+    part.type("SavitzkyGolay");
+    part.add("order", &Preparation::smoothing_order);
+    part.add("window", &Preparation::smoothing_window, "samples");
+  });
+  fields.add_or_null("cutoff_hz", &Preparation::cutoff, "of the zero-phase low-pass [Hz]; null: none");
+  fields.add("cutoff_rule", &Preparation::cutoff_rule, "how it came about");
+  fields.add("every", &Preparation::every, "of the filtered samples, the first of so many is kept");
+  fields.add(
+      "excited_band_hz", [](How how) { return std::pair(how.band_low.value, how.band_high.value); },
+      "low and high [Hz]");
+  fields.add("force_source", &Preparation::force_source);
+  fields.add("acceleration", [](How how) {
+    return how.acceleration_from_sensor ? AccelerationSource::sensor : AccelerationSource::derivative;
+  });
+  fields.add("cut_before_filter", &Preparation::cut_before_filter);
+  fields.add_number("split_s", &Preparation::split_s, "where identification ends and validation begins [s]");
+  fields.add_if([](How how) { return how.protocol == Protocol::underdamped; }, "perturbations",
+                &Preparation::perturbations, "that were cut out; underdamped only");
+  fields.add_if([](How how) { return how.mode == Mode::reference; }, "procedure", &Preparation::procedure,
+                "reference mode only");
+}
+
+void describe(Fields<Fit>& fields) {
+  fields.type("Fit", "How well a model explains the force, axis by axis.");
+  fields.add("VAF", &Fit::vaf, "variance accounted for [%]");
+  fields.add("RMSE", &Fit::rmse, "root mean square error [unit of force]");
+  result::add_validated_on(fields, &Fit::held_out);
+  fields.add("VAF_in_sample", &Fit::vaf_in_sample, "on the data that made the parameters [%]");
+}
+
+void describe(Fields<EllipseFinding>& fields) {
+  using From = const EllipseFinding&;
+  const auto ellipse = &EllipseFinding::ellipse;
+  fields.type("Ellipse", "Of the symmetric part of a matrix.");
+  fields.add("area", through(ellipse, &impedance::Ellipse::area), "π λ₁ λ₂");
+  fields.add("shape", through(ellipse, &impedance::Ellipse::shape), "larger over smaller eigenvalue");
+  fields.add(
+      "orientation_deg", [](From one) { return kDegrees * one.ellipse.orientation; },
+      "of the long axis, counter-clockwise from x [°]");
+  fields.add(
+      "eigenvalues",
+      [](From one) {
+        return std::array{one.ellipse.lambda_min, one.ellipse.lambda_max};
+      },
+      "smaller and larger");
+  fields.add("symmetric_part", &EllipseFinding::symmetric);
+  fields.group("interval95", [](Fields<EllipseFinding>& part) {
+    part.add("area", &EllipseFinding::area95);
+    part.add("shape", &EllipseFinding::shape95);
+    part.add(
+        "orientation_deg",
+        [](From one) { return Interval(kDegrees * one.orientation95.first, kDegrees * one.orientation95.second); },
+        "[°]; 180 wide: any angle, since a circle is not refuted");
+    part.add(
+        "eigenvalues",
+        [](From one) {
+          return std::array{one.lambda_min95, one.lambda_max95};
+        },
+        "smaller and larger");
+  });
+}
+
+void describe(Fields<AntisymmetryFinding>& fields) {
+  fields.type("Antisymmetry");
+  fields.add("value", &AntisymmetryFinding::value, "half the difference of the off-diagonal elements");
+  fields.add("value_interval95", &AntisymmetryFinding::value95);
+  fields.add("zmean_percent", &AntisymmetryFinding::zmean_percent, "[%]");
+  fields.add("interval95", &AntisymmetryFinding::zmean95, "of zmean_percent [%]");
+}
+
+void describe(Fields<ForceAgreement>& fields) {
+  fields.type("ForceAgreement");
+  fields.add("rows", &ForceAgreement::rows);
+  fields.add("bias", &ForceAgreement::bias, "mean of computed less measured [N]");
+  fields.add("RMSE", &ForceAgreement::rmse, "[N]");
+}
+
+void describe(Fields<ForceComparison>& fields) {
+  fields.type("ForceComparison", "A computed force against the measured one, on the same rows.");
+  fields.add("duration_s", &ForceComparison::duration, "[s]");
+  fields.add("all", &ForceComparison::all);
+  fields.add("rest", &ForceComparison::rest);
+  fields.add("motion", &ForceComparison::motion);
+  fields.add("reversals", &ForceComparison::reversals);
+  fields.add("measured_rms", &ForceComparison::measured_rms, "about its mean [N]");
+  fields.add("VAF", &ForceComparison::vaf, "[%]");
+  fields.add("gain", &ForceComparison::gain, "slope of computed over measured");
+  fields.add("correlation", &ForceComparison::correlation);
+  fields.add("lag_s", &ForceComparison::lag, "by which the computed force comes late [s]");
+  fields.add("correlation_at_lag", &ForceComparison::correlation_at_lag);
+  fields.add("rest_speed", &ForceComparison::rest_speed, "[rad/s, or m/s where a joint slides]");
+  fields.add("reversal_window_s", &ForceComparison::reversal_window, "to each side [s]");
+  fields.add("longest_lag_s", &ForceComparison::longest_lag, "that was tried [s]");
+}
+
+void describe(Fields<ChartReference>& fields) {
+  fields.type("Line", "A value that is marked across the whole chart.");
+  fields.add("value", &ChartReference::value);
+  fields.add("name", &ChartReference::name);
+}
+
+namespace impedance {
+
+void describe(Fields<Model>& fields) {
+  fields.type("Model",
+              "M ẍ + B ẋ + K (x − x₀) = −F, with F the force of the limb on the machine; n×n with n axes. "
+              "Units: `units` of the result.");
+  fields.add("M", &Model::M, "inertia");
+  fields.add("B", &Model::B, "damping");
+  fields.add("K", &Model::K, "stiffness");
+  fields.add("x0", &Model::x0, "equilibrium position");
+}
+
+}  // namespace impedance
+
+namespace result {
+
+void describe(Fields<TimedInput>& fields) {
+  fields.type("TimedInput", "A recording behind a result.");
+  fields.with(&TimedInput::source);
+  fields.add("duration_s", &TimedInput::duration_s, "[s]");
+  fields.add("rate_hz", &TimedInput::rate_hz, "sample rate [Hz]");
+}
+
+void describe(Fields<Covariance>& fields) {
+  fields.type("Covariance");
+  fields.add("parameters", &Covariance::parameters, "m_xx, m_xy, …; with one axis m, b, k, x0");
+  fields.add("matrix", &Covariance::matrix, "of the parameters, in SI units");
+}
+
+}  // namespace result
 }  // namespace mbk

@@ -3,85 +3,143 @@
 #include <complex>
 #include <numbers>
 
+#include "mbk/base/core/units.h"
 #include "mbk/present/result/exploration_parts_json.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
-namespace exploration {
+namespace mbk {
 
-Json document(const Exploration& found) {
-  Json json = header("mbk.explore/1");
-  json["inputs"] = Json::array();
-  for (const ExploredRecording& one : found.recordings) {
-    json["inputs"].push_back({{"file", one.source.path},
-                              {"sha256", one.source.sha256},
-                              {"format", one.source.format},
-                              {"duration_s", number(one.duration_s)},
-                              {"rate_hz", number(one.rate_hz)},
-                              {"from_s", number(one.from_s)},
-                              {"to_s", number(one.to_s)},
-                              {"window_rule", one.window_rule}});
-    if (!one.source.trial.empty()) json["inputs"].back()["trial"] = one.source.trial;
-  }
-  json["axes"] = found.axes;
-  if (found.motion != Motion::unknown && !found.other_signals) json["units"] = units_json(found.motion);
-  if (found.frequency_response) json["frequency_response"] = frequency_response_json(*found.frequency_response);
-  if (found.impulse_response) json["impulse_response"] = impulse_response_json(*found.impulse_response);
-  if (found.parallel_cascade) json["parallel_cascade"] = parallel_cascade_json(*found.parallel_cascade);
-  if (found.plateau_stiffness) json["ramp_and_hold"] = plateau_stiffness_json(*found.plateau_stiffness);
-  if (found.reach_stiffness) json["servo_displacement"] = reach_stiffness_json(*found.reach_stiffness);
-  if (found.time_course) json["time_course"] = time_course_json(*found.time_course);
-  if (found.after_onset) json["after_onset"] = after_onset_json(*found.after_onset);
-  json["notes"] = found.notes;
-  json["warnings"] = warnings_json(found.warnings);
-  json["usable"] = found.usable;
-  return json;
+using document::Fields;
+using document::Json;
+
+void describe(Fields<ExploredRecording>& fields) {
+  fields.type("ExploredInput", "A recording that was explored.");
+  fields.with(&ExploredRecording::source, "trial");
+  fields.add("duration_s", &ExploredRecording::duration_s, "[s]");
+  fields.add("rate_hz", &ExploredRecording::rate_hz, "sample rate [Hz]");
+  fields.add("from_s", &ExploredRecording::from_s, "start of the analysed interval [s]");
+  fields.add("to_s", &ExploredRecording::to_s, "its end [s]");
+  fields.add("window_rule", &ExploredRecording::window_rule, "why that interval, in words");
+  fields.add_unless_empty("trial", document::through(&ExploredRecording::source, &SourceFile::trial),
+                          "which of the trials that the file holds; absent where it holds one");
 }
 
-/// K − Mω² + jωB at each frequency, response by response.
-Json model_responses(const ResponseModel& model, const Vector& frequency) {
-  Json array = Json::array();
+void describe(Fields<Exploration>& fields) {
+  using From = const Exploration&;
+  fields.type(
+      "Exploration",
+      "What `mbk explore --json` writes: what recordings say of a limb without a model of M, B and K. Each part "
+      "is there where the data allow it. SI units.");
+  fields.header("mbk.explore/1");
+  fields.add("inputs", &Exploration::recordings);
+  fields.add("axes", &Exploration::axes);
+  fields.add(
+      "units", [](From found) { return found.other_signals ? std::nullopt : result::known_units(found.motion); },
+      "absent where the recording does not say what moves, and of other signals than motion and force");
+  fields.add("frequency_response", &Exploration::frequency_response);
+  fields.add("impulse_response", &Exploration::impulse_response);
+  fields.add("parallel_cascade", &Exploration::parallel_cascade);
+  fields.add("ramp_and_hold", &Exploration::plateau_stiffness);
+  fields.add("servo_displacement", &Exploration::reach_stiffness);
+  fields.add("time_course", &Exploration::time_course);
+  fields.add("after_onset", &Exploration::after_onset);
+  fields.add("notes", &Exploration::notes);
+  fields.add("warnings", &Exploration::warnings);
+  fields.add("usable", &Exploration::usable);
+}
+
+namespace result {
+namespace {
+
+struct Explorations {
+  const std::vector<std::string>& texts;
+  const std::vector<Error>& failed;
+};
+
+void describe(Fields<Explorations>& fields) {
+  using From = const Explorations&;
+  fields.type("Explorations", "What `mbk explore --each --json` writes.");
+  fields.header("mbk.explorations/1");
+  fields.add_form<std::vector<Exploration>>("results", [](From all) {
+    Json results = Json::array();
+    for (const std::string& text : all.texts) results.push_back(Json::parse(text, nullptr, false));
+    return results;
+  });
+  fields.add_unless_empty(
+      "failed", [](From all) { return all.failed; }, "recordings that could not be explored");
+}
+
+/// K − Mω² + jωB over frequency.
+struct ModelResponse {
+  Vector magnitude, phase;
+};
+
+void describe(Fields<ModelResponse>& fields) {
+  fields.type("ModelResponse");
+  fields.add_rounded("magnitude", &ModelResponse::magnitude, document::kDigits);
+  fields.add_rounded("phase_deg", &ModelResponse::phase, document::kDigits);
+}
+
+std::vector<ModelResponse> model_responses(const Exploration& found) {
+  const ResponseModel& model = found.impulse_response->model;
+  const Vector& frequency = found.frequency_response->frequency;
+  std::vector<ModelResponse> responses;
   for (Index j = 0; j < model.K.cols(); ++j) {
     for (Index i = 0; i < model.K.rows(); ++i) {
-      Vector magnitude(frequency.size()), phase(frequency.size());
+      ModelResponse one = {Vector(frequency.size()), Vector(frequency.size())};
       for (Index k = 0; k < frequency.size(); ++k) {
         const double omega = 2.0 * std::numbers::pi * frequency[k];
         const std::complex<double> D(model.K(i, j) - omega * omega * model.M(i, j), omega * model.B(i, j));
-        magnitude[k] = std::abs(D);
-        phase[k] = 180.0 / std::numbers::pi * std::arg(D);
+        one.magnitude[k] = std::abs(D);
+        one.phase[k] = kDegrees * std::arg(D);
       }
-      array.push_back({{"magnitude", rounded(magnitude)}, {"phase_deg", rounded(phase)}});
+      responses.push_back(std::move(one));
     }
   }
-  return array;
+  return responses;
 }
 
-}  // namespace exploration
+struct ExplorationReport {
+  const Exploration& found;
+  std::string command, note;
+};
+
+void describe(Fields<ExplorationReport>& fields) {
+  using From = const ExplorationReport&;
+  fields.type("Exploration report", "What stands in the page that `mbk explore --report` writes.");
+  fields.header("mbk.explore_report/1");
+  fields.add("command", &ExplorationReport::command, "as it was typed");
+  fields.add_unless_empty("note", &ExplorationReport::note);
+  const auto has_model = [](From report) {
+    const Exploration& found = report.found;
+    return found.frequency_response && found.impulse_response && found.impulse_response->model.identifiable;
+  };
+  fields.add_if(
+      has_model, "model_responses", [](From report) { return model_responses(report.found); },
+      "K − Mω² + jωB of M, B and K as they were fitted to the impulse response, at the frequencies and in the order of "
+      "the responses; to be looked at, with six digits");
+  fields.add("result", [](From report) -> const Exploration& { return report.found; });
+}
+
+}  // namespace
 
 std::string to_json(const Exploration& found) {
-  return dumped(exploration::document(found));
+  return document::document(found);
 }
 
 std::string to_json(const std::vector<std::string>& explorations, const std::vector<Error>& failed) {
-  Json json = header("mbk.explorations/1");
-  json["results"] = Json::array();
-  for (const std::string& one : explorations) json["results"].push_back(Json::parse(one, nullptr, false));
-  if (!failed.empty()) json["failed"] = Json::array();
-  for (const Error& error : failed) {
-    json["failed"].push_back({{"file", error.where}, {"message", error.message}, {"try", error.remedy}});
-  }
-  return dumped(json);
+  return document::document(Explorations{explorations, failed});
 }
 
 std::string report_json(const Exploration& found, const std::string& command, const std::string& note) {
-  Json json = header("mbk.explore_report/1");
-  json["command"] = command;
-  if (!note.empty()) json["note"] = note;
-  if (found.frequency_response && found.impulse_response && found.impulse_response->model.identifiable) {
-    json["model_responses"] =
-        exploration::model_responses(found.impulse_response->model, found.frequency_response->frequency);
-  }
-  json["result"] = exploration::document(found);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document::compact(document::written(ExplorationReport{found, command, note})) + "\n";
 }
 
-}  // namespace mbk::result
+void add_explore_schemas(document::Schemas& schemas) {
+  schemas["explore"] = document::schema_of<Exploration>();
+  schemas["explorations"] = document::schema_of<Explorations>();
+  schemas["explore_report"] = document::schema_of<ExplorationReport>();
+}
+
+}  // namespace result
+}  // namespace mbk

@@ -1,39 +1,58 @@
-#include "mbk/present/result/joint_domain_json.h"
-
 #include <Eigen/LU>
-#include <numbers>
 
-#include "mbk/model/trial/identification.h"
+#include "mbk/present/result/result_document.h"
 
-namespace mbk::result {
+namespace mbk {
 
-Json joint_domain_json(const JointDomain& joints) {
-  const bool of_arm = joints.posture.of == ArmPosture::Of::arm;
-  const Units units = units_of(Motion::rotation);
-  const auto antisymmetric = [](double value, const Interval& value95) {
-    return Json{{"value", number(value)}, {"value_interval95", interval(value95)}};
+using document::Fields;
+
+void describe(Fields<JointDomain>& fields) {
+  using From = const JointDomain&;
+  fields.type("JointDomain", "The same impedance about the joints.");
+  fields.add("of", document::through(&JointDomain::posture, &ArmPosture::of));
+  fields.add_choice(
+      "second_joint_against", [](From joints) { return joints.posture.of == ArmPosture::Of::arm; }, "first link",
+      "base", "what its angle is measured from");
+  fields.add("points_m", document::through(&JointDomain::posture, &ArmPosture::points), "base frame [m]");
+  fields.add(
+      "joint_angles_deg", [](From joints) { return Eigen::Vector2d(kDegrees * joints.angles); }, "[°]");
+  fields.add("jacobian_m", &JointDomain::jacobian, "[m]");
+  fields.add(
+      "determinant_m2", [](From joints) { return joints.jacobian.determinant(); }, "[m²]");
+  fields.group("units", [](Fields<JointDomain>& part) {
+    const Units units = units_of(Motion::rotation);
+    part.constant("M", units.inertia);
+    part.constant("B", units.damping);
+    part.constant("K", units.stiffness);
+  });
+  const auto matrices = [&fields](const char* name, auto M, auto B, auto K) {
+    fields.group(name, [=](Fields<JointDomain>& part) {
+      part.type("JointMatrices");
+      part.add("M", M);
+      part.add("B", B);
+      part.add("K", K);
+    });
   };
-  Json points = Json::array();
-  for (const Eigen::Vector2d& point : joints.posture.points) points.push_back(list(point));
-  return {
-      {"of", word_of(joints.posture.of)},
-      {"second_joint_against", of_arm ? "first link" : "base"},
-      {"points_m", std::move(points)},
-      {"joint_angles_deg", list(180.0 / std::numbers::pi * joints.angles)},
-      {"jacobian_m", rows(joints.jacobian)},
-      {"determinant_m2", number(joints.jacobian.determinant())},
-      {"units", {{"M", units.inertia}, {"B", units.damping}, {"K", units.stiffness}}},
-      {"model", {{"M", rows(joints.M)}, {"B", rows(joints.B)}, {"K", rows(joints.K)}}},
-      {"standard_error", {{"M", rows(joints.M_error)}, {"B", rows(joints.B_error)}, {"K", rows(joints.K_error)}}},
-      {"bias_force_N", list(joints.bias_force)},
-      {"bias_force_standard_error_N", list(joints.bias_force_error)},
-      {"antisymmetry",
-       {{"inertia", antisymmetric(joints.m_a, joints.m_a95)}, {"stiffness", antisymmetric(joints.k_a, joints.k_a95)}}},
-      {"covariance",
-       {{"parameters",
-         {"m_11", "m_12", "m_21", "m_22", "b_11", "b_12", "b_21", "b_22", "k_11", "k_12", "k_21", "k_22", "F_x",
-          "F_y"}},
-        {"matrix", rows(joints.covariance)}}}};
+  matrices("model", &JointDomain::M, &JointDomain::B, &JointDomain::K);
+  matrices("standard_error", &JointDomain::M_error, &JointDomain::B_error, &JointDomain::K_error);
+  fields.add("bias_force_N", &JointDomain::bias_force, "[N]");
+  fields.add("bias_force_standard_error_N", &JointDomain::bias_force_error, "[N]");
+  fields.group("antisymmetry", [](Fields<JointDomain>& both) {
+    const auto antisymmetry = [&both](const char* name, auto value, auto interval95) {
+      both.group(name, [=](Fields<JointDomain>& part) {
+        part.type("JointAntisymmetry");
+        part.add("value", value);
+        part.add("value_interval95", interval95);
+      });
+    };
+    antisymmetry("inertia", &JointDomain::m_a, &JointDomain::m_a95);
+    antisymmetry("stiffness", &JointDomain::k_a, &JointDomain::k_a95);
+  });
+  fields.add("covariance", [](From joints) {
+    return result::Covariance{
+        {"m_11", "m_12", "m_21", "m_22", "b_11", "b_12", "b_21", "b_22", "k_11", "k_12", "k_21", "k_22", "F_x", "F_y"},
+        joints.covariance};
+  });
 }
 
-}  // namespace mbk::result
+}  // namespace mbk

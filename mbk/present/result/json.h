@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,10 +32,16 @@ namespace mbk::result {
 [[nodiscard]] std::string to_json(const std::vector<Identification>& identifications,
                                   const std::vector<Findings>& findings);
 
-/// Schema "mbk.passivity/2": what happened in a trial and what the model predicts, in full: `passivity` as in a result,
-/// and for each recording the energy over time and part by part.
-[[nodiscard]] std::string passivity_to_json(const std::vector<SourceFile>& sources, const Passivity& passivity,
-                                            const std::vector<Energy>& energies);
+/// What happened in a trial and what the model predicts, in full: `passivity` as in a result, and for each recording
+/// the energy over time and part by part.
+struct PassivityDocument {
+  std::vector<SourceFile> inputs;
+  Passivity passivity;
+  std::vector<Energy> recordings;
+};
+
+/// Schema "mbk.passivity/2"; "mbk.passivities/1" with `results` for several.
+[[nodiscard]] std::string to_json(std::span<const PassivityDocument> all);
 
 /// Schema "mbk.info/1": what is in a recording; "mbk.infos/1" with `results` for several.
 [[nodiscard]] std::string to_json(const std::vector<Recording>& recordings, const std::vector<Inspection>& inspections);
@@ -48,9 +55,6 @@ namespace mbk::result {
 /// Schema "mbk.workspace/1": where the hand can be, and the robot at one place where one is given. Metres, except that
 /// angles are in degrees and say so.
 [[nodiscard]] std::string to_json(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture);
-
-/// One document as it is, or several as `results` of a schema of their own.
-[[nodiscard]] std::string one_or_list_json(const char* schema_of_list, const std::vector<std::string>& documents);
 
 /// Reads back what `to_json` wrote, schema mbk.result/2, mbk.result/1 or mbk.results/1: model, covariance (from the
 /// standard errors where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and

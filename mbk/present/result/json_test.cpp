@@ -128,12 +128,6 @@ TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   EXPECT_EQ(json.contains("antisymmetry"), n == 2);
 }
 
-TEST(ToJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {
-  Measurement warned = measured(2);
-  for (const auto& [code, word] : kWords<WarningCode>) warned.identification.warnings.push_back({code, "so", "again"});
-  EXPECT_TRUE(schemas::fits_its_schema(to_json(warned)));
-}
-
 TEST(ToJson, EllipsesHaveTheirIntervals) {
   const Json json = schemas::parsed(to_json(measured(2)));
   for (const char* matrix : {"inertia", "damping", "stiffness"}) {
@@ -186,17 +180,6 @@ TEST(ToJson, SeveralResultsComeBackInTheirOrder) {
   ASSERT_EQ(back->size(), 2u);
   EXPECT_EQ(back->at(0).axes, 1);
   EXPECT_EQ(back->at(1).axes, 2);
-}
-
-TEST(ToJson, SeveralResultsAreWrittenAsOneTreeWouldBe) {
-  std::vector<Measurement> all = {measured(1), measured(2)};
-  all[0].identification.notes = {"a note\nof two lines", "\n  \"results\": []"};
-  const SeveralTrials together{
-      {}, "\n  \"results\": []", {{ErrorKind::data, "no such file", "check the name", "d.mat"}}};
-  const std::string text = to_json(all, together);
-  EXPECT_EQ(nlohmann::ordered_json::parse(text).dump(2) + "\n", text);
-  const std::string none = to_json(std::vector<Measurement>(), together);
-  EXPECT_EQ(nlohmann::ordered_json::parse(none).dump(2) + "\n", none);
 }
 
 TEST(ToJson, ASummaryHasItsMeanAndError) {

@@ -49,8 +49,9 @@ void describe(Fields<MovementQuality>& fields) {
   fields.add("to_s", &MovementQuality::to_s, "its end [s]");
   fields.add("cutoff_hz", &MovementQuality::cutoff_hz, "of the filter behind the speed [Hz]");
   fields.add("rest_speed", &MovementQuality::rest_speed, "below it the hand is at rest [m/s or rad/s]");
-  fields.add_if([](From one) { return !one.source.trial.empty(); }, "trial", [](From one) { return one.source.trial; },
-                "which of the trials that the file holds; absent where it holds one");
+  fields.add_unless_empty(
+      "trial", [](From one) { return one.source.trial; },
+      "which of the trials that the file holds; absent where it holds one");
   fields.add("reaches", &MovementQuality::reaches);
   fields.add("notes", &MovementQuality::notes);
   fields.add("warnings", &MovementQuality::warnings);

@@ -1,145 +1,212 @@
 #include "mbk/present/result/passivity_json.h"
 
+#include "mbk/present/result/described.h"
 #include "mbk/present/result/json.h"
 #include "mbk/present/result/json_reading.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
+namespace mbk {
+
+using document::Fields;
+using document::through;
+
 namespace {
 
-std::string prediction_word(const std::optional<Verdict>& verdict) {
-  return std::string(verdict ? word_of(*verdict) : "none");
+/// A verdict, or none: there is no usable model, or with one axis no antisymmetric part.
+enum class Prediction { passive, active, undecided, none };
+
+[[nodiscard]] constexpr auto word_table(Prediction) {
+  using enum Prediction;
+  return std::to_array<Word<Prediction>>(
+      {{passive, "passive"}, {active, "active"}, {undecided, "undecided"}, {none, "none"}});
 }
 
-Json band_json(const PassivityBand& band) {
-  return {band.low.value, band.high.value};
+Prediction predicted(const std::optional<Verdict>& verdict) {
+  return verdict ? value_of<Prediction>(word_of(*verdict)).value_or(Prediction::none) : Prediction::none;
 }
 
-Json excess_json(const ExcessOfPassivity& excess) {
-  return {{"corrected", number(excess.corrected)},
-          {"interval95", interval(excess.corrected95)},
-          {"published_formula", number(excess.published)},
-          {"published_formula_interval95", interval(excess.published95)}};
-}
-
-Json model_passivity_json(const ModelPassivity& model) {
-  Json json = {{"method", word_of(model.method)},
-               {"VAF", list(model.vaf)},
-               {"usable", model.usable},
-               {"fits", model.fits},
-               {"symmetric", word_of(model.symmetric)},
-               {"antisymmetric", prediction_word(model.antisymmetric)},
-               {"published_rule", model.published_rule ? "passive" : "active"},
-               {"band_hz", band_json(model.band)},
-               {"band_rule", model.band.rule},
-               {"extrapolated", model.band.extrapolated},
-               {"min_index", number(model.smallest_index)},
-               {"min_index_interval95", interval(model.smallest_index95)},
-               {"min_index_at_hz", model.smallest_at.value},
-               {"circular_hz", model.circular_hz ? interval(*model.circular_hz) : Json(nullptr)},
-               {"conditions", Json::array()}};
-  for (const PassivityCondition& c : model.conditions) {
-    json["conditions"].push_back({{"name", c.name},
-                                  {"source", c.source},
-                                  {"unit", c.unit},
-                                  {"value", number(c.value)},
-                                  {"standard_error", number(c.standard_error)},
-                                  {"lower", number(c.lower)},
-                                  {"upper", number(c.upper)},
-                                  {"verdict", word_of(c.verdict)}});
-  }
-  if (model.excess) json["eop"] = excess_json(*model.excess);
-  json["index"] = {{"frequency_hz", list(model.curve.frequency)},
-                   {"value", list(model.curve.index)},
-                   {"lower95", list(model.curve.lower95)},
-                   {"upper95", list(model.curve.upper95)}};
-  return json;
-}
-
-Json account_json(const EnergyAccount& account) {
-  return {{"verdict", word_of(account.verdict)},
-          {"reason", account.reason},
-          {"absorbed_J", number(account.absorbed)},
-          {"interval95", interval(account.absorbed95)},
-          {"lower95_J", number(account.lower95)},
-          {"upper95_J", number(account.upper95)},
-          {"duration_s", number(account.duration)},
-          {"mean_power_W", number(account.mean_power)},
-          {"mean_power_interval95", interval(account.mean_power95)},
-          {"squared_velocity", number(account.squared_velocity)},
-          {"shortage",
-           {{"at_end", number(account.shortage_at_end)},
-            {"at_end_interval95", interval(account.shortage_at_end95)},
-            {"largest", number(account.shortage_largest)},
-            {"largest_interval95", interval(account.shortage_largest95)}}},
-          {"blocks", account.blocks}};
-}
-
-Json trial_json(const TrialPassivity& trial) {
-  Json json = {{"verdict", word_of(trial.energy.verdict)},
-               {"absorbed_J", number(trial.energy.absorbed)},
-               {"interval95", interval(trial.energy.absorbed95)},
-               {"statement", trial.statement},
-               {"reason", trial.energy.reason}};
-  for (const EnergyLine& line : trial.lines) {
-    json["lines"].push_back({{"frequency_hz", line.frequency.value},
-                             {"duration_s", number(line.duration)},
-                             {"absorbed_J", number(line.absorbed)},
-                             {"interval95", interval(line.absorbed95)}});
-  }
-  return json;
+std::pair<Hertz, Hertz> ends(const PassivityBand& band) {
+  return {band.low, band.high};
 }
 
 }  // namespace
 
-Json energy_json(const Energy& energy) {
-  Json json = {{"window_s", {energy.from_s, energy.to_s}},
-               {"account", account_json(energy.account)},
-               {"shortage_largest_at_s", number(energy.shortage_largest_at_s)},
-               {"whole_recording_J", number(energy.curve.end)},
-               {"time_s", list(energy.curve.time)},
-               {"absorbed_J", list(energy.curve.absorbed)},
-               {"parts_are", energy.parts_are_perturbations ? "perturbations" : "blocks"},
-               {"parts", Json::array()}};
-  for (const EnergyPart& part : energy.parts) {
-    json["parts"].push_back({{"from_s", part.from_s},
-                             {"to_s", part.to_s},
-                             {"absorbed_J", number(part.absorbed)},
-                             {"largest_displacement", number(part.largest_displacement)},
-                             {"path_length", number(part.path_length)},
-                             {"squared_velocity", number(part.squared_velocity)},
-                             {"shortage", number(part.shortage)}});
-  }
-  if (energy.curl) {
-    json["curl"] = {{"k_a", number(energy.curl->k_a)},
-                    {"absorbed_J", number(energy.curl->absorbed)},
-                    {"share", number(energy.curl->share)},
-                    {"over_time_J", list(energy.curve.curl)}};
-  }
-  return json;
+void describe(Fields<PassivityCondition>& fields) {
+  fields.type("Condition", "A condition of passivity: it must be positive.");
+  fields.add("name", &PassivityCondition::name);
+  fields.add("source", &PassivityCondition::source, "where it is published");
+  fields.add("unit", &PassivityCondition::unit);
+  fields.add("value", &PassivityCondition::value);
+  fields.add("standard_error", &PassivityCondition::standard_error);
+  fields.add("lower", &PassivityCondition::lower, "above it with 97.5 % confidence");
+  fields.add("upper", &PassivityCondition::upper, "below it with 97.5 % confidence for all conditions at once");
+  fields.add("verdict", &PassivityCondition::verdict);
 }
 
-Json passivity_json(const Passivity& passivity) {
-  const PassivityPrediction& prediction = passivity.prediction;
-  Json json = Json::object();
-  if (passivity.trial) json["trial"] = trial_json(*passivity.trial);
-  json["prediction"] = {{"verdict", prediction_word(prediction.verdict)},
-                        {"symmetric", prediction_word(prediction.symmetric)},
-                        {"antisymmetric", prediction_word(prediction.antisymmetric)},
-                        {"extrapolated", prediction.extrapolated},
-                        {"statement", prediction.statement}};
-  json["band_hz"] = passivity.band ? band_json(*passivity.band) : Json(nullptr);
-  if (!passivity.models.empty()) {
-    if (prediction.verdict) {
-      const ModelPassivity& model = passivity.models.front();
-      json["min_index"] = number(model.smallest_index);
-      if (model.excess) json["eop"] = excess_json(*model.excess);
-    }
-    json["models"] = Json::array();
-    for (const ModelPassivity& one : passivity.models) json["models"].push_back(model_passivity_json(one));
-  }
-  if (passivity.trial) json["energy"] = account_json(passivity.trial->energy);
-  return json;
+void describe(Fields<ExcessOfPassivity>& fields) {
+  fields.type("Excess", "Excess of passivity [unit of damping].");
+  fields.add("corrected", &ExcessOfPassivity::corrected);
+  fields.add("interval95", &ExcessOfPassivity::corrected95);
+  fields.add("published_formula", &ExcessOfPassivity::published, "by the published formula, for comparison");
+  fields.add("published_formula_interval95", &ExcessOfPassivity::published95);
 }
+
+void describe(Fields<PassivityIndexCurve>& fields) {
+  fields.type("PassivityIndex", "At each frequency the least damping in any direction of motion [unit of damping].");
+  fields.add("frequency_hz", &PassivityIndexCurve::frequency, "[Hz]");
+  fields.add("value", &PassivityIndexCurve::index);
+  fields.add("lower95", &PassivityIndexCurve::lower95);
+  fields.add("upper95", &PassivityIndexCurve::upper95);
+}
+
+void describe(Fields<ModelPassivity>& fields) {
+  using From = const ModelPassivity&;
+  fields.type("ModelPassivity", "What the model of one method says in a band.");
+  fields.add("method", &ModelPassivity::method);
+  fields.add("VAF", &ModelPassivity::vaf, "of each axis, on held-out data where there are any [%]");
+  fields.add("usable", &ModelPassivity::usable);
+  fields.add("fits", &ModelPassivity::fits, "it explains enough of the force to predict any");
+  fields.add("symmetric", &ModelPassivity::symmetric, "of the symmetric parts: all that straight motion can show");
+  fields.add(
+      "antisymmetric", [](From model) { return predicted(model.antisymmetric); },
+      "of the antisymmetric parts, which do work in circular motion only; none with one axis");
+  fields.add_choice("published_rule", &ModelPassivity::published_rule, "passive", "active",
+                    "theorem 3.2 of Dyck (2013) as it was applied: estimates, symmetric parts");
+  fields.add(
+      "band_hz", [](From model) { return ends(model.band); }, "in which it is judged [Hz]");
+  fields.add("band_rule", through(&ModelPassivity::band, &PassivityBand::rule), "how the band came about");
+  fields.add("extrapolated", through(&ModelPassivity::band, &PassivityBand::extrapolated),
+             "the band reaches beyond `band_hz` of the passivity");
+  fields.add("min_index", &ModelPassivity::smallest_index, "smallest passivity index in the band");
+  fields.add("min_index_interval95", &ModelPassivity::smallest_index95);
+  fields.add("min_index_at_hz", &ModelPassivity::smallest_at, "[Hz]");
+  fields.add_or_null("circular_hz", &ModelPassivity::circular_hz,
+                     "between these frequencies the model, as estimated, absorbs energy in circular motion; high null: "
+                     "there is no upper one; null: at none, or one axis [Hz]");
+  fields.add("conditions", &ModelPassivity::conditions);
+  fields.add("eop", &ModelPassivity::excess, "absent unless the symmetric parts of M and K are positive semidefinite");
+  fields.add("index", &ModelPassivity::curve);
+}
+
+void describe(Fields<EnergyAccount>& fields) {
+  fields.type("EnergyAccount", "What the energy of a recording says.");
+  fields.add("verdict", &EnergyAccount::verdict);
+  fields.add("reason", &EnergyAccount::reason);
+  fields.add("absorbed_J", &EnergyAccount::absorbed, "energy that the limb took up [J]");
+  fields.add("interval95", &EnergyAccount::absorbed95, "[J]");
+  fields.add("lower95_J", &EnergyAccount::lower95, "[J]");
+  fields.add("upper95_J", &EnergyAccount::upper95, "[J]");
+  fields.add("duration_s", &EnergyAccount::duration, "[s]");
+  fields.add("mean_power_W", &EnergyAccount::mean_power, "[W]");
+  fields.add("mean_power_interval95", &EnergyAccount::mean_power95, "[W]");
+  fields.add("squared_velocity", &EnergyAccount::squared_velocity, "∫|v|² dt");
+  fields.group("shortage", [](Fields<EnergyAccount>& part) {
+    part.type("Shortage", "Shortage of passivity of the trial [unit of damping].");
+    part.add("at_end", &EnergyAccount::shortage_at_end);
+    part.add("at_end_interval95", &EnergyAccount::shortage_at_end95);
+    part.add("largest", &EnergyAccount::shortage_largest);
+    part.add("largest_interval95", &EnergyAccount::shortage_largest95);
+  });
+  fields.add("blocks", &EnergyAccount::blocks, "whose spread made the intervals");
+}
+
+void describe(Fields<EnergyLine>& fields) {
+  fields.type("EnergyLine", "What the limb absorbed at one line of a periodic perturbation, over whole periods.");
+  fields.add("frequency_hz", &EnergyLine::frequency, "[Hz]");
+  fields.add("duration_s", &EnergyLine::duration, "of those periods [s]");
+  fields.add("absorbed_J", &EnergyLine::absorbed, "[J]");
+  fields.add("interval95", &EnergyLine::absorbed95, "for all lines at once [J]");
+}
+
+void describe(Fields<TrialPassivity>& fields) {
+  const auto energy = &TrialPassivity::energy;
+  fields.type("TrialPassivity", "What happened in the trial, by force and motion alone.");
+  fields.add("verdict", through(energy, &EnergyAccount::verdict),
+             "passive: `interval95` is above zero; active: it is below zero");
+  fields.add("absorbed_J", through(energy, &EnergyAccount::absorbed), "energy that the limb took up [J]");
+  fields.add("interval95", through(energy, &EnergyAccount::absorbed95), "[J]");
+  fields.add("statement", &TrialPassivity::statement, "in words");
+  fields.add("reason", through(energy, &EnergyAccount::reason), "of the verdict");
+  fields.add_unless_empty("lines", &TrialPassivity::lines, "absent where the perturbation is not periodic");
+}
+
+void describe(Fields<PassivityPrediction>& fields) {
+  using From = const PassivityPrediction&;
+  fields.type("PassivityPrediction",
+              "What the model predicts of other motions. It is no statement on the stability of a machine with this "
+              "person.");
+  fields.add(
+      "verdict", [](From prediction) { return predicted(prediction.verdict); },
+      "of both parts; none where the result is not usable; undecided at most where the model fits poorly or `band_hz` "
+      "is null");
+  fields.add(
+      "symmetric", [](From prediction) { return predicted(prediction.symmetric); }, "straight motion");
+  fields.add(
+      "antisymmetric", [](From prediction) { return predicted(prediction.antisymmetric); }, "circular motion");
+  fields.add("extrapolated", &PassivityPrediction::extrapolated, "it reaches beyond `band_hz`");
+  fields.add("statement", &PassivityPrediction::statement, "in words");
+}
+
+void describe(Fields<Passivity>& fields) {
+  using From = const Passivity&;
+  const auto predicts = [](From passivity) { return passivity.prediction.verdict && !passivity.models.empty(); };
+  fields.type("Passivity", "What happened in the trial, and what the model predicts: two statements.");
+  fields.add("trial", &Passivity::trial, "absent where force or motion is not plausible");
+  fields.add("prediction", &Passivity::prediction);
+  fields.add_or_null(
+      "band_hz", [](From passivity) { return passivity.band ? std::optional(ends(*passivity.band)) : std::nullopt; },
+      "in which all axes are excited with a coherence above 0.8; null: there is none [Hz]");
+  fields.add_if(
+      predicts, "min_index", [](From passivity) { return passivity.models.front().smallest_index; },
+      "of the first model, where it predicts");
+  fields.add_if(
+      predicts, "eop", [](From passivity) { return passivity.models.front().excess; },
+      "of the first model, where it predicts");
+  fields.add_unless_empty("models", &Passivity::models, "the one that predicts comes first");
+  fields.add(
+      "energy", [](From passivity) { return passivity.trial ? &passivity.trial->energy : nullptr; }, "behind `trial`");
+}
+
+void describe(Fields<EnergyPart>& fields) {
+  fields.type("EnergyPart", "One perturbation, or one block.");
+  fields.add_number("from_s", &EnergyPart::from_s, "[s]");
+  fields.add_number("to_s", &EnergyPart::to_s, "[s]");
+  fields.add("absorbed_J", &EnergyPart::absorbed, "[J]");
+  fields.add("largest_displacement", &EnergyPart::largest_displacement, "[m or rad]");
+  fields.add("path_length", &EnergyPart::path_length, "[m or rad]");
+  fields.add("squared_velocity", &EnergyPart::squared_velocity, "∫|v|² dt");
+  fields.add("shortage", &EnergyPart::shortage, "[unit of damping]");
+}
+
+void describe(Fields<Energy>& fields) {
+  using From = const Energy&;
+  fields.type("Energy", "Energy in one recording.");
+  fields.add(
+      "window_s",
+      [](From energy) {
+        return std::array{document::Number{energy.from_s}, document::Number{energy.to_s}};
+      },
+      "[s]");
+  fields.add("account", &Energy::account);
+  fields.add("shortage_largest_at_s", &Energy::shortage_largest_at_s, "[s]");
+  fields.add("whole_recording_J", through(&Energy::curve, &EnergyCurve::end), "[J]");
+  fields.add("time_s", through(&Energy::curve, &EnergyCurve::time), "[s]");
+  fields.add("absorbed_J", through(&Energy::curve, &EnergyCurve::absorbed),
+             "from the beginning of the window to that time [J]");
+  fields.add_choice("parts_are", &Energy::parts_are_perturbations, "perturbations", "blocks");
+  fields.add("parts", &Energy::parts);
+  const auto curl = [](From energy) -> const CurlWork& { return *energy.curl; };
+  const auto describe_curl = [curl](Fields<Energy>& part) {
+    part.type("Curl", "What the antisymmetric part of the stiffness does.");
+    part.add("k_a", through(curl, &CurlWork::k_a), "[unit of stiffness]");
+    part.add("absorbed_J", through(curl, &CurlWork::absorbed), "[J]");
+    part.add("share", through(curl, &CurlWork::share), "of all energy");
+    part.add("over_time_J", through(&Energy::curve, &EnergyCurve::curl), "[J]");
+  };
+  fields.group("curl", describe_curl).only_if([](From energy) { return energy.curl.has_value(); });
+}
+
+namespace result {
 
 namespace {
 
@@ -204,14 +271,27 @@ StoredPassivity stored_passivity_from(const Json& json) {
   return stored;
 }
 
-std::string passivity_to_json(const std::vector<SourceFile>& sources, const Passivity& passivity,
-                              const std::vector<Energy>& energies) {
-  Json json = header("mbk.passivity/2");
-  json["inputs"] = inputs_json(sources);
-  json["passivity"] = passivity_json(passivity);
-  json["recordings"] = Json::array();
-  for (const Energy& energy : energies) json["recordings"].push_back(energy_json(energy));
-  return dumped(json);
+void describe(Fields<PassivityDocument>& fields) {
+  fields.type("PassivityDocument", "What `mbk passivity --json` writes of one recording or result.");
+  fields.header("mbk.passivity/2");
+  fields.add("inputs", &PassivityDocument::inputs);
+  fields.add("passivity", &PassivityDocument::passivity);
+  fields.add("recordings", &PassivityDocument::recordings, "one for each recording; none for a stored result");
 }
 
-}  // namespace mbk::result
+void describe(Fields<document::List<PassivityDocument>>& fields) {
+  describe_list(fields, "PassivityDocuments", "mbk.passivities/1",
+                "What `mbk passivity --json` writes of several recordings or results.");
+}
+
+std::string to_json(std::span<const PassivityDocument> all) {
+  return document::one_or_list(all);
+}
+
+void add_passivity_schemas(document::Schemas& schemas) {
+  schemas["passivity"] = document::schema_of<PassivityDocument>();
+  schemas["passivities"] = document::schema_of<document::List<PassivityDocument>>();
+}
+
+}  // namespace result
+}  // namespace mbk

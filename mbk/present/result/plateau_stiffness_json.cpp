@@ -1,57 +1,97 @@
 #include "mbk/present/result/exploration_parts_json.h"
-#include "mbk/present/result/findings_json.h"
 
-namespace mbk::result {
-namespace plateau_stiffness {
+namespace mbk {
 
-Json displaced_json(const std::vector<DisplacedHand>& displaced) {
-  Json array = Json::array();
-  for (const DisplacedHand& one : displaced) {
-    array.push_back({{"input", one.recording},
-                     {"onset_s", rounded(one.onset_s, kTimeDigits)},
-                     {"commanded", rounded(one.commanded)},
-                     {"displacement", rounded(one.displacement)},
-                     {"force", rounded(one.force)}});
-  }
-  return array;
+using document::Fields;
+using document::kDigits;
+using document::kTimeDigits;
+
+void describe(Fields<StiffnessRegression>& fields) {
+  using Fit = StiffnessRegression;
+  fields.type("StiffnessRegression",
+              "Stiffness K by regression of restoring forces on displacements, f = K d, with what was commanded as "
+              "instrument. Not made symmetric.");
+  fields.add("K", &Fit::K, "[N/m or N·m/rad]");
+  fields.add("standard_error", &Fit::standard_error);
+  fields.add(
+      "interval95",
+      [](const Fit& fit) {
+        std::vector<std::vector<Interval>> rows;
+        for (Index r = 0; r < fit.K.rows(); ++r) {
+          auto& row = rows.emplace_back();
+          for (Index k = 0; k < fit.K.cols(); ++k) {
+            row.emplace_back(fit.K(r, k) - fit.half_width95(r, k), fit.K(r, k) + fit.half_width95(r, k));
+          }
+        }
+        return rows;
+      },
+      "of each entry of K, by Student's t");
+  fields.add("degrees_of_freedom", &Fit::degrees_of_freedom, "the fewest of any entry");
+  fields.add("relative_error", &Fit::relative_error,
+             "root of the sum of squared standard errors over that of squared entries");
+  fields.add("residual_rms", &Fit::residual_rms, "[N or N·m]");
+  fields.add("displacements", &Fit::displacements, "that were used");
+  fields.add("directions", &Fit::directions, "different ones");
+  fields.add("amplitude", &Fit::amplitude, "mean of the commanded ones [m or rad]");
+  fields.add("reached", &Fit::reached, "displacement over what was commanded, in the direction in which it is least");
+  fields.add("linear_p", &Fit::linear_p,
+             "probability of such a lack of fit over the directions where K is all there is");
+  fields.add("ellipse", &Fit::ellipse);
+  fields.add("antisymmetry", &Fit::antisymmetry);
 }
 
-}  // namespace plateau_stiffness
-
-Json stiffness_regression_json(const StiffnessRegression& fit) {
-  Json interval95 = Json::array();
-  for (Index r = 0; r < fit.K.rows(); ++r) {
-    Json row = Json::array();
-    for (Index k = 0; k < fit.K.cols(); ++k) {
-      row.push_back(interval({fit.K(r, k) - fit.half_width95(r, k), fit.K(r, k) + fit.half_width95(r, k)}));
-    }
-    interval95.push_back(std::move(row));
-  }
-  Json json = {{"K", rows(fit.K)},
-               {"standard_error", rows(fit.standard_error)},
-               {"interval95", std::move(interval95)},
-               {"degrees_of_freedom", number(fit.degrees_of_freedom)},
-               {"relative_error", number(fit.relative_error)},
-               {"residual_rms", list(fit.residual_rms)},
-               {"displacements", fit.displacements},
-               {"directions", fit.directions},
-               {"amplitude", number(fit.amplitude)},
-               {"reached", number(fit.reached)}};
-  if (fit.linear_p) json["linear_p"] = number(*fit.linear_p);
-  if (fit.ellipse) json["ellipse"] = ellipse_json(*fit.ellipse);
-  if (fit.antisymmetry) json["antisymmetry"] = antisymmetry_json(*fit.antisymmetry);
-  return json;
+void describe(Fields<DisplacedHand>& fields) {
+  fields.type("DisplacedHand",
+              "A displacement of the hand and the force that answered it, both less their means before the onset.");
+  fields.add("input", &DisplacedHand::recording, "0 for the first of `inputs`");
+  fields.add_rounded("onset_s", &DisplacedHand::onset_s, kTimeDigits, "[s] from the recording's first sample");
+  fields.add_rounded("commanded", &DisplacedHand::commanded, kDigits, "[m or rad]");
+  fields.add_rounded("displacement", &DisplacedHand::displacement, kDigits, "[m or rad]");
+  fields.add_rounded("force", &DisplacedHand::force, kDigits, "of the robot on the hand [N or N·m]");
 }
 
-Json plateau_stiffness_json(const PlateauStiffness& found) {
-  return {{"stiffness", stiffness_regression_json(found.fit)},
-          {"plateau_s", {number(found.from_s), number(found.to_s)}},
-          {"window_rule", found.window_rule},
-          {"baseline_s", number(found.baseline_s)},
-          {"motion_share", number(found.motion_share)},
-          {"left_out", found.left_out},
-          {"plateaus", plateau_stiffness::displaced_json(found.plateaus)},
-          {"usable", found.usable}};
+void describe(Fields<PlateauStiffness>& fields) {
+  fields.type("PlateauStiffnessEstimate",
+              "Stiffness from the mean restoring force while the hand is held at the end of a ramp.");
+  fields.add("stiffness", &PlateauStiffness::fit);
+  fields.add(
+      "plateau_s", [](const PlateauStiffness& found) { return Interval(found.from_s, found.to_s); },
+      "the window, after the onset of the ramp [s]");
+  fields.add("window_rule", &PlateauStiffness::window_rule, "why that window, in words");
+  fields.add("baseline_s", &PlateauStiffness::baseline_s, "before the onset, subtracted [s]");
+  fields.add("motion_share", &PlateauStiffness::motion_share,
+             "what inertia and damping add to K because the hand still moves, as a share of K");
+  fields.add("left_out", &PlateauStiffness::left_out, "ramps whose hold or rest before is too short");
+  fields.add("plateaus", &PlateauStiffness::plateaus);
+  fields.add("usable", &PlateauStiffness::usable);
 }
 
-}  // namespace mbk::result
+void describe(Fields<ReachPredictor>& fields) {
+  fields.type("ReachPredictor",
+              "Undisturbed reaches as they predict where a displaced hand would have been, and the stiffness relative "
+              "to that.");
+  fields.add("components", &ReachPredictor::components,
+             "of a reach's own past that predict it; 0: the mean of the undisturbed reaches");
+  fields.add("prediction_error", &ReachPredictor::prediction_error,
+             "of left-out undisturbed reaches in the middle of the window, root mean square [m]");
+  fields.add("motion_share", &ReachPredictor::motion_share,
+             "what inertia and damping add to K because the hand moves relative to the prediction, as a share of K");
+  fields.add("stiffness", &ReachPredictor::fit);
+}
+
+void describe(Fields<ReachStiffness>& fields) {
+  fields.type("ReachStiffnessEstimate",
+              "Stiffness of a hand that is displaced while it reaches, relative to the predicted way.");
+  fields.add("trigger", &ReachStiffness::trigger, "event at which a hand is displaced, or would be");
+  fields.add(
+      "window_s", [](const ReachStiffness& found) { return Interval(found.from_s, found.to_s); },
+      "on the plateau, after the trigger [s]");
+  fields.add("undisturbed", &ReachStiffness::undisturbed, "reaches that were predicted from");
+  fields.add("left_out", &ReachStiffness::left_out, "reaches that lack the past or the future of their trigger");
+  fields.add("own_past", &ReachStiffness::own_past, "what counts");
+  fields.add("mean_reach", &ReachStiffness::mean_reach,
+             "the comparison: the mean of the undisturbed reaches is subtracted");
+  fields.add("usable", &ReachStiffness::usable);
+}
+
+}  // namespace mbk

@@ -1,118 +1,180 @@
 #include "mbk/present/result/report_json.h"
 
-#include "mbk/present/result/json_parts.h"
-#include "mbk/present/result/passivity_json.h"
-#include "mbk/present/result/width_json.h"
+#include <variant>
 
-namespace mbk::result {
+#include "mbk/present/result/result_document.h"
+#include "mbk/present/result/schemas.h"
+
+namespace mbk {
+
+using document::Fields;
+using document::Json;
+using document::kDigits;
+using document::kTimeDigits;
+using document::through;
+
+void describe(Fields<ForcePrediction>& fields) {
+  fields.add("held_out", &ForcePrediction::held_out);
+  fields.add_rounded("time_s", &ForcePrediction::time, kTimeDigits, "[s]");
+  fields.add_rounded("measured", &ForcePrediction::measured);
+  fields.add_rounded("predicted", &ForcePrediction::predicted);
+  fields.add_rounded("residual", &ForcePrediction::residual);
+}
+
+void describe(Fields<Autocorrelation>& fields) {
+  fields.type("", "Of the residual.");
+  fields.add_rounded("lag_s", &Autocorrelation::lag, kTimeDigits, "[s]");
+  fields.add_rounded("value", &Autocorrelation::value);
+  fields.add_rounded("white95", &Autocorrelation::white95, kDigits, "white noise stays within ± this");
+  fields.add_rounded("time_constant_s", &Autocorrelation::time_constant, kDigits, "[s]");
+}
+
+void describe(Fields<Spectra>& fields) {
+  fields.add_rounded("frequency_hz", &Spectra::frequency, kTimeDigits, "[Hz]");
+  fields.add_rounded("position", &Spectra::position);
+  fields.add_rounded("force", &Spectra::force);
+  fields.add_rounded("residual", &Spectra::residual);
+  fields.add_rounded("coherence", &Spectra::coherence);
+  fields.add_rounded("coherence_significant", &Spectra::coherence_significant, kDigits, "chance stays below");
+  fields.add("segments", &Spectra::segments);
+}
+
+void describe(Fields<FilterResponse>& fields) {
+  fields.type("", "Gains of the filters.");
+  fields.add_rounded("frequency_hz", &FilterResponse::frequency, kTimeDigits, "[Hz]");
+  fields.add_rounded("smoothing", &FilterResponse::smoothing);
+  fields.add_rounded("first", &FilterResponse::first, kDigits, "derivative");
+  fields.add_rounded("second", &FilterResponse::second, kDigits, "derivative");
+  fields.add_rounded("first_ideal", &FilterResponse::first_ideal);
+  fields.add_rounded("second_ideal", &FilterResponse::second_ideal);
+}
+
+void describe(Fields<DoubleIntegral>& fields) {
+  fields.type("", "Of the acceleration, against the position.");
+  fields.add_rounded("rms_difference", &DoubleIntegral::rms_difference);
+  fields.add_rounded("VAF", &DoubleIntegral::vaf, kDigits, "[%]");
+}
+
+void describe(Fields<AccelerationAgreement>& fields) {
+  fields.type("", "Where the recording has both.");
+  fields.add_rounded("time_s", &AccelerationAgreement::time, kTimeDigits, "[s]");
+  fields.add_rounded("derivative", &AccelerationAgreement::derivative);
+  fields.add_rounded("sensor", &AccelerationAgreement::sensor);
+  fields.add_rounded("rms_difference", &AccelerationAgreement::rms_difference);
+  fields.add_rounded("VAF", &AccelerationAgreement::vaf, kDigits, "[%]");
+}
+
+void describe(Fields<Diagnostics>& fields) {
+  fields.type("Diagnostics", "Forces and positions in the units of the result.");
+  fields.add("prediction", &Diagnostics::prediction);
+  fields.add("autocorrelation", &Diagnostics::autocorrelation);
+  fields.add("spectra", &Diagnostics::spectra);
+  fields.add("filters", &Diagnostics::filters);
+  fields.add("double_integral", &Diagnostics::double_integral);
+  fields.group("recording", [](Fields<Diagnostics>& part) {
+    part.add_rounded("time_s", &Diagnostics::time, kTimeDigits, "[s]");
+    part.add_rounded("position", &Diagnostics::position);
+    part.add_rounded("force", &Diagnostics::force);
+    part.add_rounded("reference", &Diagnostics::reference);
+  });
+  fields.add("acceleration", &Diagnostics::acceleration);
+}
+
+void describe(Fields<ArmPosture>& fields) {
+  fields.type("Posture", "Where the joints are, seen from above.");
+  fields.add("of", &ArmPosture::of, "shoulder, elbow, hand; base, elbow, hand; or the hand alone");
+  fields.add_form<std::vector<std::array<document::Number, 2>>>(
+      "points_m",
+      [](const ArmPosture& posture) {
+        Json points = Json::array();
+        for (const Eigen::Vector2d& point : posture.points) points.push_back(document::rounded(point));
+        return points;
+      },
+      "base frame [m]; the hand is the last");
+  fields.add_unless_empty("note", &ArmPosture::note, "why it is no more than that");
+}
+
+namespace result {
+
+void describe(Fields<RecordingFacts>& fields) {
+  fields.type("RecordingFacts");
+  fields.add("metadata", &RecordingFacts::metadata);
+  fields.add("posture", &RecordingFacts::posture);
+}
+
+void describe(Fields<ReportedResult>& fields) {
+  fields.type("ReportedTrial", "What is drawn beside one result.");
+  fields.add("recordings", &ReportedResult::recordings);
+  fields.add_unless_empty("energy", through(&ReportedResult::measured, &Measurement::energies),
+                          "one for each recording");
+  fields.add("diagnostics", &ReportedResult::diagnostics);
+}
+
 namespace {
 
-/// One list for each axis.
-Json by_axis(const Matrix& matrix) {
-  Json array = Json::array();
-  for (Index j = 0; j < matrix.cols(); ++j) array.push_back(rounded(Vector(matrix.col(j))));
-  return array;
+Results together(const Report& report) {
+  Results all{{}, &*report.together};
+  for (const ReportedResult& one : report.results) all.results.push_back(&one.measured);
+  return all;
 }
 
-Json acceleration_json(const AccelerationAgreement& acceleration) {
-  return {{"time_s", rounded(acceleration.time, kTimeDigits)},
-          {"derivative", by_axis(acceleration.derivative)},
-          {"sensor", by_axis(acceleration.sensor)},
-          {"rms_difference", rounded(acceleration.rms_difference)},
-          {"VAF", rounded(acceleration.vaf)}};
-}
-
-Json diagnostics_json(const Diagnostics& diagnostics) {
-  const ForcePrediction& prediction = diagnostics.prediction;
-  const Autocorrelation& correlation = diagnostics.autocorrelation;
-  const Spectra& spectra = diagnostics.spectra;
-  const FilterResponse& filters = diagnostics.filters;
-  Json json = {{"prediction",
-                {{"held_out", prediction.held_out},
-                 {"time_s", rounded(prediction.time, kTimeDigits)},
-                 {"measured", by_axis(prediction.measured)},
-                 {"predicted", by_axis(prediction.predicted)},
-                 {"residual", by_axis(prediction.residual)}}},
-               {"autocorrelation",
-                {{"lag_s", rounded(correlation.lag, kTimeDigits)},
-                 {"value", by_axis(correlation.value)},
-                 {"white95", rounded(correlation.white95, kDigits)},
-                 {"time_constant_s", rounded(correlation.time_constant)}}},
-               {"spectra",
-                {{"frequency_hz", rounded(spectra.frequency, kTimeDigits)},
-                 {"position", by_axis(spectra.position)},
-                 {"force", by_axis(spectra.force)},
-                 {"residual", by_axis(spectra.residual)},
-                 {"coherence", by_axis(spectra.coherence)},
-                 {"coherence_significant", rounded(spectra.coherence_significant, kDigits)},
-                 {"segments", spectra.segments}}},
-               {"filters",
-                {{"frequency_hz", rounded(filters.frequency, kTimeDigits)},
-                 {"smoothing", rounded(filters.smoothing)},
-                 {"first", rounded(filters.first)},
-                 {"second", rounded(filters.second)},
-                 {"first_ideal", rounded(filters.first_ideal)},
-                 {"second_ideal", rounded(filters.second_ideal)}}},
-               {"double_integral",
-                {{"rms_difference", rounded(diagnostics.double_integral.rms_difference)},
-                 {"VAF", rounded(diagnostics.double_integral.vaf)}}},
-               {"recording",
-                {{"time_s", rounded(diagnostics.time, kTimeDigits)},
-                 {"position", by_axis(diagnostics.position)},
-                 {"force", by_axis(diagnostics.force)},
-                 {"reference", by_axis(diagnostics.reference)}}}};
-  if (diagnostics.acceleration) json["acceleration"] = acceleration_json(*diagnostics.acceleration);
-  return json;
-}
-
-Json facts_json(const RecordingFacts& facts) {
-  Json json = {{"metadata", Json::object()}};
-  for (const auto& [key, value] : facts.metadata) json["metadata"][key] = value;
-  if (!facts.posture) return json;
-  json["posture"] = {{"of", word_of(facts.posture->of)}, {"points_m", Json::array()}};
-  for (const Eigen::Vector2d& point : facts.posture->points) json["posture"]["points_m"].push_back(rounded(point));
-  if (!facts.posture->note.empty()) json["posture"]["note"] = facts.posture->note;
-  return json;
-}
-
-/// @param more  fields beside those of all reports
-std::string report_json(const char* schema, const Report& report, const Json& more) {
-  std::vector<Measurement> measured;
-  Json trials = Json::array();
-  for (const ReportedResult& one : report.results) {
-    measured.push_back(one.measured);
-    Json trial = {{"recordings", Json::array()}};
-    for (const RecordingFacts& facts : one.recordings) trial["recordings"].push_back(facts_json(facts));
-    for (const Energy& energy : one.measured.energies) trial["energy"].push_back(energy_json(energy));
-    if (one.diagnostics) trial["diagnostics"] = diagnostics_json(*one.diagnostics);
-    trials.push_back(std::move(trial));
-  }
-  Json json = header(schema);
-  json["command"] = report.command;
-  if (!report.note.empty()) json["note"] = report.note;
-  json.update(more);
-  json["trials"] = std::move(trials);
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  text.pop_back();  // the closing brace: the result follows as it stands in a file of its own
-  return text + ",\"result\":" + (report.together ? to_json(measured, *report.together) : to_json(measured.front())) +
-         "}\n";
+/// Without blanks, but for the result, which stands there as in a file of its own.
+std::string with_plain_result(Json json) {
+  const Json result = std::move(json["result"]);
+  json.erase("result");
+  std::string text = document::compact(json);
+  text.pop_back();  // the closing brace
+  return text + ",\"result\":" + document::dumped(result) + "}\n";
 }
 
 }  // namespace
 
+void describe(Fields<Report>& fields) {
+  fields.type("Report",
+              "What stands in the page that `mbk measure --report` writes. What is there to be looked at has six "
+              "digits, times nine; `result` has every digit.");
+  fields.header("mbk.report/1");
+  fields.add("command", &Report::command, "as it was typed");
+  fields.add_unless_empty("note", &Report::note);
+  fields.add("trials", &Report::results, "one for each result");
+  fields.add("result", [](const Report& report) -> std::variant<const Measurement*, Results> {
+    if (report.together) return together(report);
+    return &report.results.front().measured;
+  });
+}
+
+void describe(Fields<ComparisonReport>& fields) {
+  const auto of = [](auto member) { return through(&ComparisonReport::compared, member); };
+  fields.type("ComparisonReport", "What stands in the page that `mbk compare --report` writes.");
+  fields.header("mbk.compare_report/1");
+  fields.add("command", of(&Report::command), "as it was typed");
+  fields.add_unless_empty("note", of(&Report::note));
+  fields.add("names", &ComparisonReport::names, "of the results");
+  fields.add(
+      "comparisons",
+      [](const ComparisonReport& report) {
+        const auto sources = [&](std::size_t k) { return report.compared.results[k].measured.identification.sources; };
+        std::vector<Comparison> all;
+        for (const WidthFindings& widths : report.widths) all.push_back({sources(0), sources(all.size() + 1), widths});
+        return all;
+      },
+      "of each result but the first with the first");
+  fields.add("trials", of(&Report::results), "one for each result");
+  fields.add("result", of(together));
+}
+
 std::string to_json(const Report& report) {
-  return report_json("mbk.report/1", report, Json::object());
+  return with_plain_result(document::written(report));
 }
 
 std::string to_json(const ComparisonReport& report) {
-  const auto& results = report.compared.results;
-  Json more = {{"names", report.names}, {"comparisons", Json::array()}};
-  for (std::size_t k = 0; k < report.widths.size(); ++k) {
-    more["comparisons"].push_back(
-        Json::parse(width_to_json(results.front().measured.identification.sources,
-                                  results[k + 1].measured.identification.sources, report.widths[k])));
-  }
-  return report_json("mbk.compare_report/1", report.compared, more);
+  return with_plain_result(document::written(report));
 }
 
-}  // namespace mbk::result
+void add_report_schemas(document::Schemas& schemas) {
+  schemas["report"] = document::schema_of<Report>();
+  schemas["compare_report"] = document::schema_of<ComparisonReport>();
+}
+
+}  // namespace result
+}  // namespace mbk

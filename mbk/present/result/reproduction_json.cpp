@@ -1,81 +1,156 @@
 #include "mbk/present/result/reproduction_json.h"
 
-#include "mbk/base/core/table_text.h"
-#include "mbk/present/result/json_parts.h"
+#include <fmt/format.h>
 
-namespace mbk::result {
+#include <cmath>
+
+#include "mbk/base/core/table_text.h"
+#include "mbk/present/result/described.h"
+#include "mbk/present/result/schemas.h"
+
+namespace mbk {
 namespace {
 
-Json optional(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
+using document::Fields;
+using document::Json;
+using document::kDigits;
+using document::through;
+
+/// The text, or null where it is empty.
+template <class T>
+auto or_null(std::string T::*text) {
+  return [text](const T& from) { return (from.*text).empty() ? std::nullopt : std::optional(from.*text); };
 }
 
-Json cell_json(const ReproducedCell& cell) {
-  Json json = {{"printed", cell.printed.empty() ? Json(nullptr) : Json(cell.printed)},
-               {"printed_value", optional(cell.printed_value)},
-               {"rounding", cell.rounding},
-               {"ours", cell.words.empty() ? optional(cell.ours) : Json(cell.words)},
-               {"difference", optional(cell.difference())},
-               {"spread", optional(cell.spread)},
-               {"range", cell.range ? interval(*cell.range) : Json(nullptr)},
-               {"agreement", word_of(cell.agreement)}};
-  if (const auto was = former_word_of(cell.agreement); !was.empty()) json["was"] = was;
-  return json;
+Vector vector(const std::vector<double>& values) {
+  return Eigen::Map<const Vector>(values.data(), std::ssize(values));
 }
 
-Json table_json(const ReproducedTable& table) {
-  Json json = {{"id", table.id},
-               {"title", table.title},
-               {"provenance", word_of(table.provenance)},
-               {"what_rows_are", table.what_rows_are},
-               {"spread_is", table.spread_is},
-               {"erratum", table.erratum.empty() ? Json(nullptr) : Json(table.erratum)},
-               {"slip", table.erratum.empty() ? Json(nullptr) : Json(table.erratum)},
-               {"columns", Json::array()},
-               {"rows", Json::array()}};
-  for (const ReproducedColumn& column : table.columns) {
-    json["columns"].push_back({{"name", column.name}, {"unit", column.unit}, {"decimals", column.decimals}});
-  }
-  for (const ReproducedRow& row : table.rows) {
-    Json cells = Json::array();
-    for (const ReproducedCell& cell : row.cells) cells.push_back(cell_json(cell));
-    json["rows"].push_back({{"name", row.name}, {"cells", std::move(cells)}});
-  }
-  return json;
+}  // namespace
+
+void describe(Fields<ReproducedCell>& fields) {
+  using From = const ReproducedCell&;
+  fields.type("Cell");
+  fields.add_or_null("printed", or_null(&ReproducedCell::printed), "as it stands in print");
+  fields.add_or_null("printed_value", &ReproducedCell::printed_value);
+  fields.add("rounding", &ReproducedCell::rounding, "half a unit of the last printed digit");
+  fields.add_as(
+      "ours", {{"type", {"number", "string", "null"}}},
+      [](From cell) { return cell.words.empty() ? document::written(cell.ours) : Json(cell.words); },
+      "a number, words where it is none, null where it cannot be had");
+  fields.add_or_null("difference", &ReproducedCell::difference, "ours less printed");
+  fields.add_or_null("spread", &ReproducedCell::spread);
+  fields.add_or_null("range", &ReproducedCell::range, "what the rounding of the inputs leaves ours");
+  fields.add("agreement", &ReproducedCell::agreement, "round trip: ours was computed from the printed number itself");
+  fields.add_unless_empty(
+      "was", [](From cell) { return former_word_of(cell.agreement); },
+      "what schema 1 called this agreement, where it changed; for one version");
 }
 
-Json axis_json(const ChartAxis& axis) {
-  return {{"label", axis.label}, {"unit", axis.unit}, {"logarithmic", axis.logarithmic}};
+void describe(Fields<ReproducedColumn>& fields) {
+  fields.type("Column");
+  fields.add("name", &ReproducedColumn::name);
+  fields.add("unit", &ReproducedColumn::unit);
+  fields.add("decimals", &ReproducedColumn::decimals);
 }
 
-Json rounded_list(const std::vector<double>& values) {
-  Json array = Json::array();
-  for (const double value : values) array.push_back(rounded(value, kDigits));
-  return array;
+void describe(Fields<ReproducedRow>& fields) {
+  fields.type("TableRow");
+  fields.add("name", &ReproducedRow::name);
+  fields.add("cells", &ReproducedRow::cells, "one for each column");
 }
 
-Json exhibit_chart_json(const Chart& chart) {
-  Json json = {{"title", chart.title},
-               {"x", axis_json(chart.x)},
-               {"y", axis_json(chart.y)},
-               {"equal_scale", chart.equal_scale || chart.identity},
-               {"identity", chart.identity},
-               {"horizontal", references_json(chart.horizontal)},
-               {"vertical", references_json(chart.vertical)},
-               {"notes", chart.notes},
-               {"series", Json::array()}};
-  for (const ChartSeries& series : chart.series) {
-    Json one = {{"name", series.name},
-                {"drawn", word_of(series.drawn)},
-                {"x", rounded_list(series.x)},
-                {"y", rounded_list(series.y)},
-                {"intervals", Json::array()}};
-    for (const auto& [low, high] : series.intervals) {
-      one["intervals"].push_back(Json::array({rounded(low, kDigits), rounded(high, kDigits)}));
-    }
-    json["series"].push_back(std::move(one));
-  }
-  return json;
+void describe(Fields<ReproducedTable>& fields) {
+  fields.type("Table");
+  fields.add("id", &ReproducedTable::id, "\"3.6\"");
+  fields.add("title", &ReproducedTable::title);
+  fields.add("provenance", &ReproducedTable::provenance);
+  fields.add("what_rows_are", &ReproducedTable::what_rows_are);
+  fields.add("spread_is", &ReproducedTable::spread_is, "empty: no cell has one");
+  fields.add_or_null("erratum", or_null(&ReproducedTable::erratum),
+                     "id of the erratum that explains cells that differ");
+  fields.add_or_null("slip", or_null(&ReproducedTable::erratum), "the same, by its old name, for one version");
+  fields.add("columns", &ReproducedTable::columns);
+  fields.add("rows", &ReproducedTable::rows);
+}
+
+namespace result {
+namespace {
+
+// Charts as a reproduction holds them: whole, where a validation leaves out what is not used.
+struct ExhibitAxis {
+  const ChartAxis* axis;
+};
+
+struct ExhibitSeries {
+  const ChartSeries* series;
+};
+
+struct ExhibitChart {
+  const Chart* chart;
+};
+
+/// A view of each.
+template <class View, class T>
+std::vector<View> each(const std::vector<T>& all) {
+  std::vector<View> views;
+  for (const T& one : all) views.push_back({&one});
+  return views;
+}
+
+void describe(Fields<ExhibitAxis>& fields) {
+  fields.type("Axis");
+  fields.add("label", through(&ExhibitAxis::axis, &ChartAxis::label));
+  fields.add("unit", through(&ExhibitAxis::axis, &ChartAxis::unit));
+  fields.add("logarithmic", through(&ExhibitAxis::axis, &ChartAxis::logarithmic));
+}
+
+void describe(Fields<ExhibitSeries>& fields) {
+  using From = const ExhibitSeries&;
+  fields.type("ChartSeries");
+  fields.add("name", through(&ExhibitSeries::series, &ChartSeries::name));
+  fields.add("drawn", through(&ExhibitSeries::series, &ChartSeries::drawn));
+  fields.add_rounded(
+      "x", [](From one) { return vector(one.series->x); }, kDigits);
+  fields.add_rounded(
+      "y", [](From one) { return vector(one.series->y); }, kDigits);
+  fields.add_form<std::vector<std::pair<double, double>>>(
+      "intervals",
+      [](From one) {
+        Json all = Json::array();
+        for (const auto& [low, high] : one.series->intervals) {
+          all.push_back({document::rounded(low, kDigits), document::rounded(high, kDigits)});
+        }
+        return all;
+      },
+      "of y; none, or one for each point");
+}
+
+void describe(Fields<ExhibitChart>& fields) {
+  using From = const ExhibitChart&;
+  fields.type("Chart");
+  fields.add("title", through(&ExhibitChart::chart, &Chart::title));
+  fields.add("x", [](From one) { return ExhibitAxis{&one.chart->x}; });
+  fields.add("y", [](From one) { return ExhibitAxis{&one.chart->y}; });
+  fields.add("equal_scale", [](From one) { return one.chart->equal_scale || one.chart->identity; });
+  fields.add("identity", through(&ExhibitChart::chart, &Chart::identity), "a line where both axes agree");
+  fields.add("horizontal", through(&ExhibitChart::chart, &Chart::horizontal));
+  fields.add("vertical", through(&ExhibitChart::chart, &Chart::vertical));
+  fields.add("notes", through(&ExhibitChart::chart, &Chart::notes));
+  fields.add("series", [](From one) { return each<ExhibitSeries>(one.chart->series); });
+}
+
+struct TableDocument {
+  const Exhibit& exhibit;
+  const ReproducedTable& table;
+};
+
+void describe(Fields<TableDocument>& fields) {
+  fields.type("ReproducedTable", "What `mbk reproduce --out` writes of each table.");
+  fields.header("mbk.reproduced_table/2");
+  fields.add(
+      "exhibit", [](const TableDocument& one) { return one.exhibit.id; }, "its id");
+  fields.with([](const TableDocument& one) -> const ReproducedTable& { return one.table; });
 }
 
 /// With every digit; empty where there is none.
@@ -84,42 +159,80 @@ std::string field(const std::optional<double>& value) {
 }
 
 }  // namespace
+}  // namespace result
+
+void describe(Fields<Exhibit>& fields) {
+  using From = const Exhibit&;
+  fields.type("Exhibit");
+  fields.add("id", &Exhibit::id, "\"table-3.6\"");
+  fields.add("kind", &Exhibit::kind);
+  fields.add("chapter", &Exhibit::chapter, "0: an appendix");
+  fields.add("title", &Exhibit::title);
+  fields.add("provenance", &Exhibit::provenance);
+  fields.add("text", &Exhibit::text, "paragraphs");
+  fields.add("commands", &Exhibit::commands, "that make ours");
+  fields.add("related", &Exhibit::related, "ids of other exhibits");
+  fields.add("tables", &Exhibit::tables);
+  fields.add("charts", [](From one) { return result::each<result::ExhibitChart>(one.charts); });
+  fields.add(
+      "was",
+      [](From one) -> std::optional<std::string> {
+        constexpr std::string_view kErratum = "erratum";
+        if (one.kind != Exhibit::Kind::erratum || !one.id.starts_with("erratum-")) return std::nullopt;
+        return "slip" + one.id.substr(kErratum.size());
+      },
+      "its id in schema 1, where it changed; for one version");
+}
+
+void describe(Fields<Reproduction>& fields) {
+  fields.type("Reproduction",
+              "What `mbk reproduce --json` writes: every exhibit with its tables, cell by cell, and the numbers of its "
+              "charts.");
+  fields.header("mbk.reproduction/2");
+  fields.add("source", &Reproduction::source, "what was reproduced");
+  fields.group(
+      "agreement",
+      [](Fields<Reproduction>& part) {
+        const auto count = [&part](std::string_view word, Agreement agreement, std::string meaning = "") {
+          part.add(
+              std::string(word), [agreement](const Reproduction& of) { return of.count(agreement); },
+              std::move(meaning));
+        };
+        for (const auto& [agreement, word] : kWords<Agreement>) count(word, agreement);
+        count("slip", Agreement::erratum, "erratum by its old name, for one version");
+      },
+      "how many printed numbers stand so to ours; each is counted once");
+  fields.add("exhibits", &Reproduction::exhibits);
+}
+
+namespace result {
+namespace {
+
+struct Page {
+  const Reproduction& reproduction;
+  const Drawings& drawings;
+};
+
+void describe(Fields<Page>& fields) {
+  fields.type("ReproductionPage", "What stands in the page that `mbk reproduce --out` writes.");
+  fields.add("reproduction", [](const Page& page) -> const Reproduction& { return page.reproduction; });
+  fields.add(
+      "drawings", [](const Page& page) -> const Drawings& { return page.drawings; },
+      "one SVG for each chart, by the id of the exhibit");
+}
+
+}  // namespace
 
 std::string to_json(const Reproduction& reproduction) {
-  Json json = header("mbk.reproduction/2");
-  json["source"] = reproduction.source;
-  json["agreement"] = Json::object();
-  for (const auto& [agreement, word] : word_table(Agreement())) {
-    json["agreement"][std::string(word)] = reproduction.count(agreement);
-  }
-  json["agreement"]["slip"] = reproduction.count(Agreement::erratum);
-  json["exhibits"] = Json::array();
-  for (const Exhibit& exhibit : reproduction.exhibits) {
-    Json one = {{"id", exhibit.id},
-                {"kind", word_of(exhibit.kind)},
-                {"chapter", exhibit.chapter},
-                {"title", exhibit.title},
-                {"provenance", word_of(exhibit.provenance)},
-                {"text", exhibit.text},
-                {"commands", exhibit.commands},
-                {"related", exhibit.related},
-                {"tables", Json::array()},
-                {"charts", Json::array()}};
-    if (exhibit.kind == Exhibit::Kind::erratum && exhibit.id.starts_with("erratum-")) {
-      one["was"] = "slip" + exhibit.id.substr(std::string_view("erratum").size());
-    }
-    for (const ReproducedTable& table : exhibit.tables) one["tables"].push_back(table_json(table));
-    for (const Chart& chart : exhibit.charts) one["charts"].push_back(exhibit_chart_json(chart));
-    json["exhibits"].push_back(std::move(one));
-  }
-  return dumped(json);
+  return document::document(reproduction);
 }
 
 std::string to_json(const Exhibit& exhibit, const ReproducedTable& table) {
-  Json json = header("mbk.reproduced_table/2");
-  json["exhibit"] = exhibit.id;
-  json.update(table_json(table));
-  return dumped(json);
+  return document::document(TableDocument{exhibit, table});
+}
+
+std::string page_json(const Reproduction& reproduction, const Drawings& drawings) {
+  return document::compact(document::written(Page{reproduction, drawings}));
 }
 
 std::string to_csv(const ReproducedTable& table) {
@@ -138,4 +251,11 @@ std::string to_csv(const ReproducedTable& table) {
   return csv;
 }
 
-}  // namespace mbk::result
+void add_reproduction_schemas(document::Schemas& schemas) {
+  schemas["reproduction"] = document::schema_of<Reproduction>();
+  schemas["reproduced_table"] = document::schema_of<TableDocument>();
+  schemas["reproduction_page"] = document::schema_of<Page>();
+}
+
+}  // namespace result
+}  // namespace mbk

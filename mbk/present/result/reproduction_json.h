@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "mbk/model/trial/reproduction.h"
 
@@ -13,6 +15,12 @@ namespace mbk::result {
 
 /// Schema "mbk.reproduced_table/2": one table of it.
 [[nodiscard]] std::string to_json(const Exhibit& exhibit, const ReproducedTable& table);
+
+/// The SVG of each chart, by the id of its exhibit.
+using Drawings = std::map<std::string, std::vector<std::string>>;
+
+/// What stands in the page that shows it.
+[[nodiscard]] std::string page_json(const Reproduction& reproduction, const Drawings& drawings);
 
 /// The same table as CSV: a row for each cell, with its row, column, unit, the printed number, ours, their difference,
 /// what ours is spread by or may be by rounding, and how both stand to each other.

@@ -1,128 +1,272 @@
 #include "mbk/present/result/exploration_parts_json.h"
 
-namespace mbk::result {
-namespace response_in_time {
+namespace mbk {
 
-Json columns(const Matrix& matrix) {
-  Json array = Json::array();
-  for (Index k = 0; k < matrix.cols(); ++k) array.push_back(list(matrix.col(k)));
-  return array;
+using document::Fields;
+using document::through;
+
+void describe(Fields<Margin>& fields) {
+  fields.type("Margin");
+  fields.add("value", &Margin::value);
+  fields.add("interval95",
+             [](const Margin& one) { return std::pair(one.value - one.half_width, one.value + one.half_width); });
 }
 
-Json margin(const Margin& one) {
-  return {{"value", number(one.value)},
-          {"interval95", interval({one.value - one.half_width, one.value + one.half_width})}};
+void describe(Fields<ExplainedForce>& fields) {
+  fields.type("ExplainedForce", "How much of the force of one axis a prediction accounts for.");
+  fields.add("VAF", &ExplainedForce::vaf, "[%]");
+  fields.add("VAF_interval95", [](const ExplainedForce& one) {
+    return std::pair(one.vaf - one.vaf_half_width, one.vaf + one.vaf_half_width);
+  });
+  fields.add("RMSE", &ExplainedForce::rmse, "[unit of force]");
 }
 
-Json margins(const std::vector<Margin>& all) {
-  Json array = Json::array();
-  for (const Margin& one : all) array.push_back(margin(one));
-  return array;
+namespace {
+
+struct FittedMatrix {
+  Matrix value, half_width;
+  bool identifiable;
+};
+
+void describe(Fields<FittedMatrix>& fields) {
+  fields.type("FittedMatrix");
+  fields.add("value", &FittedMatrix::value);
+  fields.add("half_width95", &FittedMatrix::half_width, "of the 95 % intervals");
+  fields.add("identifiable", &FittedMatrix::identifiable, "the intervals of its diagonal are narrower than it");
 }
 
-Json explained(const ExplainedForce& one) {
-  return {{"VAF", number(one.vaf)},
-          {"VAF_interval95", interval({one.vaf - one.vaf_half_width, one.vaf + one.vaf_half_width})},
-          {"RMSE", number(one.rmse)}};
+/// A response and its lags.
+struct PathResponse {
+  const Vector& lag;
+  const Matrix &response, &half_width;
+};
+
+void describe(Fields<PathResponse>& fields) {
+  fields.type("PathResponse");
+  fields.add("lag_s", [](const PathResponse& path) { return path.lag; });
+  fields.add_columns("response", [](const PathResponse& path) { return path.response; });
+  fields.add_columns(
+      "half_width95", [](const PathResponse& path) { return path.half_width; },
+      "of the 95 % interval of what is excited of it");
 }
 
-Json explained(const std::vector<ExplainedForce>& all) {
-  Json array = Json::array();
-  for (const ExplainedForce& one : all) array.push_back(explained(one));
-  return array;
+/// The paths of one axis.
+struct Shares {
+  const PathShares* of;
+  bool reflex;
+};
+
+void describe(Fields<Shares>& fields) {
+  const auto of = [](auto member) { return through(&Shares::of, member); };
+  fields.type("PathShares");
+  fields.add("intrinsic_alone", of(&PathShares::intrinsic_alone));
+  fields.add_if(&Shares::reflex, "both", of(&PathShares::both));
+  fields.add_if(&Shares::reflex, "intrinsic_path", of(&PathShares::intrinsic_path));
+  fields.add_if(&Shares::reflex, "reflex_path", of(&PathShares::reflex_path));
 }
 
-Json model(const ResponseModel& found) {
-  Json json = {{"identifiable", found.identifiable}};
-  if (!found.identifiable) return json;
-  const auto entry = [&](const char* name, const Matrix& value, const Matrix& half, bool identifiable) {
-    json[name] = {{"value", rows(value)}, {"half_width95", rows(half)}, {"identifiable", identifiable}};
+}  // namespace
+
+void describe(Fields<ResponseModel>& fields) {
+  using From = const ResponseModel&;
+  const auto there = &ResponseModel::identifiable;
+  fields.type("ResponseModel",
+              "M, B and K fitted to an impulse response, weighted by its covariance. Where the motion excites too "
+              "little for that, `identifiable` is false and nothing else is there.");
+  fields.add("identifiable", there);
+  fields.add_if(there, "M", [](From found) { return FittedMatrix{found.M, found.M_half_width, found.M_identifiable}; });
+  fields.add_if(there, "B", [](From found) { return FittedMatrix{found.B, found.B_half_width, found.B_identifiable}; });
+  fields.add_if(there, "K", [](From found) { return FittedMatrix{found.K, found.K_half_width, found.K_identifiable}; });
+  const auto enough = [](Fields<ResponseModel>& part) {
+    part.add("enough", &ResponseModel::enough, "p is not below 1e-5");
+    part.add("F", &ResponseModel::statistic, "largest over the axes");
+    part.add("degrees_of_freedom", [](From found) { return std::vector{found.numerator, found.denominator}; });
+    part.add("p", &ResponseModel::p_value);
   };
-  entry("M", found.M, found.M_half_width, found.M_identifiable);
-  entry("B", found.B, found.B_half_width, found.B_identifiable);
-  entry("K", found.K, found.K_half_width, found.K_identifiable);
-  json["enough"] = {{"enough", found.enough},
-                    {"F", number(found.statistic)},
-                    {"degrees_of_freedom", Json::array({number(found.numerator), number(found.denominator)})},
-                    {"p", number(found.p_value)}};
-  return json;
+  fields.group("enough", enough, "Whether the response is no more than M, B and K.").only_if(there);
 }
 
-Json response(const Vector& lag, const Matrix& value, const Matrix& half_width) {
-  return {{"lag_s", list(lag)}, {"response", columns(value)}, {"half_width95", columns(half_width)}};
+void describe(Fields<ImpulseResponseEstimate>& fields) {
+  using Found = ImpulseResponseEstimate;
+  fields.type("ImpulseResponseEstimate",
+              "Two-sided impulse response from motion to force, −F(t) = Σ h(l) x(t − l) T + c. Of two axes the columns "
+              "of `response` are xx, yx, xy, yy: force, then motion.");
+  fields.add("sample_time_s", &Found::sample_time, "T, after decimation");
+  fields.add("memory_s", &Found::memory, "lags reach as far on both sides");
+  fields.add("memory_rule", &Found::memory_rule);
+  fields.add("memory_at_limit", &Found::memory_at_limit, "the longest that was tried");
+  fields.add("rank", &Found::rank, "directions of the lagged motion that were kept");
+  fields.add("directions", &Found::directions, "that there are");
+  fields.add("instruments", &Found::instruments, "the reference stood for the motion");
+  result::add_validated_on(fields, &Found::held_out);
+  fields.with([](const Found& found) { return PathResponse{found.lag, found.response, found.half_width}; });
+  fields.add_columns("excited", &Found::excited,
+                     "share of a unit response at that lag of that input that the motion excites");
+  fields.add("explained", &Found::explained);
+  fields.add("explained_by_model", &Found::explained_by_model, "by M, B and K fitted to the same rows directly");
+  fields.add("model", &Found::model);
 }
 
-}  // namespace response_in_time
-
-Json impulse_response_json(const ImpulseResponseEstimate& found) {
-  using namespace response_in_time;
-  Json json = {{"sample_time_s", number(found.sample_time)},
-               {"memory_s", number(found.memory)},
-               {"memory_rule", found.memory_rule},
-               {"memory_at_limit", found.memory_at_limit},
-               {"rank", found.rank},
-               {"directions", found.directions},
-               {"instruments", found.instruments},
-               {"validated_on", validated_on(found.held_out)}};
-  json.update(response(found.lag, found.response, found.half_width));
-  json["excited"] = columns(found.excited);
-  json["explained"] = explained(found.explained);
-  json["explained_by_model"] = explained(found.explained_by_model);
-  json["model"] = model(found.model);
-  return json;
+void describe(Fields<StretchCandidate>& fields) {
+  fields.type("StretchCandidate");
+  fields.add_or_null(
+      "direction",
+      [](const StretchCandidate& one) {
+        return one.direction.size() > 0 ? std::optional(one.direction) : std::nullopt;
+      },
+      "of stretch; null: both directions alike");
+  fields.add("VAF", &StretchCandidate::vaf, "cross-validated [%]");
+  fields.add("standard_error_of_difference", &StretchCandidate::vaf_error);
 }
 
-Json parallel_cascade_json(const ParallelCascadeEstimate& found) {
-  using namespace response_in_time;
-  Json json = {{"delayed_response", word_of(found.found)},
-               {"why", found.why},
-               {"sample_time_s", number(found.sample_time)},
-               {"instruments", found.instruments}};
-  if (found.found == DelayedResponse::not_identifiable) return json;
-  json["p_both_directions_alike"] = number(found.p_value);
-  json["intrinsic_VAF"] = number(found.intrinsic_vaf);
-  json["candidates"] = Json::array();
-  for (const StretchCandidate& one : found.candidates) {
-    json["candidates"].push_back({{"direction", one.direction.size() > 0 ? list(one.direction) : Json(nullptr)},
-                                  {"VAF", number(one.vaf)},
-                                  {"standard_error_of_difference", number(one.vaf_error)}});
-  }
-  json["intrinsic"] = response(found.intrinsic_lag, found.intrinsic, found.intrinsic_half_width);
-  json["validated_on"] = validated_on(found.held_out);
-  json["shares"] = Json::array();
-  const bool reflex = found.found == DelayedResponse::reflex;
-  for (const PathShares& one : found.shares) {
-    Json shares = {{"intrinsic_alone", explained(one.intrinsic_alone)}};
-    if (reflex) {
-      shares["both"] = explained(one.both);
-      shares["intrinsic_path"] = explained(one.intrinsic_path);
-      shares["reflex_path"] = explained(one.reflex_path);
-    }
-    json["shares"].push_back(std::move(shares));
-  }
-  if (!reflex) return json;
-  Json path = {{"direction", list(found.direction)},
-               {"delay_s", number(found.delay)},
-               {"delay_interval95_s", interval({found.delay_low, found.delay_high})},
-               {"delay_at_limit", found.delay_at_limit},
-               {"memory_s", number(found.memory)},
-               {"rank", found.reflex_rank},
-               {"gain", margins(found.gain)},
-               {"gain_along", margin(found.gain_along)},
-               {"gain_identifiable", found.gain_identifiable},
-               {"nonlinearity", list(found.nonlinearity)},
-               {"speed_scale", number(found.speed_scale)}};
-  path.update(response(found.reflex_lag, found.reflex, found.reflex_half_width));
-  if (found.second_order) {
-    path["second_order"] = {{"gain", margins(found.second_order->gain)},
-                            {"delay_s", margin(found.second_order->delay)},
-                            {"frequency_hz", margin(found.second_order->frequency)},
-                            {"damping", margin(found.second_order->damping)},
-                            {"p", number(found.second_order->p_value)}};
-  }
-  json["reflex"] = std::move(path);
-  json["intrinsic_model"] = model(found.intrinsic_model);
-  return json;
+void describe(Fields<SecondOrderReflex>& fields) {
+  fields.type("SecondOrderReflex", "G ω²/(s² + 2ζωs + ω²) e^{−s d}, fitted to the response of the reflex.");
+  fields.add("gain", &SecondOrderReflex::gain);
+  fields.add("delay_s", &SecondOrderReflex::delay);
+  fields.add("frequency_hz", &SecondOrderReflex::frequency);
+  fields.add("damping", &SecondOrderReflex::damping);
+  fields.add("p", &SecondOrderReflex::p_value, "of the response being no more than that");
 }
 
-}  // namespace mbk::result
+void describe(Fields<ParallelCascadeEstimate>& fields) {
+  using Found = ParallelCascadeEstimate;
+  using From = const Found&;
+  const auto decided = [](From found) { return found.found != DelayedResponse::not_identifiable; };
+  const auto has_reflex = [](From found) { return found.found == DelayedResponse::reflex; };
+  fields.type("ParallelCascadeEstimate",
+              "Force as the sum of an intrinsic path, linear in motion, and a reflex path. `reflex` and "
+              "`intrinsic_model` are there where a reflex was found.");
+  fields.add("delayed_response", &Found::found);
+  fields.add("why", &Found::why);
+  fields.add("sample_time_s", &Found::sample_time);
+  fields.add("instruments", &Found::instruments);
+  fields.add_if(decided, "p_both_directions_alike", &Found::p_value);
+  fields.add_if(decided, "intrinsic_VAF", &Found::intrinsic_vaf, "cross-validated, without a delayed response [%]");
+  fields.add_if(decided, "candidates", &Found::candidates, "in falling order of VAF");
+  fields.add_if(decided, "intrinsic", [](From found) {
+    return PathResponse{found.intrinsic_lag, found.intrinsic, found.intrinsic_half_width};
+  });
+  result::add_validated_on(fields, &Found::held_out).only_if(decided);
+  fields.add_if(
+      decided, "shares",
+      [has_reflex](From found) {
+        std::vector<Shares> all;
+        for (const PathShares& one : found.shares) all.push_back({&one, has_reflex(found)});
+        return all;
+      },
+      "axis by axis; the paths overlap and need not add up");
+  const auto reflex = [](Fields<Found>& part) {
+    part.type("ReflexPath", "Force that answers stretch in one direction, v⁺ = max(eᵀẋ, 0), after a delay.");
+    part.add("direction", &Found::direction, "e, of stretch");
+    part.add("delay_s", &Found::delay, "first lag at which a response shows");
+    part.add("delay_interval95_s", [](From found) { return std::pair(found.delay_low, found.delay_high); });
+    part.add("delay_at_limit", &Found::delay_at_limit, "the earliest that was tried: it may be less");
+    part.add("memory_s", &Found::memory, "last lag");
+    part.add("rank", &Found::reflex_rank);
+    part.add("gain", &Found::gain, "force for a steady stretch, axis by axis [N·s/m]");
+    part.add("gain_along", &Found::gain_along, "along e; positive resists the stretch");
+    part.add("gain_identifiable", &Found::gain_identifiable, "its interval is narrower than it");
+    part.add("nonlinearity", &Found::nonlinearity, "c of N(v) = Σ c_k (v/speed_scale)^k, k = 1 …");
+    part.add("speed_scale", &Found::speed_scale);
+    part.with([](From found) { return PathResponse{found.reflex_lag, found.reflex, found.reflex_half_width}; });
+    part.add("second_order", &Found::second_order);
+  };
+  fields.group("reflex", reflex).only_if(has_reflex);
+  fields.add_if(has_reflex, "intrinsic_model", &Found::intrinsic_model);
+}
+
+namespace {
+
+struct Course {
+  const MatrixCourse& of;
+  bool changes;
+};
+
+void describe(Fields<Course>& fields) {
+  using From = const Course&;
+  fields.type("MatrixCourse",
+              "M, B or K along a variable. `value`, `half_width95` and `change` are there where the verdict is that "
+              "something changes.");
+  fields.add(
+      "constant", [](From course) { return course.of.mean; }, "of a fit in which nothing changes");
+  fields.add("constant_half_width95", [](From course) { return course.of.mean_half_width; });
+  fields
+      .add_columns(
+          "value", [](From course) { return course.of.value; },
+          "one list for each entry of the matrix, column by column, with one number for each of `at`")
+      .only_if(&Course::changes);
+  fields
+      .add_columns(
+          "half_width95", [](From course) { return course.of.half_width; }, "pointwise")
+      .only_if(&Course::changes);
+  fields.add_if(
+      &Course::changes, "change", [](From course) { return course.of.change; },
+      "root mean square difference from `constant`, as a share of it; 0 where it does not vary");
+}
+
+}  // namespace
+
+void describe(Fields<TimeCourseEstimate>& fields) {
+  using Found = TimeCourseEstimate;
+  using From = const Found&;
+  fields.type("TimeCourseEstimate", "M, B and K as splines of time or of another variable.");
+  fields.add_choice("verdict", &Found::changes, "changes", "constant");
+  fields.add("why", &Found::why);
+  fields.add("variable", &Found::variable);
+  fields.add("unit", &Found::unit);
+  fields.add(
+      "range", [](From found) { return std::pair(found.from, found.to); }, "of the variable, [low, high]");
+  fields.add("repetitions", &Found::repetitions, "trials or events that were pooled");
+  fields.add("rows", &Found::rows, "behind the low-pass");
+  fields.add("rate_hz", &Found::rate_hz, "of the rows [Hz]");
+  fields.add("instruments", &Found::instruments, "the reference stood for the motion; otherwise least squares");
+  fields.add("functions", &Found::functions, "splines of each entry that varies; 1: a constant");
+  fields.add("degree", &Found::degree, "of the splines: 1 linear, 3 cubic; 0: constants");
+  fields.add("varying", &Found::varying, "which of M, B and K vary; empty: none");
+  fields.add("knots", &Found::knots, "interior ones");
+  fields.add("BIC_gain", &Found::bic_gain, "BIC of constant M, B and K less that of the chosen ones");
+  fields.add("p", &Found::p_value, "probability of so large a change where nothing changes");
+  fields.add("at", &Found::at, "values of the variable");
+  fields.add("M", [](From found) { return Course{found.M, found.changes}; });
+  fields.add("B", [](From found) { return Course{found.B, found.changes}; });
+  fields.add("K", [](From found) { return Course{found.K, found.changes}; });
+}
+
+void describe(Fields<MatrixEstimate>& fields) {
+  fields.type("MatrixAfterOnset");
+  fields.add("value", &MatrixEstimate::value);
+  fields.add("half_width95", &MatrixEstimate::half_width);
+  fields.add("eigenvalues", &MatrixEstimate::eigenvalue, "of the symmetric part, rising");
+  fields.add("eigenvalues_half_width95", &MatrixEstimate::eigenvalue_half_width);
+  fields.add("identifiable", &MatrixEstimate::identifiable,
+             "the intervals of all eigenvalues reach less than half of the largest one to either side");
+}
+
+void describe(Fields<AfterOnsetEstimate>& fields) {
+  using Found = AfterOnsetEstimate;
+  const auto of_axes = [](double ExplainedForce::*member) {
+    return [member](const Found& found) {
+      std::vector<double> values;
+      for (const ExplainedForce& one : found.explained) values.push_back(one.*member);
+      return values;
+    };
+  };
+  fields.type("AfterOnsetEstimate",
+              "M, B and K from the moment after the reference steps, before the person can answer. There where it was "
+              "asked for.");
+  fields.add("window_s", &Found::window_s, "after each onset [s]");
+  fields.add("baseline_s", &Found::baseline_s, "before each onset [s]");
+  fields.add("onsets", &Found::onsets, "pooled");
+  fields.add("omitted_onsets", &Found::omitted,
+             "before which the limb did not rest, or too near to an end of the recording");
+  fields.add("displacement", &Found::displacement, "largest, mean over the onsets");
+  fields.add("handle_mass", &Found::handle_mass, "subtracted from M [kg]");
+  fields.add("degrees_of_freedom", &Found::degrees_of_freedom, "of Student's t behind the intervals");
+  fields.add("M", &Found::M);
+  fields.add("B", &Found::B);
+  fields.add("K", &Found::K);
+  fields.add("VAF", of_axes(&ExplainedForce::vaf), "in sample, of the increments [%]");
+  fields.add("RMSE", of_axes(&ExplainedForce::rmse));
+}
+
+}  // namespace mbk

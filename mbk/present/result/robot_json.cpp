@@ -1,24 +1,322 @@
 #include "mbk/present/result/robot_json.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mbk/model/robot/drive_term_names.h"
-#include "mbk/present/result/force_comparison_json.h"
-#include "mbk/present/result/json_parts.h"
+#include "mbk/present/result/described.h"
 #include "mbk/present/result/json_reading.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
-namespace {
+namespace mbk {
+
+using document::Fields;
+using document::Json;
+using document::through;
 
 constexpr const char* kRobotSchema = "mbk.robot/1";
 
-Json drive_json(const robot::DriveTerms& drive) {
-  Json json = {{"terms", Json::array()}, {"smoothing", drive.smoothing}};
-  for (const robot::DriveTermName& term : robot::kDriveTermNames) {
-    if (drive.*term.wanted) json["terms"].push_back(term.word);
+namespace robot {
+
+void describe(Fields<DriveTerms>& fields) {
+  Json words = Json::array();
+  for (const DriveTermName& term : kDriveTermNames) words.push_back(term.word);
+  fields.add_as("terms", {{"type", "array"}, {"items", {{"enum", std::move(words)}}}}, [](const DriveTerms& drive) {
+    Json terms = Json::array();
+    for (const DriveTermName& term : kDriveTermNames) {
+      if (drive.*term.wanted) terms.push_back(term.word);
+    }
+    return terms;
+  });
+  fields.add_number("smoothing", &DriveTerms::smoothing, "of the sign of the velocity [rad/s; m/s]");
+}
+
+}  // namespace robot
+
+void describe(Fields<TorqueFit>& fields) {
+  fields.type("TorqueFit", "Of the torque of one joint.");
+  fields.add("VAF", &TorqueFit::vaf, "[%]");
+  fields.add("RMSE", &TorqueFit::rmse, "[N·m; N]");
+  fields.add("VAF_in_sample", &TorqueFit::vaf_in_sample, "[%]");
+  fields.add("RMSE_in_sample", &TorqueFit::rmse_in_sample, "[N·m; N]");
+  fields.add("VAF_from_smoothed_motion", &TorqueFit::vaf_smoothed, "[%]");
+}
+
+void describe(Fields<ConsistentBody>& fields) {
+  const auto body = &ConsistentBody::body;
+  fields.type("ConsistentBody");
+  fields.add("name", &ConsistentBody::link);
+  fields.add("mass_kg", through(body, &robot::RigidBody::mass), "[kg]");
+  fields.add("centre_m", through(body, &robot::RigidBody::centre), "of mass [m]");
+  fields.add("inertia_about_centre_kg_m2", through(body, &robot::RigidBody::inertia), "[kg·m²]");
+  fields.add("pseudo_inertia_smallest_eigenvalue", &ConsistentBody::smallest_eigenvalue, "in SI units; above 0");
+}
+
+void describe(Fields<RobotCombination>& fields) {
+  fields.type("RobotCombination");
+  fields.add("name", &RobotCombination::name);
+  fields.add("unit", &RobotCombination::unit);
+  fields.add("value", &RobotCombination::value);
+  fields.add("free_value", &RobotCombination::free, "of the free fit");
+  fields.add("standard_error", &RobotCombination::standard_error, "of the free fit");
+  fields.add_unless_empty("together_with", &RobotCombination::together_with, "what the value holds besides");
+}
+
+void describe(Fields<ConsistentRobot>& fields) {
+  fields.type("ConsistentRobot",
+              "Present where `--consistent` was asked for; `parameters` and `fit` are then those of this robot.");
+  fields.add("links", &ConsistentRobot::bodies,
+             "Bodies that can exist, in the frames of their links: one choice of many that move alike.");
+  fields.add("combinations", &ConsistentRobot::combinations, "What the data decide (base parameters).");
+  fields.add("free_fit", &ConsistentRobot::free_fit);
+  fields.add("VAF_lost", &ConsistentRobot::vaf_lost, "of each joint, free fit less this one [points]");
+  fields.add("VAF_lost_in_sample", &ConsistentRobot::vaf_lost_in_sample, "[points]");
+  fields.add("mean_VAF_lost", &ConsistentRobot::mean_vaf_lost, "over the joints [points]");
+  fields.add("loss", &ConsistentRobot::loss,
+             "half the sum of squared residuals that the conditions add, in the residual's variance");
+  fields.add("loss_gap", &ConsistentRobot::gap,
+             "by how much the last tenfold step towards the least loss still lowered it");
+  fields.add("newton_steps", &ConsistentRobot::newton_steps);
+  fields.add("pressing", &ConsistentRobot::pressing, "conditions that the data alone would break, strongest first");
+}
+
+void describe(Fields<RobotCoefficient>& fields) {
+  const auto coefficient = &RobotCoefficient::coefficient;
+  fields.type("RobotParameter");
+  fields.add("name", through(coefficient, &robot::Coefficient::name));
+  fields.add("unit", through(coefficient, &robot::Coefficient::unit));
+  fields.add("value", &RobotCoefficient::value);
+  fields.add("standard_error", &RobotCoefficient::standard_error);
+  fields.add("identified", &RobotCoefficient::identified,
+             "false: its share is in those that are; of a consistent fit: it does not stand by itself");
+  fields.add_as("fixed", {{"enum", {true}}}, &RobotCoefficient::fixed, "taken as known")
+      .only_if(&RobotCoefficient::fixed);
+  fields.add_unless_empty("together_with", &RobotCoefficient::together_with, "what the value holds besides");
+}
+
+void describe(Fields<StatedRatio>& fields) {
+  fields.type("StatedRatio");
+  fields.add("ratio", &StatedRatio::ratio);
+  fields.add("standard_error", &StatedRatio::standard_error);
+}
+
+namespace {
+
+struct WeakCoefficient {
+  std::string name;
+  double share;
+};
+
+void describe(Fields<WeakCoefficient>& fields) {
+  fields.type("WeakCoefficient");
+  fields.add("name", &WeakCoefficient::name);
+  fields.add("share", &WeakCoefficient::share);
+}
+
+struct RobotPreparation {
+  const Preparation* how;
+};
+
+void describe(Fields<RobotPreparation>& fields) {
+  fields.type("RobotPreparation", "How the signals were made.");
+  fields.with([](const RobotPreparation& one) -> const Preparation& { return *one.how; }, "protocol");
+}
+
+}  // namespace
+
+void describe(Fields<RobotIdentification>& fields) {
+  using Found = RobotIdentification;
+  using From = const Found&;
+  const auto model = &Found::model;
+  const auto by_instruments = [](From found) { return found.method == RobotMethod::instrumental_variables; };
+  fields.type(
+      "Robot",
+      "What `mbk robot identify --json` writes: the dynamics of a robot, with all that is needed to use them again.");
+  fields.header(kRobotSchema);
+  fields.add("inputs", [](From found) {
+    std::vector<result::TimedInput> inputs;
+    for (std::size_t k = 0; k < found.sources.size(); ++k) {
+      const bool is_timed = k < found.durations.size();
+      inputs.push_back({found.sources[k], is_timed ? found.durations[k] : kNaN, is_timed ? found.rates[k] : kNaN});
+    }
+    return inputs;
+  });
+  fields.add("method", &Found::method);
+  fields.add_if(by_instruments, "instruments", &Found::instrument_motion);
+  fields.add_number("motion_cutoff_hz", &Found::motion_cutoff, "[Hz]").only_if([by_instruments](From found) {
+    return by_instruments(found) && found.instrument_motion == InstrumentMotion::smoothed;
+  });
+  fields.add("parameters", &Found::coefficients);
+  fields.add_number("motor_delay_s", through(model, &robot::DynamicModel::delay), "[s]");
+  fields.add("motor_delay_standard_error_s", &Found::delay_standard_error,
+             "[s]; absent where the delay was not estimated");
+  fields.group("drive", [](Fields<Found>& part) {
+    const auto drive = through(&Found::model, &robot::DynamicModel::drive);
+    part.with(drive);
+    part.add_number("stribeck_velocity", through(drive, &robot::DriveTerms::stribeck_velocity), "[rad/s; m/s]")
+        .only_if(through(drive, &robot::DriveTerms::stribeck));
+  });
+  fields.add("fit", &Found::fit);
+  fields.add_number("smoothed_motion_cutoff_hz", &Found::smoothed_cutoff, "[Hz]").only_if([](From found) {
+    return found.smoothed_cutoff > 0.0;
+  });
+  result::add_validated_on(fields, &Found::held_out);
+  fields.add_unless_empty("held_out_files", &Found::held_out_files);
+  fields.group("excitation", [](Fields<Found>& part) {
+    part.add("rank", &Found::rank);
+    part.add("structural_rank", &Found::structural_rank);
+    part.add("condition", &Found::condition);
+    part.add("weakest", [](From found) {
+      std::vector<WeakCoefficient> weakest;
+      for (const auto& [name, share] : found.weakest) weakest.push_back({name, share});
+      return weakest;
+    });
+  });
+  fields.add_unless_empty("stated", &Found::stated,
+                          "of each joint: its torque over what the URDF's masses and inertias take, friction left "
+                          "free; absent where no URDF states all masses");
+  const auto inertia = [](Fields<Found>& part) {
+    part.add("smallest_eigenvalue", through(&Found::inertia, &InertiaCheck::smallest), "[kg·m²; kg]");
+    part.add("at", through(&Found::inertia, &InertiaCheck::where), "the joints there [rad; m]");
+  };
+  fields.group("inertia", inertia, "Whether the inertia matrix is one in every posture.");
+  fields.add("consistent", &Found::consistent);
+  fields.add("samples", &Found::samples);
+  fields.add("hac_lag_s", &Found::hac_lag_s, "[s]");
+  fields.add("preparation", [](From found) {
+    std::vector<RobotPreparation> all;
+    for (const Preparation& how : found.preparations) all.push_back({&how});
+    return all;
+  });
+  fields.add("covariance", through(model, &robot::DynamicModel::covariance), "of the parameters");
+  fields.add_unless_empty("description", &Found::description, "TOML: the mechanism");
+  fields.add_unless_empty("urdf", &Found::urdf, "the mechanism");
+  fields.add("notes", &Found::notes);
+  fields.add("warnings", &Found::warnings);
+  fields.add("usable", &Found::usable);
+}
+
+void describe(Fields<ForceSummary>& fields) {
+  fields.type("Force", "What `mbk robot force --json` writes: a computed force in short.");
+  fields.header("mbk.force/1");
+  fields.add("inputs", &ForceSummary::sources);
+  fields.add("force_source", &ForceSummary::source);
+  fields.add("lag_s", &ForceSummary::lag, "of the force [s]");
+  fields.add_as("axes", {{"type", "array"}, {"items", {{"enum", {"x", "y", "z"}}}}}, &ForceSummary::axes,
+                "of the base, along which the force is");
+  fields.add_as("unit", {{"enum", {"N", "N·m"}}}, &ForceSummary::unit,
+                "of the force, which is a torque where the hand turns");
+  fields.add("RMS", &ForceSummary::rms, "[unit]");
+  fields.add("peak", &ForceSummary::peak, "[unit]");
+  fields.add_if([](const ForceSummary& force) { return force.standard_error.size() > 0; }, "standard_error_RMS",
+                &ForceSummary::standard_error, "[unit]");
+  fields.add("force_comparison", &ForceSummary::comparison);
+  fields.add("notes", &ForceSummary::notes);
+}
+
+namespace result {
+namespace {
+
+struct DescribedJoint {
+  std::string name;
+  bool slides;
+  std::pair<double, double> limits;
+};
+
+void describe(Fields<DescribedJoint>& fields) {
+  fields.type("DescribedJoint");
+  fields.add("name", &DescribedJoint::name);
+  fields.add("slides", &DescribedJoint::slides);
+  fields.add("limits", &DescribedJoint::limits, "[rad; m]");
+}
+
+struct DescribedCoefficient {
+  robot::Coefficient coefficient;
+  std::optional<double> value;
+  Json part_of;
+};
+
+void describe(Fields<DescribedCoefficient>& fields) {
+  const auto coefficient = &DescribedCoefficient::coefficient;
+  fields.type("DescribedCoefficient");
+  fields.add("name", through(coefficient, &robot::Coefficient::name));
+  fields.add("unit", through(coefficient, &robot::Coefficient::unit));
+  fields.add_or_null("value", &DescribedCoefficient::value, "null: the description does not state it");
+  fields
+      .add_form<std::map<std::string, double>>(
+          "part_of", &DescribedCoefficient::part_of,
+          "coefficients that show it, with its factor; absent where it shows by itself")
+      .only_if([](const DescribedCoefficient& one) { return !one.part_of.is_null(); });
+}
+
+struct DescribedRobot {
+  const robot::RobotDescription& description;
+  const numeric::IndependentColumns& base;
+
+  [[nodiscard]] const robot::Mechanism& mechanism() const { return *description.model.mechanism; }
+};
+
+std::vector<DescribedJoint> joints_of(const DescribedRobot& described) {
+  const robot::Mechanism& mechanism = described.mechanism();
+  std::vector<DescribedJoint> joints;
+  for (int joint = 0; joint < mechanism.joints(); ++joint) {
+    const robot::JointRange range = mechanism.joint_range(joint);
+    joints.push_back({mechanism.joint_name(joint), mechanism.slides(joint), {range.low, range.high}});
   }
-  if (drive.stribeck) json["stribeck_velocity"] = drive.stribeck_velocity;
-  return json;
+  return joints;
+}
+
+std::vector<DescribedCoefficient> coefficients_of(const DescribedRobot& described) {
+  const auto& [description, base] = described;
+  const std::vector<robot::Coefficient> coefficients = description.model.coefficients();
+  std::vector<DescribedCoefficient> all;
+  for (std::size_t j = 0; j < coefficients.size(); ++j) {
+    const auto column = static_cast<Index>(j);
+    DescribedCoefficient one = {coefficients[j], std::nullopt, nullptr};
+    if (std::ranges::find(description.unstated, one.coefficient.name) == description.unstated.end()) {
+      one.value = description.model.parameters[column];
+    }
+    if (std::ranges::find(base.kept, column) == base.kept.end()) {
+      constexpr double kNone = 1e-6;
+      one.part_of = Json::object();
+      for (std::size_t k = 0; k < base.kept.size(); ++k) {
+        const double factor = base.combination(static_cast<Index>(k), column);
+        if (std::abs(factor) < kNone) continue;
+        one.part_of[coefficients[static_cast<std::size_t>(base.kept[k])].name] = document::number(factor);
+      }
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+void describe(Fields<DescribedRobot>& fields) {
+  using From = const DescribedRobot&;
+  fields.type("Robot description",
+              "What `mbk robot describe --json` writes: what was understood of a robot's description.");
+  fields.header("mbk.robot_description/1");
+  fields.add("file", [](From robot) { return robot.description.source; });
+  fields.add("joints", joints_of);
+  fields.add("hand_axes", [](From robot) { return robot.mechanism().hand_axes(); });
+  fields.add(
+      "hand_at_zero",
+      [](From robot) -> Vector {
+        return robot.mechanism().hand_position(robot::JointVector::Zero(robot.mechanism().joints()));
+      },
+      "[m]");
+  fields.group("drive", [](Fields<DescribedRobot>& part) {
+    part.with([](From robot) -> const robot::DriveTerms& { return robot.description.model.drive; });
+    part.add(
+        "stribeck_velocity", [](From robot) { return robot.description.model.drive.stribeck_velocity; },
+        "[rad/s; m/s]");
+    part.add(
+        "delay", [](From robot) { return robot.description.model.delay; }, "[s]");
+  });
+  fields.add("structural_rank", [](From robot) { return robot.base.kept.size(); });
+  fields.add("coefficients", coefficients_of);
+  fields.add(
+      "impossible", [](From robot) { return robot.description.impossible; },
+      "what the files state and no robot can have");
 }
 
 robot::DriveTerms drive_from(const Json& json) {
@@ -74,124 +372,24 @@ StoredRobot stored_from(const Json& json) {
   return stored;
 }
 
-Json fit_json(const std::vector<TorqueFit>& joints) {
-  Json json = Json::array();
-  for (const TorqueFit& fit : joints) {
-    Json entry = {{"VAF", number(fit.vaf)},
-                  {"RMSE", number(fit.rmse)},
-                  {"VAF_in_sample", number(fit.vaf_in_sample)},
-                  {"RMSE_in_sample", number(fit.rmse_in_sample)}};
-    if (fit.vaf_smoothed) entry["VAF_from_smoothed_motion"] = number(*fit.vaf_smoothed);
-    json.push_back(std::move(entry));
-  }
-  return json;
-}
-
-Json consistent_json(const ConsistentRobot& consistent) {
-  Json json = {{"links", Json::array()}, {"combinations", Json::array()}};
-  for (const ConsistentBody& one : consistent.bodies) {
-    json["links"].push_back({{"name", one.link},
-                             {"mass_kg", number(one.body.mass)},
-                             {"centre_m", list(one.body.centre)},
-                             {"inertia_about_centre_kg_m2", rows(one.body.inertia)},
-                             {"pseudo_inertia_smallest_eigenvalue", number(one.smallest_eigenvalue)}});
-  }
-  for (const RobotCombination& one : consistent.combinations) {
-    Json entry = {{"name", one.name},
-                  {"unit", one.unit},
-                  {"value", number(one.value)},
-                  {"free_value", number(one.free)},
-                  {"standard_error", number(one.standard_error)}};
-    if (!one.together_with.empty()) entry["together_with"] = one.together_with;
-    json["combinations"].push_back(std::move(entry));
-  }
-  json["free_fit"] = fit_json(consistent.free_fit);
-  json["VAF_lost"] = Json::array();
-  json["VAF_lost_in_sample"] = Json::array();
-  for (const double lost : consistent.vaf_lost) json["VAF_lost"].push_back(number(lost));
-  for (const double lost : consistent.vaf_lost_in_sample) json["VAF_lost_in_sample"].push_back(number(lost));
-  json["mean_VAF_lost"] = number(consistent.mean_vaf_lost);
-  json["loss"] = number(consistent.loss);
-  json["loss_gap"] = number(consistent.gap);
-  json["newton_steps"] = consistent.newton_steps;
-  json["pressing"] = consistent.pressing;
-  return json;
-}
-
 }  // namespace
 
 std::string to_json(const RobotIdentification& found) {
-  Json json = header(kRobotSchema);
-  json["inputs"] = inputs_json(found.sources);
-  for (std::size_t k = 0; k < found.sources.size() && k < found.durations.size(); ++k) {
-    json["inputs"][k]["duration_s"] = found.durations[k];
-    json["inputs"][k]["rate_hz"] = found.rates[k];
-  }
-  json["method"] = word_of(found.method);
-  if (found.method == RobotMethod::instrumental_variables) {
-    json["instruments"] = word_of(found.instrument_motion);
-    if (found.instrument_motion == InstrumentMotion::smoothed) json["motion_cutoff_hz"] = found.motion_cutoff;
-  }
-  json["parameters"] = Json::array();
-  for (const RobotCoefficient& one : found.coefficients) {
-    Json entry = {{"name", one.coefficient.name},
-                  {"unit", one.coefficient.unit},
-                  {"value", number(one.value)},
-                  {"standard_error", number(one.standard_error)},
-                  {"identified", one.identified}};
-    if (one.fixed) entry["fixed"] = true;
-    if (!one.together_with.empty()) entry["together_with"] = one.together_with;
-    json["parameters"].push_back(std::move(entry));
-  }
-  json["motor_delay_s"] = found.model.delay;
-  if (found.delay_standard_error) json["motor_delay_standard_error_s"] = number(*found.delay_standard_error);
-  json["drive"] = drive_json(found.model.drive);
-  json["fit"] = fit_json(found.fit);
-  if (found.smoothed_cutoff > 0.0) json["smoothed_motion_cutoff_hz"] = found.smoothed_cutoff;
-  json["validated_on"] = validated_on(found.held_out);
-  if (!found.held_out_files.empty()) json["held_out_files"] = found.held_out_files;
-  json["excitation"] = {{"rank", found.rank},
-                        {"structural_rank", found.structural_rank},
-                        {"condition", number(found.condition)},
-                        {"weakest", Json::array()}};
-  for (const auto& [name, share] : found.weakest) {
-    json["excitation"]["weakest"].push_back({{"name", name}, {"share", number(share)}});
-  }
-  for (const StatedRatio& one : found.stated) {
-    json["stated"].push_back({{"ratio", number(one.ratio)}, {"standard_error", number(one.standard_error)}});
-  }
-  json["inertia"] = {{"smallest_eigenvalue", number(found.inertia.smallest)}, {"at", found.inertia.where}};
-  if (found.consistent) json["consistent"] = consistent_json(*found.consistent);
-  json["samples"] = found.samples;
-  json["hac_lag_s"] = found.hac_lag_s;
-  json["preparation"] = Json::array();
-  for (const Preparation& how : found.preparations) {
-    Json one = preparation_json(how);
-    one.erase("protocol");
-    json["preparation"].push_back(std::move(one));
-  }
-  json["covariance"] = rows(found.model.covariance);
-  if (!found.description.empty()) json["description"] = found.description;
-  if (!found.urdf.empty()) json["urdf"] = found.urdf;
-  json["notes"] = found.notes;
-  json["warnings"] = warnings_json(found.warnings);
-  json["usable"] = found.usable;
-  return dumped(json);
+  return document::document(found);
 }
 
 std::string to_json(const ForceSummary& force) {
-  Json json = header("mbk.force/1");
-  json["inputs"] = inputs_json(force.sources);
-  json["force_source"] = word_of(force.source);
-  json["lag_s"] = number(force.lag);
-  json["axes"] = force.axes;
-  json["unit"] = force.unit;
-  json["RMS"] = list(force.rms);
-  json["peak"] = list(force.peak);
-  if (force.standard_error.size() > 0) json["standard_error_RMS"] = list(force.standard_error);
-  if (force.comparison) json["force_comparison"] = force_comparison_json(*force.comparison);
-  json["notes"] = force.notes;
-  return dumped(json);
+  return document::document(force);
+}
+
+std::string to_json(const robot::RobotDescription& description, const numeric::IndependentColumns& base) {
+  return document::document(DescribedRobot{description, base});
+}
+
+void add_robot_schemas(document::Schemas& schemas) {
+  schemas["robot"] = document::schema_of<RobotIdentification>();
+  schemas["force"] = document::schema_of<ForceSummary>();
+  schemas["robot_description"] = document::schema_of<DescribedRobot>();
 }
 
 Result<StoredRobot> robot_from_json(std::string_view text) {
@@ -207,4 +405,5 @@ Result<StoredRobot> robot_from_json(std::string_view text) {
   }
 }
 
-}  // namespace mbk::result
+}  // namespace result
+}  // namespace mbk

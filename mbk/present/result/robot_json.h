@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "mbk/base/core/result.h"
+#include "mbk/base/numeric/independent_columns.h"
 #include "mbk/model/robot/drive_terms.h"
+#include "mbk/model/robot/robot_description.h"
 #include "mbk/model/trial/force_summary.h"
 #include "mbk/model/trial/robot_identification.h"
 
@@ -16,6 +18,12 @@ namespace mbk::result {
 
 /// Schema "mbk.force/1": a computed force in short, beside the sensor's where there is one.
 [[nodiscard]] std::string to_json(const ForceSummary& force);
+
+/// Schema "mbk.robot_description/1", in SI units and radians: what was understood of a robot's description. A value
+/// that the files do not state, and a limit that is not there, is null; a coefficient that no motion tells apart has
+/// `part_of`: the coefficients it acts in, with factors.
+/// @param base  of the robot's regressors, see identify::structural_columns
+[[nodiscard]] std::string to_json(const robot::RobotDescription& description, const numeric::IndependentColumns& base);
 
 /// What a stored robot says, alone: which robot it is stands in its description.
 struct StoredRobot {

@@ -1,44 +1,101 @@
 #include "mbk/present/result/sensor_json.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/present/result/json_parts.h"
+#include "mbk/present/result/described.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
-namespace {
+namespace mbk {
 
 constexpr const char* kSensorSchema = "mbk.sensor/1";
 
-Json line_json(const ForceOnVoltage& line) {
-  return {{"slope", number(line.slope)},
-          {"slope_standard_error", number(line.slope_error)},
-          {"intercept", number(line.intercept)},
-          {"intercept_standard_error", number(line.intercept_error)},
-          {"r_squared", number(line.r_squared)}};
+using document::Fields;
+
+void describe(Fields<ForceOnVoltage>& fields) {
+  fields.type("ForceOnVoltage", "This axis by itself, the other way round.");
+  fields.add("slope", &ForceOnVoltage::slope, "[N/V]");
+  fields.add("slope_standard_error", &ForceOnVoltage::slope_error, "[N/V]");
+  fields.add("intercept", &ForceOnVoltage::intercept, "[N]");
+  fields.add("intercept_standard_error", &ForceOnVoltage::intercept_error, "[N]");
+  fields.add("r_squared", &ForceOnVoltage::r_squared);
 }
 
-Json axis_json(const SensorAxis& axis) {
-  Json json = {{"name", axis.name},
-               {"zero_voltage", number(axis.zero_voltage)},
-               {"zero_voltage_standard_error", number(axis.zero_voltage_error)},
-               {"intercept", number(axis.intercept)},
-               {"intercept_standard_error", number(axis.intercept_error)},
-               {"r_squared", number(axis.r_squared)},
-               {"RMSE", number(axis.rmse)},
-               {"force_on_voltage", line_json(axis.published)},
-               {"full_scale", number(axis.full_scale)},
-               {"loads", axis.loads},
-               {"nonlinearity", number(axis.nonlinearity)}};
-  if (axis.hysteresis) json["hysteresis"] = number(*axis.hysteresis);
-  if (axis.noise) json["noise_voltage"] = number(*axis.noise);
-  if (axis.step) json["step_voltage"] = number(*axis.step);
-  if (axis.conversion) json["converter_step_voltage"] = number(*axis.conversion);
-  return json;
+void describe(Fields<SensorAxis>& fields) {
+  fields.type("SensorAxis");
+  fields.add_as("name", {{"enum", {"x", "y"}}}, &SensorAxis::name);
+  fields.add("zero_voltage", &SensorAxis::zero_voltage, "V₀ [V]");
+  fields.add("zero_voltage_standard_error", &SensorAxis::zero_voltage_error, "[V]");
+  fields.add("intercept", &SensorAxis::intercept, "force at 0 V on every axis [N]");
+  fields.add("intercept_standard_error", &SensorAxis::intercept_error, "[N]");
+  fields.add("r_squared", &SensorAxis::r_squared);
+  fields.add("RMSE", &SensorAxis::rmse, "[N]");
+  fields.add("force_on_voltage", &SensorAxis::published);
+  fields.add("full_scale", &SensorAxis::full_scale, "largest load [N]");
+  fields.add("loads", &SensorAxis::loads, "different ones");
+  fields.add("nonlinearity", &SensorAxis::nonlinearity, "[N]");
+  fields.add("hysteresis", &SensorAxis::hysteresis, "[N]");
+  fields.add("noise_voltage", &SensorAxis::noise, "[V]");
+  fields.add("step_voltage", &SensorAxis::step, "smallest step of the data [V]");
+  fields.add("converter_step_voltage", &SensorAxis::conversion, "[V]");
 }
+
+void describe(Fields<SensorWarning>& fields) {
+  fields.type("SensorWarning");
+  fields.add("code", &SensorWarning::code);
+  fields.add("message", &SensorWarning::message);
+  fields.add("try", &SensorWarning::remedy, "what to do");
+}
+
+void describe(Fields<SensorCalibration>& fields) {
+  fields.type("Sensor",
+              "What `mbk sensor calibrate --json` writes: F = S (V − V₀) of a force sensor. SI units, V for volts.");
+  fields.header(kSensorSchema);
+  fields.constant("what", "calibrate");
+  fields.add("inputs", &SensorCalibration::sources);
+  fields.add("continuous", &SensorCalibration::continuous, "from recordings over time; otherwise one row a load");
+  fields.add("rows", &SensorCalibration::rows, "of tables, or samples");
+  fields.add("lever_arm", &SensorCalibration::lever_arm, "from the gauges to the load [m]");
+  fields.add("delay", &SensorCalibration::delay, "of the voltage after the load [s]");
+  fields.add_if(&SensorCalibration::continuous, "hac_lag_s", &SensorCalibration::hac_lag_s, "[s]");
+  fields.add("slope", &SensorCalibration::slope, "S [N/V]");
+  fields.add("slope_standard_error", &SensorCalibration::slope_error, "[N/V]");
+  const auto crosstalk = [](const SensorCalibration& calibration) { return calibration.crosstalk.size() > 0; };
+  fields.add_if(crosstalk, "crosstalk", &SensorCalibration::crosstalk, "what axis j feels of a load on i [N/N]");
+  fields.add_if(crosstalk, "crosstalk_standard_error", &SensorCalibration::crosstalk_error, "[N/N]");
+  fields.add("axes", &SensorCalibration::axes);
+  fields.add("zero_voltages", &SensorCalibration::zero_voltages, "V₀ of each run [V]");
+  fields.add("warnings", &SensorCalibration::warnings);
+  fields.add("notes", &SensorCalibration::notes);
+}
+
+void describe(Fields<MeasuredDelay>& fields) {
+  using From = const MeasuredDelay&;
+  fields.type("SensorDelay",
+              "What `mbk sensor delay --json` writes: by how much a force sensor is late, from the motion of a known "
+              "mass. SI units.");
+  fields.header("mbk.sensor_delay/1");
+  fields.add("inputs", &MeasuredDelay::sources);
+  fields.add("delay_s", &MeasuredDelay::delay, "above 0: the force is read after the motion");
+  fields.add("delay_interval95_s", [](From found) { return numeric::interval95(found.delay, found.delay_error); });
+  fields.add("mass_kg", &MeasuredDelay::mass, "as found");
+  fields.add("mass_interval95_kg", [](From found) { return numeric::interval95(found.mass, found.mass_error); });
+  fields.add("stated_mass_kg", &MeasuredDelay::stated_mass);
+  fields.add("VAF", &MeasuredDelay::vaf, "of the force by the mass alone, of the axis with less of it [%]");
+  fields.add("duration_s", &MeasuredDelay::duration);
+  fields.add("usable", &MeasuredDelay::usable);
+  fields.add("problems", &MeasuredDelay::problems, "why the delay is not to be used");
+}
+
+namespace result {
+namespace {
+
+using document::Json;
 
 /// Members of a document, with the first that is missing or wrong.
 class Reader {
@@ -156,31 +213,7 @@ void read_provenance(SensorCalibration& calibration, const Json& json) {
 }  // namespace
 
 std::string to_json(const SensorCalibration& calibration) {
-  Json json = header(kSensorSchema);
-  json["what"] = "calibrate";
-  json["inputs"] = inputs_json(calibration.sources);
-  json["continuous"] = calibration.continuous;
-  json["rows"] = calibration.rows;
-  if (calibration.lever_arm) json["lever_arm"] = number(*calibration.lever_arm);
-  json["delay"] = number(calibration.delay);
-  if (calibration.continuous) json["hac_lag_s"] = number(calibration.hac_lag_s);
-  json["slope"] = rows(calibration.slope);
-  json["slope_standard_error"] = rows(calibration.slope_error);
-  if (calibration.crosstalk.size() > 0) {
-    json["crosstalk"] = rows(calibration.crosstalk);
-    json["crosstalk_standard_error"] = rows(calibration.crosstalk_error);
-  }
-  json["axes"] = Json::array();
-  for (const SensorAxis& axis : calibration.axes) json["axes"].push_back(axis_json(axis));
-  json["zero_voltages"] = Json::array();
-  for (const Vector& zero : calibration.zero_voltages) json["zero_voltages"].push_back(list(zero));
-  json["warnings"] = Json::array();
-  for (const SensorWarning& warning : calibration.warnings) {
-    json["warnings"].push_back(
-        {{"code", word_of(warning.code)}, {"message", warning.message}, {"try", warning.remedy}});
-  }
-  json["notes"] = calibration.notes;
-  return dumped(json);
+  return document::document(calibration);
 }
 
 Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
@@ -226,18 +259,13 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
 }
 
 std::string to_json(const MeasuredDelay& found) {
-  Json json = header("mbk.sensor_delay/1");
-  json["inputs"] = inputs_json(found.sources);
-  json["delay_s"] = number(found.delay);
-  json["delay_interval95_s"] = interval(numeric::interval95(found.delay, found.delay_error));
-  json["mass_kg"] = number(found.mass);
-  json["mass_interval95_kg"] = interval(numeric::interval95(found.mass, found.mass_error));
-  json["stated_mass_kg"] = number(found.stated_mass);
-  json["VAF"] = number(found.vaf);
-  json["duration_s"] = number(found.duration);
-  json["usable"] = found.usable();
-  json["problems"] = found.problems;
-  return dumped(json);
+  return document::document(found);
 }
 
-}  // namespace mbk::result
+void add_sensor_schemas(document::Schemas& schemas) {
+  schemas["sensor"] = document::schema_of<SensorCalibration>();
+  schemas["sensor_delay"] = document::schema_of<MeasuredDelay>();
+}
+
+}  // namespace result
+}  // namespace mbk

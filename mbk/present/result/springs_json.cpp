@@ -1,110 +1,199 @@
 #include "mbk/present/result/springs_json.h"
 
-#include <numbers>
-
+#include "mbk/base/core/units.h"
 #include "mbk/model/impedance/ellipse.h"
-#include "mbk/present/result/json_parts.h"
+#include "mbk/present/result/described.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
+namespace mbk {
+
+using document::Fields;
+
+void describe(Fields<SpringLine>& fields) {
+  using From = const SpringLine&;
+  fields.type("SpringLine");
+  fields.add("stiffness", &SpringLine::stiffness, "[N/m]");
+  fields.add("stiffness_standard_error", &SpringLine::stiffness_error, "[N/m]");
+  fields.add("rest", &SpringLine::rest, "where the line meets zero [m]");
+  fields.add("rest_standard_error", &SpringLine::rest_error, "[m]");
+  fields.add("r_squared", &SpringLine::r_squared);
+  fields.add("RMSE", &SpringLine::rmse, "[N]");
+  fields.add(
+      "tension", [](From line) { return std::pair(line.tension_from, line.tension_to); }, "smallest and largest [N]");
+  fields.add("samples", &SpringLine::samples);
+}
+
+void describe(Fields<HookFit>& fields) {
+  fields.type("HookFit", "Hooks that give at first.");
+  fields.add("stiffness", &HookFit::stiffness, "[N/m]");
+  fields.add("stiffness_standard_error", &HookFit::stiffness_error, "[N/m]");
+  fields.add("rest", &HookFit::rest, "[m]");
+  fields.add("deflection", &HookFit::deflection, "[m]");
+  fields.add("deflection_standard_error", &HookFit::deflection_error, "[m]");
+  fields.add("force", &HookFit::force, "[N]");
+  fields.add("RMSE", &HookFit::rmse, "[N]");
+}
+
+void describe(Fields<SpringConstant>& fields) {
+  fields.type("SpringConstant");
+  fields.add("inputs", &SpringConstant::sources);
+  fields.add("straight", &SpringConstant::straight, "the answer: through the straight part");
+  fields.add("whole", &SpringConstant::whole, "through everything");
+  fields.add("bias_of_whole", &SpringConstant::bias_of_whole, "relative");
+  fields.add("rule", &SpringConstant::rule, "how the straight part was chosen");
+  fields.add("hac_lag_s", &SpringConstant::hac_lag_s,
+             "[m]: reach of the residual's correlation in the standard errors");
+  fields.add("hooks", &SpringConstant::hooks);
+  fields.add("notes", &SpringConstant::notes);
+}
+
+void describe(Fields<Linearisation>& fields) {
+  fields.type("Linearisation", "Within a circle about the equilibrium.");
+  fields.add("radius", &Linearisation::radius, "[m]");
+  fields.add("largest_error", &Linearisation::largest_error, "[N]");
+  fields.add("largest_force", &Linearisation::largest_force, "[N]");
+  fields.add("relative_error", &Linearisation::relative_error);
+  fields.add("smallest_extension", &Linearisation::smallest_extension, "[m]; below 0 a spring goes slack");
+}
+
+void describe(Fields<GridField>& fields) {
+  fields.type("GridField", "By differences of forces on a grid.");
+  fields.add("step", &GridField::step, "[m]");
+  fields.add("equilibrium", &GridField::equilibrium, "[m]");
+  fields.add("residual_force", &GridField::residual, "[N]");
+  fields.add("K", &GridField::K, "[N/m]");
+  fields.add("at_border", &GridField::at_border);
+}
+
+/// Without its springs.
+void describe(Fields<SpringField>& fields) {
+  fields.add("equilibrium", &SpringField::equilibrium, "x₀ [m]");
+  fields.add("K", &SpringField::K, "[N/m]");
+  fields.group("principal", [](Fields<SpringField>& principal) {
+    principal.add(
+        "stiffness",
+        [](const SpringField& field) {
+          const impedance::Ellipse ellipse = impedance::ellipse(field.K);
+          return std::pair(ellipse.lambda_max, ellipse.lambda_min);
+        },
+        "larger and smaller [N/m]");
+    principal.add(
+        "orientation_deg", [](const SpringField& field) { return kDegrees * impedance::ellipse(field.K).orientation; },
+        "[°]");
+  });
+  fields.add("residual_force", &SpringField::residual, "at x₀ [N]");
+  fields.add("moment", &SpringField::moment, "of the springs on the disc [N·m]");
+  fields.add(
+      "disc_rotation_deg", [](const SpringField& field) { return kDegrees * field.disc_rotation; }, "[°]");
+  fields.add("linearisation", &SpringField::linearisation);
+}
+
+void describe(Fields<Spring>& fields) {
+  fields.add("stiffness", &Spring::stiffness, "[N/m]");
+  fields.add("rest_length", &Spring::rest_length, "[m]");
+  fields.add("anchor", &Spring::anchor, "on the frame, base frame [m]");
+  fields.add("hole", &Spring::hole, "on the disc, from the hand [m]");
+}
+
+namespace result {
 namespace {
 
-constexpr const char* kSpringsSchema = "mbk.springs/1";
+struct SpringInArray {
+  Spring spring;
+  double length, tension;
+  std::optional<int> eye;
+};
 
-Json springs_json(const char* what) {
-  Json json = header(kSpringsSchema);
-  json["what"] = what;
-  return json;
+void describe(Fields<SpringInArray>& fields) {
+  fields.type("Spring");
+  fields.with(&SpringInArray::spring);
+  fields.add("length", &SpringInArray::length, "[m]");
+  fields.add("tension", &SpringInArray::tension, "[N]");
+  fields.add("eye", &SpringInArray::eye, "screw eye that it hangs in, from 1; absent where the springs were given");
 }
 
-void add_field(Json& json, const SpringField& field) {
-  const impedance::Ellipse principal = impedance::ellipse(field.K);
-  const double degrees = 180.0 / std::numbers::pi;
-  json["equilibrium"] = list(field.equilibrium);
-  json["K"] = rows(field.K);
-  json["principal"] = {{"stiffness", {number(principal.lambda_max), number(principal.lambda_min)}},
-                       {"orientation_deg", number(degrees * principal.orientation)}};
-  json["residual_force"] = number(field.residual);
-  json["moment"] = number(field.moment);
-  json["disc_rotation_deg"] = number(degrees * field.disc_rotation);
-  json["linearisation"] = {{"radius", number(field.linearisation.radius)},
-                           {"largest_error", number(field.linearisation.largest_error)},
-                           {"largest_force", number(field.linearisation.largest_force)},
-                           {"relative_error", number(field.linearisation.relative_error())},
-                           {"smallest_extension", number(field.linearisation.smallest_extension)}};
-  json["springs"] = Json::array();
-  for (std::size_t i = 0; i < field.springs.size(); ++i) {
-    const Spring& spring = field.springs[i];
-    json["springs"].push_back({{"stiffness", number(spring.stiffness)},
-                               {"rest_length", number(spring.rest_length)},
-                               {"anchor", list(spring.anchor)},
-                               {"hole", list(spring.hole)},
-                               {"length", number(field.lengths[i])},
-                               {"tension", number(field.tensions[i])}});
+struct SpringArray {
+  const SpringField& field;
+  const std::vector<int>* eyes = nullptr;
+};
+
+std::vector<SpringInArray> springs_of(const SpringArray& array) {
+  std::vector<SpringInArray> springs;
+  for (std::size_t i = 0; i < array.field.springs.size(); ++i) {
+    springs.push_back({array.field.springs[i], array.field.lengths[i], array.field.tensions[i],
+                       array.eyes != nullptr ? std::optional((*array.eyes)[i]) : std::nullopt});
   }
-  if (field.grid) {
-    json["grid"] = {{"step", number(field.grid->step)},
-                    {"equilibrium", list(field.grid->equilibrium)},
-                    {"residual_force", number(field.grid->residual)},
-                    {"K", rows(field.grid->K)},
-                    {"at_border", field.grid->at_border}};
-  }
+  return springs;
 }
 
-Json line_json(const SpringLine& line) {
-  return {{"stiffness", number(line.stiffness)},
-          {"stiffness_standard_error", number(line.stiffness_error)},
-          {"rest", number(line.rest)},
-          {"rest_standard_error", number(line.rest_error)},
-          {"r_squared", number(line.r_squared)},
-          {"RMSE", number(line.rmse)},
-          {"tension", {number(line.tension_from), number(line.tension_to)}},
-          {"samples", line.samples}};
+void describe(Fields<SpringArray>& fields) {
+  fields.with([](const SpringArray& array) -> const SpringField& { return array.field; });
+  fields.add("springs", springs_of);
+  fields.add("grid", [](const SpringArray& array) { return array.field.grid; });
+}
+
+struct FieldDocument {
+  const SpringField& field;
+};
+
+void describe(Fields<FieldDocument>& fields) {
+  fields.type("SpringField", "Stiffness and equilibrium of a spring array.");
+  fields.header("mbk.springs/1");
+  fields.constant("what", "field");
+  fields.with([](const FieldDocument& document) { return SpringArray{document.field}; });
+}
+
+struct DesignDocument {
+  const SpringDesign& design;
+};
+
+void describe(Fields<DesignDocument>& fields) {
+  using From = const DesignDocument&;
+  fields.type("SpringDesign", "Springs for a target stiffness.");
+  fields.header("mbk.springs/1");
+  fields.constant("what", "find");
+  fields.group("target", [](Fields<DesignDocument>& target) {
+    target.add(
+        "K", [](From document) { return document.design.target_K; }, "[N/m]");
+    target.add(
+        "equilibrium", [](From document) { return document.design.target_equilibrium; }, "[m]");
+  });
+  fields.with([](From document) { return SpringArray{document.design.field, &document.design.eyes}; });
+  fields.add(
+      "payload", [](From document) { return document.design.payload; }, "[kg]");
+  fields.add_if([](From document) { return document.design.payload.has_value(); }, "natural_frequencies_hz",
+                [](From document) { return document.design.natural_frequency; }, "low and high [Hz]");
+}
+
+struct ConstantsDocument {
+  const std::vector<SpringConstant>& constants;
+};
+
+void describe(Fields<ConstantsDocument>& fields) {
+  fields.type("SpringConstants", "Spring constants from slow stretches.");
+  fields.header("mbk.springs/1");
+  fields.constant("what", "calibrate");
+  fields.add("constants", [](const ConstantsDocument& document) { return document.constants; });
 }
 
 }  // namespace
 
 std::string to_json(const SpringField& field) {
-  Json json = springs_json("field");
-  add_field(json, field);
-  return dumped(json);
+  return document::document(FieldDocument{field});
 }
 
 std::string to_json(const SpringDesign& design) {
-  Json json = springs_json("find");
-  json["target"] = {{"K", rows(design.target_K)}, {"equilibrium", list(design.target_equilibrium)}};
-  add_field(json, design.field);
-  for (std::size_t i = 0; i < design.eyes.size(); ++i) json["springs"][i]["eye"] = design.eyes[i];
-  if (design.payload) {
-    json["payload"] = number(*design.payload);
-    json["natural_frequencies_hz"] = list(design.natural_frequency);
-  }
-  return dumped(json);
+  return document::document(DesignDocument{design});
 }
 
 std::string to_json(const std::vector<SpringConstant>& constants) {
-  Json json = springs_json("calibrate");
-  json["constants"] = Json::array();
-  for (const SpringConstant& constant : constants) {
-    Json one = {{"inputs", inputs_json(constant.sources)},
-                {"straight", line_json(constant.straight)},
-                {"whole", line_json(constant.whole)},
-                {"bias_of_whole", number(constant.bias_of_whole())},
-                {"rule", constant.rule},
-                {"hac_lag_s", number(constant.hac_lag_s)}};
-    if (constant.hooks) {
-      const HookFit& hooks = *constant.hooks;
-      one["hooks"] = {{"stiffness", number(hooks.stiffness)},
-                      {"stiffness_standard_error", number(hooks.stiffness_error)},
-                      {"rest", number(hooks.rest)},
-                      {"deflection", number(hooks.deflection)},
-                      {"deflection_standard_error", number(hooks.deflection_error)},
-                      {"force", number(hooks.force)},
-                      {"RMSE", number(hooks.rmse)}};
-    }
-    one["notes"] = constant.notes;
-    json["constants"].push_back(std::move(one));
-  }
-  return dumped(json);
+  return document::document(ConstantsDocument{constants});
 }
 
-}  // namespace mbk::result
+void add_springs_schema(document::Schemas& schemas) {
+  schemas["springs"] = document::schema_of_one<FieldDocument, DesignDocument, ConstantsDocument>(
+      "Springs", "What `mbk springs field|find|calibrate --json` write; `what` says which of the three it is.");
+}
+
+}  // namespace result
+}  // namespace mbk

@@ -6,117 +6,221 @@
 #include <limits>
 
 #include "mbk/model/trial/identification.h"
+#include "mbk/present/result/described.h"
 #include "mbk/present/result/json_reading.h"
+#include "mbk/present/result/schemas.h"
 
-namespace mbk::result {
+namespace mbk {
+
+using document::Fields;
+using document::through;
+
+void describe(Fields<ViolatedBand>& fields) {
+  const auto is_band = [](const ViolatedBand& band) { return band.detail.empty(); };
+  fields.type("ViolatedBand");
+  fields.add("from", through(&ViolatedBand::low, &RadPerSec::value), "[rad/s]");
+  fields.add("to", through(&ViolatedBand::high, &RadPerSec::value), "[rad/s]");
+  fields.add_if(is_band, "worst", through(&ViolatedBand::worst, &RadPerSec::value), "[rad/s]");
+  fields.add_if(is_band, "value", &ViolatedBand::value, "of the condition there");
+  fields.add_unless_empty("pole", &ViolatedBand::detail, "which entry has it");
+}
+
+void describe(Fields<StabilityOutcome>& fields) {
+  using From = const StabilityOutcome&;
+  fields.type("StabilityOutcome");
+  fields.add("name", &StabilityOutcome::condition);
+  fields.add("condition", [](From outcome) { return std::string(text(outcome.condition)); });
+  fields.add("holds", [](From outcome) { return outcome.violated.empty(); });
+  fields.add("violated", &StabilityOutcome::violated);
+}
+
+void describe(Fields<AbsoluteStability>& fields) {
+  using From = const AbsoluteStability&;
+  const auto is_marginal = [](From stability) { return stability.verdict == StabilityVerdict::marginal; };
+  fields.type("Stability", "Frequencies in rad/s; null: infinite.");
+  fields.add_as("form", {{"enum", {"z", "y", "h", "g"}}}, &AbsoluteStability::form,
+                "of the immittance matrix that was judged");
+  fields.add("verdict", &AbsoluteStability::verdict);
+  fields.add("absolutely_stable", &AbsoluteStability::holds);
+  fields.add("conditions", &AbsoluteStability::conditions);
+  fields.add_if(
+      is_marginal, "equality_at",
+      [](From stability) {
+        std::vector<double> touches;
+        for (const RadPerSec omega : stability.touches) touches.push_back(omega.value);
+        return touches;
+      },
+      "[rad/s]");
+  fields.add_if(is_marginal, "equality_everywhere", &AbsoluteStability::touches_everywhere);
+}
+
+void describe(Fields<FrequencyGrid>& fields) {
+  fields.type("Grid", "Frequencies, evenly spaced in the logarithm.");
+  fields.add_number("from", through(&FrequencyGrid::low, &RadPerSec::value), "[rad/s]");
+  fields.add_number("to", through(&FrequencyGrid::high, &RadPerSec::value), "[rad/s]");
+  fields.add("points", &FrequencyGrid::points);
+}
+
+void describe(Fields<AdmissibleEnd>& fields) {
+  fields.type("AdmissibleEnd");
+  fields.add("value", &AdmissibleEnd::value, "null: infinite");
+  fields.add_or_null("included", &AdmissibleEnd::included, "null: not decided");
+  fields.add("end_of_range", &AdmissibleEnd::limit_of_search, "that was asked for");
+}
+
+void describe(Fields<AdmissibleInterval>& fields) {
+  fields.add("low", &AdmissibleInterval::low);
+  fields.add("high", &AdmissibleInterval::high);
+}
+
+void describe(Fields<AdmissibleSet>& fields) {
+  fields.type("Admissible", "All values of a parameter with which the design is absolutely stable.");
+  fields.add("parameter", &AdmissibleSet::parameter);
+  fields.add("unit", &AdmissibleSet::unit);
+  fields.add(
+      "range", [](const AdmissibleSet& set) { return std::pair(set.low, set.high); }, "that was asked for");
+  fields.add("intervals", &AdmissibleSet::intervals);
+  fields.add("undecided", &AdmissibleSet::undecided);
+  fields.add("critical", &AdmissibleSet::critical, "where the answer could have changed");
+}
+
+void describe(Fields<LargestShortage>& fields) {
+  using From = const LargestShortage&;
+  fields.type("LargestShortage", "The largest shortage of passivity at a port with which all is stable.");
+  fields.add("port", &LargestShortage::port);
+  fields.add_or_null(
+      "a", [](From largest) { return largest.exists ? std::optional(largest.value()) : std::nullopt; },
+      "[N·s/m]; null: none");
+  fields.add_if(&LargestShortage::exists, "at_least", &LargestShortage::at_least, "[N·s/m]");
+  fields.add_if(&LargestShortage::exists, "at_most", &LargestShortage::at_most, "[N·s/m]");
+}
+
+void describe(Fields<Termination>& fields) {
+  fields.type("Termination", "Z = m s + b + k/s");
+  fields.add("mass", &Termination::mass, "[kg]");
+  fields.add("damping", &Termination::damping, "[N·s/m]");
+  fields.add("stiffness", &Termination::stiffness, "[N/m]");
+}
+
+void describe(Fields<WorstTerminations>& fields) {
+  using From = const WorstTerminations&;
+  fields.type("WorstTerminations");
+  fields.add("frequency", through(&WorstTerminations::frequency, &RadPerSec::value), "[rad/s]");
+  fields.add("growth", &WorstTerminations::growth, "[1/s]");
+  fields.add("hand", [](From worst) { return worst.at_port[0]; });
+  fields.add("environment", [](From worst) { return worst.at_port[1]; });
+}
+
+void describe(Fields<TeleoperationRun>& fields) {
+  fields.type("TeleoperationRun");
+  fields.add("what", &TeleoperationRun::what);
+  fields.add("hand", &TeleoperationRun::hand);
+  fields.add("environment", &TeleoperationRun::environment);
+  fields.add("outcome", &TeleoperationRun::outcome);
+  fields.add("ratio", &TeleoperationRun::ratio, "of speeds, last quarter over second");
+  fields.add("frequency", through(&TeleoperationRun::frequency, &RadPerSec::value), "[rad/s]");
+  fields.add("duration", &TeleoperationRun::duration, "[s]");
+  fields.add("ran_away", &TeleoperationRun::ran_away);
+  fields.add("largest_position", &TeleoperationRun::largest_position, "[m]");
+  fields.add("packets", &TeleoperationRun::sent);
+  fields.add("packets_lost", &TeleoperationRun::lost);
+  fields.add("lowest_energy", &TeleoperationRun::lowest_energy, "[J]");
+  fields.add("expected", &TeleoperationRun::worst);
+}
+
+void describe(Fields<TeleoperationSimulation>& fields) {
+  fields.type("TeleoperationSimulation");
+  fields.add("sample_time", &TeleoperationSimulation::sample_time, "[s]");
+  fields.add("grid", &TeleoperationSimulation::grid);
+  fields.add("runs", &TeleoperationSimulation::runs);
+  fields.add("notes", &TeleoperationSimulation::notes);
+  fields.add("llewellyn", &TeleoperationSimulation::sampled);
+  fields.add("modified_llewellyn", &TeleoperationSimulation::sampled_with_operator);
+}
+
+void describe(Fields<ExcessStep::Felt>& fields) {
+  fields.add("free", &ExcessStep::Felt::free, "[N·s/m]");
+  fields.add("clamped", &ExcessStep::Felt::clamped, "[N/m]");
+}
+
+void describe(Fields<ExcessStep>& fields) {
+  fields.type("ExcessStep");
+  fields.add("excess", &ExcessStep::excess, "[N·s/m]");
+  fields.add("admissible", &ExcessStep::set);
+  fields.add("felt", &ExcessStep::felt);
+}
+
+void describe(Fields<ExcessSweep>& fields) {
+  fields.type("ExcessSweep", "What an excess of passivity of the operator buys.");
+  fields.add("parameter", &ExcessSweep::parameter);
+  fields.add("unit", &ExcessSweep::unit);
+  fields.add("frequency", through(&ExcessSweep::frequency, &RadPerSec::value), "at which `felt` is taken [rad/s]");
+  fields.add("steps", &ExcessSweep::steps);
+}
+
 namespace {
 
-Json stability_json(const AbsoluteStability& stability) {
-  Json json = {{"form", stability.form},
-               {"verdict", word_of(stability.verdict)},
-               {"absolutely_stable", stability.holds()},
-               {"conditions", Json::array()}};
-  for (const StabilityOutcome& outcome : stability.conditions) {
-    Json one = {{"name", word_of(outcome.condition)},
-                {"condition", text(outcome.condition)},
-                {"holds", outcome.violated.empty()},
-                {"violated", Json::array()}};
-    for (const ViolatedBand& band : outcome.violated) {
-      Json where = {{"from", number(band.low.value)}, {"to", number(band.high.value)}};
-      if (band.detail.empty()) {
-        where["worst"] = number(band.worst.value);
-        where["value"] = number(band.value);
-      } else {
-        where["pole"] = band.detail;
-      }
-      one["violated"].push_back(std::move(where));
-    }
-    json["conditions"].push_back(std::move(one));
-  }
-  if (stability.verdict == StabilityVerdict::marginal) {
-    json["equality_at"] = Json::array();
-    for (const RadPerSec omega : stability.touches) json["equality_at"].push_back(number(omega.value));
-    json["equality_everywhere"] = stability.touches_everywhere;
-  }
-  return json;
+struct DesignFile {
+  std::string file;
+};
+
+void describe(Fields<DesignFile>& fields) {
+  fields.add("file", &DesignFile::file);
 }
 
-Json end_json(const AdmissibleEnd& end) {
-  return {{"value", number(end.value)},
-          {"included", end.included ? Json(*end.included) : Json(nullptr)},
-          {"end_of_range", end.limit_of_search}};
+struct Curve {
+  const ChartSeries* series;
+};
+
+void describe(Fields<Curve>& fields) {
+  fields.type("TeleoperationCurve");
+  fields.add("name", through(&Curve::series, &ChartSeries::name));
+  fields.add("frequency", through(&Curve::series, &ChartSeries::x), "[rad/s]");
+  fields.add("value", through(&Curve::series, &ChartSeries::y));
 }
 
-Json admissible_json(const AdmissibleSet& set) {
-  Json json = {
-      {"parameter", set.parameter}, {"unit", set.unit},           {"range", {number(set.low), number(set.high)}},
-      {"intervals", Json::array()}, {"undecided", set.undecided}, {"critical", set.critical}};
-  for (const AdmissibleInterval& interval : set.intervals) {
-    json["intervals"].push_back({{"low", end_json(interval.low)}, {"high", end_json(interval.high)}});
-  }
-  return json;
+}  // namespace
+
+void describe(Fields<TeleoperationFinding>& fields) {
+  using Finding = TeleoperationFinding;
+  using From = const Finding&;
+  fields.type("Teleoperation",
+              "What `mbk teleop --json` writes: whether a design is absolutely stable. SI units, frequencies in rad/s; "
+              "null: infinite.");
+  fields.header("mbk.teleop/1");
+  fields.add("inputs", [](From finding) { return std::vector{DesignFile{finding.file}}; });
+  fields.add("name", &Finding::name);
+  fields.add("kind", &Finding::kind);
+  fields.add_form<std::map<std::string, double>>("parameters", [](From finding) {
+    document::Json parameters = document::Json::object();
+    for (const DesignParameter& one : finding.parameters) parameters[one.name] = document::number(one.value);
+    return parameters;
+  });
+  fields.add_as("decided", {{"enum", {"exactly", "on the grid"}}},
+                [](From finding) { return finding.grid ? "on the grid" : "exactly"; });
+  fields.add("grid", &Finding::grid);
+  fields.add("llewellyn", &Finding::stability);
+  const auto of_operator = [](Fields<Finding>& part) {
+    part.add("port", &Finding::operator_port);
+    part.add("a", through(&Finding::operator_shortage, &OperatorShortage::a), "shortage of passivity [N·s/m]");
+    part.add("rule", through(&Finding::operator_shortage, &OperatorShortage::rule), "where it comes from");
+  };
+  fields.group("operator", of_operator).only_if([](From finding) { return finding.with_operator.has_value(); });
+  fields.add("modified_llewellyn", &Finding::with_operator);
+  fields.add("largest_a", &Finding::largest_shortages);
+  fields.add("admissible", &Finding::admissible);
+  fields.add("excess", &Finding::excess);
+  fields.add("simulation", &Finding::simulation);
+  fields.add("curves", [](From finding) {
+    std::vector<Curve> curves;
+    for (const Chart& chart : finding.charts) curves.push_back({&chart.series.front()});
+    return curves;
+  });
+  fields.add("notes", &Finding::notes);
 }
 
-Json curve_json(const Chart& chart) {
-  Json x = Json::array(), y = Json::array();
-  for (const double value : chart.series.front().x) x.push_back(number(value));
-  for (const double value : chart.series.front().y) y.push_back(number(value));
-  return {{"name", chart.series.front().name}, {"frequency", std::move(x)}, {"value", std::move(y)}};
-}
-
-Json termination_json(const Termination& termination) {
-  return {{"mass", number(termination.mass)},
-          {"damping", number(termination.damping)},
-          {"stiffness", number(termination.stiffness)}};
-}
-
-Json run_json(const TeleoperationRun& run) {
-  Json json = {{"what", run.what},
-               {"hand", run.hand},
-               {"environment", run.environment},
-               {"outcome", word_of(run.outcome)},
-               {"ratio", number(run.ratio)},
-               {"frequency", number(run.frequency.value)},
-               {"duration", number(run.duration)},
-               {"ran_away", run.ran_away},
-               {"largest_position", number(run.largest_position)},
-               {"packets", run.sent},
-               {"packets_lost", run.lost}};
-  if (run.lowest_energy) json["lowest_energy"] = number(*run.lowest_energy);
-  if (run.worst) {
-    json["expected"] = {{"frequency", number(run.worst->frequency.value)},
-                        {"growth", number(run.worst->growth)},
-                        {"hand", termination_json(run.worst->at_port[0])},
-                        {"environment", termination_json(run.worst->at_port[1])}};
-  }
-  return json;
-}
-
-Json simulation_json(const TeleoperationSimulation& simulation) {
-  Json json = {
-      {"sample_time", number(simulation.sample_time)},
-      {"grid",
-       {{"from", simulation.grid.low.value}, {"to", simulation.grid.high.value}, {"points", simulation.grid.points}}},
-      {"runs", Json::array()},
-      {"notes", simulation.notes}};
-  if (simulation.sampled) json["llewellyn"] = stability_json(*simulation.sampled);
-  if (simulation.sampled_with_operator) json["modified_llewellyn"] = stability_json(*simulation.sampled_with_operator);
-  for (const TeleoperationRun& run : simulation.runs) json["runs"].push_back(run_json(run));
-  return json;
-}
-
-Json excess_json(const ExcessSweep& sweep) {
-  Json json = {{"parameter", sweep.parameter},
-               {"unit", sweep.unit},
-               {"frequency", number(sweep.frequency.value)},
-               {"steps", Json::array()}};
-  for (const ExcessStep& step : sweep.steps) {
-    Json one = {{"excess", number(step.excess)}, {"admissible", admissible_json(step.set)}};
-    if (step.felt) one["felt"] = {{"free", number(step.felt->free)}, {"clamped", number(step.felt->clamped)}};
-    json["steps"].push_back(std::move(one));
-  }
-  return json;
-}
+namespace result {
+namespace {
 
 /// The lowest of the numbers of a list at that place; absent where one is none.
 std::optional<double> lowest_at(const Json& json, const char* place) {
@@ -167,40 +271,11 @@ bool is_of_rotation(const Json& json) {
 }  // namespace
 
 std::string to_json(const TeleoperationFinding& finding) {
-  Json json = header("mbk.teleop/1");
-  json["inputs"] = Json::array({{{"file", finding.file}}});
-  json["name"] = finding.name;
-  json["kind"] = finding.kind;
-  json["parameters"] = Json::object();
-  for (const DesignParameter& p : finding.parameters) json["parameters"][p.name] = number(p.value);
-  json["decided"] = finding.grid ? "on the grid" : "exactly";
-  if (finding.grid) {
-    json["grid"] = {
-        {"from", finding.grid->low.value}, {"to", finding.grid->high.value}, {"points", finding.grid->points}};
-  }
-  json["llewellyn"] = stability_json(finding.stability);
-  if (finding.with_operator) {
-    json["operator"] = {{"port", finding.operator_port},
-                        {"a", number(finding.operator_shortage->a)},
-                        {"rule", finding.operator_shortage->rule}};
-    json["modified_llewellyn"] = stability_json(*finding.with_operator);
-  }
-  json["largest_a"] = Json::array();
-  for (const LargestShortage& largest : finding.largest_shortages) {
-    Json one = {{"port", largest.port}, {"a", largest.exists ? number(largest.value()) : Json(nullptr)}};
-    if (largest.exists) {
-      one["at_least"] = number(largest.at_least);
-      one["at_most"] = number(largest.at_most);
-    }
-    json["largest_a"].push_back(std::move(one));
-  }
-  if (finding.admissible) json["admissible"] = admissible_json(*finding.admissible);
-  if (finding.excess) json["excess"] = excess_json(*finding.excess);
-  if (finding.simulation) json["simulation"] = simulation_json(*finding.simulation);
-  json["curves"] = Json::array();
-  for (const Chart& chart : finding.charts) json["curves"].push_back(curve_json(chart));
-  json["notes"] = finding.notes;
-  return dumped(json);
+  return document::document(finding);
+}
+
+void add_teleop_schema(document::Schemas& schemas) {
+  schemas["teleop"] = document::schema_of<TeleoperationFinding>();
 }
 
 Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
@@ -250,4 +325,5 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
       std::pair{*low, *high}};
 }
 
-}  // namespace mbk::result
+}  // namespace result
+}  // namespace mbk

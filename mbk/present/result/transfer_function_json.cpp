@@ -1,177 +1,290 @@
 #include "mbk/present/result/transfer_function_json.h"
 
-#include "mbk/base/core/units.h"
-#include "mbk/present/result/json_parts.h"
+#include <fmt/format.h>
 
-namespace mbk::result {
+#include <cmath>
+
+#include "mbk/base/core/units.h"
+#include "mbk/present/result/described.h"
+#include "mbk/present/result/schemas.h"
+
+namespace mbk {
+
+using document::Fields;
+using document::through;
+
+void describe(Fields<Root>& fields) {
+  fields.type("Root", "A pole or a zero; of a pair the one with positive imaginary part.");
+  fields.add(
+      "re", [](const Root& root) { return root.value.real(); }, "[rad/s]");
+  fields.add(
+      "im", [](const Root& root) { return root.value.imag(); }, "[rad/s]");
+  fields.add("pair", &Root::pair);
+  fields.add("frequency_hz", &Root::frequency, "[Hz]");
+  fields.add("frequency_standard_error_hz", &Root::frequency_standard_error, "[Hz]");
+  fields.add("damping", &Root::damping);
+  fields.add("damping_standard_error", &Root::damping_standard_error);
+  fields.add("outside_band", &Root::outside_band, "that was excited");
+}
+
+void describe(Fields<FrequencyResponse>& fields) {
+  using From = const FrequencyResponse&;
+  using Ends = std::array<Vector, 2>;
+  const auto around = [](const Vector& value, const Vector& half_width) -> Ends {
+    return {value - half_width, value + half_width};
+  };
+  fields.type("FrequencyResponse", "Over frequency, with 95 % intervals.");
+  fields.add("frequency_hz", &FrequencyResponse::frequency, "[Hz]");
+  fields.add("magnitude", [](From response) -> Vector { return response.value.cwiseAbs(); });
+  fields.add(
+      "magnitude_interval95",
+      [](From response) -> Ends {
+        return {response.magnitude95.col(0), response.magnitude95.col(1)};
+      },
+      "low and high ends");
+  fields.add(
+      "phase_deg", [](From response) -> Vector { return kDegrees * response.phase; }, "[°]");
+  fields.add(
+      "phase_interval95_deg",
+      [around](From response) { return around(kDegrees * response.phase, kDegrees * response.phase_half_width); },
+      "low and high ends [°]");
+  fields.add("real", [](From response) -> Vector { return response.value.real(); });
+  fields.add(
+      "real_interval95", [around](From response) { return around(response.value.real(), response.real_half_width); },
+      "low and high ends");
+  fields.add("imaginary", [](From response) -> Vector { return response.value.imag(); });
+  const auto region = [](Fields<FrequencyResponse>& part) {
+    part.add("longer_half_axis", [](From response) -> Vector { return response.region95.col(0); });
+    part.add("shorter_half_axis", [](From response) -> Vector { return response.region95.col(1); });
+    part.add(
+        "angle_deg", [](From response) -> Vector { return kDegrees * response.region95.col(2); },
+        "of the longer one from the real axis [°]");
+  };
+  fields.group("region95", region, "The ellipse that holds the value with 95 %.");
+}
+
+void describe(Fields<Estimate>& fields) {
+  fields.type("Estimate");
+  fields.add("value", &Estimate::value);
+  fields.add("standard_error", &Estimate::standard_error);
+}
+
+void describe(Fields<InvertedAdmittance>& fields) {
+  using From = const InvertedAdmittance&;
+  fields.type("InvertedAdmittance", "The impedance, where the input is a force and the output a motion.");
+  fields.add("admittance_to", &InvertedAdmittance::output);
+  fields.group("units", [](Fields<InvertedAdmittance>& part) {
+    part.add("M", [](From inverse) { return units_of(inverse.motion).inertia; });
+    part.add("B", [](From inverse) { return units_of(inverse.motion).damping; });
+    part.add("K", [](From inverse) { return units_of(inverse.motion).stiffness; });
+  });
+  fields.add("unstable", &InvertedAdmittance::unstable);
+  fields.add("M", &InvertedAdmittance::M);
+  fields.add("B", &InvertedAdmittance::B);
+  fields.add("K", &InvertedAdmittance::K);
+  fields.add("force_per_velocity", &InvertedAdmittance::impedance);
+  fields.add("force_per_displacement", &InvertedAdmittance::stiffness);
+}
+
+void describe(Fields<ResidualTests>& fields) {
+  fields.type("ResidualTests");
+  fields.add("lags", &ResidualTests::lags);
+  fields.add("white", &ResidualTests::white);
+  fields.add("whiteness_p", &ResidualTests::whiteness_p);
+  fields.add("autocorrelation_outside", &ResidualTests::autocorrelation_outside, "share");
+  fields.add("independent_of_input", &ResidualTests::independent);
+  fields.add("cross_p", &ResidualTests::cross_p);
+  fields.add("cross_correlation_outside", &ResidualTests::cross_correlation_outside, "share");
+}
+
+void describe(Fields<SearchStart>& fields) {
+  fields.type("SearchStart");
+  fields.add("pole_rad_s", &SearchStart::pole, "[rad/s]");
+  fields.add("converged", &SearchStart::converged);
+  fields.add("stable", &SearchStart::stable);
+  fields.add("iterations", &SearchStart::iterations);
+  fields.add("R2", &SearchStart::fit);
+  fields.add_unless_empty("made_by", &SearchStart::made_by);
+}
+
+void describe(Fields<OrderChoice>& fields) {
+  fields.type("OrderChoice");
+  fields.add("poles", &OrderChoice::poles);
+  fields.add("zeros", &OrderChoice::zeros);
+  fields.add("usable", &OrderChoice::usable);
+  fields.add("R2", &OrderChoice::fit);
+  fields.add("YIC", &OrderChoice::yic);
+  fields.add("AIC", &OrderChoice::aic);
+  fields.add("BIC", &OrderChoice::bic);
+  fields.add("chosen", &OrderChoice::chosen);
+}
+
+namespace result {
 namespace {
 
-Json roots_json(const std::vector<Root>& roots) {
-  Json array = Json::array();
-  for (const Root& root : roots) {
-    array.push_back({{"re", number(root.value.real())},
-                     {"im", number(root.value.imag())},
-                     {"pair", root.pair},
-                     {"frequency_hz", number(root.frequency)},
-                     {"frequency_standard_error_hz", number(root.frequency_standard_error)},
-                     {"damping", number(root.damping)},
-                     {"damping_standard_error", number(root.damping_standard_error)},
-                     {"outside_band", root.outside_band}});
-  }
-  return array;
+using Found = TransferFunctionIdentification;
+
+bool is_continuous(const Found& found) {
+  return found.model.sample_time == 0.0;
 }
 
-Json columns_json(const Matrix& matrix) {
-  Json array = Json::array();
-  for (Index k = 0; k < matrix.cols(); ++k) array.push_back(list(matrix.col(k)));
-  return array;
+Vector highest_first(const Found& found, const Vector& coefficients) {
+  return is_continuous(found) ? Vector(coefficients.reverse()) : coefficients;
 }
 
-/// Ends of value ± half width.
-Json around(const Vector& value, const Vector& half_width) {
-  return Json::array({list(value - half_width), list(value + half_width)});
+struct Signal {
+  std::string name, unit;
+};
+
+void describe(Fields<Signal>& fields) {
+  fields.type("Signal");
+  fields.add("name", &Signal::name);
+  fields.add("unit", &Signal::unit);
 }
 
-Json response_json(const FrequencyResponse& response) {
-  const Vector real = response.value.real();
-  return {{"frequency_hz", list(response.frequency)},
-          {"magnitude", list(response.value.cwiseAbs())},
-          {"magnitude_interval95", columns_json(response.magnitude95)},
-          {"phase_deg", list(kDegrees * response.phase)},
-          {"phase_interval95_deg", around(kDegrees * response.phase, kDegrees * response.phase_half_width)},
-          {"real", list(real)},
-          {"real_interval95", around(real, response.real_half_width)},
-          {"imaginary", list(response.value.imag())},
-          {"region95",
-           {{"longer_half_axis", list(response.region95.col(0))},
-            {"shorter_half_axis", list(response.region95.col(1))},
-            {"angle_deg", list(kDegrees * response.region95.col(2))}}}};
+struct Parameter {
+  std::string name;
+  double value, standard_error;
+};
+
+void describe(Fields<Parameter>& fields) {
+  fields.type("TransferFunctionParameter");
+  fields.add("name", &Parameter::name);
+  fields.add("value", &Parameter::value);
+  fields.add("standard_error", &Parameter::standard_error);
 }
 
-Json inverse_json(const InvertedAdmittance& inverse) {
-  const Units units = units_of(inverse.motion);
-  Json json = {{"admittance_to", word_of(inverse.output)},
-               {"units", {{"M", units.inertia}, {"B", units.damping}, {"K", units.stiffness}}},
-               {"unstable", inverse.unstable}};
-  const auto add = [&](const char* name, const std::optional<Estimate>& value) {
-    if (value) json[name] = {{"value", number(value->value)}, {"standard_error", number(value->standard_error)}};
+std::vector<Parameter> parameters_of(const Found& found) {
+  std::vector<Parameter> parameters;
+  const auto add = [&](std::string name, double value) {
+    const Index at = std::ssize(parameters);
+    parameters.push_back({std::move(name), value, std::sqrt(found.covariance(at, at))});
   };
-  add("M", inverse.M);
-  add("B", inverse.B);
-  add("K", inverse.K);
-  json["force_per_velocity"] = response_json(inverse.impedance);
-  json["force_per_displacement"] = response_json(inverse.stiffness);
-  return json;
+  for (Index k = 0; k < found.model.poles(); ++k) {
+    const Index power = is_continuous(found) ? k : k + 1;
+    add(fmt::format("{}{}", is_continuous(found) ? "a" : "f", power), found.model.denominator[power]);
+  }
+  for (Index k = 0; k < found.model.numerator.size(); ++k) add(fmt::format("b{}", k), found.model.numerator[k]);
+  return parameters;
 }
 
-Json document(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings) {
-  Json json = header("mbk.tf/1");
-  json["inputs"] = inputs_json(found.sources);
-  json["method"] = word_of(found.method);
-  json["input"] = {{"name", found.input}, {"unit", found.input_unit}};
-  json["output"] = {{"name", found.output}, {"unit", found.output_unit}};
-  if (!found.reference.empty()) json["reference"] = found.reference;
-  const bool continuous = found.model.sample_time == 0.0;
-  const auto highest_first = [&](const Vector& c) { return list(continuous ? Vector(c.reverse()) : c); };
-  json["numerator"] = highest_first(found.model.numerator);
-  json["denominator"] = highest_first(found.model.denominator);
-  json["variable"] = continuous ? "s" : "q^-1";
-  json["sample_time"] = found.model.sample_time;
-  json["delay_s"] = found.model.delay;
-  json["delay_found"] = found.delay_found;
-  if (found.max_delay > 0.0) json["max_delay_s"] = number(found.max_delay);
-  if (found.delay_standard_error) json["delay_standard_error_s"] = number(*found.delay_standard_error);
-  if (found.hold) {
-    json["hold"] = word_of(*found.hold);
-    json["hold_found"] = found.hold_found;
-  }
-  const Index n = found.model.poles(), q = found.model.numerator.size();
-  json["parameters"] = Json::array();
-  const auto add = [&](std::string name, double value, Index at) {
-    json["parameters"].push_back({{"name", std::move(name)},
-                                  {"value", number(value)},
-                                  {"standard_error", number(std::sqrt(found.covariance(at, at)))}});
+struct Document {
+  const Found* found;
+  const TransferFunctionFindings* findings;
+};
+
+void describe(Fields<Document>& fields) {
+  using From = const Document&;
+  const auto of = [](auto get) { return [get](From one) -> decltype(auto) { return std::invoke(get, *one.found); }; };
+  const auto model = of(&Found::model);
+  const auto noise_there = [](const Vector& noise) { return noise.size() > 1; };
+  fields.type("TransferFunction",
+              "What `mbk tf --json` writes. Numerator and denominator from the highest power of s to the constant; "
+              "discrete ones from q⁰ on.");
+  fields.header("mbk.tf/1");
+  fields.add("inputs", of(&Found::sources));
+  fields.add("method", of(&Found::method));
+  fields.add("input", [](From one) { return Signal{one.found->input, one.found->input_unit}; });
+  fields.add("output", [](From one) { return Signal{one.found->output, one.found->output_unit}; });
+  fields.add_unless_empty("reference", of(&Found::reference), "channel");
+  fields.add("numerator", [](From one) { return highest_first(*one.found, one.found->model.numerator); });
+  fields.add("denominator", [](From one) { return highest_first(*one.found, one.found->model.denominator); });
+  fields.add_choice("variable", of(is_continuous), "s", "q^-1");
+  fields.add_number("sample_time", through(model, &TransferFunction::sample_time),
+                    "of a discrete model [s]; 0: continuous");
+  fields.add_number("delay_s", through(model, &TransferFunction::delay), "[s]");
+  fields.add("delay_found", of(&Found::delay_found), "below max_delay_s");
+  fields.add_if([](From one) { return one.found->max_delay > 0.0; }, "max_delay_s", of(&Found::max_delay),
+                "[s] up to which a delay was looked for; absent where it was given");
+  fields.add("delay_standard_error_s", of(&Found::delay_standard_error),
+             "[s] of a delay that was found; absent where the standard errors take the delay as known");
+  fields.add("hold", of(&Found::hold), "of the input between samples; absent in discrete time");
+  fields.add_if([](From one) { return one.found->hold.has_value(); }, "hold_found", of(&Found::hold_found),
+                "by the steps of the input");
+  fields.add("parameters", of(parameters_of));
+  fields.add("covariance", of(&Found::covariance));
+  fields.add_number("hac_lag_s", of(&Found::hac_lag_s), "[s]");
+  fields.add("poles", of(&Found::poles));
+  fields.add("zeros", of(&Found::zeros));
+  fields.add("gain", of(&Found::gain));
+  fields.add("gain_standard_error", of(&Found::gain_standard_error));
+  fields.group("fit", [of](Fields<Document>& part) {
+    part.add("R2_in_sample", of(&Found::fit));
+    part.add("noise_standard_deviation", of(&Found::noise_standard_deviation));
+    part.add("YIC", of(&Found::yic));
+    part.add("AIC", of(&Found::aic));
+    part.add("BIC", of(&Found::bic));
+    part.add("R2_held_out", of(&Found::held_out_fit));
+    part.add_if([](From one) { return one.found->held_out_fit.has_value(); }, "RMSE_held_out",
+                of(&Found::held_out_rmse));
+  });
+  const auto denominator = of(&Found::noise_denominator), numerator = of(&Found::noise_numerator);
+  const auto noise = [=](Fields<Document>& part) {
+    part.add("denominator", denominator).only_if(through(denominator, noise_there));
+    part.add("numerator", numerator).only_if(through(numerator, noise_there));
   };
-  for (Index k = 0; k < n; ++k) {
-    const Index power = continuous ? k : k + 1;
-    add(fmt::format("{}{}", continuous ? "a" : "f", power), found.model.denominator[power], k);
-  }
-  for (Index k = 0; k < q; ++k) add(fmt::format("b{}", k), found.model.numerator[k], n + k);
-  json["covariance"] = rows(found.covariance);
-  json["hac_lag_s"] = found.hac_lag_s;
-  json["poles"] = roots_json(found.poles);
-  json["zeros"] = roots_json(found.zeros);
-  json["gain"] = number(found.gain);
-  json["gain_standard_error"] = number(found.gain_standard_error);
-  json["fit"] = {{"R2_in_sample", number(found.fit)},
-                 {"noise_standard_deviation", number(found.noise_standard_deviation)},
-                 {"YIC", number(found.yic)},
-                 {"AIC", number(found.aic)},
-                 {"BIC", number(found.bic)}};
-  if (found.held_out_fit) {
-    json["fit"]["R2_held_out"] = number(*found.held_out_fit);
-    json["fit"]["RMSE_held_out"] = number(found.held_out_rmse);
-  }
-  if (found.noise_denominator.size() > 1) json["noise"]["denominator"] = list(found.noise_denominator);
-  if (found.noise_numerator.size() > 1) json["noise"]["numerator"] = list(found.noise_numerator);
-  json["residuals"] = {{"lags", found.residuals.lags},
-                       {"white", found.residuals.white()},
-                       {"whiteness_p", number(found.residuals.whiteness_p)},
-                       {"autocorrelation_outside", number(found.residuals.autocorrelation_outside)},
-                       {"independent_of_input", found.residuals.independent()},
-                       {"cross_p", number(found.residuals.cross_p)},
-                       {"cross_correlation_outside", number(found.residuals.cross_correlation_outside)}};
-  json["starts"] = Json::array();
-  for (const SearchStart& start : found.starts) {
-    json["starts"].push_back({{"pole_rad_s", number(start.pole)},
-                              {"converged", start.converged},
-                              {"stable", start.stable},
-                              {"iterations", start.iterations},
-                              {"R2", number(start.fit)}});
-    if (!start.made_by.empty()) json["starts"].back()["made_by"] = start.made_by;
-  }
-  if (!found.orders.empty()) json["orders"] = Json::array();
-  for (const OrderChoice& one : found.orders) {
-    json["orders"].push_back({{"poles", one.poles},
-                              {"zeros", one.zeros},
-                              {"usable", one.usable},
-                              {"R2", number(one.fit)},
-                              {"YIC", number(one.yic)},
-                              {"AIC", number(one.aic)},
-                              {"BIC", number(one.bic)},
-                              {"chosen", one.chosen}});
-  }
-  json["frequency_response"] = response_json(findings.response);
-  if (findings.inverse) json["impedance"] = inverse_json(*findings.inverse);
-  json["excited_band_hz"] = {number(found.band_low), number(found.band_high)};
-  json["samples"] = found.samples;
-  json["experiments"] = found.experiments;
-  json["even_clock"] = found.even;
-  json["sample_time_s"] = number(found.sample_time);
-  if (found.recorded_rate_hz > 0.0) json["recorded_rate_hz"] = found.recorded_rate_hz;
-  json["notes"] = found.notes;
-  json["warnings"] = warnings_json(found.warnings);
-  json["usable"] = found.usable;
-  return json;
+  fields.group("noise", noise, "Its model, from q⁰ on.").only_if([=](From one) {
+    return noise_there(denominator(one)) || noise_there(numerator(one));
+  });
+  fields.add("residuals", of(&Found::residuals));
+  fields.add("starts", of(&Found::starts));
+  fields.add_unless_empty("orders", of(&Found::orders));
+  fields.add("frequency_response", through(&Document::findings, &TransferFunctionFindings::response));
+  fields.add("impedance", through(&Document::findings, &TransferFunctionFindings::inverse));
+  fields.add(
+      "excited_band_hz", [](From one) { return std::pair(one.found->band_low, one.found->band_high); }, "[Hz]");
+  fields.add("samples", of(&Found::samples));
+  fields.add("experiments", of(&Found::experiments), "segments");
+  fields.add("even_clock", of(&Found::even));
+  fields.add("sample_time_s", of(&Found::sample_time), "of the data [s]");
+  fields.add_number("recorded_rate_hz", of(&Found::recorded_rate_hz), "before it was decimated [Hz]")
+      .only_if([](From one) { return one.found->recorded_rate_hz > 0.0; });
+  fields.add("notes", of(&Found::notes));
+  fields.add("warnings", of(&Found::warnings));
+  fields.add("usable", of(&Found::usable));
+}
+
+struct ReportDocument {
+  std::string command, note;
+  Document result;
+
+  [[nodiscard]] const SimulatedOutput& drawn() const { return result.findings->drawn; }
+};
+
+void describe(Fields<ReportDocument>& fields) {
+  const auto drawn = &ReportDocument::drawn;
+  fields.type("Transfer function report",
+              "What stands in the page that `mbk tf --report` writes. What is there to be looked at has six digits, "
+              "times nine.");
+  fields.header("mbk.tf_report/1");
+  fields.add("command", &ReportDocument::command, "as it was typed");
+  fields.add_unless_empty("note", &ReportDocument::note);
+  fields.group("simulation", [drawn](Fields<ReportDocument>& part) {
+    part.add(
+        "held_out", [](const ReportDocument& report) { return report.result.found->held_out_fit.has_value(); },
+        "on held-out data");
+    part.add_rounded("time_s", through(drawn, &SimulatedOutput::time), document::kTimeDigits, "[s]");
+    part.add_rounded("measured", through(drawn, &SimulatedOutput::measured), document::kDigits);
+    part.add_rounded("simulated", through(drawn, &SimulatedOutput::simulated), document::kDigits);
+  });
+  fields.add("result", &ReportDocument::result);
 }
 
 }  // namespace
 
 std::string to_json(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings) {
-  return dumped(document(found, findings));
+  return document::document(Document{&found, &findings});
 }
 
 std::string report_json(const TransferFunctionIdentification& found, const TransferFunctionFindings& findings,
                         const std::string& command, const std::string& note) {
-  Json json = header("mbk.tf_report/1");
-  json["command"] = command;
-  if (!note.empty()) json["note"] = note;
-  json["simulation"] = {{"held_out", found.held_out_fit.has_value()},
-                        {"time_s", rounded(findings.drawn.time, kTimeDigits)},
-                        {"measured", rounded(findings.drawn.measured)},
-                        {"simulated", rounded(findings.drawn.simulated)}};
-  json["result"] = document(found, findings);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document::compact(document::written(ReportDocument{command, note, {&found, &findings}})) + "\n";
 }
 
-}  // namespace mbk::result
+void add_tf_schemas(document::Schemas& schemas) {
+  schemas["tf"] = document::schema_of<Document>();
+  schemas["tf_report"] = document::schema_of<ReportDocument>();
+}
+
+}  // namespace result
+}  // namespace mbk

@@ -1,38 +1,78 @@
 #include "mbk/present/result/width_json.h"
 
-#include <numbers>
+#include "mbk/present/result/result_document.h"
+#include "mbk/present/result/schemas.h"
 
-#include "mbk/present/result/json_parts.h"
+namespace mbk {
 
-namespace mbk::result {
+using document::Fields;
 
-std::string width_to_json(const std::vector<SourceFile>& first, const std::vector<SourceFile>& second,
-                          const WidthFindings& widths) {
-  Json json = header("mbk.compare/1");
-  json["first"] = inputs_json(first);
-  json["second"] = inputs_json(second);
-  json["width"] = Json::object();
-  json["refused"] = Json::object();
-  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
-    const char* const name = kMatrixNames[k];
-    if (!widths.of[k]) {
-      json["width"][name] = nullptr;
-      json["refused"][name] = widths.refused[k];
-      continue;
-    }
-    const WidthFinding& one = *widths.of[k];
-    Json ratios = Json::array();
-    for (const WidthRatio& ratio : one.ratios) {
-      ratios.push_back({{"ratio", number(ratio.ratio)}, {"interval95", interval(ratio.ratio95)}});
-      if (one.ratios.size() > 1) ratios.back()["direction_deg"] = 180.0 / std::numbers::pi * ratio.direction;
-    }
-    json["width"][name] = {{"distance", number(one.distance)},
-                           {"interval95", interval(one.distance95)},
-                           {"distinguishable", one.distinguishable},
-                           {"surely_positive", one.surely_positive},
-                           {"second_to_first", std::move(ratios)}};
-  }
-  return dumped(json);
+namespace {
+
+struct Ratio {
+  WidthRatio ratio;
+  bool directed = true;  ///< false with one axis
+};
+
+void describe(Fields<Ratio>& fields) {
+  fields.add("ratio", document::through(&Ratio::ratio, &WidthRatio::ratio));
+  fields.add("interval95", document::through(&Ratio::ratio, &WidthRatio::ratio95));
+  fields
+      .add_number(
+          "direction_deg", [](const Ratio& one) { return kDegrees * one.ratio.direction; },
+          "counter-clockwise from x [°]")
+      .only_if(&Ratio::directed);
 }
 
-}  // namespace mbk::result
+}  // namespace
+
+void describe(Fields<WidthFinding>& fields) {
+  fields.type("Width");
+  fields.add("distance", &WidthFinding::distance, "largest |ln ratio| over the directions");
+  fields.add("interval95", &WidthFinding::distance95);
+  fields.add("distinguishable", &WidthFinding::distinguishable, "beyond chance");
+  fields.add("surely_positive", &WidthFinding::surely_positive, "both matrices, beyond chance");
+  fields.add("second_to_first", [](const WidthFinding& width) {
+    std::vector<Ratio> ratios;
+    for (const WidthRatio& ratio : width.ratios) ratios.push_back({ratio, width.ratios.size() > 1});
+    return ratios;
+  });
+}
+
+namespace result {
+
+void describe(Fields<Comparison>& fields) {
+  fields.type("Comparison", "What `mbk compare --json` writes of two results.");
+  fields.header("mbk.compare/1");
+  fields.add("first", &Comparison::first);
+  fields.add("second", &Comparison::second);
+  const auto width = [](std::size_t k) { return [k](const Comparison& of) { return of.widths.of[k]; }; };
+  const auto describe_widths = [width](Fields<Comparison>& part) {
+    for (std::size_t k = 0; k < kMatrixNames.size(); ++k) part.add_or_null(kMatrixNames[k], width(k));
+  };
+  fields.group("width", describe_widths, "How far the matrices are apart; null where there is no width.");
+  const auto describe_refused = [](Fields<Comparison>& part) {
+    for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+      part.add_if([k](const Comparison& of) { return !of.widths.of[k]; }, kMatrixNames[k],
+                  [k](const Comparison& of) { return of.widths.refused[k]; });
+    }
+  };
+  fields.group("refused", describe_refused, "Why there is none.");
+}
+
+void describe(Fields<document::List<Comparison>>& fields) {
+  describe_list(fields, "Comparisons", "mbk.comparisons/1",
+                "What `mbk compare --json` writes of more than two results: each but the first against the first.");
+}
+
+std::string to_json(std::span<const Comparison> all) {
+  return document::one_or_list(all);
+}
+
+void add_comparison_schemas(document::Schemas& schemas) {
+  schemas["compare"] = document::schema_of<Comparison>();
+  schemas["comparisons"] = document::schema_of<document::List<Comparison>>();
+}
+
+}  // namespace result
+}  // namespace mbk

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,9 +9,14 @@
 
 namespace mbk::result {
 
-/// Schema "mbk.compare/1": how far inertia, damping and stiffness of two results are apart. A matrix without a width is
-/// null and `refused` says why.
-[[nodiscard]] std::string width_to_json(const std::vector<SourceFile>& first, const std::vector<SourceFile>& second,
-                                        const WidthFindings& widths);
+/// How far inertia, damping and stiffness of two results are apart.
+struct Comparison {
+  std::vector<SourceFile> first, second;
+  WidthFindings widths;
+};
+
+/// Schema "mbk.compare/1": a matrix without a width is null and `refused` says why; "mbk.comparisons/1" with `results`
+/// for several.
+[[nodiscard]] std::string to_json(std::span<const Comparison> all);
 
 }  // namespace mbk::result

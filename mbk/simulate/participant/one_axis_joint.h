@@ -66,8 +66,6 @@ class OneAxisJoint : public Load<1> {
   [[nodiscard]] LoadDynamics<1> dynamics(const HandState<1>& joint) const override;
   [[nodiscard]] impedance::Model impedance(const AxisVector<1>& position) const override;
 
-  [[nodiscard]] double reflex_torque() const { return reflex_torque_; }  ///< u τ_r [N·m]
-
  private:
   OneAxisJoint(const Options& options, StretchReflex reflex, const Remnant<1>& remnant);
 

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "mbk/base/core/units.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/study/reliability/axial.h"
-#include "mbk/study/reliability/distributions.h"
 
 namespace mbk::longitudinal {
 namespace {
@@ -123,8 +123,8 @@ void set_mean(OutcomeCourses& all) {
   const auto count = static_cast<double>(means.size());
   double squares = 0.0;
   for (const double one : means) squares += (one - all.mean) * (one - all.mean);
-  const double half = reliability::student_quantile(1.0 - reliability::kTail95, count - 1.0) *
-                      std::sqrt(squares / (count - 1.0) / count);
+  const double half =
+      numeric::student_quantile(1.0 - reliability::kTail95, count - 1.0) * std::sqrt(squares / (count - 1.0) / count);
   all.interval95 = {all.mean - half, all.mean + half};
 }
 

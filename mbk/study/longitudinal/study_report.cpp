@@ -6,183 +6,273 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
-#include "mbk/base/core/version.h"
+#include "mbk/study/longitudinal/report_schemas.h"
+#include "mbk/study/statistics/summary_document.h"
+#include "mbk/study/store/study_documents.h"
 
 namespace mbk::longitudinal {
-namespace {
 
-using Document = nlohmann::ordered_json;
+using document::Fields;
+
+void describe(Fields<SessionMean>& fields) {
+  fields.type("SessionMean");
+  fields.add("session", &SessionMean::session);
+  fields.add("results", &SessionMean::results);
+  fields.add("mean", &SessionMean::mean, "of the results; of an orientation the mean axis");
+}
+
+void describe(Fields<Change>& fields) {
+  fields.type("SessionChange");
+  fields.add("first_session", &Change::first_session);
+  fields.add("last_session", &Change::last_session);
+  fields.add("first", &Change::first);
+  fields.add("last", &Change::last);
+  fields.add("difference", &Change::difference);
+  fields.add("mdc95", &Change::mdc, "minimal detectable change between means of so many results; null: unknown");
+  fields.add("mdc95_interval", &Change::mdc95);
+  fields.add("by_others", &Change::by_others,
+             "mdc95 is by the variances of all other people, since the difference is more than that of all");
+  fields.add("heavy_tails", &Change::heavy_tails,
+             "errors of those people have heavier tails than normal ones: mdc95_interval does not hold, and no "
+             "difference is beyond-error");
+  fields.add(
+      "verdict", &Change::verdict,
+      "beyond-error: more than the upper end of mdc95_interval, without heavy_tails; uncertain: more than mdc95; "
+      "within-error: no more than that; unknown: mdc95 is not known");
+}
+
+void describe(Fields<Course>& fields) {
+  fields.type("Course");
+  fields.add("participant", &Course::participant);
+  fields.add("mean", &Course::mean, "of the sessions' means");
+  fields.add("interval95", &Course::interval95, "of that, by the variances of all people; null: unknown");
+  fields.add("sessions", &Course::sessions);
+  fields.add("changes", &Course::changes, "each later session against the first");
+}
+
+void describe(Fields<OutcomeCourses>& fields) {
+  fields.type("OutcomeCourses", "How one outcome of each person develops over sessions.");
+  fields.add("condition", &OutcomeCourses::condition);
+  fields.add("outcome", &OutcomeCourses::outcome);
+  fields.add("unit", &OutcomeCourses::unit);
+  fields.add("axial", &OutcomeCourses::axial, "an orientation");
+  fields.add("repeated_participants", &OutcomeCourses::repeated_participants, "who have two sessions or more");
+  fields.add_unless_empty("why_unknown", &OutcomeCourses::why_unknown,
+                          "why no minimal detectable change is known, as a clause");
+  fields.add("mean", &OutcomeCourses::mean, "of the people's means; null in the report of one participant");
+  fields.add("interval95", &OutcomeCourses::interval95);
+  fields.add("participants", &OutcomeCourses::courses);
+}
+
+namespace {
 
 /// Above so many values a page does not hold every result, since it would no longer open quickly.
 constexpr std::size_t kMostValues = 400'000;
 
-Document number(double value) {
-  return std::isfinite(value) ? Document(value) : Document();
+/// The symmetric part of the mean matrix of a person's session under one condition.
+struct SessionMatrix {
+  std::string matrix, unit, condition;
+  std::int64_t participant = 0, session = 0;
+  int results = 0;
+  std::array<double, 3> sum{};
+};
+
+void describe(Fields<SessionMatrix>& fields) {
+  fields.type("SessionMatrix");
+  fields.add_as("matrix", {{"enum", {"M", "B", "K"}}}, &SessionMatrix::matrix);
+  fields.add("unit", &SessionMatrix::unit);
+  fields.add("condition", &SessionMatrix::condition);
+  fields.add("participant", &SessionMatrix::participant);
+  fields.add("session", &SessionMatrix::session);
+  fields.add("results", &SessionMatrix::results);
+  fields.add_as(
+      "symmetric", {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}},
+      [](const SessionMatrix& one) {
+        const auto& [xx, xy, yy] = one.sum;
+        return document::Json{xx / one.results, xy / one.results, yy / one.results};
+      },
+      "xx, (xy + yx)/2 and yy of the mean over the session's results");
 }
 
-Document pair(const Interval& interval) {
-  return Document::array({number(interval.first), number(interval.second)});
+struct StudyOutcome {
+  std::string name, unit;
+};
+
+void describe(Fields<StudyOutcome>& fields) {
+  fields.type("StudyOutcome");
+  fields.add("name", &StudyOutcome::name);
+  fields.add("unit", &StudyOutcome::unit);
 }
 
-Document change_json(const Change& change) {
-  return {{"first_session", change.first_session},   {"last_session", change.last_session},
-          {"first", number(change.first)},           {"last", number(change.last)},
-          {"difference", number(change.difference)}, {"mdc95", number(change.mdc)},
-          {"mdc95_interval", pair(change.mdc95)},    {"by_others", change.by_others},
-          {"heavy_tails", change.heavy_tails},       {"verdict", word_of(change.verdict)}};
+struct StudyResult {
+  std::int64_t recording = 0;
+  std::vector<double> values, standard_errors;
+};
+
+void describe(Fields<StudyResult>& fields) {
+  fields.type("StudyResult");
+  fields.add("recording", &StudyResult::recording);
+  fields.add("values", &StudyResult::values, "in the order of `outcomes`; null: there is none");
+  fields.add("standard_errors", &StudyResult::standard_errors);
 }
 
-Document course_json(const Course& course) {
-  Document json = {
-      {"participant", course.participant}, {"mean", number(course.mean)}, {"interval95", pair(course.interval95)}};
-  json["sessions"] = Document::array();
-  for (const SessionMean& one : course.sessions) {
-    json["sessions"].push_back({{"session", one.session}, {"results", one.results}, {"mean", number(one.mean)}});
-  }
-  json["changes"] = Document::array();
-  for (const Change& one : course.changes) json["changes"].push_back(change_json(one));
-  return json;
-}
+/// What a page holds: of everybody, or of one participant.
+struct Page {
+  const StudyReport& report;
+  std::optional<std::int64_t> participant;
 
-Document courses_json(const std::vector<OutcomeCourses>& all) {
-  Document list = Document::array();
-  for (const OutcomeCourses& one : all) {
-    Document json = {{"condition", one.condition},
-                     {"outcome", one.outcome},
-                     {"unit", one.unit},
-                     {"axial", one.axial},
-                     {"repeated_participants", one.repeated_participants}};
-    if (!one.why_unknown.empty()) json["why_unknown"] = one.why_unknown;
-    json["mean"] = number(one.mean);
-    json["interval95"] = pair(one.interval95);
-    json["participants"] = Document::array();
-    for (const Course& course : one.courses) json["participants"].push_back(course_json(course));
-    list.push_back(std::move(json));
-  }
-  return list;
-}
+  [[nodiscard]] bool holds(std::int64_t number) const { return !participant || number == *participant; }
+  [[nodiscard]] std::vector<store::ListedRecording> recordings() const;
+  [[nodiscard]] std::vector<SessionMatrix> matrices() const;
+  [[nodiscard]] std::optional<std::vector<std::size_t>> rows() const;
+};
 
-/// "M" → the symmetric parts of the mean matrix of each person's session under each condition.
-Document matrices_json(const store::OutcomeColumns& columns, std::optional<std::int64_t> participant) {
-  struct Sum {
-    double xx = 0.0, xy = 0.0, yy = 0.0;
-    int count = 0;
-  };
-  constexpr std::array kMatrices = {"M", "B", "K"};
-  Document list = Document::array();
-  for (const char* matrix : kMatrices) {
-    std::array<const store::OutcomeColumn*, 4> elements{};
-    constexpr std::array kElements = {"xx", "xy", "yx", "yy"};
-    bool all = true;
-    for (std::size_t k = 0; k < kElements.size(); ++k) {
-      const auto found = std::ranges::find(columns.outcomes, fmt::format("{}_{}", matrix, kElements.at(k)),
-                                           &store::OutcomeColumn::name);
-      all = all && found != columns.outcomes.end();
-      elements.at(k) = found == columns.outcomes.end() ? nullptr : &*found;
-    }
-    if (!all) continue;
-    std::map<std::tuple<int, std::int64_t, std::int64_t>, Sum> sums;  // by condition, participant, session
-    for (std::size_t k = 0; k < columns.trials.size(); ++k) {
-      const store::TrialRow& trial = columns.trials[k];
-      if (participant && trial.participant != *participant) continue;
-      const auto value = [&](std::size_t element) { return elements.at(element)->values[k]; };
-      const double total = value(0) + value(1) + value(2) + value(3);
-      if (!std::isfinite(total)) continue;
-      Sum& sum = sums[{trial.condition, trial.participant, trial.session}];
-      sum.xx += value(0);
-      sum.xy += 0.5 * (value(1) + value(2));
-      sum.yy += value(3);
-      ++sum.count;
-    }
-    for (const auto& [key, sum] : sums) {
-      const auto& [condition, person, session] = key;
-      list.push_back({{"matrix", matrix},
-                      {"unit", elements[0]->unit},
-                      {"condition", columns.conditions[static_cast<std::size_t>(condition)]},
-                      {"participant", person},
-                      {"session", session},
-                      {"results", sum.count},
-                      {"symmetric", {sum.xx / sum.count, sum.xy / sum.count, sum.yy / sum.count}}});
-    }
-  }
-  return list;
-}
-
-/// Every number of every usable result; absent where they are too many for a page.
-void add_results(Document& json, const store::OutcomeColumns& columns, std::optional<std::int64_t> participant) {
-  std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < columns.trials.size(); ++k) {
-    if (!participant || columns.trials[k].participant == *participant) rows.push_back(k);
-  }
-  if (rows.size() * columns.outcomes.size() > kMostValues) return;
-  json["outcomes"] = Document::array();
-  for (const store::OutcomeColumn& one : columns.outcomes) {
-    json["outcomes"].push_back({{"name", one.name}, {"unit", one.unit}});
-  }
-  json["results"] = Document::array();
-  for (const std::size_t row : rows) {
-    Document values = Document::array(), errors = Document::array();
-    for (const store::OutcomeColumn& one : columns.outcomes) {
-      values.push_back(number(one.values[row]));
-      errors.push_back(one.standard_errors.empty() ? Document() : number(one.standard_errors[row]));
-    }
-    json["results"].push_back({{"recording", columns.trials[row].recording},
-                               {"values", std::move(values)},
-                               {"standard_errors", std::move(errors)}});
-  }
-}
-
-Document recordings_json(const store::StudyList& list, std::optional<std::int64_t> participant) {
-  Document all = Document::parse(store::to_json(list), nullptr, false)["recordings"];
-  if (!participant) return all;
-  Document own = Document::array();
-  for (Document& one : all) {
-    if (one["participant"] == *participant) own.push_back(std::move(one));
-  }
+std::vector<store::ListedRecording> Page::recordings() const {
+  std::vector<store::ListedRecording> own = report.list.recordings;
+  std::erase_if(own, [&](const store::ListedRecording& one) { return !holds(one.recording.participant); });
   return own;
 }
 
-/// Above so many tasks of a job a page holds what each machine did alone.
-constexpr std::size_t kMostTasks = 1'000;
-
-/// Numbers the machines, since a page is passed on and their names say where the laboratory's network is and whose
-/// computers are in it.
-void number_hosts(Document& job) {
-  std::map<std::string, std::string> numbered;
-  for (const char* list : {"hosts", "tasks"}) {
-    for (Document& one : job[list]) {
-      const auto name = one.value("host", std::string());
-      one["host"] = numbered.try_emplace(name, fmt::format("machine {}", numbered.size() + 1)).first->second;
+std::vector<SessionMatrix> Page::matrices() const {
+  const store::OutcomeColumns& columns = report.columns;
+  std::vector<SessionMatrix> all;
+  for (const char* matrix : {"M", "B", "K"}) {
+    std::array<const store::OutcomeColumn*, 4> elements{};
+    constexpr std::array kElements = {"xx", "xy", "yx", "yy"};
+    for (std::size_t k = 0; k < kElements.size(); ++k) {
+      const auto found = std::ranges::find(columns.outcomes, fmt::format("{}_{}", matrix, kElements.at(k)),
+                                           &store::OutcomeColumn::name);
+      elements.at(k) = found == columns.outcomes.end() ? nullptr : &*found;
     }
-  }
-}
-
-Document jobs_json(const std::vector<std::string>& jobs) {
-  Document all = Document::array();
-  for (const std::string& text : jobs) {
-    Document job = Document::parse(text, nullptr, false);
-    if (!job.is_object() || job.value("schema", std::string()) != "mbk.job_efficiency/1") continue;
-    number_hosts(job);
-    if (job["tasks"].size() > kMostTasks) job.erase("tasks");
-    all.push_back(std::move(job));
+    if (std::ranges::find(elements, nullptr) != elements.end()) continue;
+    std::map<std::tuple<int, std::int64_t, std::int64_t>, SessionMatrix> sums;  // by condition, participant, session
+    for (std::size_t k = 0; k < columns.trials.size(); ++k) {
+      const store::TrialRow& trial = columns.trials[k];
+      if (!holds(trial.participant)) continue;
+      const auto value = [&](std::size_t element) { return elements.at(element)->values[k]; };
+      const double total = value(0) + value(1) + value(2) + value(3);
+      if (!std::isfinite(total)) continue;
+      SessionMatrix& one = sums[{trial.condition, trial.participant, trial.session}];
+      one.sum[0] += value(0);
+      one.sum[1] += 0.5 * (value(1) + value(2));
+      one.sum[2] += value(3);
+      ++one.results;
+    }
+    for (auto& [key, one] : sums) {
+      one.matrix = matrix;
+      one.unit = elements[0]->unit;
+      one.condition = columns.conditions[static_cast<std::size_t>(std::get<0>(key))];
+      std::tie(std::ignore, one.participant, one.session) = key;
+      all.push_back(std::move(one));
+    }
   }
   return all;
 }
 
-Document begun(const char* schema, const StudyReport& report) {
-  Document json = {{"schema", schema}, {"software", fmt::format("mbk {}", version())}, {"command", report.command}};
-  if (!report.note.empty()) json["note"] = report.note;
-  return json;
+/// Of the columns; nothing where they are too many for a page.
+std::optional<std::vector<std::size_t>> Page::rows() const {
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < report.columns.trials.size(); ++k) {
+    if (holds(report.columns.trials[k].participant)) rows.push_back(k);
+  }
+  if (rows.size() * report.columns.outcomes.size() > kMostValues) return std::nullopt;
+  return rows;
 }
 
-std::string written(const Document& json) {
-  return json.dump(-1, ' ', false, Document::error_handler_t::replace) + "\n";
+std::optional<std::vector<StudyOutcome>> outcomes_of(const Page& page) {
+  if (!page.rows()) return std::nullopt;
+  std::vector<StudyOutcome> outcomes;
+  for (const store::OutcomeColumn& one : page.report.columns.outcomes) outcomes.push_back({one.name, one.unit});
+  return outcomes;
+}
+
+std::optional<std::vector<StudyResult>> results_of(const Page& page) {
+  const auto rows = page.rows();
+  if (!rows) return std::nullopt;
+  std::vector<StudyResult> results;
+  for (const std::size_t row : *rows) {
+    StudyResult result{page.report.columns.trials[row].recording, {}, {}};
+    for (const store::OutcomeColumn& one : page.report.columns.outcomes) {
+      result.values.push_back(one.values[row]);
+      result.standard_errors.push_back(one.standard_errors.empty() ? kNaN : one.standard_errors[row]);
+    }
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+/// What both documents begin with.
+template <class View>
+void describe_head(Fields<View>& fields, const std::string& schema) {
+  fields.header(schema);
+  fields.add(
+      "command", [](const View& view) { return view.page.report.command; }, "that makes it again");
+  fields.add_unless_empty("note", [](const View& view) { return view.page.report.note; });
+  fields.add(
+      "primary", [](const View& view) { return view.page.report.primary; },
+      "the outcome that is shown first; \"\": nothing was measured");
+}
+
+/// What both end with.
+template <class View>
+void describe_tail(Fields<View>& fields) {
+  fields.add("recordings", [](const View& view) { return view.page.recordings(); });
+  fields.add("courses", [](const View& view) { return view.page.report.courses; });
+  fields.add("matrices", [](const View& view) { return view.page.matrices(); });
+  fields.add("outcomes", [](const View& view) { return outcomes_of(view.page); });
+  fields.add(
+      "results", [](const View& view) { return results_of(view.page); },
+      "every usable result that is not excluded; absent where they are too many for a page");
+}
+
+struct StudyPage {
+  Page page;
+  std::vector<store::OutcomeSummary> outcomes;
+};
+
+void describe(Fields<StudyPage>& fields) {
+  fields.type("StudyReport", "What stands in the page that `mbk study report` writes.");
+  describe_head(fields, "mbk.study_report/1");
+  fields.add("summary", [](const StudyPage& view) {
+    const StudyReport& report = view.page.report;
+    return statistics::StudySummary{report.list, view.outcomes, report.statistics};
+  });
+  describe_tail(fields);
+}
+
+struct ParticipantPage {
+  Page page;
+};
+
+void describe(Fields<ParticipantPage>& fields) {
+  using From = const ParticipantPage&;
+  fields.type(
+      "ParticipantReport",
+      "What stands in the page that `mbk study report --participant` writes. Of other people it holds no number "
+      "but those that describe all of them together.");
+  describe_head(fields, "mbk.participant_report/1");
+  fields.add("title", [](From view) { return view.page.report.list.facts.title; });
+  fields.add_or_null("analysis", [](From view) { return view.page.report.list.analysis; });
+  fields.add("participant", [](From view) { return *view.page.participant; });
+  fields.add(
+      "study_participants",
+      [](From view) {
+        std::set<std::int64_t> people;
+        for (const store::TrialRow& trial : view.page.report.columns.trials) people.insert(trial.participant);
+        return people.size();
+      },
+      "with a usable result");
+  describe_tail(fields);
 }
 
 }  // namespace
+
+void add_schemas(document::Schemas& schemas) {
+  schemas["study_report"] = document::schema_of<StudyPage>();
+  schemas["participant_report"] = document::schema_of<ParticipantPage>();
+}
 
 std::string primary_outcome(const store::OutcomeColumns& columns) {
   for (const char* name : {"stiffness_lambda_max", "K", "K_xx"}) {
@@ -192,7 +282,7 @@ std::string primary_outcome(const store::OutcomeColumns& columns) {
 }
 
 Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns columns,
-                                 const statistics::StudyStatistics& statistics, std::optional<std::int64_t> participant,
+                                 statistics::StudyStatistics statistics, std::optional<std::int64_t> participant,
                                  const std::string& outcome) {
   StudyReport report;
   const auto is_theirs = [&](const store::ListedRecording& one) { return one.recording.participant == *participant; };
@@ -208,39 +298,17 @@ Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns co
   report.courses = courses(columns, statistics, participant);
   report.list = std::move(list);
   report.columns = std::move(columns);
+  report.statistics = std::move(statistics);
   return report;
 }
 
-std::string study_report_json(const StudyReport& report, const std::string& summary) {
-  Document json = begun("mbk.study_report/1", report);
-  json["primary"] = report.primary;
-  json["summary"] = Document::parse(summary, nullptr, false);
-  json["recordings"] = recordings_json(report.list, {});
-  json["courses"] = courses_json(report.courses);
-  json["matrices"] = matrices_json(report.columns, {});
-  add_results(json, report.columns, {});
-  if (!report.jobs.empty()) json["jobs"] = jobs_json(report.jobs);
-  return written(json);
+std::string study_report_json(const StudyReport& report) {
+  return document::compact(document::written(StudyPage{{report, {}}, store::summarise_outcomes(report.columns)})) +
+         "\n";
 }
 
 std::string participant_report_json(const StudyReport& report, std::int64_t participant) {
-  Document json = begun("mbk.participant_report/1", report);
-  json["primary"] = report.primary;
-  const Document list = Document::parse(store::to_json(report.list), nullptr, false);
-  json["title"] = list["title"];
-  json["analysis"] = Document();
-  for (const Document& one : list["analyses"]) {
-    if (one["number"] == list["analysis"]) json["analysis"] = one;
-  }
-  json["participant"] = participant;
-  std::set<std::int64_t> people;
-  for (const store::TrialRow& trial : report.columns.trials) people.insert(trial.participant);
-  json["study_participants"] = people.size();
-  json["recordings"] = recordings_json(report.list, participant);
-  json["courses"] = courses_json(report.courses);
-  json["matrices"] = matrices_json(report.columns, participant);
-  add_results(json, report.columns, participant);
-  return written(json);
+  return document::compact(document::written(ParticipantPage{{report, participant}})) + "\n";
 }
 
 }  // namespace mbk::longitudinal

@@ -16,9 +16,9 @@ struct StudyReport {
   std::string note;     ///< of whoever made it; may be empty
   store::StudyList list;
   store::OutcomeColumns columns;
+  statistics::StudyStatistics statistics;
   std::vector<OutcomeCourses> courses;
-  std::string primary;            ///< the outcome that is shown first
-  std::vector<std::string> jobs;  ///< documents of schema mbk.job_efficiency/1
+  std::string primary;  ///< the outcome that is shown first
 };
 
 /// The outcome that a page shows first unless it is asked for another: the largest stiffness [N/m], or else that of
@@ -28,12 +28,11 @@ struct StudyReport {
 /// The list of courses, for one person that of them alone.
 /// @fails  usage: there is no such outcome; the participant has no recording.
 [[nodiscard]] Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns columns,
-                                               const statistics::StudyStatistics& statistics,
+                                               statistics::StudyStatistics statistics,
                                                std::optional<std::int64_t> participant, const std::string& outcome);
 
 /// Schema "mbk.study_report/1".
-/// @param summary  the document of `mbk study summary --json`
-[[nodiscard]] std::string study_report_json(const StudyReport& report, const std::string& summary);
+[[nodiscard]] std::string study_report_json(const StudyReport& report);
 
 /// Schema "mbk.participant_report/1". Of other people it holds no number but those that describe all of them together.
 [[nodiscard]] std::string participant_report_json(const StudyReport& report, std::int64_t participant);

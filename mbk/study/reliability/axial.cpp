@@ -66,24 +66,6 @@ Unwrapped unwrapped_about(const Vector& angles, double about) {
   return result;
 }
 
-Result<std::vector<MatrixQuantity>> matrix_quantities(const Matrix& Z) {
-  if (Z.rows() != 2 || Z.cols() != 2) {
-    return bad_data(fmt::format("a matrix of {}×{} has no ellipse", Z.rows(), Z.cols()), "give 2×2");
-  }
-  const impedance::Ellipse ellipse = impedance::ellipse(Z);
-  return std::vector<MatrixQuantity>{{"xx", Z(0, 0)},
-                                     {"xy", Z(0, 1)},
-                                     {"yx", Z(1, 0)},
-                                     {"yy", Z(1, 1)},
-                                     {"symmetric xy", 0.5 * (Z(0, 1) + Z(1, 0))},
-                                     {"antisymmetric", impedance::antisymmetric_part(Z)},
-                                     {"largest eigenvalue", ellipse.lambda_max},
-                                     {"smallest eigenvalue", ellipse.lambda_min},
-                                     {"area", ellipse.area},
-                                     {"shape", ellipse.shape},
-                                     {"orientation", ellipse.orientation, true}};
-}
-
 Result<WidthSpread> width_spread(const std::vector<std::vector<Matrix>>& matrices) {
   std::vector<double> within, between;
   std::vector<Matrix> means;

@@ -36,18 +36,6 @@ struct Unwrapped {
 };
 [[nodiscard]] Unwrapped unwrapped_about(const Vector& angles, double about);
 
-/// A number of a matrix by which people and sessions are compared.
-struct MatrixQuantity {
-  std::string name;    ///< "xx", "area"
-  double value = 0;    ///< NaN where the matrix has none, as the area of one that is not positive definite
-  bool axial = false;  ///< an orientation: to be unwrapped first
-};
-
-/// Of M, B or K: elements xx, xy, yx, yy; symmetric and antisymmetric part of xy; eigenvalues of the symmetric part;
-/// area, shape and orientation of its ellipse (impedance/ellipse.h).
-/// @param Z 2×2    @fails  data: it is not 2×2.
-[[nodiscard]] Result<std::vector<MatrixQuantity>> matrix_quantities(const Matrix& Z);
-
 /// Affine-invariant distances (impedance/impedance_width.h) of matrices: between sessions of a person, and between
 /// people. Where the first are not clearly less than the second, the matrix does not tell people apart.
 struct WidthSpread {

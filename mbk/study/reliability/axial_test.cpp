@@ -73,26 +73,6 @@ TEST(Unwrapped, SaysWhetherPlainStatisticsMayBeUsed) {
   EXPECT_FALSE(unwrapped_about(Vector{{0.1, 0.4 * kPi}}, 0.0).trusted);
 }
 
-TEST(MatrixQuantities, AreThoseOfADiagonalMatrix) {
-  const auto all = matrix_quantities(Matrix{{200.0, 10.0}, {-10.0, 300.0}});
-  ASSERT_TRUE(all);
-  const auto of = [&](std::string_view name) {
-    for (const MatrixQuantity& one : *all) {
-      if (one.name == name) return one.value;
-    }
-    ADD_FAILURE() << name;
-    return 0.0;
-  };
-  EXPECT_DOUBLE_EQ(of("antisymmetric"), 10.0);
-  EXPECT_DOUBLE_EQ(of("symmetric xy"), 0.0);
-  EXPECT_DOUBLE_EQ(of("largest eigenvalue"), 300.0);
-  EXPECT_DOUBLE_EQ(of("area"), kPi * 6e4);
-  EXPECT_DOUBLE_EQ(of("shape"), 1.5);
-  EXPECT_DOUBLE_EQ(of("orientation"), 0.5 * kPi);
-  EXPECT_TRUE(all->back().axial);
-  EXPECT_FALSE(matrix_quantities(Matrix::Identity(3, 3)));
-}
-
 TEST(WidthSpread, IsLnOfTheRatioForMatricesThatAreMultiples) {
   std::vector<std::vector<Matrix>> matrices;
   for (int person = 0; person < 5; ++person) {

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/study/reliability/distributions.h"
 
 namespace mbk::reliability {
 namespace {
@@ -27,7 +27,9 @@ double half_width(double u, double content) {
 
 AgreementLimit limit_of(double bias, double s, int people, double normal) {
   const double root = std::sqrt(static_cast<double>(people));
-  const auto end = [&](double p) { return bias + s * noncentral_t_quantile(p, people - 1, root * normal) / root; };
+  const auto end = [&](double p) {
+    return bias + s * numeric::noncentral_t_quantile(p, people - 1, root * normal) / root;
+  };
   return {bias + normal * s, {end(kTail95), end(1.0 - kTail95)}};
 }
 
@@ -48,7 +50,7 @@ double tolerance_factor(int count, double content, double confidence) {
   const auto held = [&](double k) {
     double chance = 0.0;
     for (int i = 0; i <= kSteps; ++i) {
-      chance += weights[i] * chi_square_above(degrees * widths[i] * widths[i] / (k * k), degrees);
+      chance += weights[i] * numeric::chi_square_above(degrees * widths[i] * widths[i] / (k * k), degrees);
     }
     return chance;
   };
@@ -92,7 +94,7 @@ Result<BlandAltman> bland_altman(const Vector& first, const Vector& second) {
   const double s = result.standard_deviation = std::sqrt(numeric::variance(difference));
   if (!(s > 0.0)) result.support = Support::no_variation;
   const double reach =
-      student_quantile(1.0 - kTail95, result.people - 1) * s / std::sqrt(static_cast<double>(result.people));
+      numeric::student_quantile(1.0 - kTail95, result.people - 1) * s / std::sqrt(static_cast<double>(result.people));
   result.bias95 = {result.bias - reach, result.bias + reach};
   result.upper = limit_of(result.bias, s, result.people, kPublishedNormal95);
   result.lower = limit_of(result.bias, s, result.people, -kPublishedNormal95);

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/random.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/study/reliability/distributions.h"
 
 namespace mbk::reliability {
 namespace {
@@ -60,7 +60,8 @@ EffectSize effect_of(double d, double degrees, double effective_count) {
   const double root = std::sqrt(effective_count), t = d * root;
   return {unbiasing(degrees) * d,
           d,
-          {noncentrality_of(t, degrees, 1.0 - kTail95) / root, noncentrality_of(t, degrees, kTail95) / root}};
+          {numeric::noncentrality_of(t, degrees, 1.0 - kTail95) / root,
+           numeric::noncentrality_of(t, degrees, kTail95) / root}};
 }
 
 /// Counts arrangements whose |t| is as large as the one that was measured, but for rounding.
@@ -173,9 +174,9 @@ Result<Difference> difference(const Vector& first, const Vector& second, Pairing
     result.p = result.effect.g = result.effect.d = kNaN;
     return result;
   }
-  const double reach = student_quantile(1.0 - kTail95, student.degrees) * student.standard_error;
+  const double reach = numeric::student_quantile(1.0 - kTail95, student.degrees) * student.standard_error;
   result.interval95 = {result.value - reach, result.value + reach};
-  result.p = student_two_sided(student.t(), student.degrees);
+  result.p = numeric::student_two_sided(student.t(), student.degrees);
   const auto n1 = static_cast<double>(first.size()), n2 = static_cast<double>(second.size());
   if (paired) {
     result.effect = effect_of(student.t() / std::sqrt(n1), n1 - 1.0, n1);
@@ -191,7 +192,7 @@ Result<Difference> difference(const Vector& first, const Vector& second, Pairing
 double difference_p(const Vector& first, const Vector& second, Pairing pairing) {
   if (first.size() < 2 || second.size() < 2) return kNaN;
   const StudentT student = pairing == Pairing::paired ? of_differences(second - first) : welch(first, second);
-  return student.standard_error > 0.0 ? student_two_sided(student.t(), student.degrees) : kNaN;
+  return student.standard_error > 0.0 ? numeric::student_two_sided(student.t(), student.degrees) : kNaN;
 }
 
 Result<Permutation> permutation_test(const Vector& first, const Vector& second, Pairing pairing,

@@ -13,8 +13,8 @@
 #include "mbk/base/core/nan.h"
 #include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
-#include "mbk/study/reliability/distributions.h"
 #include "mbk/study/reliability/heavy_tails.h"
 #include "mbk/study/reliability/second_order_jet.h"
 
@@ -900,9 +900,9 @@ FixedEffect contrast(const MixedModel& model, const Vector& weights) {
   effect.degrees_of_freedom = of_variance > 0.0 ? 2.0 * variance * variance / of_variance
                               : estimated       ? fewest
                                                 : kInfinity;
-  const double reach = student_quantile(1.0 - kTail95, effect.degrees_of_freedom) * effect.standard_error;
+  const double reach = numeric::student_quantile(1.0 - kTail95, effect.degrees_of_freedom) * effect.standard_error;
   effect.interval95 = {effect.value - reach, effect.value + reach};
-  effect.p = student_two_sided(effect.value / effect.standard_error, effect.degrees_of_freedom);
+  effect.p = numeric::student_two_sided(effect.value / effect.standard_error, effect.degrees_of_freedom);
   return effect;
 }
 

@@ -50,48 +50,6 @@ TEST(Power, RefusesWhatHasNoAnswer) {
   EXPECT_FALSE(people_for_effect(0.5, 1.0, Pairing::paired));
   EXPECT_FALSE(people_for_effect(0.5, 0.04, Pairing::paired, 0.05));
   EXPECT_FALSE(people_for_effect(1e-6, 0.8, Pairing::paired));
-  EXPECT_FALSE(people_and_trials({}, 1.0, 0.8, Pairing::paired, 1, 3));
-  EXPECT_FALSE(people_and_trials({-1.0, 0.0, 1.0}, 1.0, 0.8, Pairing::paired, 1, 3));
-}
-
-TEST(PeopleAndTrials, FallToWhatPeopleAndSessionsLeave) {
-  const VarianceComponents variances{4.0, 1.0, 9.0};
-  const auto plans = people_and_trials(variances, 2.0, 0.8, Pairing::unpaired, 2, 1000);
-  ASSERT_TRUE(plans) << plans.error().line();
-  EXPECT_DOUBLE_EQ(plans->front().variance, 4.0 + (1.0 + 9.0) / 2.0);
-  EXPECT_EQ(*plans->front().people, *people_for_effect(2.0 / 3.0, 0.8, Pairing::unpaired));
-  EXPECT_EQ(*plans->back().people, *people_for_effect(2.0 / std::sqrt(4.5045), 0.8, Pairing::unpaired));
-  for (std::size_t k = 1; k < plans->size(); ++k) EXPECT_LE((*plans)[k].people, (*plans)[k - 1].people);
-  const auto paired = people_and_trials(variances, 2.0, 0.8, Pairing::paired, 1, 1);
-  EXPECT_DOUBLE_EQ(paired->front().variance, 20.0);
-}
-
-TEST(TrialsForChange, AreTheFewestThatReachIt) {
-  const VarianceComponents variances{100.0, 1.0, 9.0};
-  for (const int sessions : {1, 3}) {
-    for (const double change : {3.0, 4.0, 5.0, 20.0}) {
-      const auto found = trials_for_change(variances, change, sessions);
-      ASSERT_TRUE(found);
-      const auto mdc = [&](int m) { return 1.96 * std::sqrt(2.0 * (1.0 + 9.0 / m) / sessions); };
-      ASSERT_TRUE(found->trials);
-      EXPECT_LE(mdc(*found->trials), change);
-      EXPECT_DOUBLE_EQ(found->mdc95, mdc(*found->trials));
-      if (*found->trials > 1) {
-        EXPECT_GT(mdc(*found->trials - 1), change);
-      }
-    }
-  }
-}
-
-TEST(TrialsForChange, AreNoneWhereSessionsDifferByMore) {
-  const auto found = trials_for_change({0.0, 4.0, 9.0}, 5.0);
-  ASSERT_TRUE(found);
-  EXPECT_FALSE(found->trials);
-  EXPECT_DOUBLE_EQ(found->smallest_mdc95, 1.96 * std::sqrt(8.0));
-  EXPECT_TRUE(trials_for_change({0.0, 4.0, 9.0}, 5.0, 2)->trials);
-  EXPECT_EQ(trials_for_change({0.0, 4.0, 0.0}, 6.0)->trials, 1);
-  EXPECT_FALSE(trials_for_change({0.0, 4.0, 9.0}, 0.0));
-  EXPECT_FALSE(trials_for_change({0.0, NAN, 9.0}, 1.0));
 }
 
 }  // namespace power_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mbk/study/reliability/distributions.h"
+#include "mbk/base/numeric/distributions.h"
 #include "mbk/study/reliability/heavy_tails.h"
 
 namespace mbk::reliability {
@@ -47,8 +47,8 @@ Icc icc_by_ratio(IccForm form, const MeanSquares& squares, double error, double 
   return {form,
           1,
           icc_of_ratio(ratio, k),
-          {icc_of_ratio(ratio / f_quantile(1.0 - kTail95, people_degrees, error_degrees), k),
-           icc_of_ratio(ratio * f_quantile(1.0 - kTail95, error_degrees, people_degrees), k)}};
+          {icc_of_ratio(ratio / numeric::f_quantile(1.0 - kTail95, people_degrees, error_degrees), k),
+           icc_of_ratio(ratio * numeric::f_quantile(1.0 - kTail95, error_degrees, people_degrees), k)}};
 }
 
 /// Satterthwaite's degrees of freedom of a·MSJ + b·MSE.
@@ -66,7 +66,8 @@ Icc icc_of_agreement(const MeanSquares& squares) {
   if (icc.value >= 1.0) return icc;
   const double odds = std::max(icc.value, 0.0) / (1.0 - std::max(icc.value, 0.0));
   const double v = satterthwaite(squares, k * odds / n, 1.0 + k * odds * (n - 1.0) / n);
-  const double lower = f_quantile(1.0 - kTail95, n - 1.0, v), upper = f_quantile(1.0 - kTail95, v, n - 1.0);
+  const double lower = numeric::f_quantile(1.0 - kTail95, n - 1.0, v),
+               upper = numeric::f_quantile(1.0 - kTail95, v, n - 1.0);
   const double error = k * MSJ + (k * n - k - n) * MSE;
   icc.interval95 = {n * (MSB - lower * MSE) / (lower * error + n * MSB),
                     n * (upper * MSB - MSE) / (error + n * upper * MSB)};
@@ -75,8 +76,9 @@ Icc icc_of_agreement(const MeanSquares& squares) {
 
 MeasurementError error_of(IccForm form, double variance, double degrees) {
   const double sem = std::sqrt(variance);
-  const Interval sem95 = widened_for_tails(sem, {sem * std::sqrt(degrees / chi_square_quantile(1.0 - kTail95, degrees)),
-                                                 sem * std::sqrt(degrees / chi_square_quantile(kTail95, degrees))});
+  const Interval sem95 =
+      widened_for_tails(sem, {sem * std::sqrt(degrees / numeric::chi_square_quantile(1.0 - kTail95, degrees)),
+                              sem * std::sqrt(degrees / numeric::chi_square_quantile(kTail95, degrees))});
   constexpr double kChange = kPublishedNormal95 * std::numbers::sqrt2;
   return {form, sem, sem95, kChange * sem, {kChange * sem95.first, kChange * sem95.second}};
 }

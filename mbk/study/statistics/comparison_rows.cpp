@@ -239,7 +239,7 @@ void compare_one(const OutcomeRows& rows, const Levels& levels, int first, std::
                  OutcomeComparison& result) {
   result.axial = rows.axial;
   if (!rows.trusted) {
-    result.verdict = Verdict::no_variation;
+    result.verdict = DifferenceVerdict::no_variation;
     result.notes.emplace_back(
         "orientations lie more than 45° from their mean axis, so that no numbers can stand for them");
     result.difference.support = result.permutation.support = Support::no_variation;
@@ -268,13 +268,13 @@ void compare_one(const OutcomeRows& rows, const Levels& levels, int first, std::
 
 void judge(OutcomeComparison& one) {
   if (one.difference.support == Support::no_variation || one.permutation.support == Support::no_variation) {
-    one.verdict = Verdict::no_variation;
+    one.verdict = DifferenceVerdict::no_variation;
   } else if (one.difference.support != Support::enough || one.permutation.support != Support::enough) {
-    one.verdict = Verdict::too_few_people;
+    one.verdict = DifferenceVerdict::too_few_people;
   } else {
-    one.verdict = one.p_holm <= kLevel ? Verdict::differs : Verdict::not_shown;
+    one.verdict = one.p_holm <= kLevel ? DifferenceVerdict::differs : DifferenceVerdict::not_shown;
   }
-  if (one.verdict != Verdict::differs) return;
+  if (one.verdict != DifferenceVerdict::differs) return;
   if (one.influence && one.influence->without > kLevel) {
     one.notes.push_back(fmt::format("the difference rests on participant {}: without them p is {:.2g}",
                                     one.influence->participant, one.influence->without));

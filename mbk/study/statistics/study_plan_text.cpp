@@ -3,31 +3,15 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "mbk/base/core/version.h"
 #include "mbk/present/report/text.h"
 #include "mbk/study/statistics/study_plan.h"
+#include "mbk/study/statistics/summary_document.h"
 
 namespace mbk::statistics {
 namespace plan_detail {
 
-using Document = nlohmann::ordered_json;
-
 constexpr std::size_t kPlanWidth = 80;
-
-Document number_or_null(double value) {
-  return std::isfinite(value) ? Document(value) : Document();
-}
-
-Document planned_json(const Planned& planned) {
-  if (std::isnan(planned.value)) return {};
-  const bool stated = std::isnan(planned.interval95.first);
-  return {{"value", planned.value},
-          {"interval95", stated ? Document()
-                                : Document::array({number_or_null(planned.interval95.first),
-                                                   number_or_null(planned.interval95.second)})}};
-}
 
 std::string three_digits(double value) {
   return std::isfinite(value) ? fmt::format("{:.3g}", value) : "∞";
@@ -106,46 +90,112 @@ std::vector<std::string> pilot_notes(const Pilot& pilot) {
 
 }  // namespace plan_detail
 
+using document::Fields;
+
+void describe(Fields<Planned>& fields) {
+  fields.type("PlannedNumber", "A number with the interval that the pilot leaves it.");
+  fields.add("value", &Planned::value);
+  fields.add_or_null(
+      "interval95",
+      [](const Planned& planned) {
+        return std::isnan(planned.interval95.first) ? std::nullopt : std::optional(planned.interval95);
+      },
+      "null where variances were stated");
+}
+
+void describe(Fields<Pilot>& fields) {
+  fields.add("conditions", &Pilot::conditions);
+  fields.add("participants", &Pilot::participants);
+  fields.add("sessions", &Pilot::sessions);
+  fields.add("results", &Pilot::results);
+  fields.add(
+      "draws", [](const Pilot& pilot) { return pilot.redrawn.size(); }, "pilots that were drawn for the intervals");
+}
+
+void describe(Fields<StudyPlan>& fields) {
+  const auto known = [](const Planned& number) {
+    return std::isnan(number.value) ? std::nullopt : std::optional(number);
+  };
+  fields.add("sessions", &StudyPlan::sessions);
+  fields.add("trials", &StudyPlan::trials, "in each session");
+  fields.add_or_null("mdc95", [=](const StudyPlan& plan) { return known(plan.mdc95); });
+  fields.add_or_null("change_is_detectable", &StudyPlan::change_is_detectable);
+  fields.add_or_null("people", [=](const StudyPlan& plan) { return known(plan.people); });
+  fields.add_or_null("power", [=](const StudyPlan& plan) { return known(plan.power); });
+  fields.add_or_null("simulated_power",
+                     [=](const StudyPlan& plan) { return known(plan.simulated_power.value_or(Planned())); });
+}
+
+void describe(Fields<PlanGoal>& fields) {
+  fields.add_or_null("difference", &PlanGoal::difference, "of two means");
+  fields.add_or_null("mdc95", &PlanGoal::change, "minimal detectable change of one person");
+  fields.add("pairing", &PlanGoal::pairing);
+  fields.add_number("power", &PlanGoal::power);
+  fields.add_number("level", &PlanGoal::level);
+  fields.add_or_null("people", &PlanGoal::people, "given; null: as many as it takes");
+}
+
+namespace {
+
+/// [unit²]; NaN where the pilot does not identify it.
+struct PilotVariances {
+  double participant = kNaN, session = kNaN, residual = kNaN, within = kNaN, total = kNaN;
+};
+
+PilotVariances variances_of(const Pilot& pilot) {
+  const auto& [participant, session, residual] = pilot.variances;
+  const bool sessions = !pilot.warns_of(ReliabilityWarning::people_and_sessions);
+  const bool trials = !pilot.warns_of(ReliabilityWarning::sessions_and_trials);
+  return {sessions ? participant : kNaN, sessions && trials ? session : kNaN, trials ? residual : kNaN,
+          sessions ? session + residual : kNaN, participant + session + residual};
+}
+
+void describe(Fields<PilotVariances>& fields) {
+  fields.add("participant", &PilotVariances::participant, "between people");
+  fields.add("session", &PilotVariances::session, "between sessions");
+  fields.add("residual", &PilotVariances::residual, "between trials");
+  fields.add("within_participant", &PilotVariances::within, "session and residual together");
+  fields.add_number("total", &PilotVariances::total, "all together");
+}
+
+struct PlannedStudy {
+  const Pilot& pilot;
+  const PlanGoal& goal;
+  const std::vector<StudyPlan>& plans;
+};
+
+void describe(Fields<PlannedStudy>& fields) {
+  using From = const PlannedStudy&;
+  fields.type("StudyPlan", "What `mbk study plan --json` writes: how many people, sessions and trials a study takes.");
+  fields.header("mbk.study_plan/1");
+  const auto where_measured = [](From study, const auto& value) {
+    return study.pilot.outcome.empty() ? std::nullopt : std::optional(value);
+  };
+  fields.add_or_null(
+      "outcome", [=](From study) { return where_measured(study, study.pilot.outcome); },
+      "of the pilot; null where variances were stated");
+  fields.add("unit", [](From study) { return study.pilot.unit; });
+  fields.add_or_null("pilot", [=](From study) { return where_measured(study, study.pilot); });
+  fields.add(
+      "variance", [](From study) { return variances_of(study.pilot); },
+      "[unit²]; null: not identifiable from the pilot");
+  fields.add("wanted", [](From study) { return study.goal; });
+  fields.add("plans", [](From study) { return std::span(study.plans); });
+  fields.add(
+      "warnings", [](From study) { return study.pilot.warnings; },
+      "what the pilot does not separate: nothing is planned that needs it; heavy-tails: intervals do not hold");
+  fields.add(
+      "notes", [](From study) { return plan_detail::pilot_notes(study.pilot); }, "a sentence for each warning");
+}
+
+}  // namespace
+
+void add_plan_schema(document::Schemas& schemas) {
+  schemas["study_plan"] = document::schema_of<PlannedStudy>();
+}
+
 std::string to_json(const Pilot& pilot, const PlanGoal& goal, const std::vector<StudyPlan>& plans) {
-  using namespace plan_detail;
-  Document json = {{"schema", "mbk.study_plan/1"}, {"software", fmt::format("mbk {}", version())}};
-  json["outcome"] = pilot.outcome.empty() ? Document() : Document(pilot.outcome);
-  json["unit"] = pilot.unit;
-  json["pilot"] = pilot.outcome.empty() ? Document()
-                                        : Document{{"conditions", pilot.conditions},
-                                                   {"participants", pilot.participants},
-                                                   {"sessions", pilot.sessions},
-                                                   {"results", pilot.results},
-                                                   {"draws", pilot.redrawn.size()}};
-  const bool no_sessions = pilot.warns_of(ReliabilityWarning::people_and_sessions);
-  const bool no_trials = pilot.warns_of(ReliabilityWarning::sessions_and_trials);
-  const reliability::VarianceComponents& v = pilot.variances;
-  json["variance"] = {{"participant", no_sessions ? Document() : Document(v.participant)},
-                      {"session", no_sessions || no_trials ? Document() : Document(v.session)},
-                      {"residual", no_trials ? Document() : Document(v.residual)},
-                      {"within_participant", no_sessions ? Document() : Document(v.session + v.residual)},
-                      {"total", v.participant + v.session + v.residual}};
-  json["wanted"] = {{"difference", goal.difference ? Document(*goal.difference) : Document()},
-                    {"mdc95", goal.change ? Document(*goal.change) : Document()},
-                    {"pairing", word_of(goal.pairing)},
-                    {"power", goal.power},
-                    {"level", goal.level},
-                    {"people", goal.people ? Document(*goal.people) : Document()}};
-  json["plans"] = Document::array();
-  for (const StudyPlan& plan : plans) {
-    json["plans"].push_back(
-        {{"sessions", plan.sessions},
-         {"trials", plan.trials},
-         {"mdc95", planned_json(plan.mdc95)},
-         {"change_is_detectable", plan.change_is_detectable ? Document(*plan.change_is_detectable) : Document()},
-         {"people", planned_json(plan.people)},
-         {"power", planned_json(plan.power)},
-         {"simulated_power", plan.simulated_power ? planned_json(*plan.simulated_power) : Document()}});
-  }
-  json["warnings"] = Document::array();
-  for (const ReliabilityWarning warning : pilot.warnings) json["warnings"].push_back(word_of(warning));
-  json["notes"] = pilot_notes(pilot);
-  return json.dump(2, ' ', false, Document::error_handler_t::replace) + "\n";
+  return document::document(PlannedStudy{pilot, goal, plans});
 }
 
 std::string plan_text(const Pilot& pilot, const PlanGoal& goal, const std::vector<StudyPlan>& plans) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "mbk/study/reliability/mixed_model.h"
 #include "mbk/study/reliability/retest.h"
 #include "mbk/study/store/store_values.h"
+#include "mbk/study/store/study_list.h"
 
 /// What a study says of people: how reliable each outcome is, and whether conditions, groups or sessions differ.
 namespace mbk::statistics {
@@ -153,19 +155,19 @@ struct MatrixSpread {
 };
 
 /// What may be said of a difference.
-enum class Verdict {
+enum class DifferenceVerdict {
   differs,         ///< Holm's p over all tests is at most 0.05
   not_shown,       ///< it is not; which is no proof that there is none
   too_few_people,  ///< even if all went one way, no permutation could show it at 0.05
   no_variation,    ///< nothing varies, so that nothing can be said
 };
 
-[[nodiscard]] constexpr auto word_table(Verdict) {
-  using enum Verdict;
-  return std::to_array<Word<Verdict>>({{differs, "differs"},
-                                       {not_shown, "not shown"},
-                                       {too_few_people, "too few people"},
-                                       {no_variation, "no variation"}});
+[[nodiscard]] constexpr auto word_table(DifferenceVerdict) {
+  using enum DifferenceVerdict;
+  return std::to_array<Word<DifferenceVerdict>>({{differs, "differs"},
+                                                 {not_shown, "not shown"},
+                                                 {too_few_people, "too few people"},
+                                                 {no_variation, "no variation"}});
 }
 
 /// The difference by a model with the participant as random effect, which also takes people who have only one of the
@@ -192,7 +194,7 @@ struct OutcomeComparison {
   double p_holm = kNaN, p_benjamini_hochberg = kNaN;
   std::optional<Influence> influence;          ///< on p: the person without whom it is largest
   std::optional<BootstrapInterval> bootstrap;  ///< of the difference, where it was asked for
-  Verdict verdict = Verdict::too_few_people;
+  DifferenceVerdict verdict = DifferenceVerdict::too_few_people;
   std::vector<std::string> notes;
 };
 
@@ -234,8 +236,8 @@ void add_matrix_numbers(store::OutcomeColumns& columns);
 [[nodiscard]] Result<StudyStatistics> study_statistics(const store::OutcomeColumns& columns,
                                                        const StatisticsOptions& options = {});
 
-/// The members "reliability", "matrices", "comparison", "bootstrap" (where there is one) and "notes" of
-/// mbk.study_summary/1, as a JSON object.
-[[nodiscard]] std::string to_json(const StudyStatistics& statistics);
+/// Schema "mbk.study_summary/1".
+[[nodiscard]] std::string to_json(const store::StudyList& list, std::span<const store::OutcomeSummary> outcomes,
+                                  const StudyStatistics& statistics);
 
 }  // namespace mbk::statistics

@@ -1,227 +1,324 @@
-#include <cmath>
-#include <nlohmann/json.hpp>
+#include "mbk/study/statistics/summary_document.h"
+#include "mbk/study/store/study_documents.h"
 
-#include "mbk/study/statistics/study_statistics.h"
+namespace mbk::reliability {
+
+using document::Fields;
+
+/// Of a field "support".
+constexpr const char* kSupport =
+    "whether the data carry the statistic; where they do not, its numbers are not there or null";
+
+void describe(Fields<Icc>& fields) {
+  fields.type("StudyIcc");
+  fields.add("form", &Icc::form, "ICC(1), ICC(A,1), ICC(C,1) of McGraw and Wong (1996)");
+  fields.add("averaged", &Icc::averaged, "of one measurement (1), or of the mean of so many");
+  fields.add("value", &Icc::value);
+  fields.add("interval95", &Icc::interval95,
+             "after McGraw and Wong (1996), by the F distribution; below 0 where it reaches there");
+}
+
+void describe(Fields<MeasurementError>& fields) {
+  fields.type("StudyMeasurementError");
+  fields.add("form", &MeasurementError::form,
+             "agreement or consistency: whether a change of all people alike is counted as error");
+  fields.add("sem", &MeasurementError::sem, "standard error of measurement [unit]");
+  fields.add("sem95", &MeasurementError::sem95);
+  fields.add("mdc95", &MeasurementError::mdc95, "minimal detectable change, 1.96 √2 SEM [unit]");
+  fields.add("mdc95_interval", &MeasurementError::mdc95_interval);
+}
+
+void describe(Fields<ModelReliability>& fields) {
+  fields.type("StudyModelReliability");
+  fields.add("trials", &ModelReliability::trials, "of whose mean in a session");
+  fields.add("icc", &ModelReliability::icc);
+  fields.add("icc95", &ModelReliability::icc95);
+  fields.add("sem_between", &ModelReliability::sem_between, "between sessions [unit]");
+  fields.add("sem_between95", &ModelReliability::sem_between95);
+  fields.add("sem_within", &ModelReliability::sem_within, "within a session [unit]");
+  fields.add("sem_within95", &ModelReliability::sem_within95);
+  fields.add("mdc95_between", &ModelReliability::mdc95_between);
+  fields.add("mdc95_within", &ModelReliability::mdc95_within);
+}
+
+void describe(Fields<EffectSize>& fields) {
+  fields.type("StudyEffect");
+  fields.add("g", &EffectSize::g, "Hedges's g");
+  fields.add("d", &EffectSize::d, "over the pooled standard deviation; paired: over that of the differences");
+  fields.add("interval95", &EffectSize::interval95);
+}
+
+void describe(Fields<Permutation>& fields) {
+  fields.type("StudyPermutation");
+  fields.add("support", &Permutation::support, kSupport);
+  fields.add("p", &Permutation::p);
+  fields.add("smallest_p", &Permutation::smallest_p, "that so many people allow");
+  fields.add("exact", &Permutation::exact, "all arrangements, or drawn ones");
+  fields.add("arrangements", &Permutation::arrangements);
+}
+
+}  // namespace mbk::reliability
+
+namespace mbk::store {
+
+void describe(document::Fields<OutcomeSummary>& fields) {
+  fields.add("condition", &OutcomeSummary::condition);
+  fields.add("outcome", &OutcomeSummary::outcome);
+  fields.add("unit", &OutcomeSummary::unit);
+  fields.add("results", &OutcomeSummary::results);
+  fields.add("participants", &OutcomeSummary::participants);
+  fields.add_number("mean", &OutcomeSummary::mean, "of the participants' means; of an orientation the mean axis");
+  fields.add("standard_deviation", &OutcomeSummary::standard_deviation,
+             "of the participants' means; null: one participant");
+  fields.add_number("minimum", &OutcomeSummary::minimum, "of all results");
+  fields.add_number("maximum", &OutcomeSummary::maximum, "of all results");
+}
+
+}  // namespace mbk::store
 
 namespace mbk::statistics {
+
+using document::Fields;
+using document::through;
+using reliability::kSupport;
+
 namespace {
 
-using Document = nlohmann::ordered_json;
+struct BetweenSessions {
+  const Repeated& of;
+};
+struct WithinSession {
+  const Repeated& of;
+};
 
-/// null where a number is undefined.
-Document number(double value) {
-  return std::isfinite(value) ? Document(value) : Document();
+template <class View>
+void describe_repeated(Fields<View>& fields, const std::string& repetitions) {
+  fields.add(
+      "support", [](const View& view) { return view.of.support; }, kSupport);
+  fields.add(
+      "participants", [](const View& view) { return view.of.participants.size(); }, "who have each of these");
+  fields.add(
+      "left_out", [](const View& view) { return view.of.left_out; }, "who have values and lack one of these");
+  fields.add(repetitions, [](const View& view) { return view.of.repetitions; });
+  fields.add("icc", [](const View& view) { return view.of.test_retest.icc; });
+  fields.add("error", [](const View& view) { return view.of.test_retest.error; });
 }
 
-Document pair(const Interval& interval) {
-  return Document::array({number(interval.first), number(interval.second)});
+void describe(Fields<BetweenSessions>& fields) {
+  describe_repeated(fields, "sessions");
 }
 
-Document icc_json(const reliability::Icc& icc) {
-  return {{"form", word_of(icc.form)},
-          {"averaged", icc.averaged},
-          {"value", number(icc.value)},
-          {"interval95", pair(icc.interval95)}};
-}
-
-Document error_json(const reliability::MeasurementError& error) {
-  return {{"form", word_of(error.form)},
-          {"sem", number(error.sem)},
-          {"sem95", pair(error.sem95)},
-          {"mdc95", number(error.mdc95)},
-          {"mdc95_interval", pair(error.mdc95_interval)}};
-}
-
-Document repeated_json(const Repeated& repeated, const char* repetitions) {
-  Document json = {{"support", word_of(repeated.support)},
-                   {"participants", repeated.participants.size()},
-                   {"left_out", repeated.left_out},
-                   {repetitions, repeated.repetitions}};
-  json["icc"] = Document::array();
-  json["error"] = Document::array();
-  for (const reliability::Icc& one : repeated.test_retest.icc) json["icc"].push_back(icc_json(one));
-  for (const auto& one : repeated.test_retest.error) json["error"].push_back(error_json(one));
-  return json;
-}
-
-Document agreement_json(const SessionAgreement& one) {
-  const reliability::BlandAltman& limits = one.limits;
-  return {{"first_session", one.first_session},
-          {"second_session", one.second_session},
-          {"support", word_of(limits.support)},
-          {"participants", limits.people},
-          {"bias", number(limits.bias)},
-          {"bias95", pair(limits.bias95)},
-          {"standard_deviation", number(limits.standard_deviation)},
-          {"lower", number(limits.lower.value)},
-          {"lower95", pair(limits.lower.interval95)},
-          {"upper", number(limits.upper.value)},
-          {"upper95", pair(limits.upper.interval95)},
-          {"tolerance95", pair(limits.tolerance95)}};
-}
-
-Document influence_json(const std::optional<Influence>& influence) {
-  if (!influence) return {};
-  return {{"participant", influence->participant}, {"without", number(influence->without)}};
-}
-
-Document mixed_json(const MixedReliability& model) {
-  Document json = {{"support", word_of(model.support)},
-                   {"weighted", model.weighted},
-                   {"participants", model.participants},
-                   {"sessions", model.sessions},
-                   {"results", model.results},
-                   {"variance",
-                    {{"participant", number(model.participant)},
-                     {"session", number(model.session)},
-                     {"residual", number(model.residual)},
-                     {"within_participant", number(model.within)},
-                     {"known", number(model.known)}}}};
-  json["of_trials"] = Document::array();
-  for (const reliability::ModelReliability& one : model.of_trials) {
-    json["of_trials"].push_back({{"trials", one.trials},
-                                 {"icc", number(one.icc)},
-                                 {"icc95", pair(one.icc95)},
-                                 {"sem_between", number(one.sem_between)},
-                                 {"sem_between95", pair(one.sem_between95)},
-                                 {"sem_within", number(one.sem_within)},
-                                 {"sem_within95", pair(one.sem_within95)},
-                                 {"mdc95_between", number(one.mdc95_between)},
-                                 {"mdc95_within", number(one.mdc95_within)}});
-  }
-  return json;
-}
-
-Document bootstrap_json(const BootstrapInterval& one) {
-  return {{"value", number(one.value)},
-          {"standard_error", number(one.standard_error)},
-          {"percentile95", pair(one.percentile95)},
-          {"bca95", pair(one.bca95)},
-          {"undefined", one.undefined}};
-}
-
-Document reliability_json(const OutcomeReliability& one) {
-  Document json = {{"condition", one.condition},
-                   {"outcome", one.outcome},
-                   {"unit", one.unit},
-                   {"axial", one.axial},
-                   {"participants", one.participants},
-                   {"repeated_participants", one.repeated_participants},
-                   {"results", one.results},
-                   {"between_sessions", repeated_json(one.between_sessions, "sessions")}};
-  json["agreement"] = Document::array();
-  for (const SessionAgreement& agreement : one.agreement) json["agreement"].push_back(agreement_json(agreement));
-  json["influence"] = influence_json(one.influence);
-  json["session"] = one.session > 0 ? Document(one.session) : Document();
-  json["within_session"] = repeated_json(one.within_session, "trials");
-  json["mixed_model"] = mixed_json(one.mixed_model);
-  if (one.bootstrap) {
-    json["bootstrap"] = {{"icc_agreement", bootstrap_json(one.bootstrap->icc_agreement)},
-                         {"icc_consistency", bootstrap_json(one.bootstrap->icc_consistency)},
-                         {"sem_agreement", bootstrap_json(one.bootstrap->sem_agreement)}};
-  }
-  json["warnings"] = Document::array();
-  for (const ReliabilityWarning warning : one.warnings) json["warnings"].push_back(word_of(warning));
-  json["notes"] = one.notes;
-  return json;
-}
-
-Document quartiles_json(const Quartiles& quartiles) {
-  return {{"count", quartiles.count},
-          {"lower_quartile", number(quartiles.lower)},
-          {"median", number(quartiles.median)},
-          {"upper_quartile", number(quartiles.upper)}};
-}
-
-Document spread_json(const MatrixSpread& one) {
-  return {{"condition", one.condition},
-          {"matrix", one.matrix},
-          {"support", word_of(one.support)},
-          {"participants", one.participants},
-          {"sessions", one.sessions},
-          {"left_out", one.left_out},
-          {"within_participants", quartiles_json(one.within)},
-          {"between_participants", quartiles_json(one.between)},
-          {"closer", number(one.closer)}};
-}
-
-Document mixed_json(const std::optional<MixedDifference>& model) {
-  if (!model) return {};
-  const reliability::FixedEffect& effect = model->difference;
-  return {{"weighted", model->weighted},
-          {"participants", model->participants},
-          {"difference", number(effect.value)},
-          {"standard_error", number(effect.standard_error)},
-          {"degrees_of_freedom", number(effect.degrees_of_freedom)},
-          {"interval95", pair(effect.interval95)},
-          {"p", number(effect.p)},
-          {"variance", {{"participant", number(model->participant)}, {"residual", number(model->residual)}}}};
-}
-
-Document comparison_json(const OutcomeComparison& one) {
-  const reliability::Difference& difference = one.difference;
-  const reliability::Permutation& permutation = one.permutation;
-  const bool enough = difference.support == Support::enough;
-  Document json = {{"condition", one.condition},
-                   {"first", one.first},
-                   {"second", one.second},
-                   {"outcome", one.outcome},
-                   {"unit", one.unit},
-                   {"axial", one.axial},
-                   {"verdict", word_of(one.verdict)},
-                   {"pairing", word_of(difference.pairing)},
-                   {"support", word_of(difference.support)},
-                   {"first_participants", difference.first_count},
-                   {"second_participants", difference.second_count},
-                   {"left_out", one.left_out},
-                   {"first_mean", number(one.first_mean)},
-                   {"second_mean", number(one.second_mean)},
-                   {"difference", number(difference.value)}};
-  json["standard_error"] = enough ? number(difference.standard_error) : Document();
-  json["degrees_of_freedom"] = enough ? number(difference.degrees_of_freedom) : Document();
-  json["interval95"] = enough ? pair(difference.interval95) : Document();
-  json["p"] = number(difference.p);
-  json["p_holm"] = number(one.p_holm);
-  json["p_benjamini_hochberg"] = number(one.p_benjamini_hochberg);
-  json["effect"] = enough ? Document{{"g", number(difference.effect.g)},
-                                     {"d", number(difference.effect.d)},
-                                     {"interval95", pair(difference.effect.interval95)}}
-                          : Document();
-  json["permutation"] = {{"support", word_of(permutation.support)},
-                         {"p", number(permutation.p)},
-                         {"smallest_p", number(permutation.smallest_p)},
-                         {"exact", permutation.exact},
-                         {"arrangements", permutation.arrangements}};
-  json["mixed_model"] = mixed_json(one.mixed_model);
-  json["influence"] = influence_json(one.influence);
-  if (one.bootstrap) json["bootstrap"] = bootstrap_json(*one.bootstrap);
-  json["notes"] = one.notes;
-  return json;
+void describe(Fields<WithinSession>& fields) {
+  describe_repeated(fields, "trials");
 }
 
 }  // namespace
 
-std::string to_json(const StudyStatistics& statistics) {
-  Document json = Document::object();
-  json["reliability"] = Document::array();
-  for (const OutcomeReliability& one : statistics.reliability) json["reliability"].push_back(reliability_json(one));
-  json["matrices"] = Document::array();
-  for (const MatrixSpread& one : statistics.matrices) json["matrices"].push_back(spread_json(one));
-  if (statistics.comparison) {
-    Document comparison = {{"by", word_of(statistics.comparison->by)},
-                           {"levels", statistics.comparison->levels},
-                           {"tests", statistics.comparison->tests},
-                           {"outcomes", Document::array()}};
-    for (const OutcomeComparison& one : statistics.comparison->outcomes) {
-      comparison["outcomes"].push_back(comparison_json(one));
-    }
-    json["comparison"] = std::move(comparison);
-  }
-  if (statistics.bootstrap) {
-    json["bootstrap"] = {{"draws", statistics.bootstrap->draws}, {"seed", statistics.bootstrap->seed}};
-  }
-  json["notes"] = statistics.notes;
-  return json.dump(-1, ' ', false, Document::error_handler_t::replace);
+void describe(Fields<SessionAgreement>& fields) {
+  using From = const SessionAgreement&;
+  fields.type("StudyAgreement", "Bland and Altman's limits of agreement, with exact intervals.");
+  fields.add("first_session", &SessionAgreement::first_session);
+  fields.add("second_session", &SessionAgreement::second_session);
+  fields.add("support", through(&SessionAgreement::limits, &reliability::BlandAltman::support), kSupport);
+  fields.add("participants", through(&SessionAgreement::limits, &reliability::BlandAltman::people));
+  fields.add("bias", through(&SessionAgreement::limits, &reliability::BlandAltman::bias),
+             "mean of second − first [unit]");
+  fields.add("bias95", through(&SessionAgreement::limits, &reliability::BlandAltman::bias95));
+  fields.add("standard_deviation", through(&SessionAgreement::limits, &reliability::BlandAltman::standard_deviation),
+             "of the differences");
+  fields.add(
+      "lower", [](From one) { return one.limits.lower.value; }, "bias − 1.96 s");
+  fields.add("lower95", [](From one) { return one.limits.lower.interval95; });
+  fields.add(
+      "upper", [](From one) { return one.limits.upper.value; }, "bias + 1.96 s");
+  fields.add("upper95", [](From one) { return one.limits.upper.interval95; });
+  fields.add("tolerance95", through(&SessionAgreement::limits, &reliability::BlandAltman::tolerance95));
+}
+
+void describe(Fields<Influence>& fields) {
+  fields.type("StudyInfluence", "The person who changes a number most.");
+  fields.add("participant", &Influence::participant);
+  fields.add("without", &Influence::without, "ICC(A,1), or p, without that person");
+}
+
+void describe(Fields<MixedReliability>& fields) {
+  fields.type("StudyMixedModel", "By restricted maximum likelihood, from every result.");
+  fields.add("support", &MixedReliability::support, kSupport);
+  fields.add("weighted", &MixedReliability::weighted, "each trial by its own standard error");
+  fields.add("participants", &MixedReliability::participants);
+  fields.add("sessions", &MixedReliability::sessions);
+  fields.add("results", &MixedReliability::results);
+  const auto variances = [](Fields<MixedReliability>& variance) {
+    variance.add("participant", &MixedReliability::participant);
+    variance.add("session", &MixedReliability::session,
+                 "between sessions; null: not identifiable, since too few sessions have two trials");
+    variance.add("residual", &MixedReliability::residual, "between trials; null: not identifiable");
+    variance.add("within_participant", &MixedReliability::within, "session and residual together");
+    variance.add("known", &MixedReliability::known,
+                 "mean of the trials' own squared standard errors; 0 where not weighted");
+  };
+  fields.group("variance", variances, "[unit²]");
+  fields.add("of_trials", &MixedReliability::of_trials,
+             "of one trial, and of the mean of as many as a session has (the median)");
+}
+
+void describe(Fields<BootstrapInterval>& fields) {
+  fields.type("StudyBootstrap", "What resampling people says of a number.");
+  fields.add("value", &BootstrapInterval::value);
+  fields.add("standard_error", &BootstrapInterval::standard_error, "standard deviation of the draws");
+  fields.add("percentile95", &BootstrapInterval::percentile95);
+  fields.add("bca95", &BootstrapInterval::bca95);
+  fields.add("undefined", &BootstrapInterval::undefined,
+             "draws that gave no number; with more than 5 % of them there is no interval");
+}
+
+void describe(Fields<ReliabilityBootstrap>& fields) {
+  fields.add("icc_agreement", &ReliabilityBootstrap::icc_agreement);
+  fields.add("icc_consistency", &ReliabilityBootstrap::icc_consistency);
+  fields.add("sem_agreement", &ReliabilityBootstrap::sem_agreement);
+}
+
+void describe(Fields<OutcomeReliability>& fields) {
+  using From = const OutcomeReliability&;
+  fields.type("StudyReliability", "How reliable one outcome is under one condition.");
+  fields.add("condition", &OutcomeReliability::condition);
+  fields.add("outcome", &OutcomeReliability::outcome);
+  fields.add("unit", &OutcomeReliability::unit);
+  fields.add("axial", &OutcomeReliability::axial, "an orientation: unwrapped about the mean axis");
+  fields.add("participants", &OutcomeReliability::participants, "with a result");
+  fields.add("repeated_participants", &OutcomeReliability::repeated_participants, "in two sessions or more");
+  fields.add("results", &OutcomeReliability::results);
+  fields.add("between_sessions", [](From one) { return BetweenSessions{one.between_sessions}; });
+  fields.add("agreement", &OutcomeReliability::agreement, "each session with the one before");
+  fields.add_or_null("influence", &OutcomeReliability::influence);
+  fields.add_or_null(
+      "session", [](From one) { return one.session > 0 ? std::optional(one.session) : std::nullopt; },
+      "the one that within_session is of");
+  fields.add("within_session", [](From one) { return WithinSession{one.within_session}; });
+  fields.add("mixed_model", &OutcomeReliability::mixed_model);
+  fields.add("bootstrap", &OutcomeReliability::bootstrap, "of the reliability between sessions, with --bootstrap");
+  fields.add("warnings", &OutcomeReliability::warnings,
+             "codes of what makes numbers not hold as they stand; each has a sentence in notes");
+  fields.add("notes", &OutcomeReliability::notes, "what must be known beside the numbers");
+}
+
+void describe(Fields<Quartiles>& fields) {
+  fields.type("StudyQuartiles");
+  fields.add("count", &Quartiles::count);
+  fields.add("lower_quartile", &Quartiles::lower);
+  fields.add("median", &Quartiles::median);
+  fields.add("upper_quartile", &Quartiles::upper);
+}
+
+void describe(Fields<MatrixSpread>& fields) {
+  fields.type("StudyMatrixSpread", "Impedance widths (affine-invariant distances) of matrices.");
+  fields.add("condition", &MatrixSpread::condition);
+  fields.add_as("matrix", {{"enum", {"M", "B", "K"}}}, &MatrixSpread::matrix);
+  fields.add("support", &MatrixSpread::support, kSupport);
+  fields.add("participants", &MatrixSpread::participants);
+  fields.add("sessions", &MatrixSpread::sessions);
+  fields.add("left_out", &MatrixSpread::left_out, "sessions whose mean matrix is not positive definite");
+  fields.add("within_participants", &MatrixSpread::within);
+  fields.add("between_participants", &MatrixSpread::between);
+  fields.add("closer", &MatrixSpread::closer, "chance that two sessions of one person are closer than two people");
+}
+
+void describe(Fields<MixedDifference>& fields) {
+  using From = const MixedDifference&;
+  fields.type("StudyMixedDifference", "Participants as random effect; also of those who have one of the two only.");
+  fields.add("weighted", &MixedDifference::weighted, "each mean by the standard errors of its trials");
+  fields.add("participants", &MixedDifference::participants);
+  fields.add("difference", through(&MixedDifference::difference, &reliability::FixedEffect::value));
+  fields.add("standard_error", through(&MixedDifference::difference, &reliability::FixedEffect::standard_error));
+  fields.add("degrees_of_freedom",
+             through(&MixedDifference::difference, &reliability::FixedEffect::degrees_of_freedom));
+  fields.add("interval95", through(&MixedDifference::difference, &reliability::FixedEffect::interval95));
+  fields.add("p", through(&MixedDifference::difference, &reliability::FixedEffect::p));
+  fields.group("variance", [](Fields<MixedDifference>& variance) {
+    variance.add("participant", &MixedDifference::participant);
+    variance.add("residual", &MixedDifference::residual);
+  });
+}
+
+void describe(Fields<OutcomeComparison>& fields) {
+  using From = const OutcomeComparison&;
+  const auto enough = [](From one) { return one.difference.support == Support::enough; };
+  fields.type("StudyDifference", "One outcome between two levels; each person counts once in each.");
+  fields.add("condition", &OutcomeComparison::condition,
+             "under which groups or sessions are compared; \"\" where conditions are");
+  fields.add("first", &OutcomeComparison::first);
+  fields.add("second", &OutcomeComparison::second);
+  fields.add("outcome", &OutcomeComparison::outcome);
+  fields.add("unit", &OutcomeComparison::unit);
+  fields.add("axial", &OutcomeComparison::axial, "an orientation");
+  fields.add("verdict", &OutcomeComparison::verdict, "differs: p_holm is at most 0.05");
+  fields.add("pairing", through(&OutcomeComparison::difference, &reliability::Difference::pairing));
+  fields.add("support", through(&OutcomeComparison::difference, &reliability::Difference::support), kSupport);
+  fields.add("first_participants", through(&OutcomeComparison::difference, &reliability::Difference::first_count));
+  fields.add("second_participants", through(&OutcomeComparison::difference, &reliability::Difference::second_count));
+  fields.add("left_out", &OutcomeComparison::left_out, "paired: who have one of the two only");
+  fields.add("first_mean", &OutcomeComparison::first_mean);
+  fields.add("second_mean", &OutcomeComparison::second_mean);
+  fields.add("difference", through(&OutcomeComparison::difference, &reliability::Difference::value),
+             "second − first [unit]");
+  fields.add("standard_error", [=](From one) { return enough(one) ? one.difference.standard_error : kNaN; });
+  fields.add("degrees_of_freedom", [=](From one) { return enough(one) ? one.difference.degrees_of_freedom : kNaN; });
+  fields.add_or_null("interval95",
+                     [=](From one) { return enough(one) ? std::optional(one.difference.interval95) : std::nullopt; });
+  fields.add("p", through(&OutcomeComparison::difference, &reliability::Difference::p),
+             "Welch's t, or Student's where paired");
+  fields.add("p_holm", &OutcomeComparison::p_holm, "adjusted for all tests of the comparison");
+  fields.add("p_benjamini_hochberg", &OutcomeComparison::p_benjamini_hochberg);
+  fields.add_or_null("effect",
+                     [=](From one) { return enough(one) ? std::optional(one.difference.effect) : std::nullopt; });
+  fields.add("permutation", &OutcomeComparison::permutation);
+  fields.add_or_null("mixed_model", &OutcomeComparison::mixed_model);
+  fields.add_or_null("influence", &OutcomeComparison::influence);
+  fields.add("bootstrap", &OutcomeComparison::bootstrap);
+  fields.add("notes", &OutcomeComparison::notes, "what must be known beside the numbers");
+}
+
+void describe(Fields<Comparison>& fields) {
+  fields.type("StudyComparison");
+  fields.add("by", &Comparison::by);
+  fields.add("levels", &Comparison::levels);
+  fields.add("tests", &Comparison::tests, "p-values that are adjusted together");
+  fields.add("outcomes", &Comparison::outcomes);
+}
+
+void describe(Fields<BootstrapDraws>& fields) {
+  fields.add("draws", &BootstrapDraws::draws);
+  fields.add("seed", &BootstrapDraws::seed);
+}
+
+void describe(Fields<StudyStatistics>& fields) {
+  fields.add("reliability", &StudyStatistics::reliability);
+  fields.add("matrices", &StudyStatistics::matrices);
+  fields.add("comparison", &StudyStatistics::comparison);
+  fields.add("bootstrap", &StudyStatistics::bootstrap, "how people were resampled, with --bootstrap");
+  fields.add("notes", &StudyStatistics::notes, "on the study as a whole");
+}
+
+void describe(Fields<StudySummary>& fields) {
+  using From = const StudySummary&;
+  fields.type("StudySummary",
+              "What `mbk study summary --json` writes: usable results of recordings that are not excluded.");
+  fields.header("mbk.study_summary/1");
+  fields.add("title", [](From summary) { return summary.list.facts.title; });
+  fields.add_or_null("analysis", [](From summary) { return summary.list.analysis; });
+  fields.add("counts", [](From summary) { return store::Counts{summary.list}; });
+  fields.add("outcomes", &StudySummary::outcomes);
+  fields.with([](From summary) -> const StudyStatistics& { return summary.statistics; });
+}
+
+void add_schemas(document::Schemas& schemas) {
+  schemas["study_summary"] = document::schema_of<StudySummary>();
+  add_plan_schema(schemas);
+}
+
+std::string to_json(const store::StudyList& list, std::span<const store::OutcomeSummary> outcomes,
+                    const StudyStatistics& statistics) {
+  return document::document(StudySummary{list, outcomes, statistics});
 }
 
 }  // namespace mbk::statistics

@@ -117,7 +117,7 @@ TEST(Reliability, HasOneIntervalOfTheIccEverywhere) {
     EXPECT_THAT(reliability_text(found, false), HasSubstr(fmt::format("{:.2f} to {:.2f}", low, high)));
     EXPECT_THAT(reliability_text(found, false), HasSubstr("McGraw and Wong"));
     EXPECT_THAT(reliability_text(found, true), HasSubstr(fmt::format("({:.2f} to {:.2f})", low, high)));
-    const auto json = nlohmann::json::parse(to_json(found))["reliability"][0]["between_sessions"];
+    const auto json = nlohmann::json::parse(to_json({}, {}, found))["reliability"][0]["between_sessions"];
     EXPECT_EQ(json["icc"][1]["interval95"], nlohmann::json({low, high}));
     EXPECT_FALSE(json.contains("agreement_by_large_samples95"));
   }
@@ -163,7 +163,7 @@ TEST(Reliability, WarnsOfErrorsWithHeavyTailsBetweenSessionsAndBetweenTrials) {
     EXPECT_THAT(found.reliability[0].warnings, tails);
     EXPECT_THAT(found.reliability[0].notes, testing::Contains(HasSubstr("participant 4")));
     EXPECT_THAT(reliability_text(found, false), HasSubstr("heavier tails"));
-    EXPECT_THAT(to_json(found), HasSubstr("\"heavy-tails\""));
+    EXPECT_THAT(to_json({}, {}, found), HasSubstr("\"heavy-tails\""));
   }
 }
 
@@ -181,7 +181,7 @@ TEST(Reliability, OneTrialASessionDoesNotSeparateSessionsFromTrials) {
     ASSERT_EQ(one.mixed_model.of_trials.size(), 1U);
     EXPECT_NEAR(one.mixed_model.of_trials[0].sem_between, std::sqrt(one.mixed_model.within), 1e-9);
     EXPECT_TRUE(std::isnan(one.mixed_model.of_trials[0].mdc95_within));
-    const auto json = nlohmann::json::parse(to_json(found))["reliability"][0];
+    const auto json = nlohmann::json::parse(to_json({}, {}, found))["reliability"][0];
     EXPECT_EQ(json["warnings"], nlohmann::json({"sessions-and-trials-not-identifiable"}));
     EXPECT_TRUE(json["mixed_model"]["variance"]["session"].is_null());
     EXPECT_THAT(reliability_text(found, false), HasSubstr("not identifiable"));
@@ -410,7 +410,7 @@ TEST(AComparison, OfConditionsPairsPeople) {
   EXPECT_EQ(one.difference.pairing, reliability::Pairing::paired);
   EXPECT_EQ(one.difference.first_count, 10);
   EXPECT_NEAR(one.difference.value, 5.0, 1.0);
-  EXPECT_EQ(one.verdict, Verdict::differs);
+  EXPECT_EQ(one.verdict, DifferenceVerdict::differs);
   EXPECT_NEAR(one.mixed_model.value().difference.value, one.difference.value, 1e-6)
       << "of complete pairs the model is the paired test";
   EXPECT_NEAR(one.mixed_model->difference.p, one.difference.p, 1e-6);
@@ -431,7 +431,7 @@ TEST(AComparison, DoesNotCountTrialsAsPeople) {
   }
   const OutcomeComparison one =
       statistics_of(results, comparing(ComparedBy::condition)).comparison.value().outcomes.at(0);
-  EXPECT_EQ(one.verdict, Verdict::too_few_people);
+  EXPECT_EQ(one.verdict, DifferenceVerdict::too_few_people);
   EXPECT_GT(one.mixed_model.value().difference.standard_error, 1.0);
   EXPECT_THAT(comparison_text(statistics_of(results, comparing(ComparedBy::condition)), false),
               HasSubstr("? too few people"));
@@ -441,7 +441,7 @@ TEST(AComparison, OfAlikeConditionsShowsNothing) {
   int differs = 0;
   for (std::uint32_t seed = 1; seed <= 100; ++seed) {
     const auto found = statistics_of(two_conditions(8, 0.0, seed), comparing(ComparedBy::condition));
-    if (found.comparison->outcomes[0].verdict == Verdict::differs) ++differs;
+    if (found.comparison->outcomes[0].verdict == DifferenceVerdict::differs) ++differs;
   }
   EXPECT_LE(differs, 11);
 }
@@ -468,7 +468,7 @@ TEST(AComparison, SaysWhereItRestsOnOnePerson) {
   for (int i = 1; i <= 8; ++i) results.add(i, 1, {100.0 + i}, 0).add(i, 1, {100.3 + i + change[i - 1]}, 1);
   const OutcomeComparison one =
       statistics_of(results, comparing(ComparedBy::condition)).comparison.value().outcomes.at(0);
-  ASSERT_EQ(one.verdict, Verdict::differs);
+  ASSERT_EQ(one.verdict, DifferenceVerdict::differs);
   ASSERT_GT(one.influence.value().without, 0.05);
   EXPECT_THAT(one.notes, testing::Contains(HasSubstr("rests on participant")));
   EXPECT_THAT(statistics_of(two_conditions(10, 5.0), comparing(ComparedBy::condition)).comparison->outcomes[0].notes,
@@ -480,7 +480,7 @@ TEST(AComparison, OfValuesThatDoNotVaryIsNotMade) {
   for (int i = 1; i <= 8; ++i) results.add(i, 1, {100.0}, 0).add(i, 1, {101.0}, 1);
   const OutcomeComparison one =
       statistics_of(results, comparing(ComparedBy::condition)).comparison.value().outcomes.at(0);
-  EXPECT_EQ(one.verdict, Verdict::no_variation);
+  EXPECT_EQ(one.verdict, DifferenceVerdict::no_variation);
 }
 
 TEST(AComparison, IsAdjustedForAllItsTests) {
@@ -516,7 +516,7 @@ TEST(TheNumbers, AreTheSameForAnyNumberOfThreads) {
   one.threads = 1;
   two.threads = 2;
   const Results results = drawn(14, 3, 3, 20, 3, 5);
-  EXPECT_EQ(to_json(statistics_of(results, one)), to_json(statistics_of(results, two)));
+  EXPECT_EQ(to_json({}, {}, statistics_of(results, one)), to_json({}, {}, statistics_of(results, two)));
 }
 
 TEST(TheText, StandsOnLinesOf80Columns) {

@@ -288,13 +288,13 @@ std::string people_text(const reliability::Difference& difference) {
 
 std::string comparison_line(const OutcomeComparison& one) {
   const std::string name = fmt::format("  {:<23}  {:>5}  ", one.outcome, people_text(one.difference));
-  if (one.verdict == Verdict::no_variation) return name + "no variation that could be compared\n";
+  if (one.verdict == DifferenceVerdict::no_variation) return name + "no variation that could be compared\n";
   if (one.difference.support != Support::enough) return name + "too few people\n";
   return name + fmt::format("{:>8}  {:>19}  {:>5}  {:>6}{}\n", digits(one.difference.value),
                             range(one.difference.interval95), digits(one.difference.effect.g, 2), p_text(one.p_holm),
-                            one.verdict == Verdict::differs          ? " *"
-                            : one.verdict == Verdict::too_few_people ? " ?"
-                                                                     : "");
+                            one.verdict == DifferenceVerdict::differs          ? " *"
+                            : one.verdict == DifferenceVerdict::too_few_people ? " ?"
+                                                                               : "");
 }
 
 std::string comparison_details(const OutcomeComparison& one, bool details) {
@@ -389,8 +389,9 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
     for (const std::string& note : one.notes) text += item("    ! ", note);
   }
   if (comparison.outcomes.empty()) return "\nnothing to compare: no outcome has results on both sides\n";
-  const bool few = std::ranges::any_of(
-      comparison.outcomes, [](const OutcomeComparison& one) { return one.verdict == Verdict::too_few_people; });
+  const bool few = std::ranges::any_of(comparison.outcomes, [](const OutcomeComparison& one) {
+    return one.verdict == DifferenceVerdict::too_few_people;
+  });
   text += fmt::format(
       "\nn: people, each with the mean of their results (one number: pairs). g: Hedges.\n"
       "p: Student's t of pairs, else Welch's, adjusted for all {} tests (Holm). * p is\n"

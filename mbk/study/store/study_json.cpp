@@ -3,70 +3,187 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "mbk/base/core/table_text.h"
 #include "mbk/base/core/version.h"
-#include "mbk/study/store/study_list.h"
+#include "mbk/study/store/study_documents.h"
 
 namespace mbk::store {
+
+using document::Fields;
+using document::Json;
+
 namespace {
 
-using Document = nlohmann::ordered_json;
-
-Document new_document(const char* schema) {
-  return {{"schema", schema}, {"software", fmt::format("mbk {}", version())}};
+/// Options that are stored as the text of a JSON object.
+template <class T, class Get>
+void add_options(Fields<T>& fields, Get text_of) {
+  const Json schema = {{"type", "object"},
+                       {"additionalProperties", {{"type", "array"}, {"items", {{"type", "string"}}}}}};
+  const auto get = [text_of](const T& from) {
+    Json json = Json::parse(text_of(from), nullptr, false);
+    return json.is_object() ? json : Json::object();
+  };
+  fields.add_as("options", schema, get, "options of `mbk measure` by name, with their values; a flag has none");
 }
 
-std::string written(const Document& json) {
-  return json.dump(2, ' ', false, Document::error_handler_t::replace) + "\n";
+}  // namespace
+
+void describe(Fields<Analysis>& fields) {
+  fields.type("Analysis", "One way of measuring. Files that options name stand there as sha256:…");
+  fields.add("number", &Analysis::number);
+  add_options(fields, [](const Analysis& analysis) { return analysis.options; });
+  fields.add("options_sha256", &Analysis::options_sha256);
+  fields.add("version", &Analysis::version, "of mbk");
 }
 
-Document or_null(double value) {
-  return std::isfinite(value) ? Document(value) : Document();
+void describe(Fields<StoredRecording>& fields) {
+  fields.type("Recording");
+  fields.add("number", &StoredRecording::number, "its name in the study; never given twice");
+  fields.add("participant", &StoredRecording::participant);
+  fields.add("session", &StoredRecording::session);
+  fields.add("condition", &StoredRecording::condition);
+  fields.add("trial", &StoredRecording::trial);
+  fields.add_number("duration_s", &StoredRecording::duration_s, "[s]");
+  fields.add("sha256", &StoredRecording::sha256, "of the stored file");
+  fields.add("part", &StoredRecording::part, "which record of the file, from 1; 0: its only one");
+  fields.add("bytes", &StoredRecording::bytes, "of the stored file");
+  fields.add("added", &StoredRecording::added, "UTC, as in 2026-05-04T09:30:12Z");
+  fields.add_if([](const StoredRecording& one) { return one.origin_sha256 != one.sha256; }, "origin_sha256",
+                &StoredRecording::origin_sha256,
+                "of the file that the stored one was made of, where that is another one");
+  fields.add("excluded_why", &StoredRecording::excluded_why, "where it is excluded");
 }
 
-Document options_json(const std::string& text) {
-  Document json = Document::parse(text, nullptr, false);
-  return json.is_object() ? json : Document::object();
+void describe(Fields<ListedRecording>& fields) {
+  fields.type("ListedRecording");
+  fields.with(&ListedRecording::recording);
+  fields.add("state", &ListedRecording::state);
+  fields.add_unless_empty("reason", &ListedRecording::reason, "why it is excluded, not usable or failed");
 }
 
-Document analysis_json(const Analysis& analysis) {
-  return {{"number", analysis.number},
-          {"options", options_json(analysis.options)},
-          {"options_sha256", analysis.options_sha256},
-          {"version", analysis.version}};
-}
-
-Document recording_json(const StoredRecording& r) {
-  Document json = {{"number", r.number},   {"participant", r.participant},
-                   {"session", r.session}, {"condition", r.condition},
-                   {"trial", r.trial},     {"duration_s", r.duration_s},
-                   {"sha256", r.sha256},   {"part", r.part},
-                   {"bytes", r.bytes},     {"added", r.added}};
-  if (r.origin_sha256 != r.sha256) json["origin_sha256"] = r.origin_sha256;
-  if (r.excluded_why) json["excluded_why"] = *r.excluded_why;
-  return json;
-}
-
-Document outcomes_json(const std::vector<Outcome>& outcomes) {
-  Document list = Document::array();
-  for (const Outcome& one : outcomes) {
-    Document json = {{"name", one.name}, {"value", one.value}, {"unit", one.unit}};
-    if (one.standard_error) json["standard_error"] = *one.standard_error;
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-Document counts_json(const StudyList& list) {
-  Document json = {{"recordings", std::ssize(list.recordings)}, {"participants", list.participants()}};
+void describe(Fields<Counts>& fields) {
+  fields.type("Counts", "Recordings by their state.");
+  fields.add("recordings", [](const Counts& counts) { return counts.of.recordings.size(); });
+  fields.add("participants", [](const Counts& counts) { return counts.of.participants(); });
   for (const auto& [state, word] : kWords<RecordingState>) {
     std::string key(word);
     std::ranges::replace(key, '-', '_');
-    json[key] = list.count(state);
+    fields.add(key, [state = state](const Counts& counts) { return counts.of.count(state); });
   }
-  return json;
+}
+
+void describe(Fields<Outcome>& fields) {
+  fields.type("Outcome");
+  fields.add("name", &Outcome::name, "as in K_xx or stiffness_area");
+  fields.add_number("value", &Outcome::value);
+  fields.add("unit", &Outcome::unit, "\"\" for a ratio");
+  fields.add_number("standard_error", &Outcome::standard_error);
+}
+
+void describe(Fields<StudyList>& fields) {
+  fields.type("StudyList", "What `mbk study list --json` writes.");
+  fields.header("mbk.study_list/1");
+  fields.add("title", [](const StudyList& list) { return list.facts.title; });
+  add_options(fields, [](const StudyList& list) { return list.facts.options; });
+  fields.add("analyses", &StudyList::analyses);
+  fields.add_or_null(
+      "analysis",
+      [](const StudyList& list) { return list.analysis ? std::optional(list.analysis->number) : std::nullopt; },
+      "whose results the states are of; null: nothing was measured");
+  fields.add("recordings", &StudyList::recordings);
+}
+
+void describe(Fields<ShownRecording::Shown>& fields) {
+  using From = const ShownRecording::Shown&;
+  fields.add("analysis", &ShownRecording::Shown::analysis);
+  fields.add("usable", [](From shown) { return shown.result.usable; });
+  fields.add(
+      "failed", [](From shown) { return shown.result.failed; }, "it could not be measured");
+  fields.add(
+      "reason", [](From shown) { return shown.result.reason; }, "why it is not usable or failed");
+  fields.add("outcomes", &ShownRecording::Shown::outcomes);
+}
+
+void describe(Fields<ShownRecording>& fields) {
+  fields.type("StudyShow", "What `mbk study show --json` writes of one recording.");
+  fields.header("mbk.study_show/1");
+  fields.add("recording", &ShownRecording::recording);
+  fields.add("results", &ShownRecording::results);
+}
+
+void describe(Fields<LogLine>& fields) {
+  fields.add("number", &LogLine::number);
+  fields.add("time", &LogLine::time, "UTC");
+  fields.add("role", &LogLine::role);
+  fields.add("action", &LogLine::action);
+  fields.add("recording", &LogLine::recording);
+  fields.add("analysis", &LogLine::analysis);
+  fields.add("participant", &LogLine::participant);
+  fields.add_unless_empty("digest", &LogLine::digest,
+                          "SHA-256 of what was stored and a salt that goes when it is forgotten");
+  fields.add_unless_empty("why", &LogLine::why);
+  fields.add("hash", &LogLine::hash);
+}
+
+void describe(Fields<CheckReport>& fields) {
+  fields.type("StudyCheck", "What `mbk study check --json` writes.");
+  fields.header("mbk.study_check/1");
+  fields.add("recordings", &CheckReport::recordings);
+  fields.add("files", &CheckReport::files, "with the hash that they were added with");
+  fields.add("bytes", &CheckReport::bytes);
+  fields.add("results", &CheckReport::results);
+  fields.add("repeated", &CheckReport::repeated, "results that were measured again and are the same");
+  fields.add("log_lines", &CheckReport::log_lines);
+  fields.add("head", &CheckReport::head);
+  fields.add("problems", &CheckReport::problems, "one sentence each; empty: everything is as it was stored");
+  fields.add("notes", &CheckReport::notes);
+}
+
+namespace {
+
+struct StudyLog {
+  const std::vector<LogLine>& lines;
+  const std::optional<LogVerdict>& verdict;
+};
+
+void describe(Fields<StudyLog>& fields) {
+  fields.type("StudyLog",
+              "What `mbk study log --json` writes. hash is the SHA-256 of the JSON array [\"mbk.study.log/1\", number, "
+              "time, role, action, recording, analysis, participant, digest, why, hash of the line before], with null "
+              "and \"\" for what is absent.");
+  fields.header("mbk.study_log/1");
+  fields.add("lines", [](const StudyLog& log) { return std::span(log.lines); });
+  fields.add(
+      "head", [](const StudyLog& log) { return log.lines.empty() ? "" : log.lines.back().hash; },
+      "hash of the last line");
+  fields.add(
+      "problems", [](const StudyLog& log) { return log.verdict ? std::optional(log.verdict->problems) : std::nullopt; },
+      "where --verify was given");
+}
+
+struct ExportedRecording {
+  const ListedRecording& listed;
+  std::vector<Outcome> outcomes;
+};
+
+void describe(Fields<ExportedRecording>& fields) {
+  fields.with([](const ExportedRecording& one) -> const ListedRecording& { return one.listed; });
+  fields.add("outcomes", &ExportedRecording::outcomes);
+}
+
+struct StudyExport {
+  const StudyList& list;
+  std::vector<ExportedRecording> recordings;
+};
+
+void describe(Fields<StudyExport>& fields) {
+  fields.type("StudyExport", "What `mbk study export --format json` writes.");
+  fields.header("mbk.study_export/1");
+  fields.add("title", [](const StudyExport& study) { return study.list.facts.title; });
+  fields.add_or_null("analysis", [](const StudyExport& study) { return study.list.analysis; });
+  fields.add("counts", [](const StudyExport& study) { return Counts{study.list}; });
+  fields.add("recordings", &StudyExport::recordings);
 }
 
 /// Three digits of the standard deviation decide how many the mean has.
@@ -91,89 +208,28 @@ std::string caption(const StudyList& list) {
 
 }  // namespace
 
+void add_schemas(document::Schemas& schemas) {
+  schemas["study_list"] = document::schema_of<StudyList>();
+  schemas["study_show"] = document::schema_of<ShownRecording>();
+  schemas["study_log"] = document::schema_of<StudyLog>();
+  schemas["study_check"] = document::schema_of<CheckReport>();
+  schemas["study_export"] = document::schema_of<StudyExport>();
+}
+
 std::string to_json(const StudyList& list) {
-  Document json = new_document("mbk.study_list/1");
-  json["title"] = list.facts.title;
-  json["options"] = options_json(list.facts.options);
-  json["analyses"] = Document::array();
-  for (const Analysis& one : list.analyses) json["analyses"].push_back(analysis_json(one));
-  json["analysis"] = list.analysis ? Document(list.analysis->number) : Document();
-  json["recordings"] = Document::array();
-  for (const ListedRecording& one : list.recordings) {
-    Document recording = recording_json(one.recording);
-    recording["state"] = word_of(one.state);
-    if (!one.reason.empty()) recording["reason"] = one.reason;
-    json["recordings"].push_back(std::move(recording));
-  }
-  return written(json);
+  return document::document(list);
 }
 
 std::string to_json(const ShownRecording& shown) {
-  Document json = new_document("mbk.study_show/1");
-  json["recording"] = recording_json(shown.recording);
-  json["results"] = Document::array();
-  for (const auto& [result, analysis, outcomes] : shown.results) {
-    json["results"].push_back({{"analysis", analysis_json(analysis)},
-                               {"usable", result.usable},
-                               {"failed", result.failed},
-                               {"reason", result.reason},
-                               {"outcomes", outcomes_json(outcomes)}});
-  }
-  return written(json);
-}
-
-std::string to_json(const StudyList& list, const std::vector<OutcomeSummary>& outcomes, const std::string& statistics) {
-  Document json = new_document("mbk.study_summary/1");
-  json["title"] = list.facts.title;
-  json["analysis"] = list.analysis ? analysis_json(*list.analysis) : Document();
-  json["counts"] = counts_json(list);
-  json["outcomes"] = Document::array();
-  for (const OutcomeSummary& one : outcomes) {
-    json["outcomes"].push_back({{"condition", one.condition},
-                                {"outcome", one.outcome},
-                                {"unit", one.unit},
-                                {"results", one.results},
-                                {"participants", one.participants},
-                                {"mean", one.mean},
-                                {"standard_deviation", or_null(one.standard_deviation)},
-                                {"minimum", one.minimum},
-                                {"maximum", one.maximum}});
-  }
-  json.update(Document::parse(statistics));
-  return written(json);
+  return document::document(shown);
 }
 
 std::string to_json(const std::vector<LogLine>& lines, const std::optional<LogVerdict>& verdict) {
-  Document json = new_document("mbk.study_log/1");
-  json["lines"] = Document::array();
-  for (const LogLine& line : lines) {
-    Document one = {
-        {"number", line.number}, {"time", line.time}, {"role", word_of(line.role)}, {"action", word_of(line.action)}};
-    if (line.recording) one["recording"] = *line.recording;
-    if (line.analysis) one["analysis"] = *line.analysis;
-    if (line.participant) one["participant"] = *line.participant;
-    if (!line.digest.empty()) one["digest"] = line.digest;
-    if (!line.why.empty()) one["why"] = line.why;
-    one["hash"] = line.hash;
-    json["lines"].push_back(std::move(one));
-  }
-  json["head"] = lines.empty() ? "" : lines.back().hash;
-  if (verdict) json["problems"] = verdict->problems;
-  return written(json);
+  return document::document(StudyLog{lines, verdict});
 }
 
 std::string to_json(const CheckReport& report) {
-  Document json = new_document("mbk.study_check/1");
-  json["recordings"] = report.recordings;
-  json["files"] = report.files;
-  json["bytes"] = report.bytes;
-  json["results"] = report.results;
-  json["repeated"] = report.repeated;
-  json["log_lines"] = report.log_lines;
-  json["head"] = report.head;
-  json["problems"] = report.problems;
-  json["notes"] = report.notes;
-  return written(json);
+  return document::document(report);
 }
 
 Result<std::string> export_csv(const Store& study, const StudyList& list) {
@@ -198,20 +254,10 @@ Result<std::string> export_csv(const Store& study, const StudyList& list) {
 }
 
 Result<std::string> export_json(const Store& study, const StudyList& list) {
-  Document json = new_document("mbk.study_export/1");
-  json["title"] = list.facts.title;
-  json["analysis"] = list.analysis ? analysis_json(*list.analysis) : Document();
-  json["counts"] = counts_json(list);
-  json["recordings"] = Document::array();
-  for (const ListedRecording& one : list.recordings) {
-    const auto outcomes = MBK_TRY(study.outcomes(one.result));
-    Document recording = recording_json(one.recording);
-    recording["state"] = word_of(one.state);
-    if (!one.reason.empty()) recording["reason"] = one.reason;
-    recording["outcomes"] = outcomes_json(outcomes);
-    json["recordings"].push_back(std::move(recording));
-  }
-  return written(json);
+  StudyExport all{list, {}};
+  for (const ListedRecording& one : list.recordings)
+    all.recordings.push_back({one, MBK_TRY(study.outcomes(one.result))});
+  return document::document(all);
 }
 
 std::string export_latex(const StudyList& list, const std::vector<OutcomeSummary>& outcomes) {

@@ -66,10 +66,6 @@ struct ShownRecording {
 [[nodiscard]] std::string to_json(const StudyList& list);
 /// Schema "mbk.study_show/1".
 [[nodiscard]] std::string to_json(const ShownRecording& shown);
-/// Schema "mbk.study_summary/1".   @param statistics  a JSON object whose members follow
-/// (statistics/study_statistics.h)
-[[nodiscard]] std::string to_json(const StudyList& list, const std::vector<OutcomeSummary>& outcomes,
-                                  const std::string& statistics);
 /// Schema "mbk.study_log/1".   @param verdict  absent where the log was not verified
 [[nodiscard]] std::string to_json(const std::vector<LogLine>& lines, const std::optional<LogVerdict>& verdict);
 /// Schema "mbk.study_check/1".

@@ -44,9 +44,7 @@ Json specification_of(const Bootstrap& bootstrap) {
 
 batch::UnitFunction units_of(std::vector<statistics::PeopleTable> tables, std::uint64_t seed) {
   return [tables = std::move(tables), seed](std::int64_t number, const std::string& /*key*/) -> Result<std::string> {
-    batch::ValueWriter writer;
-    writer.put(statistics::bootstrap_draw(tables, seed, static_cast<int>(number)));
-    return writer.take();
+    return batch::to_bytes(statistics::bootstrap_draw(tables, seed, static_cast<int>(number)));
   };
 }
 
@@ -81,9 +79,9 @@ Result<Draws> draws_of(const batch::JobFolder& job) {
   const auto results = MBK_TRY(batch::results_of(job));
   Draws draws(results.size());
   for (std::size_t k = 0; k < draws.size(); ++k) {
-    batch::ValueReader reader(results[k]);
-    reader.get(draws[k]);
-    if (!reader.complete()) return bad_data("a draw in a shard cannot be read", "begin the job again");
+    if (!batch::from_bytes(results[k], draws[k])) {
+      return bad_data("a draw in a shard cannot be read", "begin the job again");
+    }
   }
   return draws;
 }

@@ -60,9 +60,7 @@ batch::UnitFunction units_of(const request::ExploreRequest& asked, const measure
     const Json key = Json::parse(text, nullptr, false);
     if (!key.is_object()) return bad_data("the job's list of recordings is damaged", "begin the job again");
     const auto reader = MBK_TRY(reader_of(asked, key));
-    batch::ValueWriter writer;
-    writer.put(explored(reader, 0, options, json));
-    return writer.take();
+    return batch::to_bytes(explored(reader, 0, options, json));
   };
 }
 
@@ -143,9 +141,8 @@ Result<std::vector<ExploredRecord>> explored_of(const batch::JobFolder& job) {
   const auto results = MBK_TRY(batch::results_of(job));
   std::vector<ExploredRecord> all(results.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    batch::ValueReader bytes(results[k]);
-    bytes.get(all[k]);
-    if (!bytes.complete()) return bad_data("a result in a shard cannot be read", "begin the job again");
+    if (!batch::from_bytes(results[k], all[k]))
+      return bad_data("a result in a shard cannot be read", "begin the job again");
   }
   return all;
 }

@@ -16,7 +16,6 @@
 #include "mbk/base/core/counted.h"
 #include "mbk/base/core/version.h"
 #include "mbk/base/numeric/parallel.h"
-#include "mbk/batch/job_events.h"
 #include "mbk/batch/merge.h"
 #include "mbk/study/workflow/measure_units.h"
 
@@ -251,7 +250,6 @@ Result<batch::JobRequest> measure_request(const store::Store& study, const Optio
 Result<Tally> collect_job(store::Store& study, const std::string& key, const batch::JobFolder& job,
                           const MeasureListener& listener) {
   ResultQueue queue(study, key, listener);
-  const auto begin = std::chrono::steady_clock::now();
   const auto merged = batch::merge(job, [&](batch::MergedUnit unit) -> Result<void> {
     auto stored = MBK_TRY(unit_from(unit.key));
     Result<store::UnitResult> result = store::UnitResult();
@@ -271,7 +269,6 @@ Result<Tally> collect_job(store::Store& study, const std::string& key, const bat
   queue.finish();
   if (queue.error) return tl::unexpected(*queue.error);
   if (!merged) return tl::unexpected(merged.error());
-  batch::note_merged(job, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   return queue.tally;
 }
 

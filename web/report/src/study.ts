@@ -2,7 +2,6 @@
 import type { Course, OutcomeCourses, StudyReport, Value } from "@mbk/shared/documents";
 import { facts, h, heading, table } from "@mbk/shared/dom";
 import { data, fixed } from "@mbk/shared/format";
-import { jobsSection } from "./jobs";
 import { among, conditionName, inOutcomeOrder, isFirst, isMain, outcomeName, percentOf, plainly, signed, withUnit } from "./outcomes";
 import { saveable } from "./picture";
 import { commonRange, courseLegend, coursePanel, forest, type ForestRow } from "./study_drawings";
@@ -238,7 +237,6 @@ export function studySections(report: StudyReport): HTMLElement[] {
     drawn && coursesSection(report, conditions),
     ellipsesSection(report, conditions),
     limitsSection(),
-    jobsSection(report.jobs),
     h("section", { id: "left-out" }, heading(2, "Recordings that do not count"), report.recordings.length > 0 ? leftOutTable(report.recordings, true) : h("p", {}, "There are no recordings.")),
     h("section", { id: "data" }, heading(2, "Data"), downloads(report, "study"),
       report.recordings.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Every recording"), recordingsTable(report.recordings)) : ""),
