@@ -304,7 +304,7 @@ Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call&
   return guarded([&]() -> Result<std::vector<std::shared_ptr<const recording::InMemory>>> {
     Caller caller(call);
     const Requester::Scope scope(&caller);
-    const auto reader = MBK_TRY(RecordingReader::of(reading, sensor));
+    const auto reader = MBK_TRY(open_recordings(reading, sensor));
     std::vector<std::shared_ptr<const recording::InMemory>> recordings;
     for (int k = 0; k < reader.count(); ++k) {
       stop_where_unwanted();

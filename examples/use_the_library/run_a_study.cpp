@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mbk/experiment/conduct/conduct.h"
+#include "mbk/experiment/session/conduct.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace {
@@ -43,9 +43,9 @@ int report(const mbk::Error& error) {
 }
 
 /// Is told what happens, and decides what comes next.
-class Conductor : public mbk::conduct::Operator {
+class Conductor : public mbk::session::Operator {
  public:
-  mbk::Result<void> judged(const mbk::conduct::Performed& performed) override {
+  mbk::Result<void> judged(const mbk::session::Performed& performed) override {
     const mbk::session::TrialOutcome& outcome = performed.outcome;
     std::printf("%s: %llu ticks, motors %s\n", outcome.recording.filename().c_str(),
                 static_cast<unsigned long long>(outcome.times.ticks),
@@ -57,10 +57,10 @@ class Conductor : public mbk::conduct::Operator {
     return {};
   }
 
-  mbk::conduct::Next next(mbk::session::Session& session, const mbk::conduct::Performed& performed) override {
+  mbk::session::Next next(mbk::session::Session& session, const mbk::session::Performed& performed) override {
     if (performed.poor() && repeated_ != performed.attempt.index) {
       repeated_ = performed.attempt.index;
-      return mbk::conduct::Next::repeat;
+      return mbk::session::Next::repeat;
     }
     return Operator::next(session, performed);  // ends after a stop, else goes on
   }
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
 
   // Each trial is planned once; a plan that breaks a limit of the gate is refused here, before anything moves.
   const std::filesystem::path folder = argv[1];
-  const auto experiment = mbk::conduct::plan_experiment(*trials, folder / "p07.h5", "two_places.toml");
+  const auto experiment = mbk::session::plan_experiment(*trials, folder / "p07.h5", "two_places.toml");
   if (!experiment) return report(experiment.error());
   for (const mbk::session::Plan& plan : experiment->plans) {
     const auto rehearsal = mbk::session::rehearse(plan);
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
 
   mbk::session::Session session({.virtual_clock = true});  // without it in real time
   Conductor conductor;
-  const mbk::conduct::Conclusion conclusion = mbk::conduct::run(*experiment, session, conductor);
+  const mbk::session::Conclusion conclusion = mbk::session::conduct(*experiment, session, conductor);
   if (conclusion.failure) return report(*conclusion.failure);
   std::printf("%s\n", conclusion.completed ? "completed" : "ended early");
   return conclusion.completed ? 0 : 1;

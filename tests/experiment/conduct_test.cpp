@@ -1,4 +1,4 @@
-#include "mbk/experiment/conduct/conduct.h"
+#include "mbk/experiment/session/conduct.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,13 +11,12 @@
 #include "mbk/files/recording/read.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
-namespace mbk::conduct {
+namespace mbk::session {
 namespace {
 
 using protocol::Trial;
 using safety::MotorsOff;
 using safety::Reason;
-using session::Session;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -135,7 +134,7 @@ class Conducted : public testing::Test {
 };
 
 TEST_F(Conducted, TrialsArePerformedInTheirOrderRecordedAndMeasured) {
-  const Conclusion conclusion = run(planned(trials()), session_, script_);
+  const Conclusion conclusion = conduct(planned(trials()), session_, script_);
   EXPECT_TRUE(conclusion.completed);
   EXPECT_FALSE(conclusion.failure);
   EXPECT_EQ(conclusion.trip.reason, Reason::none);
@@ -153,7 +152,7 @@ TEST_F(Conducted, PoorDataAreNoticedAndARepeatedTrialGetsANameOfItsOwn) {
   script_.answer = [attempts = 0](Session&, const Performed& performed) mutable {
     return performed.poor() && ++attempts < 3 ? Next::repeat : Next::go_on;
   };
-  const Conclusion conclusion = run(planned(trials(experiment_text(kDrowned))), session_, script_);
+  const Conclusion conclusion = conduct(planned(trials(experiment_text(kDrowned))), session_, script_);
   EXPECT_TRUE(conclusion.completed);
   EXPECT_THAT(script_.recordings, ElementsAre("p07_first.h5", "p07_first_2.h5", "p07_first_3.h5", "p07_second.h5"));
   EXPECT_THAT(script_.poor, ElementsAre(true, true, true, false));
@@ -163,7 +162,7 @@ TEST_F(Conducted, ARepeatedTrialIsTheSameTrial) {
   script_.answer = [attempts = 0](Session&, const Performed&) mutable {
     return ++attempts < 2 ? Next::repeat : Next::end;
   };
-  const Conclusion conclusion = run(planned(trials()), session_, script_);
+  const Conclusion conclusion = conduct(planned(trials()), session_, script_);
   EXPECT_FALSE(conclusion.completed);
   EXPECT_FALSE(conclusion.failure);
   ASSERT_THAT(script_.recordings, ElementsAre("p07_first.h5", "p07_first_2.h5"));
@@ -174,7 +173,7 @@ TEST_F(Conducted, ARepeatedTrialIsTheSameTrial) {
 
 TEST_F(Conducted, WhatCannotBeMeasuredIsPoor) {
   const Measure never = [](const Recording&) -> Result<Measurement> { return bad_data("the fit failed"); };
-  EXPECT_TRUE(run(planned(trials()), session_, script_, never).completed);
+  EXPECT_TRUE(conduct(planned(trials()), session_, script_, never).completed);
   EXPECT_THAT(script_.poor, ElementsAre(true, true));
 }
 
@@ -184,11 +183,26 @@ TEST_F(Conducted, WhoeverMeasuresGetsThePerturbationAndWhatTheTrialSaysOfItself)
     EXPECT_NEAR(recording.time[recording.samples() - 1] - recording.time[0], 10.0, 0.01);  // of the trial's 11.3 s
     return bad_data("only looked at");
   };
-  EXPECT_TRUE(run(planned(trials()), session_, script_, looking).completed);
+  EXPECT_TRUE(conduct(planned(trials()), session_, script_, looking).completed);
+}
+
+TEST_F(Conducted, ANoteOfTheTrialIsInTheFileThatWasMeasured) {
+  class Noting : public Operator {
+    std::vector<std::string> notes() override { return {"the chair moved"}; }
+  } noting;
+  std::string measured;
+  const Measure looking = [&](const Recording& recording) -> Result<Measurement> {
+    measured = recording.sources.front().sha256;
+    return bad_data("only looked at");
+  };
+  EXPECT_TRUE(conduct(planned({trials().front()}), session_, noting, looking).completed);
+  const auto there = recording::read(folder_ / "p07.h5", {});
+  EXPECT_EQ(there->metadata.at("notes"), "the chair moved");
+  EXPECT_EQ(there->sources.front().sha256, measured);  // nobody wrote it again
 }
 
 TEST_F(Conducted, WithoutAMeasureTrialsAreOnlyRecorded) {
-  EXPECT_TRUE(run(planned(trials(experiment_text(kDrowned))), session_, script_, {}).completed);
+  EXPECT_TRUE(conduct(planned(trials(experiment_text(kDrowned))), session_, script_, {}).completed);
   EXPECT_EQ(std::ranges::count(script_.told, "not measured"), 2);
   EXPECT_THAT(script_.poor, ElementsAre(false, false));
 }
@@ -197,7 +211,7 @@ TEST_F(Conducted, AfterAStopOfTheOperatorNoTrialFollowsAndNothingIsMeasured) {
   script_.watched = [&](const Attempt&, std::span<const journal::Tick> ticks) {
     if (ticks.back().time > 2.0) session_.flags().operator_stop = true;
   };
-  const Conclusion conclusion = run(planned(trials()), session_, script_);
+  const Conclusion conclusion = conduct(planned(trials()), session_, script_);
   EXPECT_FALSE(conclusion.completed);
   EXPECT_FALSE(conclusion.failure);
   EXPECT_EQ(conclusion.trip.reason, Reason::operator_stop);
@@ -216,7 +230,7 @@ TEST_F(Conducted, AStoppedTrialIsRepeatedOnceTheGateIsReset) {
   script_.answer = [](Session& session, const Performed& performed) {
     return performed.stopped() && session.reset() ? Next::repeat : Next::go_on;
   };
-  const Conclusion conclusion = run(planned(trials()), session_, script_);
+  const Conclusion conclusion = conduct(planned(trials()), session_, script_);
   EXPECT_TRUE(conclusion.completed);
   EXPECT_EQ(conclusion.trip.reason, Reason::none);
   EXPECT_THAT(script_.recordings, ElementsAre("p07_first.h5", "p07_first_2.h5", "p07_second.h5"));
@@ -225,7 +239,7 @@ TEST_F(Conducted, AStoppedTrialIsRepeatedOnceTheGateIsReset) {
 TEST_F(Conducted, WithoutAResetNoTrialFollowsAStop) {
   script_.watched = [&](const Attempt&, std::span<const journal::Tick>) { session_.flags().operator_stop = true; };
   script_.answer = [](Session&, const Performed&) { return Next::go_on; };
-  const Conclusion conclusion = run(planned(trials()), session_, script_);
+  const Conclusion conclusion = conduct(planned(trials()), session_, script_);
   ASSERT_TRUE(conclusion.failure);
   EXPECT_THAT(conclusion.failure->line(), HasSubstr("the gate is tripped"));
   EXPECT_FALSE(fs::exists(folder_ / "p07_second.h5"));
@@ -234,10 +248,10 @@ TEST_F(Conducted, WithoutAResetNoTrialFollowsAStop) {
 TEST_F(Conducted, ARequestToEndIsObeyedBeforeATrialAndAfterIt) {
   script_.watched = [&](const Attempt&, std::span<const journal::Tick>) { session_.flags().end_session = true; };
   const Experiment experiment = planned(trials());
-  EXPECT_FALSE(run(experiment, session_, script_).completed);
+  EXPECT_FALSE(conduct(experiment, session_, script_).completed);
   EXPECT_THAT(script_.told, ElementsAre("begin first", "at rest", "motors", "recorded", "not measured"));
   script_.told.clear();
-  EXPECT_FALSE(run(experiment, session_, script_).completed);
+  EXPECT_FALSE(conduct(experiment, session_, script_).completed);
   EXPECT_TRUE(script_.told.empty());
 }
 
@@ -250,7 +264,7 @@ TEST_F(Conducted, NoTrialFollowsOneWhoseTicksWereLost) {
     stream << "damage";
     done = stream.good();
   };
-  const Conclusion conclusion = run(planned(trials()), session_, script_, {});
+  const Conclusion conclusion = conduct(planned(trials()), session_, script_, {});
   ASSERT_TRUE(conclusion.failure);
   EXPECT_EQ(conclusion.failure->kind, ErrorKind::data);
   EXPECT_THAT(conclusion.failure->line(), HasSubstr("ticks were lost"));
@@ -261,7 +275,7 @@ TEST_F(Conducted, AFailureOfWhoeverIsToldIsTheLastWord) {
   class Full : public Operator {
     Result<void> judged(const Performed&) override { return bad_data("the disk is full"); }
   } full;
-  const Conclusion conclusion = run(planned(trials()), session_, full, {});
+  const Conclusion conclusion = conduct(planned(trials()), session_, full, {});
   ASSERT_TRUE(conclusion.failure);
   EXPECT_EQ(conclusion.failure->message, "the disk is full");
   EXPECT_FALSE(fs::exists(folder_ / "p07_second.h5"));
@@ -306,7 +320,7 @@ class SimulatesStuckOn : public protocol::Simulation {
 TEST_F(Conducted, MotorsThatStayOnAreToldAtOnceAndConcludeTheExperiment) {
   std::vector<Trial> stuck = trials();
   for (Trial& trial : stuck) trial.simulation = std::make_shared<SimulatesStuckOn>(trial.simulation);
-  const Conclusion conclusion = run(planned(stuck), session_, script_);
+  const Conclusion conclusion = conduct(planned(stuck), session_, script_);
   EXPECT_EQ(conclusion.motors.state, MotorsOff::State::missing);
   EXPECT_EQ(conclusion.trip.reason, Reason::motors_on);
   EXPECT_EQ(script_.motors_state, MotorsOff::State::missing);
@@ -350,4 +364,4 @@ TEST(TrialMeasurement, AModelIsPoorWhereAnAxisIsExplainedByLessThanHalf) {
 }
 
 }  // namespace
-}  // namespace mbk::conduct
+}  // namespace mbk::session

@@ -629,11 +629,11 @@ TEST_F(ConsoleOfASession, ThePageConductsAnExperiment) {
   ASSERT_TRUE(page->read_until(control("here")));
   std::vector<std::string> warned;
   PageOperator conductor(*console_, true, [&](const std::string& warning) { warned.push_back(warning); });
-  const conduct::Experiment experiment{plans_, folder_ / "trial.h5"};
-  conduct::Conclusion conclusion;
+  const session::Experiment experiment{plans_, folder_ / "trial.h5"};
+  session::Conclusion conclusion;
   std::thread conducting([&] {
     ASSERT_TRUE(conductor.may_begin(session_, experiment));
-    conclusion = conduct::run(experiment, session_, conductor, {});
+    conclusion = session::conduct(experiment, session_, conductor, {});
   });
   EXPECT_TRUE(page->read_until(asks("begin")));
   page->tell(R"({"command":"start"})");

@@ -4,6 +4,9 @@
 #include "mbk/files/contents/disk_pages.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/read.h"
+#include "mbk/measure/measurement/explore.h"
+#include "mbk/measure/measurement/measure_movement.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace mbk::pipeline {
@@ -80,6 +83,19 @@ TEST_P(DefaultMode, FindsTheSameInARecordingWhoseNumbersStandInAFile) {
   ASSERT_EQ(found.energies.size(), 1U);
   EXPECT_EQ(found.energies[0].account.absorbed, expected.energies[0].account.absorbed);
   EXPECT_EQ(found.energies[0].curve.absorbed, expected.energies[0].curve.absorbed);
+}
+
+TEST(Consent, DataOfAPersonWhoHasWithdrawnAreMeasuredByNoFunction) {
+  Recording recording = generated({});
+  recording.metadata["withdrawn"] = "yes";
+  const std::vector<Recording> recordings = {recording};
+  const auto code = [](const auto& result) { return result ? std::string("measured") : result.error().code; };
+  EXPECT_EQ(code(measurement::measure(recordings, {})), "withdrawn");
+  EXPECT_EQ(code(measurement::examine(recordings, {})), "withdrawn");
+  EXPECT_EQ(code(measurement::explore(recordings, {})), "withdrawn");
+  EXPECT_EQ(code(measurement::movement_quality(recording, {})), "withdrawn");
+  recording.metadata["withdrawn"] = "no";
+  EXPECT_TRUE(preprocess::check_consent(recording));
 }
 
 TEST_P(DefaultMode, RecoversTheTruthOfALogWithoutNoise) {

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/readers_option.h"
 #include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/trial_files.h"
@@ -48,7 +48,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
 
 /// The one recording that is converted.
 Result<Recording> read_one(const ReadRequest& reading, const SensorRequest& sensor) {
-  const auto reader = MBK_TRY(RecordingReader::of(reading, sensor));
+  const auto reader = MBK_TRY(open_recordings(reading, sensor));
   if (reader.count() > 1) {
     return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader.count()),
                 "say which with --trial; 'mbk info' lists them", reading.files.front().string());
@@ -118,7 +118,7 @@ int convert_one(const Conversion& job, int k, const std::filesystem::path& file)
   if (!recording) {
     const ReadRequest& reading = job.arguments.reading;
     const bool whole =
-        reading.channels.empty() && !reading.parts && recording::nothing_is_recognised(recording.error());
+        reading.channels.empty() && !reading.parts && recording.error().code == recording::kNothingRecognised;
     return whole ? copy_arrays(job, k, file, recording.error()) : report_error(recording.error());
   }
   const Readers readers = job.arguments.readers.value_or(Readers::owner);
@@ -157,7 +157,7 @@ int run(ConvertArguments arguments) {
   if (!arguments.bids.empty()) return run_bids(arguments, *output.file);
   const auto format = recording::format_of(*output.file, arguments.format);
   if (!format) return report_error(format.error());
-  auto reader = RecordingReader::of(reading, arguments.sensor);
+  auto reader = open_recordings(reading, arguments.sensor);
   if (!reader) return report_error(reader.error());
   std::vector<std::string> trials;
   for (int k = 0; k < reader->count(); ++k) trials.push_back(reader->trial(k));

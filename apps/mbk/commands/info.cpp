@@ -44,7 +44,7 @@ int list_unrecognised(const InfoArguments& arguments, const RecordingReader& rea
   const std::string text =
       arguments.output.json ? result::to_json(*contents, error) : before + report::contents_text(*contents, error);
   if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
-  return recording::time_is_unbelievable(error) ? kBadData : kFine;
+  return error.code == recording::kUnbelievableTime ? kBadData : kFine;
 }
 
 /// What a journal holds so far, as the recording that it would become.
@@ -101,7 +101,7 @@ int run(const InfoArguments& arguments) {
     recording.time.resize(0);
     recordings.push_back(std::move(recording));
   };
-  const auto reader = RecordingReader::of(reading, arguments.sensor);
+  const auto reader = open_recordings(reading, arguments.sensor);
   if (!reader) return report_error(reader.error());
   if (reader->count() == 1 && reader->is_journal(0)) {
     auto recording = read_journal(reading.files.front());

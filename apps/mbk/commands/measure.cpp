@@ -101,7 +101,7 @@ Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, 
 
 /// One result for each: a recording that cannot be measured costs only itself.
 Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
-  const auto reader = MBK_TRY(RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor));
+  const auto reader = MBK_TRY(open_recordings(reading_for(arguments.reading, options), arguments.sensor));
   MeasuredTrials found;
   found.several = reader.count() > 1;
   for (Result<MeasuredOne>& one : measure_each(reader, options, arguments)) {

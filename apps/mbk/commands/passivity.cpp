@@ -79,7 +79,7 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
     answers.found.push_back(std::move(pooled));
     return answers;
   }
-  const auto reader = MBK_TRY(RecordingReader::of(reading_for(arguments.reading, options), arguments.sensor));
+  const auto reader = MBK_TRY(open_recordings(reading_for(arguments.reading, options), arguments.sensor));
   const int count = reader.count();
   std::vector<Result<LimbAnswer>> each(static_cast<std::size_t>(count), bad_data("not measured"));
   std::ignore = numeric::parallel_for(count, arguments.threads, [&](int i) -> Result<void> {

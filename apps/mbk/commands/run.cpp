@@ -19,8 +19,8 @@
 #include "apps/mbk/terminal/stop_keys.h"
 #include "apps/mbk/terminal/stop_signals.h"
 #include "mbk/base/core/option_checks.h"
-#include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/protocol/personal_data.h"
+#include "mbk/experiment/session/conduct.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/present/report/text.h"
@@ -31,8 +31,8 @@ namespace mbk::app {
 namespace {
 
 namespace fs = std::filesystem;
-using conduct::Next;
 using protocol::Trial;
+using session::Next;
 using session::Session;
 
 constexpr int kSafetyStop = 5;
@@ -105,6 +105,9 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
   std::string text = fmt::format("{}: {}", file, outcome.ended);
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
   text += "\n  motors: " + safety::sentence(outcome.motors);
+  for (const std::string& note : outcome.notes) {
+    if (outcome.unrecorded) text += "\n  note that is in no recording: " + note;
+  }
   text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,
                       time_text(outcome.times.compute));
   if (!pace.virtual_clock) {
@@ -126,7 +129,7 @@ std::string damage_text(const session::TrialOutcome& outcome) {
   return text;
 }
 
-int dry_run(const conduct::Experiment& experiment, const std::string& file) {
+int dry_run(const session::Experiment& experiment, const std::string& file) {
   for (const session::Plan& plan : experiment.plans) {
     const auto rehearsal = session::rehearse(plan);
     if (!rehearsal) return report_error(rehearsal.error().in(file));
@@ -137,7 +140,7 @@ int dry_run(const conduct::Experiment& experiment, const std::string& file) {
 }
 
 /// Of a real robot, what the gate does not watch as closely as by default, and what of it is not known: each once.
-std::vector<std::string> robot_warnings(const conduct::Experiment& experiment) {
+std::vector<std::string> robot_warnings(const session::Experiment& experiment) {
   std::vector<std::string> all;
   for (const session::Plan& plan : experiment.plans) {
     if (plan.trial.device.simulated()) continue;
@@ -166,13 +169,11 @@ bool ask(const char* question, const session::LoopFlags& flags) {
   return false;
 }
 
-/// What standard error did not take goes where it can still be read: to standard output, and into the recording.
-std::string lost_messages_text(std::vector<std::string>& notes) {
-  const LostMessages lost = take_lost_messages();
+/// What standard error did not take, for standard output and the recording.
+std::string lost_messages_text(const LostMessages& lost) {
   if (lost.count == 0) return {};
-  notes.push_back(
-      fmt::format("{} message{} of mbk to standard error lost: {}", lost.count, lost.count == 1 ? "" : "s", lost.why));
-  return fmt::format("  {}\n", notes.back());
+  return fmt::format("{} message{} of mbk to standard error lost: {}", lost.count, lost.count == 1 ? "" : "s",
+                     lost.why);
 }
 
 /// The loudest thing that this program says.
@@ -186,16 +187,16 @@ std::string alarm(const safety::MotorsOff& motors) {
 }
 
 /// Exit code of what was performed; what is worst counts.
-int code_of(const conduct::Conclusion& conclusion) {
+int code_of(const session::Conclusion& conclusion) {
   const int code = conclusion.failure ? report_error(*conclusion.failure) : kFine;
   if (conclusion.motors.state == safety::MotorsOff::State::missing) return kMotorsNotOff;
   return conclusion.trip.reason != safety::Reason::none ? kSafetyStop : code;
 }
 
 /// Signals and keys that stop a trial while it runs, and a line that shows how far it is, beside the page.
-class TrialWatcher : public conduct::Watcher {
+class TrialWatcher : public session::Watcher {
  public:
-  TrialWatcher(std::unique_ptr<conduct::Watcher> page, const conduct::Attempt& attempt, session::LoopFlags& flags,
+  TrialWatcher(std::unique_ptr<session::Watcher> page, const session::Attempt& attempt, session::LoopFlags& flags,
                bool quiet)
       : page_(std::move(page)),
         last_words_(attempt.robot, session::journal_of(attempt.target)),
@@ -208,7 +209,7 @@ class TrialWatcher : public conduct::Watcher {
   }
 
  private:
-  std::unique_ptr<conduct::Watcher> page_;
+  std::unique_ptr<session::Watcher> page_;
   const StopSignals::Trial running_;
   const LastWords last_words_;
   const StopKeys keys_;
@@ -216,7 +217,7 @@ class TrialWatcher : public conduct::Watcher {
 };
 
 /// The operator at the terminal, and at the page where there is one: it is asked where it decides.
-class TerminalOperator : public conduct::Operator {
+class TerminalOperator : public session::Operator {
  public:
   /// @param warnings  said before the first trial
   TerminalOperator(const RunConsole& console, session::LoopFlags& flags, const session::Pace& pace, bool quiet,
@@ -228,7 +229,7 @@ class TerminalOperator : public conduct::Operator {
         quiet_(quiet),
         warnings_(std::move(warnings)) {}
 
-  std::unique_ptr<conduct::Watcher> begin(const conduct::Attempt& attempt) override {
+  std::unique_ptr<session::Watcher> begin(const session::Attempt& attempt) override {
     for (const std::string& warning : std::exchange(warnings_, {})) say("mbk: warning: {}\n", warning);
     return std::make_unique<TrialWatcher>(page_ != nullptr ? page_->begin(attempt) : nullptr, attempt, flags_, quiet_);
   }
@@ -254,14 +255,21 @@ class TerminalOperator : public conduct::Operator {
         kMotorsNotOff);
   }
 
-  void recorded(const session::TrialOutcome& outcome) override {
-    if (page_ != nullptr) page_->recorded(outcome);
-    notes_.clear();
-    text_ = outcome_text(outcome, pace_) + console_.times_text();
-    text_ += lost_messages_text(notes_) + damage_text(outcome);
+  std::vector<std::string> notes() override {
+    std::vector<std::string> notes = page_ != nullptr ? page_->notes() : std::vector<std::string>();
+    lost_ = lost_messages_text(take_lost_messages());
+    if (!lost_.empty()) notes.push_back(lost_);
+    return notes;
   }
 
-  Result<void> judged(const conduct::Performed& performed) override {
+  void recorded(const session::TrialOutcome& outcome) override {
+    if (page_ != nullptr) page_->recorded(outcome);
+    text_ = outcome_text(outcome, pace_) + console_.times_text();
+    if (!lost_.empty()) text_ += fmt::format("  {}\n", lost_);
+    text_ += damage_text(outcome);
+  }
+
+  Result<void> judged(const session::Performed& performed) override {
     if (const auto& measured = performed.measured) {
       text_ += *measured ? report::measurement_text(**measured)
                          : fmt::format("not measured: {}\n", measured->error().line());
@@ -271,16 +279,13 @@ class TerminalOperator : public conduct::Operator {
           fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
     }
     const auto written = print_text(text_);
-    if (!notes_.empty() && !performed.outcome.unrecorded) {
-      MBK_TRY(session::annotate(performed.outcome.recording, notes_));
-    }
     if (page_ != nullptr) {
       MBK_TRY(page_->judged(performed));
     }
     return written;
   }
 
-  conduct::Next next(Session& session, const conduct::Performed& performed) override {
+  session::Next next(Session& session, const session::Performed& performed) override {
     if (page_ != nullptr && page_->decides(performed)) return page_->next(session, performed);
     const bool terminal = isatty(STDIN_FILENO) == 1;
     if (performed.stopped()) return terminal ? after_stop(session) : Next::end;
@@ -306,22 +311,21 @@ class TerminalOperator : public conduct::Operator {
   session::Pace pace_;
   bool quiet_;
   std::vector<std::string> warnings_;
-  std::string text_;                // of the trial that is being judged
-  std::vector<std::string> notes_;  // that belong into its recording
+  std::string text_, lost_;  // of the trial that is being judged; messages that were lost while it ran
 };
 
 /// @returns  the exit code, where no signal ended the session outside of a trial
-int perform(Session& session, const conduct::Experiment& experiment, const session::Pace& pace,
-            const RunArguments& arguments) {
+int conduct_experiment(Session& session, const session::Experiment& experiment, const session::Pace& pace,
+                       const RunArguments& arguments) {
   const auto console = RunConsole::open(arguments.console, experiment, session.flags());
   if (!console) return report_error(console.error());
   if (auto* const page = console->page(); page != nullptr && !page->may_begin(session, experiment)) return kFine;
   TerminalOperator conductor(*console, session.flags(), pace, arguments.quiet, robot_warnings(experiment));
-  conduct::Measure measure;
+  session::Measure measure;
   if (arguments.measure) {
     measure = [&](const Recording& recording) { return console->measured(recording); };
   }
-  const int code = code_of(conduct::run(experiment, session, conductor, measure));
+  const int code = code_of(session::conduct(experiment, session, conductor, measure));
   if (auto ok = console->end(); !ok) {
     const int lost = report_error(ok.error());
     return code == kFine ? lost : code;  // motors that are not off are worse than notes that are not kept
@@ -338,7 +342,7 @@ int run(const RunArguments& arguments) {
   session::Pace pace;
   pace.virtual_clock = arguments.as_fast_as_possible || arguments.speed.has_value();
   pace.speed = arguments.speed.value_or(0.0);
-  const auto experiment = conduct::plan_experiment(*trials, arguments.out, arguments.experiment);
+  const auto experiment = session::plan_experiment(*trials, arguments.out, arguments.experiment);
   if (!experiment) return report_error(experiment.error());
   if (arguments.dry_run) return dry_run(*experiment, arguments.experiment);
   Session session(pace);
@@ -346,7 +350,7 @@ int run(const RunArguments& arguments) {
   {
     const StopSignals signals(session.flags());
     const BackgroundMessages messages;
-    code = perform(session, *experiment, pace, arguments);
+    code = conduct_experiment(session, *experiment, pace, arguments);
     ended_by = signals.ended_by();
   }
   if (ended_by != 0 && code == kFine) end_by(ended_by);

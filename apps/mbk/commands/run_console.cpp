@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/present/report/html.h"
@@ -33,7 +33,7 @@ std::string time_text(const realtime::CycleRecord& record) {
                      1e-3 * record.quantile(0.999), 1e-3 * static_cast<double>(record.worst()));
 }
 
-Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const conduct::Experiment& experiment,
+Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const session::Experiment& experiment,
                                     session::LoopFlags& flags) {
   RunConsole run;
   if (arguments.wait && arguments.wanted == false) {
@@ -71,7 +71,7 @@ std::string RunConsole::times_text() const {
 }
 
 Result<Measurement> RunConsole::measured(const Recording& recording) const {
-  if (!console_) return conduct::measure_recording(recording);
+  if (!console_) return session::measure_recording(recording);
   auto examined = measurement::examine({&recording, 1}, {});
   if (!examined) {
     console_->show_report("", examined.error().line());

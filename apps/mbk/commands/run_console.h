@@ -5,9 +5,9 @@
 #include <string>
 
 #include "apps/mbk/terminal/command.h"
-#include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/console/console.h"
 #include "mbk/experiment/console/page_operator.h"
+#include "mbk/experiment/session/conduct.h"
 
 namespace mbk::app {
 
@@ -27,7 +27,7 @@ void add_console_options(Command command, ConsoleArguments& arguments);
 class RunConsole {
  public:
   /// Opens it where it is wanted, and prints its addresses.   @fails  as Console::open
-  [[nodiscard]] static Result<RunConsole> open(const ConsoleArguments& arguments, const conduct::Experiment& experiment,
+  [[nodiscard]] static Result<RunConsole> open(const ConsoleArguments& arguments, const session::Experiment& experiment,
                                                session::LoopFlags& flags);
 
   /// Who decides there; null where there is none.

@@ -2,15 +2,16 @@
 
 #include "apps/mbk/terminal/command.h"
 #include "mbk/model/trial/recording.h"
-#include "mbk/present/request/recording_reader.h"
+#include "mbk/present/request/open_recordings.h"
 #include "mbk/present/request/signal_names.h"
 
 namespace mbk::app {
 
+using measurement::RecordingReader;
+using request::open_recordings;
 using request::read_perturbations;
 using request::read_recordings;
 using request::ReadRequest;
-using request::RecordingReader;
 using request::SensorRequest;
 
 /// Adds FILE… and how to read it: --channels, --variable, --rate, --axes, --parts, …

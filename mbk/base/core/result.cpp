@@ -31,4 +31,9 @@ tl::unexpected<Error> bad_usage(std::string message, std::string remedy) {
   return fail(ErrorKind::usage, std::move(message), std::move(remedy));
 }
 
+tl::unexpected<Error> with_code(std::string_view code, tl::unexpected<Error> error) {
+  error.value().code = code;
+  return error;
+}
+
 }  // namespace mbk

@@ -18,9 +18,10 @@ enum class ErrorKind {
 /// A failure as a value: what is wrong, where, and what to do about it. Bad data never throws, prints or aborts.
 struct Error {
   ErrorKind kind = ErrorKind::data;
-  std::string message;  ///< quantity, value and limit: "cutoff 600 Hz is not below Nyquist 500 Hz"
-  std::string remedy;   ///< what to do next; may be empty
-  std::string where;    ///< file, and place in it: "log.mat, variable 'logs'"; may be empty
+  std::string message;    ///< quantity, value and limit: "cutoff 600 Hz is not below Nyquist 500 Hz"
+  std::string remedy;     ///< what to do next; may be empty
+  std::string where;      ///< file, and place in it: "log.mat, variable 'logs'"; may be empty
+  std::string code = {};  ///< for errors on which a caller acts: "nothing-recognised"; else empty
 
   /// The same error with an outer place put before the inner one.
   [[nodiscard]] Error in(std::string_view place) const;
@@ -42,6 +43,9 @@ using Result = tl::expected<Value, Error>;
 
 [[nodiscard]] tl::unexpected<Error> bad_usage(std::string message, std::string remedy = "");
 
+/// The error with a code.
+[[nodiscard]] tl::unexpected<Error> with_code(std::string_view code, tl::unexpected<Error> error);
+
 /// What MBK_TRY takes out of a result that holds a value.
 template <class Value>
 Value taken(tl::expected<Value, Error>&& result) {
@@ -56,12 +60,12 @@ Value taken(tl::expected<Value, Error>&& result) {
 ///     MBK_TRY(check(recording));
 ///
 /// A statement expression, which GCC and Clang know; write it only as a whole statement or a whole initialiser.
-#define MBK_TRY(...) MBK_TRY_NAMED(__COUNTER__, __VA_ARGS__)
-#define MBK_TRY_NAMED(number, ...) MBK_TRY_AS(mbk_result_##number, __VA_ARGS__)
-#define MBK_TRY_AS(result, ...)                                                                      \
-  __extension__({                                                                                    \
-    auto result = (__VA_ARGS__);                                                                     \
-    if (!result) [[unlikely]]                                                                        \
-      return ::tl::unexpected<::mbk::Error>(std::move(result).error());                              \
-    ::mbk::taken(std::move(result));                                                                 \
+#define MBK_TRY(...) MBK_TRY_NUMBERED(__COUNTER__, __VA_ARGS__)
+#define MBK_TRY_NUMBERED(number, ...) MBK_TRY_AS(number, __VA_ARGS__)
+#define MBK_TRY_AS(number, ...)                                                      \
+  __extension__({                                                                    \
+    auto mbk_result_##number = (__VA_ARGS__);                                        \
+    if (!mbk_result_##number) [[unlikely]]                                           \
+      return ::tl::unexpected<::mbk::Error>(std::move(mbk_result_##number).error()); \
+    ::mbk::taken(std::move(mbk_result_##number));                                    \
   })

@@ -19,6 +19,12 @@ TEST(Error, NamesPlacesFromTheOutsideIn) {
   EXPECT_EQ(bad_data("is wrong").value().in("file").line(), "file: is wrong");
 }
 
+TEST(Error, KeepsItsCodeWhereverItGoes) {
+  const Error error = with_code("torn", bad_data("is wrong")).value();
+  EXPECT_EQ(error.in("file").code, "torn");
+  EXPECT_EQ(bad_data("is wrong").value().code, "");
+}
+
 TEST(Printable, IsOneLineAndKeepsUtf8) {
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a?b");
   EXPECT_EQ(printable("N·m °"), "N·m °");

@@ -45,11 +45,11 @@ std::string axis_name(Eigen::Index axis) {
   return axis == 0 ? "x" : "y";
 }
 
-/// Why conduct::poor is true of it.
+/// Why session::poor is true of it.
 std::string weakness(const Identification& found) {
   std::string why;
   for (Eigen::Index axis = 0; axis < found.fit.vaf.size(); ++axis) {
-    if (found.fit.vaf[axis] >= conduct::kPoor) continue;
+    if (found.fit.vaf[axis] >= session::kPoor) continue;
     why += fmt::format("{}{:.0f} % of the force in {}", why.empty() ? "the model explains " : " and ",
                        found.fit.vaf[axis], axis_name(axis));
   }
@@ -63,7 +63,7 @@ std::string weakness(const Identification& found) {
 
 }  // namespace
 
-Judgement Judgement::of(const conduct::Performed& performed) {
+Judgement Judgement::of(const session::Performed& performed) {
   using safety::Reason;
   if (performed.stopped()) {
     const Reason reason = performed.outcome.trip.reason;

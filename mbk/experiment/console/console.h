@@ -15,11 +15,11 @@
 
 #include "mbk/base/core/words.h"
 #include "mbk/base/realtime/cycle_record.h"
-#include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/console/live_estimate.h"
 #include "mbk/experiment/console/server.h"
 #include "mbk/experiment/console/texts.h"
 #include "mbk/experiment/device/device.h"
+#include "mbk/experiment/session/conduct.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/measure/measurement/measure.h"
@@ -66,7 +66,7 @@ struct Judgement {
   std::string why;          ///< it is not good; a sentence without its full stop
   std::vector<double> vaf;  ///< variance accounted for on each axis [%]; empty: not measured
 
-  [[nodiscard]] static Judgement of(const conduct::Performed& performed);
+  [[nodiscard]] static Judgement of(const session::Performed& performed);
 };
 
 enum class Progress { waiting, running, done, stopped };

@@ -15,7 +15,7 @@ namespace {
 
 using State = safety::MotorsOff::State;
 
-class PageWatcher : public conduct::Watcher {
+class PageWatcher : public session::Watcher {
  public:
   explicit PageWatcher(Console& console) : console_(console) {}
   void watch(std::span<const journal::Tick> ticks) override { console_.watch(ticks); }
@@ -26,7 +26,7 @@ class PageWatcher : public conduct::Watcher {
 
 }  // namespace
 
-bool PageOperator::may_begin(session::Session& session, const conduct::Experiment& experiment) {
+bool PageOperator::may_begin(session::Session& session, const session::Experiment& experiment) {
   if (!wait_) return true;
   const protocol::Trial& first = experiment.plans.front().trial;
   std::unique_ptr<device::Device> robot;
@@ -49,7 +49,7 @@ bool PageOperator::may_begin(session::Session& session, const conduct::Experimen
   }
 }
 
-std::unique_ptr<conduct::Watcher> PageOperator::begin(const conduct::Attempt& attempt) {
+std::unique_ptr<session::Watcher> PageOperator::begin(const session::Attempt& attempt) {
   console_.begin(attempt.index, session::header_of(attempt.plan, attempt.robot.facts()), attempt.target,
                  attempt.plan.sequence.duration(0.0));
   if (!attempt.plan.trial.device.simulated()) {
@@ -83,12 +83,18 @@ void PageOperator::idle(const session::IdleState& seen) {
   console_.show_robot(status);
 }
 
+std::vector<std::string> PageOperator::notes() {
+  auto notes = console_.take_notes();
+  for (const std::string& note : notes) warn_of_names("the note", note);
+  return notes;
+}
+
 void PageOperator::recorded(const session::TrialOutcome& outcome) {
   recording_ = outcome.recording;
   console_.finish(outcome);
 }
 
-Result<void> PageOperator::judged(const conduct::Performed& performed) {
+Result<void> PageOperator::judged(const session::Performed& performed) {
   console_.judge(Judgement::of(performed));
   return keep_notes();
 }
@@ -101,9 +107,8 @@ Result<void> PageOperator::keep_notes() {
   }
   std::error_code ignored;
   if (!std::filesystem::exists(recording_, ignored)) return {};
-  const auto notes = console_.take_notes();
-  for (const std::string& note : notes) warn_of_names("the note", note);
-  return notes.empty() ? Result<void>{} : session::annotate(recording_, notes);
+  const auto noted = notes();
+  return noted.empty() ? Result<void>{} : session::annotate(recording_, noted);
 }
 
 void PageOperator::warn_of_names(std::string_view what, const std::string& text) {
@@ -113,21 +118,21 @@ void PageOperator::warn_of_names(std::string_view what, const std::string& text)
   console_.say(warning);
 }
 
-bool PageOperator::decides(const conduct::Performed& performed) const {
+bool PageOperator::decides(const session::Performed& performed) const {
   return wait_ || ((performed.stopped() || performed.poor()) && console_.status().controlled);
 }
 
-conduct::Next PageOperator::next(session::Session& session, const conduct::Performed& performed) {
-  if (!decides(performed)) return conduct::Operator::next(session, performed);
+session::Next PageOperator::next(session::Session& session, const session::Performed& performed) {
+  if (!decides(performed)) return session::Operator::next(session, performed);
   Question question = performed.stopped() ? Question::reset : Question::after;
   while (true) {
     switch (console_.ask(question)) {
       case Action::repeat:
-        return conduct::Next::repeat;
+        return session::Next::repeat;
       case Action::next:
-        return conduct::Next::go_on;
+        return session::Next::go_on;
       case Action::abort:
-        return conduct::Next::end;
+        return session::Next::end;
       case Action::note:
         if (auto ok = keep_notes(); !ok) console_.say(ok.error().line());
         break;

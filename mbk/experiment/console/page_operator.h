@@ -6,14 +6,15 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "mbk/experiment/conduct/conduct.h"
 #include "mbk/experiment/console/console.h"
+#include "mbk/experiment/session/conduct.h"
 
 namespace mbk::console {
 
 /// The operator at the page: it is shown all that happens, and asked what comes next.
-class PageOperator : public conduct::Operator {
+class PageOperator : public session::Operator {
  public:
   /// @param console  outlives this    @param wait  the page begins the first trial, and is asked after each
   /// @param warn  takes a sentence about a note that looks as if it said who somebody is; the page is shown it too
@@ -22,22 +23,24 @@ class PageOperator : public conduct::Operator {
 
   /// Waits for the page, and shows it the robot of the first trial meanwhile; true at once where nobody is to wait.
   /// @returns  false: it would rather not
-  [[nodiscard]] bool may_begin(session::Session& session, const conduct::Experiment& experiment);
+  [[nodiscard]] bool may_begin(session::Session& session, const session::Experiment& experiment);
 
-  [[nodiscard]] std::unique_ptr<conduct::Watcher> begin(const conduct::Attempt& attempt) override;
+  [[nodiscard]] std::unique_ptr<session::Watcher> begin(const session::Attempt& attempt) override;
   void motors(const safety::MotorsOff& motors) override;
   void idle(const session::IdleState& seen) override;
+  /// What was noted while the trial ran.
+  [[nodiscard]] std::vector<std::string> notes() override;
   void recorded(const session::TrialOutcome& outcome) override;
 
   /// Shows what it is worth, and keeps its notes.
-  [[nodiscard]] Result<void> judged(const conduct::Performed& performed) override;
+  [[nodiscard]] Result<void> judged(const session::Performed& performed) override;
 
   /// Asks the page where it decides, resets the gate where that says so, and keeps notes meanwhile.
-  [[nodiscard]] conduct::Next next(session::Session& session, const conduct::Performed& performed) override;
+  [[nodiscard]] session::Next next(session::Session& session, const session::Performed& performed) override;
 
   /// Whether the page is asked what comes next: always where it is waited for, else where somebody has to be asked and
   /// a page is in control.
-  [[nodiscard]] bool decides(const conduct::Performed& performed) const;
+  [[nodiscard]] bool decides(const session::Performed& performed) const;
 
   /// Remarks go into the recording of the last trial, exclusions into those that they speak of.
   /// @fails  as session::annotate and set_metadata

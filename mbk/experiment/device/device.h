@@ -49,13 +49,17 @@ struct Command {
   bool enabled = false;          ///< false: drives off, whatever the torque
 };
 
-/// What does not change while it runs.
-struct Facts {
-  std::string name;              ///< for people: "simulated robot", "UDP 127.0.0.1:25000"
+/// What is fitted to a robot, and what it can say.
+struct Abilities {
   bool has_force = true;         ///< a force sensor is fitted
   bool has_acceleration = true;  ///< an accelerometer is fitted
   bool keeps_time = true;        ///< it moves on by itself; false: it waits for each command, as a simulation may
   bool acknowledges = false;     ///< its states say which command it obeys, and whether its motors are on
+};
+
+/// What does not change while it runs.
+struct Facts : Abilities {
+  std::string name;       ///< for people: "simulated robot", "UDP 127.0.0.1:25000"
   int force_latency = 0;  ///< ticks by which force and acceleration are older than the angles of their State ≥ 0
 };
 

@@ -135,7 +135,7 @@ const Vector2d& Gate::told(std::uint64_t command) const noexcept {
 
 Gate::Decision Gate::step(const Observation& seen, const Vector2d& asked) noexcept {
   ++ticks_;
-  stop_pressed_ = seen.stop_button;
+  stop_pressed_ = seen.state.stop;
   if (!off() && !tripped()) check(seen, asked);
   Decision decision;
   if (released_ && !tripped()) {
@@ -169,20 +169,21 @@ Gate::Decision Gate::step(const Observation& seen, const Vector2d& asked) noexce
 }
 
 void Gate::check(const Observation& seen, const Vector2d& asked) noexcept {
-  if (seen.stop_button) return trip(Reason::stop_button, seen);
+  if (seen.state.stop) return trip(Reason::stop_button, seen);
   if (seen.operator_stop) return trip(Reason::operator_stop, seen);
   if (seen.fresh) fresh_at_ = seen.time;
   const double silent = seen.time - fresh_at_;
   if (!seen.link || silent > limits_.link_silence + 0.5 * sample_time_) {
     return trip(Reason::link_lost, seen, silent, limits_.link_silence);
   }
-  if (limits_.lateness > 0.0 && beyond(Reason::late, seen, seen.late, limits_.lateness)) return;
+  const bool may_be_late = !seen.robot.keeps_time || limits_.lateness == 0.0;  // a robot may wait for its commands
+  if (!may_be_late && beyond(Reason::late, seen, seen.late, limits_.lateness)) return;
   if (!seen.recording) return trip(Reason::recording_failed, seen);
   if (seen.fresh) {
-    if (const Violation found = reports_.check(seen.report, seen.time, seen.keeps_time, ticks_ - 1)) {
+    if (const Violation found = reports_.check(seen.state, seen.robot, seen.time, ticks_ - 1)) {
       return trip(found.reason, seen, found.value, found.limit);
     }
-    step_ = seen_before_ ? seen.report.time - stamp_ : 0.0;
+    step_ = seen_before_ ? seen.state.time - stamp_ : 0.0;
     if (!check_readings(seen)) return;
   }
   if (!asked.allFinite()) return trip(Reason::controller_not_finite, seen);
@@ -190,27 +191,29 @@ void Gate::check(const Observation& seen, const Vector2d& asked) noexcept {
 }
 
 bool Gate::check_readings(const Observation& seen) noexcept {
-  if (!seen.joint.allFinite()) return trip(Reason::encoder_not_finite, seen), false;
-  if (seen.has_force && !seen.force.allFinite()) return trip(Reason::force_not_finite, seen), false;
-  if (seen.has_acceleration && !seen.acceleration.allFinite()) {
+  if (!seen.state.joint.allFinite()) return trip(Reason::encoder_not_finite, seen), false;
+  if (seen.robot.has_force && !seen.state.force.allFinite()) return trip(Reason::force_not_finite, seen), false;
+  if (seen.robot.has_acceleration && !seen.state.acceleration.allFinite()) {
     return trip(Reason::accelerometer_not_finite, seen), false;
   }
   if (seen_before_) {
     // where states between were lost, a joint may have turned as far as the hand's speed allows
     const double lost = std::max(0.0, step_ - 1.5 * sample_time_);
     const double fastest = 2.0 * limits_.speed / std::min(robot_.geometry.d1, robot_.geometry.d2);
-    const double turned = (seen.joint - joint_).cwiseAbs().maxCoeff();
+    const double turned = (seen.state.joint - joint_).cwiseAbs().maxCoeff();
     if (beyond(Reason::encoder_jump, seen, turned, limits_.encoder_jump + fastest * lost)) return false;
     const double most = limits_.force_jump * std::max(1.0, std::round(step_ / sample_time_));
-    if (seen.has_force && beyond(Reason::force_jump, seen, (seen.force - force_).norm(), most)) return false;
+    if (seen.robot.has_force && beyond(Reason::force_jump, seen, (seen.state.force - force_).norm(), most))
+      return false;
   }
-  return !(seen.has_force && beyond(Reason::measured_force, seen, seen.force.norm(), limits_.measured_force));
+  return !(seen.robot.has_force &&
+           beyond(Reason::measured_force, seen, seen.state.force.norm(), limits_.measured_force));
 }
 
 bool Gate::check_stillness(const Observation& seen, const Vector2d& asked) noexcept {
   for (Eigen::Index i = 0; i < 2; ++i) {
     int& ticks = encoder_still_[static_cast<std::size_t>(i)];
-    if (!seen_before_ || seen.joint[i] != joint_[i]) {
+    if (!seen_before_ || seen.state.joint[i] != joint_[i]) {
       ticks = 0;
       torque_low_[i] = torque_high_[i] = asked[i];
     } else {
@@ -219,11 +222,11 @@ bool Gate::check_stillness(const Observation& seen, const Vector2d& asked) noexc
       torque_high_[i] = std::max(torque_high_[i], asked[i]);
     }
   }
-  joint_ = seen.joint;
-  force_ = seen.force;
+  joint_ = seen.state.joint;
+  force_ = seen.state.force;
   seen_before_ = true;
-  if (seen.has_force) force_still_.see(seen.force);
-  if (seen.has_acceleration) acceleration_still_.see(seen.acceleration);
+  if (seen.robot.has_force) force_still_.see(seen.state.force);
+  if (seen.robot.has_acceleration) acceleration_still_.see(seen.state.acceleration);
   if (limits_.frozen_sensor == 0.0) return true;
   for (Eigen::Index i = 0; i < 2; ++i) {
     if (torque_high_[i] - torque_low_[i] > limits_.frozen_sensor_torque &&
@@ -240,17 +243,17 @@ bool Gate::add_motion(const Observation& seen, double time) noexcept {
   const double gap = time - stamp_;
   stamp_ = time;
   if (!(gap > 0.0 && gap < kGapTicks * sample_time_)) motion_.forget();
-  const std::uint64_t obeyed = seen.report.acknowledges ? seen.report.answered : ticks_ - 1;
+  const std::uint64_t obeyed = seen.robot.acknowledges ? seen.state.answered : ticks_ - 1;
   if (ticks_ - obeyed >= kTold) motion_.forget();  // what it was told is no longer known
-  motion_.add({time, seen.joint, robot::hand_position(robot_.geometry, seen.joint), seen.acceleration, seen.force,
-               told(obeyed)});
+  motion_.add({time, seen.state.joint, robot::hand_position(robot_.geometry, seen.state.joint), seen.state.acceleration,
+               seen.state.force, told(obeyed)});
   return motion_.full();
 }
 
 bool Gate::check_motion(const Observation& seen) noexcept {
-  add_motion(seen, seen.report.time);
+  add_motion(seen, seen.state.time);
   const Vector2d& hand = motion_.before(0).hand;
-  const double margin = robot::margin(robot_.geometry.limits, seen.joint);
+  const double margin = robot::margin(robot_.geometry.limits, seen.state.joint);
   if (margin < limits_.joint_margin) return trip(Reason::joint_margin, seen, margin, limits_.joint_margin), false;
   const double outside =
       std::max((limits_.workspace_low - hand).maxCoeff(), (hand - limits_.workspace_high).maxCoeff());
@@ -259,8 +262,8 @@ bool Gate::check_motion(const Observation& seen) noexcept {
       beyond(Reason::excursion, seen, (hand - home_).norm(), limits_.excursion)) {
     return false;
   }
-  if (seen.follows &&
-      beyond(Reason::tracking, seen, (seen.joint_reference - seen.joint).cwiseAbs().maxCoeff(), limits_.tracking)) {
+  if (seen.follows && beyond(Reason::tracking, seen, (seen.joint_reference - seen.state.joint).cwiseAbs().maxCoeff(),
+                             limits_.tracking)) {
     return false;
   }
   if (motion_.half() && beyond(Reason::speed, seen, motion_.speed(), limits_.speed)) return false;
@@ -271,7 +274,7 @@ bool Gate::check_motion(const Observation& seen) noexcept {
 }
 
 bool Gate::check_accelerometer(const Observation& seen, const MotionWindow::Means& means) noexcept {
-  if (!seen.has_acceleration || limits_.accelerometer == 0.0) return true;
+  if (!seen.robot.has_acceleration || limits_.accelerometer == 0.0) return true;
   const Vector2d difference = means.hand_acceleration - means.acceleration;
   if (beyond(Reason::accelerometer_disagrees, seen, difference.norm(), limits_.accelerometer)) return false;
   const double weight = std::min(1.0, step_ / kMeanTime);
@@ -287,20 +290,20 @@ Vector2d Gate::torque_shown(const MotionWindow::Means& means) const noexcept {
 }
 
 bool Gate::check_torque(const Observation& seen, const MotionWindow::Means& means) noexcept {
-  if (!seen.has_force || limits_.torque_error == 0.0) return true;
+  if (!seen.robot.has_force || limits_.torque_error == 0.0) return true;
   unexplained_ += std::min(1.0, step_ / kTorqueTime) * (torque_shown(means) - means.torque - unexplained_);
   return !beyond(Reason::torque_disagrees, seen, unexplained_.cwiseAbs().maxCoeff(), limits_.torque_error);
 }
 
 bool Gate::check_drives(const Observation& seen) noexcept {
-  const RobotReport& report = seen.report;
-  if (!report.drives_measure || limits_.torque_error == 0.0) return true;
-  Vector2d low = told(report.answered), high = low;
-  for (std::uint64_t k = 1; k <= std::min(kDrivesCommands, report.answered); ++k) {
-    low = low.cwiseMin(told(report.answered - k));
-    high = high.cwiseMax(told(report.answered - k));
+  const device::State& state = seen.state;
+  if (!state.drives_measure || limits_.torque_error == 0.0) return true;
+  Vector2d low = told(state.answered), high = low;
+  for (std::uint64_t k = 1; k <= std::min(kDrivesCommands, state.answered); ++k) {
+    low = low.cwiseMin(told(state.answered - k));
+    high = high.cwiseMax(told(state.answered - k));
   }
-  const double beside = (low - report.drive_torque).cwiseMax(report.drive_torque - high).maxCoeff();
+  const double beside = (low - state.drive_torque).cwiseMax(state.drive_torque - high).maxCoeff();
   drives_wrong_ = beside > limits_.torque_error ? drives_wrong_ + step_ : 0.0;
   if (drives_wrong_ <= kDrivesTime) return true;
   return trip(Reason::torque_disagrees, seen, beside, limits_.torque_error), false;
@@ -308,17 +311,17 @@ bool Gate::check_drives(const Observation& seen) noexcept {
 
 MotorsOff::Why Gate::missing_for_off(const Observation& seen) noexcept {
   using Why = MotorsOff::Why;
-  const RobotReport& report = seen.report;
+  const device::State& state = seen.state;
   if (!seen.link || !seen.fresh) return Why::no_state;
-  if (report.answered < off_command_ || report.answered >= ticks_) return Why::not_answered;
-  if (report.motors != Motors::off) return Why::flag;
-  motors_.torque = report.drives_measure ? report.drive_torque.cwiseAbs().maxCoeff() : 0.0;
-  if (report.drives_measure && !(motors_.torque <= limits_.off_torque)) return Why::drives;
-  motors_.by_motion = limits_.torque_error > 0.0 && seen.has_force && !distrusts_sensors(trip_.reason);
+  if (state.answered < off_command_ || state.answered >= ticks_) return Why::not_answered;
+  if (state.motors != Motors::off) return Why::flag;
+  motors_.torque = state.drives_measure ? state.drive_torque.cwiseAbs().maxCoeff() : 0.0;
+  if (state.drives_measure && !(motors_.torque <= limits_.off_torque)) return Why::drives;
+  motors_.by_motion = limits_.torque_error > 0.0 && seen.robot.has_force && !distrusts_sensors(trip_.reason);
   motors_.limit = limits_.torque_error;
   if (!motors_.by_motion) return Why::nothing;
-  if (!seen.joint.allFinite() || !seen.force.allFinite()) return Why::motion;
-  const double time = report.time > stamp_ ? report.time : stamp_ + sample_time_;
+  if (!seen.state.joint.allFinite() || !seen.state.force.allFinite()) return Why::motion;
+  const double time = state.time > stamp_ ? state.time : stamp_ + sample_time_;
   if (!add_motion(seen, time)) return Why::motion;
   motors_.torque = torque_shown(motion_.means()).cwiseAbs().maxCoeff();
   return motors_.torque <= limits_.torque_error ? Why::nothing : Why::motion;
@@ -327,7 +330,7 @@ MotorsOff::Why Gate::missing_for_off(const Observation& seen) noexcept {
 void Gate::confirm_off(const Observation& seen) noexcept {
   if (motors_.state != MotorsOff::State::waiting) return;
   motors_.after = seen.time - off_at_;
-  if (!seen.report.acknowledges) {
+  if (!seen.robot.acknowledges) {
     motors_.state = MotorsOff::State::cannot_say;
     return;
   }

@@ -19,23 +19,17 @@ inline constexpr int kRampTicks = 20;
 
 /// What the gate is told at a tick: all of it as it came, nothing believed.
 struct Observation {
-  double time = 0.0;                   ///< on the loop's clock [s]
-  bool fresh = true;                   ///< a new state has come since the last tick
-  bool link = true;                    ///< the link says that it works
-  bool stop_button = false;            ///< of the robot
-  bool operator_stop = false;          ///< key or console
-  bool recording = true;               ///< what is recorded reaches the disk in time
-  double late = 0.0;                   ///< time since the last command left, beyond a tick [s]; 0: the robot waits
-  bool keeps_time = false;             ///< the robot moves on by itself
-  RobotReport report;                  ///< of the newest state
-  Vector2d joint = {0.0, 0.0};         ///< [rad]
-  Vector2d force = {0.0, 0.0};         ///< of the hand on the robot, base frame [N]
-  Vector2d acceleration = {0.0, 0.0};  ///< of the hand, base frame [m/s²]
-  bool has_force = true;
-  bool has_acceleration = true;
+  double time = 0.0;                      ///< on the loop's clock [s]
+  double late = 0.0;                      ///< time since the last command left, beyond a tick [s]
+  device::State state;                    ///< the newest of the robot
+  bool fresh = true;                      ///< it has come since the last tick
+  bool link = true;                       ///< the link says that it works
+  bool operator_stop = false;             ///< key or console
+  bool recording = true;                  ///< what is recorded reaches the disk in time
+  device::Abilities robot;                ///< what it can say, and what is fitted
+  bool perturbing = false;                ///< the hand shall be about home
   bool follows = false;                   ///< the joints shall be at `joint_reference`
   Vector2d joint_reference = {0.0, 0.0};  ///< [rad]
-  bool perturbing = false;                ///< the hand shall be about home
 };
 
 /// The last gate before the motors: every torque passes it, and nothing is behind it but the device. It believes

@@ -43,11 +43,11 @@ Observation moving(int tick) {
   const double t = tick * kTick, w = 2.0 * std::numbers::pi, r = 0.01;
   const Vector2d out(std::cos(w * t), std::sin(w * t));
   Observation seen;
-  seen.time = seen.report.time = t;
-  seen.joint = robot::joint_angles(geometry(), kHome + r * out).value();
-  seen.acceleration = -r * w * w * out + Vector2d(1e-6 * tick, 0.0);
-  seen.force = {3.0 * std::sin(w * t), 1.0 + 1e-6 * tick};
-  seen.joint_reference = seen.joint;
+  seen.time = seen.state.time = t;
+  seen.state.joint = robot::joint_angles(geometry(), kHome + r * out).value();
+  seen.state.acceleration = -r * w * w * out + Vector2d(1e-6 * tick, 0.0);
+  seen.state.force = {3.0 * std::sin(w * t), 1.0 + 1e-6 * tick};
+  seen.joint_reference = seen.state.joint;
   seen.follows = seen.perturbing = true;
   return seen;
 }
@@ -99,36 +99,36 @@ TEST_P(EveryFault, TripsInTimeForItsReasonAndBringsTheTorqueToZero) {
 INSTANTIATE_TEST_SUITE_P(
     Gate, EveryFault,
     testing::Values(
-        Fault{Reason::stop_button, 0, [](Observation& o, Vector2d&, int) { o.stop_button = true; }},
+        Fault{Reason::stop_button, 0, [](Observation& o, Vector2d&, int) { o.state.stop = true; }},
         Fault{Reason::operator_stop, 0, [](Observation& o, Vector2d&, int) { o.operator_stop = true; }},
         Fault{Reason::link_lost, 0, [](Observation& o, Vector2d&, int) { o.link = false; }},
         Fault{Reason::link_lost, 10, [](Observation& o, Vector2d&, int) { o.fresh = false; }},
         Fault{Reason::late, 0, [](Observation& o, Vector2d&, int) { o.late = 0.03; }},
         Fault{Reason::recording_failed, 0, [](Observation& o, Vector2d&, int) { o.recording = false; }},
         Fault{Reason::controller_not_finite, 0, [](Observation&, Vector2d& a, int) { a[1] = kNotANumber; }},
-        Fault{Reason::encoder_not_finite, 0, [](Observation& o, Vector2d&, int) { o.joint[0] = kNotANumber; }},
-        Fault{Reason::force_not_finite, 0, [](Observation& o, Vector2d&, int) { o.force[1] = kNotANumber; }},
+        Fault{Reason::encoder_not_finite, 0, [](Observation& o, Vector2d&, int) { o.state.joint[0] = kNotANumber; }},
+        Fault{Reason::force_not_finite, 0, [](Observation& o, Vector2d&, int) { o.state.force[1] = kNotANumber; }},
         Fault{Reason::accelerometer_not_finite, 0,
-              [](Observation& o, Vector2d&, int) { o.acceleration[0] = kNotANumber; }},
-        Fault{Reason::encoder_jump, 0, [](Observation& o, Vector2d&, int) { o.joint[1] += 0.03; }},
-        Fault{Reason::force_jump, 0, [](Observation& o, Vector2d&, int) { o.force[0] += 25.0; }},
+              [](Observation& o, Vector2d&, int) { o.state.acceleration[0] = kNotANumber; }},
+        Fault{Reason::encoder_jump, 0, [](Observation& o, Vector2d&, int) { o.state.joint[1] += 0.03; }},
+        Fault{Reason::force_jump, 0, [](Observation& o, Vector2d&, int) { o.state.force[0] += 25.0; }},
         Fault{Reason::force_frozen, 260,
               [](Observation& o, Vector2d&, int) {
-                o.force = {1.0, 2.0};
+                o.state.force = {1.0, 2.0};
               }},
         Fault{Reason::accelerometer_frozen, 260,
               [](Observation& o, Vector2d&, int) {
-                o.acceleration = {0.1, 0.1};
+                o.state.acceleration = {0.1, 0.1};
               }},
         Fault{Reason::encoder_frozen, 300,
               [](Observation& o, Vector2d&, int) {
-                o.joint[0] = moving(600).joint[0];
-                o.joint_reference = o.joint;
-                o.has_acceleration = false;
+                o.state.joint[0] = moving(600).state.joint[0];
+                o.joint_reference = o.state.joint;
+                o.robot.has_acceleration = false;
               }},
         Fault{Reason::accelerometer_disagrees, 60,
-              [](Observation& o, Vector2d&, int) { o.acceleration += Vector2d(6.0, 0.0); }},
-        Fault{Reason::measured_force, 300, [](Observation& o, Vector2d&, int k) { o.force[0] += 0.2 * k; }},
+              [](Observation& o, Vector2d&, int) { o.state.acceleration += Vector2d(6.0, 0.0); }},
+        Fault{Reason::measured_force, 300, [](Observation& o, Vector2d&, int k) { o.state.force[0] += 0.2 * k; }},
         Fault{Reason::tracking, 0, [](Observation& o, Vector2d&, int) { o.joint_reference[1] += 0.3; }},
         Fault{Reason::limited_too_long, 110, [](Observation&, Vector2d& a, int) {
                 a = {40.0, 40.0};
@@ -139,10 +139,10 @@ int ticks_until_it_is_too_far(Gate& g, double acceleration) {
   return ticks_to_trip(g, [&](Observation& seen, Vector2d&, int k) {
     const double t = k * kTick;
     const Vector2d away =
-        robot::hand_position(geometry(), moving(600 + k).joint) + Vector2d(0.0, 0.5 * acceleration * t * t);
+        robot::hand_position(geometry(), moving(600 + k).state.joint) + Vector2d(0.0, 0.5 * acceleration * t * t);
     const auto angles = robot::joint_angles(geometry(), away);
-    if (angles) seen.joint = *angles;
-    seen.acceleration[1] += acceleration;
+    if (angles) seen.state.joint = *angles;
+    seen.state.acceleration[1] += acceleration;
     seen.follows = false;
   });
 }
@@ -184,7 +184,7 @@ TEST(Gate, StopsAHandThatIsShaken) {
   Gate g = gate(limits);
   const int ticks = ticks_to_trip(g, [](Observation& seen, Vector2d&, int k) {
     const double growing = std::min(1.0, k / 200.0);
-    seen.joint += growing * Vector2d::Constant(0.01 * std::sin(2.0 * std::numbers::pi * 10.0 * k * kTick));
+    seen.state.joint += growing * Vector2d::Constant(0.01 * std::sin(2.0 * std::numbers::pi * 10.0 * k * kTick));
     seen.follows = false;
   });
   ASSERT_GE(ticks, 0);
@@ -206,7 +206,7 @@ TEST(Gate, NeverLetsMoreForceTorqueOrRatePassWhateverIsAsked) {
     const Observation seen = moving(i);
     const Gate::Decision decision = g.step(seen, asked);
     ASSERT_FALSE(g.tripped()) << sentence(g.trip());
-    EXPECT_LE(handle_force(seen.joint, decision.torque), 12.0 * (1.0 + 1e-12));
+    EXPECT_LE(handle_force(seen.state.joint, decision.torque), 12.0 * (1.0 + 1e-12));
     EXPECT_LE(std::abs(decision.torque[0]), 3.0);
     EXPECT_LE(std::abs(decision.torque[1]), 2.0);
     EXPECT_TRUE(decision.cut || (decision.torque - asked).norm() < 1e-9);
@@ -228,14 +228,14 @@ TEST(Gate, LetsPassUnchangedWhatKeepsTheLimits) {
 TEST(Gate, KeepsTheFirstReasonUntilItIsReset) {
   Gate g = gate();
   Observation seen = moving(0);
-  seen.stop_button = true;
+  seen.state.stop = true;
   g.step(seen, {0.0, 0.0});
   EXPECT_EQ(g.trip().reason, Reason::stop_button);
   EXPECT_FALSE(g.reset()) << "while the motors are still ramped down";
   for (int i = 1; i <= kRampTicks; ++i) {
     seen = moving(i);
-    seen.stop_button = true;
-    seen.force[0] = kNotANumber;
+    seen.state.stop = true;
+    seen.state.force[0] = kNotANumber;
     g.step(seen, {0.0, 0.0});
   }
   EXPECT_EQ(g.trip().reason, Reason::stop_button);
@@ -250,9 +250,9 @@ TEST(Gate, KeepsTheFirstReasonUntilItIsReset) {
 TEST(Gate, FindsAnEncoderThatCountsBackwardsInASmallMotion) {
   for (const Eigen::Index joint : {0, 1}) {
     Gate g = gate();
-    const double at = moving(600).joint[joint];
+    const double at = moving(600).state.joint[joint];
     const int ticks = ticks_to_trip(g, [&](Observation& seen, Vector2d&, int) {
-      seen.joint[joint] = 2.0 * at - seen.joint[joint];
+      seen.state.joint[joint] = 2.0 * at - seen.state.joint[joint];
       seen.follows = false;
     });
     EXPECT_GT(ticks, 0);
@@ -305,14 +305,13 @@ class Driven : public testing::Test {
     const Vector2d force = -(150.0 * (hand - kHome) + 12.0 * velocity) + Vector2d(0.0, 1e-6 * ticks_);
     Observation seen;
     seen.time = kTick * ticks_;
-    seen.keeps_time = true;
-    seen.joint = joint_;
-    seen.force = force;
-    seen.has_acceleration = false;
-    seen.report.time = 10.0 + seen.time;
-    seen.report.acknowledges = true;
-    seen.report.answered = sent_;
-    seen.report.motors = decision_.enabled ? Motors::on : Motors::off;
+    seen.state.joint = joint_;
+    seen.state.force = force;
+    seen.robot.has_acceleration = false;
+    seen.state.time = 10.0 + seen.time;
+    seen.robot.acknowledges = true;
+    seen.state.answered = sent_;
+    seen.state.motors = decision_.enabled ? Motors::on : Motors::off;
     spoil(seen);
     const Vector2d torque = motors(decision_.torque, decision_.enabled);
     decision_ = gate_.step(seen, asked);
@@ -390,14 +389,14 @@ TEST_F(Driven, EachMissingPartOfAConfirmationIsNamed) {
     std::function<void(Observation&)> spoil;
   };
   const std::vector<Case> cases = {
-      {MotorsOff::Why::flag, [](Observation& o) { o.report.motors = Motors::on; }},
-      {MotorsOff::Why::not_answered, [](Observation& o) { o.report.answered = 2; }},
+      {MotorsOff::Why::flag, [](Observation& o) { o.state.motors = Motors::on; }},
+      {MotorsOff::Why::not_answered, [](Observation& o) { o.state.answered = 2; }},
       {MotorsOff::Why::no_state, [](Observation& o) { o.fresh = false; }},
       {MotorsOff::Why::no_state, [](Observation& o) { o.link = false; }},
       {MotorsOff::Why::drives,
        [](Observation& o) {
-         o.report.drives_measure = true;
-         o.report.drive_torque = {0.0, 2.0};
+         o.state.drives_measure = true;
+         o.state.drive_torque = {0.0, 2.0};
        }},
   };
   for (const Case& one : cases) {
@@ -417,7 +416,7 @@ TEST_F(Driven, EachMissingPartOfAConfirmationIsNamed) {
 }
 
 TEST_F(Driven, ARobotThatSaysNothingOfItsMotorsIsNotCalledOff) {
-  spoil = [](Observation& o) { o.report.acknowledges = false; };
+  spoil = [](Observation& o) { o.robot.acknowledges = false; };
   drive(300);
   ASSERT_FALSE(gate_.tripped()) << sentence(gate_.trip());
   gate_.release();
@@ -428,9 +427,9 @@ TEST_F(Driven, ARobotThatSaysNothingOfItsMotorsIsNotCalledOff) {
 /// From the first state on, whatever its stamp: before the first command nothing was told, and nothing is measured.
 TEST_F(Driven, DrivesThatMeasureWhatTheyAreToldNeverTrip) {
   spoil = [this](Observation& o) {
-    o.report.time += 1e4;
-    o.report.drives_measure = true;
-    o.report.drive_torque = decision_.torque;
+    o.state.time += 1e4;
+    o.state.drives_measure = true;
+    o.state.drive_torque = decision_.torque;
   };
   drive(1500);
   EXPECT_FALSE(gate_.tripped()) << sentence(gate_.trip());
@@ -439,8 +438,8 @@ TEST_F(Driven, DrivesThatMeasureWhatTheyAreToldNeverTrip) {
 TEST_F(Driven, DrivesThatMeasureAnotherTorqueTrip) {
   drive(300);
   spoil = [this](Observation& o) {
-    o.report.drives_measure = true;
-    o.report.drive_torque = decision_.torque + Vector2d(0.0, 0.8);
+    o.state.drives_measure = true;
+    o.state.drive_torque = decision_.torque + Vector2d(0.0, 0.8);
   };
   const int found = drive(1000);
   EXPECT_EQ(gate_.trip().reason, Reason::torque_disagrees);
@@ -460,7 +459,7 @@ TEST(Gate, DoesNotAllocate) {
   Gate g = gate();
   std::vector<Observation> seen;
   for (int i = 0; i < 3000; ++i) seen.push_back(moving(i));
-  seen[2500].force[0] = kNotANumber;
+  seen[2500].state.force[0] = kNotANumber;
   const long before = testing_support::allocations();
   for (const Observation& one : seen) g.step(one, {0.3, 0.2});
   EXPECT_EQ(testing_support::allocations(), before);

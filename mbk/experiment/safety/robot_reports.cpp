@@ -16,21 +16,24 @@ void ReportCheck::forget() noexcept {
   *this = ReportCheck(limits_, sample_time_);
 }
 
-Violation ReportCheck::check(const RobotReport& report, double now, bool keeps_time, std::uint64_t sent) noexcept {
-  if (report.fault != 0) return {Reason::robot_fault, static_cast<double>(report.fault), 0.0};
-  if (report.watchdog_expired) return {Reason::robot_watchdog};
-  measured_ = measured_ || report.drives_measure;
-  const bool torque_missing = measured_ && !(report.drives_measure && report.drive_torque.allFinite());
-  if (!report.force_sensor || !report.accelerometer || torque_missing) return {Reason::sensor_missing};
-  if (const Violation found = check_clock(report, now, keeps_time)) return found;
-  return report.acknowledges ? check_answer(report, now, sent) : Violation{};
+Violation ReportCheck::check(const device::State& state, const device::Abilities& robot, double now,
+                             std::uint64_t sent) noexcept {
+  if (state.fault != 0) return {Reason::robot_fault, static_cast<double>(state.fault), 0.0};
+  if (state.watchdog_expired) return {Reason::robot_watchdog};
+  measured_ = measured_ || state.drives_measure;
+  const bool torque_missing = measured_ && !(state.drives_measure && state.drive_torque.allFinite());
+  const bool force_missing = robot.has_force && !state.has_force;
+  const bool accelerometer_missing = robot.has_acceleration && !state.has_acceleration;
+  if (force_missing || accelerometer_missing || torque_missing) return {Reason::sensor_missing};
+  if (const Violation found = check_clock(state, now, robot.keeps_time)) return found;
+  return robot.acknowledges ? check_answer(state, now, sent) : Violation{};
 }
 
-Violation ReportCheck::check_clock(const RobotReport& report, double now, bool keeps_time) noexcept {
-  if (!std::isfinite(report.time)) return {Reason::robot_clock, report.time, 0.0};
-  const double step = report.time - last_, step_now = now - last_now_;
+Violation ReportCheck::check_clock(const device::State& state, double now, bool keeps_time) noexcept {
+  if (!std::isfinite(state.time)) return {Reason::robot_clock, state.time, 0.0};
+  const double step = state.time - last_, step_now = now - last_now_;
   if (begun_ && !(step > 0.0)) return {Reason::robot_clock, step, 0.0};
-  const double behind = now - report.time;
+  const double behind = now - state.time;
   if (!begun_) {
     began_ = now;
     fastest_ = behind;
@@ -39,10 +42,10 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
   // have waited for the loop to begin
   const bool settling = now - began_ < kSettle;
   if (!begun_ || (settling && behind <= window_now_ - window_) || now - window_now_ > kRateWindow) {
-    window_ = report.time;
+    window_ = state.time;
     window_now_ = now;
   }
-  last_ = report.time;
+  last_ = state.time;
   last_now_ = now;
   const bool first = !begun_;
   begun_ = true;
@@ -50,7 +53,7 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
   if (!settling) {
     const double jump = step - step_now, max_jump = kClockStep + limits_.link_silence;
     if (jump > max_jump) return {Reason::robot_clock, jump, max_jump};
-    const double ahead = (report.time - window_) - (now - window_now_);
+    const double ahead = (state.time - window_) - (now - window_now_);
     if (const double most = kClockStep + kFasterBy * (now - window_now_); ahead > most) {
       return {Reason::robot_clock, ahead, most};
     }
@@ -61,12 +64,12 @@ Violation ReportCheck::check_clock(const RobotReport& report, double now, bool k
   return {};
 }
 
-Violation ReportCheck::check_answer(const RobotReport& report, double now, std::uint64_t sent) noexcept {
-  if (report.answered > sent || report.answered < answered_) return {Reason::answer_wrong};
-  answered_ = report.answered;
-  const double lag = static_cast<double>(sent - report.answered) * sample_time_;
+Violation ReportCheck::check_answer(const device::State& state, double now, std::uint64_t sent) noexcept {
+  if (state.answered > sent || state.answered < answered_) return {Reason::answer_wrong};
+  answered_ = state.answered;
+  const double lag = static_cast<double>(sent - state.answered) * sample_time_;
   if (limits_.answer_lag > 0.0 && lag > limits_.answer_lag) return {Reason::answer_late, lag, limits_.answer_lag};
-  const bool wrong = report.answered > 0 && report.motors == Motors::off;
+  const bool wrong = state.answered > 0 && state.motors == Motors::off;
   if (wrong && !motors_wrong_) motors_wrong_since_ = now;
   motors_wrong_ = wrong;
   const double wrong_for = wrong ? now - motors_wrong_since_ : 0.0;

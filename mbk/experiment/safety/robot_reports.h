@@ -10,20 +10,6 @@ namespace mbk::safety {
 
 using device::Motors;
 
-/// What the robot reports of itself with a new state.
-struct RobotReport {
-  double time = 0.0;           ///< on the robot's clock [s]
-  bool acknowledges = false;   ///< `answered` and `motors` are meant
-  std::uint64_t answered = 0;  ///< commands up to the one that it obeys; 0: none
-  Motors motors = Motors::unknown;
-  bool force_sensor = true;   ///< none of the sensors that were there at the start is missing
-  bool accelerometer = true;  ///< the same
-  bool watchdog_expired = false;
-  bool drives_measure = false;
-  Vector2d drive_torque = {0.0, 0.0};  ///< as the drives measure it [N·m]
-  std::uint32_t fault = 0;             ///< its own fault code; 0: none
-};
-
 /// One thing that must not be: with what was measured, against what limit.
 struct Violation {
   Reason reason = Reason::none;
@@ -44,14 +30,15 @@ class ReportCheck {
   /// Forgets what came before.
   void forget() noexcept;
 
-  /// @param now  on the loop's clock, where the robot keeps time by itself [s]
+  /// @param state  a new one    @param now  on the loop's clock, if the robot keeps time itself [s]
   /// @param sent  commands that have left, all of them with motors on
-  [[nodiscard]] Violation check(const RobotReport& report, double now, bool keeps_time, std::uint64_t sent) noexcept;
+  [[nodiscard]] Violation check(const device::State& state, const device::Abilities& robot, double now,
+                                std::uint64_t sent) noexcept;
 
  private:
   static constexpr double kClockDrift = 5e-4;  ///< of one clock against the other
-  [[nodiscard]] Violation check_clock(const RobotReport& report, double now, bool keeps_time) noexcept;
-  [[nodiscard]] Violation check_answer(const RobotReport& report, double now, std::uint64_t sent) noexcept;
+  [[nodiscard]] Violation check_clock(const device::State& state, double now, bool keeps_time) noexcept;
+  [[nodiscard]] Violation check_answer(const device::State& state, double now, std::uint64_t sent) noexcept;
 
   Limits limits_;
   double sample_time_;

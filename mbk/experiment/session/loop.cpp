@@ -26,19 +26,27 @@ std::array<double, 2> pair(const Eigen::Vector2d& v) noexcept {
   return {v[0], v[1]};
 }
 
-safety::RobotReport report_of(const device::Facts& facts, const device::State& state) noexcept {
-  safety::RobotReport report;
-  report.time = state.time;
-  report.acknowledges = facts.acknowledges;
-  report.answered = state.answered;
-  report.motors = state.motors;
-  report.force_sensor = state.has_force || !facts.has_force;
-  report.accelerometer = state.has_acceleration || !facts.has_acceleration;
-  report.watchdog_expired = state.watchdog_expired;
-  report.drives_measure = state.drives_measure;
-  report.drive_torque = state.drive_torque;
-  report.fault = state.fault;
-  return report;
+/// The tick as it is recorded.
+journal::Tick tick_of(std::uint64_t number, const safety::Observation& seen, const control::Sequencer::Step& step,
+                      const safety::Gate::Decision& decision, const safety::Trip& trip) noexcept {
+  journal::Tick tick;
+  tick.number = number;
+  tick.time = seen.time;
+  tick.late = seen.late;
+  tick.perturbation_time = step.perturbation_time;
+  tick.joint = pair(seen.state.joint);
+  tick.force = pair(seen.state.force);
+  tick.acceleration = pair(seen.state.acceleration);
+  tick.reference = pair(step.reference);
+  tick.asked = pair(step.torque);
+  tick.torque = pair(decision.torque);
+  tick.sequence = seen.state.sequence;
+  tick.phase = static_cast<std::uint8_t>(step.phase);
+  tick.reason = static_cast<std::uint8_t>(trip.reason);
+  tick.enabled = decision.enabled ? 1 : 0;
+  tick.triggered = step.triggered ? 1 : 0;
+  tick.cut = decision.cut ? 1 : 0;
+  return tick;
 }
 
 }  // namespace
@@ -46,7 +54,9 @@ safety::RobotReport report_of(const device::Facts& facts, const device::State& s
 void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate& gate, realtime::Clock& clock,
               realtime::BoundedRing<journal::Tick>& ticks, LoopFlags& flags, LoopTimes& times) noexcept {
   const device::Facts& facts = robot.facts();
-  device::State state;
+  safety::Observation seen;
+  device::State& state = seen.state;
+  seen.robot = facts;
   std::uint64_t last_sequence = 0;
   double compute = 0.0, first_time = 0.0, left = 0.0, interval = 0.0;
   bool link = true;
@@ -68,27 +78,17 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
       first_time = now;
       left = now - clock.period();
     }
-    safety::Observation seen;
     seen.time = now - first_time;
+    // a stall inside a tick is in it, before the command left or behind it
+    seen.late = std::max(0.0, std::max(now - left, interval) - clock.period());
     seen.fresh = state.sequence != last_sequence;
     seen.link = gate.off() ? reads : link;
-    seen.stop_button = state.stop;
     seen.operator_stop = flags.operator_stop.load(std::memory_order_relaxed);
     seen.recording = flags.recording.load(std::memory_order_relaxed) &&
                      (facts.keeps_time ? ticks.room() > ticks.capacity() / 4 : wait_for_room(ticks));
-    // a stall inside a tick is in it, before the command left or behind it
-    const double overdue = std::max(0.0, std::max(now - left, interval) - clock.period());
-    seen.late = facts.keeps_time ? overdue : 0.0;
-    seen.keeps_time = facts.keeps_time;
-    seen.report = report_of(facts, state);
-    seen.joint = state.joint;
-    seen.force = state.force;
-    seen.acceleration = state.acceleration;
-    seen.has_force = facts.has_force;
-    seen.has_acceleration = facts.has_acceleration;
+    seen.perturbing = step.phase == control::Phase::perturbing;
     seen.follows = step.follows;
     seen.joint_reference = step.joint_reference;
-    seen.perturbing = step.phase == control::Phase::perturbing;
     const safety::Gate::Decision decision = gate.step(seen, step.torque);
     link = robot.write({number, decision.torque, decision.enabled}) && link;
     if (awaited = flags.beat(); !awaited) break;
@@ -100,24 +100,8 @@ void run_loop(device::Device& robot, control::Sequencer& sequence, safety::Gate&
     }
     left = leaves;
 
-    journal::Tick tick;
-    tick.number = number;
-    tick.time = seen.time;
-    tick.late = overdue;
-    tick.perturbation_time = step.perturbation_time;
-    tick.joint = pair(state.joint);
-    tick.force = pair(state.force);
-    tick.acceleration = pair(state.acceleration);
-    tick.reference = pair(step.reference);
-    tick.asked = pair(step.torque);
-    tick.torque = pair(decision.torque);
-    tick.sequence = state.sequence;
+    journal::Tick tick = tick_of(number, seen, step, decision, gate.trip());
     tick.compute = static_cast<float>(compute);
-    tick.phase = static_cast<std::uint8_t>(step.phase);
-    tick.reason = static_cast<std::uint8_t>(gate.trip().reason);
-    tick.enabled = decision.enabled ? 1 : 0;
-    tick.triggered = step.triggered ? 1 : 0;
-    tick.cut = decision.cut ? 1 : 0;
     ticks.push(tick);
 
     const std::int64_t took = monotonic_ns() - begin;

@@ -66,25 +66,37 @@ bool same(const Vector& one, const Vector& other) {
   return one.size() == other.size() && std::equal(one.begin(), one.end(), other.begin(), equal);
 }
 
-/// Whether a file holds the recording. A channel that is NaN throughout may be left out, as MAT files do.
-bool holds_the_same(const fs::path& target, const Recording& recording) {
-  std::error_code ignored;
-  if (!fs::exists(target, ignored)) return false;
-  const auto there = recording::read(target, {});
-  if (!there || !same(there->time, recording.time) || there->events.size() != recording.events.size()) return false;
+/// Whether `there` is the recording. A channel that is NaN throughout may be left out, as MAT files do.
+bool holds_the_same(const Recording& there, const Recording& recording) {
+  if (!same(there.time, recording.time) || there.events.size() != recording.events.size()) return false;
   for (const char* key : {"ended", "ticks_lost", "gaps"}) {
-    const auto value = recording.metadata.find(key), twin = there->metadata.find(key);
-    if (value != recording.metadata.end() && (twin == there->metadata.end() || *twin != *value)) return false;
+    const auto value = recording.metadata.find(key), twin = there.metadata.find(key);
+    if (value != recording.metadata.end() && (twin == there.metadata.end() || *twin != *value)) return false;
   }
   return std::ranges::all_of(recording.channels, [&](const Channel& channel) {
-    const Channel* const twin = there->find(channel.name);
+    const Channel* const twin = there.find(channel.name);
     return twin != nullptr ? same(twin->values, channel.values) : channel.values.array().isNaN().all();
   });
+}
+
+/// What the file holds, if that is the recording.
+std::optional<Recording> read_back(const fs::path& target, const Recording& recording) {
+  std::error_code ignored;
+  if (!fs::exists(target, ignored)) return std::nullopt;
+  auto there = recording::read(target, {});
+  if (!there || !holds_the_same(*there, recording)) return std::nullopt;
+  return std::move(*there);
 }
 
 std::string one_line(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   return printable(std::move(text));
+}
+
+void add_notes(const std::vector<std::string>& notes, std::map<std::string, std::string>& metadata) {
+  if (notes.empty()) return;
+  std::string& text = metadata["notes"];
+  for (const std::string& note : notes) text += (text.empty() ? "" : " | ") + one_line(note);
 }
 
 /// Writes the recording anew with the metadata as `change` leaves them.   @fails  as recording::read and write
@@ -117,12 +129,13 @@ void make_recording(Recorder& recorder, TrialOutcome& outcome) {
   if (const fs::path folder = outcome.recording.parent_path(); !folder.empty() && !fs::exists(folder, ignored)) {
     outcome.recording = outcome.journal.parent_path() / outcome.journal.stem();  // where the journal was saved
   }
-  const auto recovered = recover(outcome.journal, outcome.recording, {.ending = outcome.ending});
+  auto recovered = recover(outcome.journal, outcome.recording, {.ending = outcome.ending, .notes = outcome.notes});
   if (!recovered) {
     const bool taken = fs::exists(outcome.recording, ignored);
     unrecorded(recovered.error(), taken ? "move that file away, then " : "look at the folder and the disk, then ");
     return;
   }
+  outcome.recorded = std::move(recovered->read_back);
   outcome.damage = recovered->damage;
   outcome.incomplete = recovered->incomplete || recovered->ticks != outcome.times.ticks;
   outcome.ended = recovered->recording.metadata.at("ended");
@@ -211,7 +224,7 @@ Result<void> Session::reset() {
 }
 
 Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, const fs::path& target,
-                                      const Watch& watch, const Stalled& stalled) {
+                                      const Watch& watch, const Callbacks& callbacks) {
   const protocol::Trial& trial = plan.trial;
   if (trial.person.withdrawn) {
     return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
@@ -247,7 +260,8 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   Recorder recorder(ring, std::move(writer), *flags_, watch, in_real_time);
   std::optional<LoopWatch> loop_watch;  // begun before the loop: a machine that has no thread for it moves nothing
   if (!trial.device.simulated()) {
-    loop_watch.emplace(*flags_, robot.facts().keeps_time, watched_loop(robot, recorder, stalled, sample_time, outcome));
+    loop_watch.emplace(*flags_, robot.facts().keeps_time,
+                       watched_loop(robot, recorder, callbacks, sample_time, outcome));
   }
   std::thread loop([&] {
     const realtime::SignalStack stack;
@@ -265,20 +279,21 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
   guard.begun = true;
   loop.join();
   loop_watch.reset();
-  if (!flags_->given_up()) conclude(recorder, outcome);
+  if (!flags_->given_up()) conclude(recorder, callbacks, outcome);
   return outcome;
 }
 
 /// What the outcome does not say yet of trip and motors is what the gate says.
-void Session::conclude(Recorder& recorder, TrialOutcome& outcome) const {
+void Session::conclude(Recorder& recorder, const Callbacks& callbacks, TrialOutcome& outcome) const {
   if (outcome.trip.reason == safety::Reason::none) outcome.trip = gate_->trip();
   if (outcome.trip.reason == safety::Reason::operator_stop) outcome.trip.value = flags_->stop_signal;
   if (outcome.motors.state == safety::MotorsOff::State::not_asked) outcome.motors = gate_->motors();
   outcome.ending = ending_of(outcome, *flags_);
+  if (callbacks.notes) outcome.notes = callbacks.notes();
   make_recording(recorder, outcome);
 }
 
-LoopWatch::Told Session::watched_loop(device::Device& robot, Recorder& recorder, const Stalled& stalled,
+LoopWatch::Told Session::watched_loop(device::Device& robot, Recorder& recorder, const Callbacks& callbacks,
                                       double sample_time, TrialOutcome& outcome) const {
   using State = safety::MotorsOff::State;
   const auto motors_of = [](double silent, State state) {
@@ -288,28 +303,25 @@ LoopWatch::Told Session::watched_loop(device::Device& robot, Recorder& recorder,
     motors.why = safety::MotorsOff::Why::no_tick;
     return motors;
   };
-  const auto tell = [&stalled](const safety::MotorsOff& motors) {
-    if (stalled.motors) stalled.motors(motors);
+  const auto tell = [&callbacks](const safety::MotorsOff& motors) {
+    if (callbacks.motors) callbacks.motors(motors);
   };
   return {[=](double silent) { tell(motors_of(silent, State::missing)); },
           [=](double silent) { tell(motors_of(silent, State::waiting)); },
-          [=, this, &robot, &recorder, &stalled, &outcome](double silent) {
+          [=, this, &robot, &recorder, &callbacks, &outcome](double silent) {
             robot.emergency_off();
             if (!gate_->tripped()) {
               const double now = static_cast<double>(outcome.times.ticks) * sample_time;
               outcome.trip = {safety::Reason::loop_stalled, now, outcome.times.ticks, silent, LoopWatch::kLongest};
             }
             if (!gate_->settled()) outcome.motors = motors_of(silent, State::missing);
-            conclude(recorder, outcome);
-            if (stalled.given_up) stalled.given_up(outcome);
+            conclude(recorder, callbacks, outcome);
+            if (callbacks.given_up) callbacks.given_up(outcome);
           }};
 }
 
 Result<void> annotate(const fs::path& file, const std::vector<std::string>& notes) {
-  return change_metadata(file, [&](auto& metadata) {
-    std::string& text = metadata["notes"];
-    for (const std::string& note : notes) text += (text.empty() ? "" : " | ") + one_line(note);
-  });
+  return change_metadata(file, [&](auto& metadata) { add_notes(notes, metadata); });
 }
 
 Result<void> set_metadata(const fs::path& file, const std::map<std::string, std::string>& wanted) {
@@ -335,6 +347,7 @@ Result<Recovered> recover(const fs::path& file, const fs::path& target, const Re
     auto made = journal::to_recording(*journal);
     if (!made) return tl::unexpected(made.error().in(file.string()));
     if (!readers) readers = journal->header.readers;
+    add_notes(options.notes, made->metadata);
     recovered.ticks = journal->ticks.size();
     recovered.incomplete = journal->incomplete();
     recovered.damage = std::move(journal->damage);
@@ -342,15 +355,18 @@ Result<Recovered> recover(const fs::path& file, const fs::path& target, const Re
   }
   const Recording& recording = recovered.recording;
   const auto format = MBK_TRY(recording::format_of(target));
-  if (options.overwrite || !holds_the_same(target, recording)) {
+  std::optional<Recording> there = options.overwrite ? std::nullopt : read_back(target, recording);
+  if (!there) {
     MBK_TRY(recording::write(recording, target, format, options.overwrite, *readers));
-    if (!holds_the_same(target, recording)) {
-      std::error_code ignored;
-      fs::remove(target, ignored);
-      return bad_data("the recording did not read back as it was written, and was removed",
-                      fmt::format("look at the disk, then 'mbk recover {}'", file.string()), target.string());
-    }
+    there = read_back(target, recording);
   }
+  if (!there) {
+    std::error_code ignored;
+    fs::remove(target, ignored);
+    return bad_data("the recording did not read back as it was written, and was removed",
+                    fmt::format("look at the disk, then 'mbk recover {}'", file.string()), target.string());
+  }
+  recovered.read_back = std::move(*there);
   std::error_code failed;
   const bool pristine = !recovered.damage.any() && !recovered.incomplete;
   recovered.removed = pristine && !options.keep && fs::remove(file, failed);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mbk/base/core/result.h"
 #include "mbk/base/realtime/thread_setup.h"
@@ -28,26 +29,31 @@ struct Pace {
 
 /// A trial that is over.
 struct TrialOutcome {
-  std::filesystem::path recording;  ///< the target, or elsewhere if the target's folder was removed
-  std::optional<Error> unrecorded;  ///< why the recording could not be made: the journal then still is
-  std::filesystem::path journal;    ///< removed once the recording is there and holds every tick
-  bool incomplete = false;          ///< not every tick that the loop made came back from the recording
-  journal::Damage damage;           ///< of the journal; where there is any, it is kept
+  std::filesystem::path recording;    ///< the target, or elsewhere if the target's folder was removed
+  std::optional<Recording> recorded;  ///< what the file holds, as it reads back
+  std::optional<Error> unrecorded;    ///< why the recording could not be made: the journal then still is
+  std::filesystem::path journal;      ///< removed once the recording is there and holds every tick
+  bool incomplete = false;            ///< not every tick that the loop made came back from the recording
+  journal::Damage damage;             ///< of the journal; where there is any, it is kept
   journal::Ending ending;
-  std::string ended;         ///< the same with what was lost: "completed, but 50 of 67101 ticks were lost"
-  safety::Trip trip;         ///< Reason::none where nothing tripped
-  safety::MotorsOff motors;  ///< whether the robot has confirmed that they are off
+  std::vector<std::string> notes;  ///< Callbacks::notes, as they stand in the recording
+  std::string ended;               ///< the same with what was lost: "completed, but 50 of 67101 ticks were lost"
+  safety::Trip trip;               ///< Reason::none where nothing tripped
+  safety::MotorsOff motors;        ///< whether the robot has confirmed that they are off
   LoopTimes times;
   realtime::ThreadSetup setup;
 };
 
-/// Told of a loop that does not come back from the robot, by another thread.
-struct Stalled {
-  /// What is known of the motors meanwhile: `missing` while no tick comes, `waiting` when ticks come again.
+/// What a trial tells and asks besides its ticks. Each may be empty.
+struct Callbacks {
+  /// The loop does not come back from the robot: `missing` while no tick comes, `waiting` when ticks come again. By
+  /// another thread.
   std::function<void(const safety::MotorsOff&)> motors;
-  /// The trial is given up: its journal is closed and the recording made. `perform` returns only where the robot's
-  /// driver does.
+  /// For the same reason the trial is given up: its journal is closed and the recording made. `perform` returns only if
+  /// the robot's driver does. By another thread.
   std::function<void(const TrialOutcome&)> given_up;
+  /// Remarks for the recording: asked once, before it is written. By another thread if the trial was given up.
+  std::function<std::vector<std::string>()> notes;
 };
 
 /// Runs trials one after the other. A trip outlives its trial: none begins before `reset`.
@@ -58,13 +64,13 @@ class Session {
   /// Everything that can be known to fail is asked before the robot moves, and an error means that it did not move:
   /// from then on there is an outcome, whatever becomes of the recording.
   /// @param target  of the recording (.h5); the journal stands beside it as NAME.h5.journal
-  /// @param watch  see Recorder; may be empty    @param stalled  may be empty
+  /// @param watch  see Recorder; may be empty
   /// @fails  usage: the person has withdrawn; the target or its journal is there; the gate is tripped; the robot's stop
   ///         button is pressed; the robot keeps its own time and the clock is virtual. data: the robot does
   ///         not answer; the folder, space or disk.
   [[nodiscard]] Result<TrialOutcome> perform(device::Device& robot, const Plan& plan,
                                              const std::filesystem::path& target, const Watch& watch = {},
-                                             const Stalled& stalled = {});
+                                             const Callbacks& callbacks = {});
 
   /// For other threads, and for signal handlers: a stop, or an early end, of the trial that runs.
   [[nodiscard]] LoopFlags& flags() { return *flags_; }
@@ -79,8 +85,8 @@ class Session {
   void see_idle(const IdleState& state);
 
  private:
-  void conclude(Recorder& recorder, TrialOutcome& outcome) const;
-  [[nodiscard]] LoopWatch::Told watched_loop(device::Device& robot, Recorder& recorder, const Stalled& stalled,
+  void conclude(Recorder& recorder, const Callbacks& callbacks, TrialOutcome& outcome) const;
+  [[nodiscard]] LoopWatch::Told watched_loop(device::Device& robot, Recorder& recorder, const Callbacks& callbacks,
                                              double sample_time, TrialOutcome& outcome) const;
 
   Pace pace_;
@@ -115,11 +121,13 @@ struct RecoverOptions {
   bool keep = false;                      ///< the journal, in any case
   std::optional<Readers> readers;         ///< instead of the journal's
   std::optional<journal::Ending> ending;  ///< where it is known from elsewhere, instead of the journal's
+  std::vector<std::string> notes;         ///< as `annotate` has them
 };
 
 /// What a journal gave.
 struct Recovered {
   Recording recording;
+  Recording read_back;  ///< the same, as the file holds it
   journal::Damage damage;
   std::uint64_t ticks = 0;  ///< that the recording holds
   bool incomplete = false;  ///< ticks were lost, or may have been

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "mbk/base/core/natural_order.h"
@@ -17,6 +18,7 @@
 #include "mbk/files/contents/cells.h"
 #include "mbk/files/contents/file_bytes.h"
 #include "mbk/files/contents/memory.h"
+#include "mbk/files/contents/sha256.h"
 #include "mbk/files/contents/text_lines.h"
 
 namespace mbk::recording {
@@ -338,7 +340,7 @@ Result<std::vector<BidsRun>> find_bids_runs(const fs::path& path) {
   return runs;
 }
 
-Result<Contents> read_bids_run(const fs::path& motion) {
+Result<BidsRecording> read_bids_run(const fs::path& motion) {
   const auto numbers = MBK_TRY(read_text(motion));
   const auto channel_files = files_for(motion, kChannels);
   if (channel_files.empty()) {
@@ -363,7 +365,8 @@ Result<Contents> read_bids_run(const fs::path& motion) {
   for (const std::string_view part : split(stem, '_')) {
     if (part.starts_with("sub-")) texts.label = std::string(part.substr(4));
   }
-  return decode_bids(texts);
+  auto contents = MBK_TRY(decode_bids(texts));
+  return BidsRecording{std::move(contents), sha256(std::as_bytes(std::span(numbers)))};
 }
 
 }  // namespace mbk::recording

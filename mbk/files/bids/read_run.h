@@ -41,8 +41,14 @@ struct BidsRun {
 /// @fails  data: the folder cannot be read.
 [[nodiscard]] Result<std::vector<BidsRun>> find_bids_runs(const std::filesystem::path& path);
 
-/// Reads one of them. JSON files of folders above hold for it, too, as the standard says.
+/// A recording that was read.
+struct BidsRecording {
+  Contents contents;
+  std::string sha256;  ///< of its motion.tsv
+};
+
+/// Reads one of them. JSON files of folders above apply to it too, as the standard says.
 /// @fails  data: as decode_bids; a file is missing or cannot be read.
-[[nodiscard]] Result<Contents> read_bids_run(const std::filesystem::path& motion);
+[[nodiscard]] Result<BidsRecording> read_bids_run(const std::filesystem::path& motion);
 
 }  // namespace mbk::recording

@@ -251,14 +251,16 @@ class Assembler {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
     }
     const bool time = !signals_.empty();
-    return bad_data(
-        fmt::format("{}; {}", time ? kOnlyTimeRecognised : kNothingRecognised, inventory(contents_)),
+    const std::string remedy =
         !contents_.clocks.empty() && !contents_.arrays.empty()
             ? fmt::format("say which is which, as in --channels x={},Fx=STREAM.LABEL", contents_.arrays.front().name)
         : !contents_.table ? "say which is which, as in --channels " + example_map()
         : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
             ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
-            : "say which is which, as in --channels time=1,x=2,Fx=3");
+            : "say which is which, as in --channels time=1,x=2,Fx=3";
+    return with_code(
+        kNothingRecognised,
+        bad_data(fmt::format("no channel {}is recognised; {}", time ? "but time " : "", inventory(contents_)), remedy));
   }
 
   /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".

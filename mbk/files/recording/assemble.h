@@ -5,10 +5,6 @@
 
 namespace mbk::recording {
 
-/// How the messages begin that no channel is recognised.
-inline constexpr std::string_view kNothingRecognised = "no channel is recognised";
-inline constexpr std::string_view kOnlyTimeRecognised = "no channel but time is recognised";
-
 /// Gives the arrays of a file their meaning: which is which channel, in SI. See `read` for the rules and failures.
 [[nodiscard]] Result<Recording> assemble(Contents contents, const ReadOptions& options);
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/files/recording/read.h"
 #include "mbk/files/recording/si_units.h"
 
 namespace mbk::recording {
@@ -194,11 +195,10 @@ Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
   remedy +=
       fmt::format("{}time={}:{} if it is right as it is", remedy.empty() ? "pass --channels " : ", or ", source, said);
   const std::string in = unit == nullptr || said == "s" ? "seconds" : std::string(said);
-  return bad_data(
-      fmt::format("{}{}: '{}' advances by {:.6g} a sample, so that the recording would last {} at {:.4g} Hz{}{}",
-                  kUnbelievableTime, in, source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ",
-                  fmt::join(readings, "; ")),
-      std::move(remedy));
+  std::string message = fmt::format(
+      "time cannot be in {}: '{}' advances by {:.6g} a sample, so that the recording would last {} at {:.4g} Hz{}{}",
+      in, source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ", fmt::join(readings, "; "));
+  return with_code(kUnbelievableTime, bad_data(std::move(message), std::move(remedy)));
 }
 
 }  // namespace mbk::recording

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string_view>
-
 #include "mbk/base/core/result.h"
 #include "mbk/model/trial/recording.h"
 
@@ -11,9 +9,6 @@ namespace mbk::recording {
 /// of time (signed ones, too), midnight, and an hour set back. Each is a note. Only where the step across it is then
 /// one that the clock makes elsewhere; a time that begins again at its first value is another trial, and stays.
 void unwrap_time(Recording& recording);
-
-/// How the message of `check_unit_of_time` begins.
-inline constexpr std::string_view kUnbelievableTime = "time cannot be in ";
 
 /// Gives time the rate that the user said, where it leaves that open: it counts samples (lost ones remain lost), or its
 /// stamps are coarser than the samples and keep to that rate. A note says so.
@@ -27,8 +22,8 @@ inline constexpr std::string_view kUnbelievableTime = "time cannot be in ";
 
 /// A time whose unit nobody said, or whose file says seconds, must run as time in seconds can (`is_believable`).
 /// @param said_by_user  the unit was given with --channels: then whatever it is is believed
-/// @fails  data: it does not; the message says what the time would be in milliseconds, microseconds, …, and how to say
-/// so.
+/// @fails  data, kUnbelievableTime: it does not; the message says what the time would be in milliseconds, microseconds,
+/// …, and how to say so.
 [[nodiscard]] Result<void> check_unit_of_time(const Recording& recording, bool said_by_user);
 
 }  // namespace mbk::recording

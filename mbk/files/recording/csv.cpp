@@ -161,9 +161,11 @@ class Table {
     if (!text.status()) return text.status();
     if (!second) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
     constexpr std::size_t kShown = 40;
-    return bad_data(fmt::format("{} ({}: '{}' is not a number)", kNoTable, place(second->number),
-                                printable(std::string(second->text.substr(0, kShown)))),
-                    "a table has a line for each sample, and numbers between commas, semicolons, tabs or blanks");
+    return with_code(
+        kNoTable,
+        bad_data(fmt::format("it is text without a table of numbers ({}: '{}' is not a number)", place(second->number),
+                             printable(std::string(second->text.substr(0, kShown)))),
+                 "a table has a line for each sample, and numbers between commas, semicolons, tabs or blanks"));
   }
 
   Result<void> find_columns(const CsvLine& first) {

@@ -10,8 +10,8 @@
 
 namespace mbk::recording {
 
-/// How the error of a text begins in which no line holds numbers.
-inline constexpr std::string_view kNoTable = "it is text without a table of numbers";
+/// Code of the error of a text in which no line holds numbers.
+inline constexpr std::string_view kNoTable = "no-table";
 
 /// UTF-16 with a byte order mark, as spreadsheets write it.
 [[nodiscard]] bool looks_like_utf16(std::span<const std::byte> file);

@@ -155,7 +155,7 @@ Result<Contents> decode_table(OpenFile& file) {
   auto table = looks_like_utf16(file.begin_bytes()) ? whole<decode_csv>(file) : in_passing<decode_csv>(file);
   if (table) return table;
   if (const auto likely = likely_format(file.begin_bytes())) return not_read(*likely);
-  if (table.error().message.starts_with(kNoTable)) return bad_data(table.error().message, std::string(kExports));
+  if (table.error().code == kNoTable) return bad_data(table.error().message, std::string(kExports));
   return table;
 }
 

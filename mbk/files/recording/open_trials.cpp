@@ -9,8 +9,6 @@
 
 #include "mbk/files/archive/zip_archive.h"
 #include "mbk/files/bids/read_run.h"
-#include "mbk/files/contents/file_bytes.h"
-#include "mbk/files/contents/sha256.h"
 #include "mbk/files/kinarm/kinarm_exam.h"
 
 namespace mbk::recording {
@@ -88,10 +86,9 @@ class BidsTrials : public OpenTrials {
       return bad_usage(fmt::format("--side {}: a data set tells no arms apart", options.arm), "leave --side out");
     }
     const auto run = MBK_TRY(this->run(options.trial));
-    auto contents = MBK_TRY(read_bids_run(run->motion));
-    const auto bytes = MBK_TRY(read_file(run->motion));
-    SourceFile source{run->motion.string(), contents.format, sha256(bytes.bytes())};
-    return Decoded{std::move(contents), std::move(source)};
+    auto recording = MBK_TRY(read_bids_run(run->motion));
+    SourceFile source{run->motion.string(), recording.contents.format, std::move(recording.sha256)};
+    return Decoded{std::move(recording.contents), std::move(source)};
   }
 
  private:

@@ -101,9 +101,12 @@ Warning warning_of(const Channel& channel, const Filled& filled, double rate_hz)
              : ". These samples were interpolated from their neighbours";
   }
   if (filled.lost > 0) message += fmt::format("; {} samples in longer gaps are NaN", filled.lost);
-  return {held ? WarningCode::held_signal : WarningCode::missing_samples, std::move(message),
+  return {held ? WarningCode::held_signal : WarningCode::missing_samples,
+          std::move(message),
           held ? "record every channel at the rate of the recording; compare the delay with 'mbk sensor delay'"
-               : "mend the logging: record a sample only when it was measured"};
+               : "mend the logging: record a sample only when it was measured",
+          {},
+          channel.name};
 }
 
 Warning warning_of_command(const Channel& channel, double rate_hz) {
@@ -111,7 +114,9 @@ Warning warning_of_command(const Channel& channel, double rate_hz) {
       WarningCode::held_signal,
       stale_text(channel, rate_hz) +
           ". It was left as it is: right if it is a command that acted so, late by half an update if it was measured",
-      "record it at the rate of the recording, or check what it is"};
+      "record it at the rate of the recording, or check what it is",
+      {},
+      channel.name};
 }
 
 bool rises(const Vector& time) {

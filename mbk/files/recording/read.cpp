@@ -54,7 +54,6 @@ class RecordingFile {
     auto file = MBK_TRY(OpenFile::open(path));
     const auto format = MBK_TRY(format_of(file));
     made->format_ = format;
-    made->begin_ = file.begin();
     if (format->open != nullptr) {
       made->trials_ = MBK_TRY(format->open(file));
     } else {
@@ -64,7 +63,6 @@ class RecordingFile {
   }
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::string_view begin() const { return begin_; }
   [[nodiscard]] const std::vector<TrialName>& trials() const {
     static const std::vector<TrialName> kNone;
     return trials_ ? trials_->trials() : kNone;
@@ -93,7 +91,6 @@ class RecordingFile {
 
  private:
   std::filesystem::path path_;
-  std::string begin_;
   const FileFormat* format_ = nullptr;
   std::shared_ptr<const OpenTrials> trials_;  ///< of a file or folder of several
   mutable std::optional<OpenFile> file_;      ///< of one that holds one
@@ -211,15 +208,6 @@ Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& opt
     std::erase_if(contents.arrays, [](const Array& array) { return array.is_block(); });
     return std::move(contents);
   });
-}
-
-bool nothing_is_recognised(const Error& error) {
-  return error.kind == ErrorKind::data &&
-         (error.message.starts_with(kNothingRecognised) || error.message.starts_with(kOnlyTimeRecognised));
-}
-
-bool time_is_unbelievable(const Error& error) {
-  return error.kind == ErrorKind::data && error.message.starts_with(kUnbelievableTime);
 }
 
 }  // namespace mbk::recording

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
@@ -18,6 +19,10 @@ namespace mbk::recording {
 /// A file or folder that was opened once for a command: its bytes, its hash, its format, the trials that it holds.
 /// Whatever is read of it opens nothing anew. May be used by several threads.
 class RecordingFile;
+
+/// Codes of `read`'s errors: a sound file of which no channel, or only the time, is recognised; a time that cannot be
+/// in seconds.
+inline constexpr std::string_view kNothingRecognised = "nothing-recognised", kUnbelievableTime = "unbelievable-time";
 
 /// How a file is to be read. Every default is right for a file that names its channels, holds one trial and has a time
 /// for each sample; then
@@ -113,11 +118,6 @@ void rest(const RecordingFile& file);
 /// @param options  as of list_contents
 /// @fails  as list_contents
 [[nodiscard]] Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& options = {});
-
-/// Whether `read` refused a sound file for this alone, that no channel of it is recognised.
-[[nodiscard]] bool nothing_is_recognised(const Error& error);
-/// Whether `read` refused a file because its time cannot be in seconds.
-[[nodiscard]] bool time_is_unbelievable(const Error& error);
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.

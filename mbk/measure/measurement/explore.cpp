@@ -19,6 +19,7 @@
 #include "mbk/measure/explore/parallel_cascade.h"
 #include "mbk/measure/explore/time_course.h"
 #include "mbk/measure/measurement/course_variable.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/exploration_trial_of.h"
 #include "mbk/measure/preprocess/force_delay.h"
 #include "mbk/measure/preprocess/force_rotation.h"
@@ -80,6 +81,7 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
     trial->output_labels = {{signals.output_name, named_channel(recording, signals.output)->unit}};
     return trial;
   }
+  MBK_TRY(preprocess::check_consent(recording));
   const Inspection recorded = recording::inspect(recording);
   auto even = preprocess::reclocked(recording, recorded, options.resample);
   if (!even) return tl::unexpected(even.error());

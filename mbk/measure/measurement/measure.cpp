@@ -142,6 +142,7 @@ Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, co
         return bad_data(fmt::format("is the same file as {}", twin->second), "pool each trial once", file.label());
       }
     }
+    if (auto ok = preprocess::check_consent(recording); !ok) return in_file(recording, ok.error());
     auto source = make_ready(recording, options);
     if (!source) return in_file(recording, source.error());
     const auto excluded = preprocess::excluded_windows(recording);  // what cannot be read is said by the preparation

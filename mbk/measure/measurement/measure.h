@@ -73,11 +73,11 @@ struct Options {
 /// `identification.warnings`. The numbers do not depend on the number of threads.
 ///
 /// @param recordings  at least one, with the same axes and units; unchanged
-/// @fails  a channel is missing; time repeats, runs backwards or has a gap inside the window; a value there is not
-/// finite; a window is shorter than the filters need; recordings differ in axes, units or rate; the same file is pooled
-/// twice; an option contradicts the recording or is outside its range; the joint domain is asked for and no posture is
-/// known, or postures differ.
-/// A message names the file if the recording has one.
+/// @fails  the person has withdrawn (preprocess::check_consent); a channel is missing; time repeats, runs backwards or
+/// has a gap inside the window; a value there is not finite; a window is shorter than the filters need; recordings
+/// differ in axes, units or rate; the same file is pooled twice; an option contradicts the recording or is outside its
+/// range; the joint domain is asked for and no posture is known, or postures differ. A message names the file if the
+/// recording has one.
 [[nodiscard]] Result<Measurement> measure(std::span<const Recording> recordings, const Options& options);
 
 /// A result, and what shows how good it is: predicted force, autocorrelation of the residual, spectra, filters.

@@ -6,6 +6,7 @@
 
 #include "mbk/files/recording/inspect.h"
 #include "mbk/measure/analyse/plausible_scale.h"
+#include "mbk/measure/preprocess/exclusions.h"
 #include "mbk/measure/preprocess/jittered_clock.h"
 #include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/measure/preprocess/trial_clock.h"
@@ -41,6 +42,7 @@ bool is_place(const Recording& recording, int axes) {
 
 Result<MovementQuality> movement_quality(const Recording& recording, const MovementQualityOptions& options) {
   using namespace movement_detail;
+  MBK_TRY(preprocess::check_consent(recording));
   Inspection inspection = recording::inspect(recording);
   auto even = preprocess::reclocked(recording, inspection, options.resample);
   if (!even) return tl::unexpected(even.error());

@@ -72,6 +72,13 @@ std::string window_text(const ExcludedWindow& window) {
 
 }  // namespace
 
+Result<void> check_consent(const Recording& recording) {
+  const auto withdrawn = recording.metadata.find("withdrawn");
+  if (withdrawn == recording.metadata.end() || withdrawn->second != "yes") return {};
+  return with_code("withdrawn", bad_data("the person has withdrawn: these data must not be used",
+                                         "leave the file out, and remove it"));
+}
+
 std::string excluded_windows_text(std::span<const ExcludedWindow> windows) {
   std::string text;
   for (const ExcludedWindow& one : windows) {

@@ -15,6 +15,10 @@ namespace mbk::preprocess {
 /// Metadata in which the console keeps what the operator excluded: why, and which windows.
 inline constexpr const char *kExcluded = "excluded", *kExcludedWindows = "excluded_windows";
 
+/// Whether a recording may be measured and stored.
+/// @fails  data, "withdrawn": the person has withdrawn.
+[[nodiscard]] Result<void> check_consent(const Recording& recording);
+
 /// A part of a recording that its operator excluded.
 struct ExcludedWindow {
   double from_s = 0.0, to_s = 0.0;  ///< [s], on the clock of Recording::time, both ends included

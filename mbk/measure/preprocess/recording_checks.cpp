@@ -163,7 +163,7 @@ namespace {
 std::string why_lost(const std::vector<Warning>& warnings, const std::string& channel) {
   for (const Warning& warning : warnings) {
     const bool lost = warning.code == WarningCode::missing_samples || warning.code == WarningCode::held_signal;
-    if (lost && warning.message.starts_with(channel + ' ')) return "; " + warning.message;
+    if (lost && warning.channel == channel) return "; " + warning.message;
   }
   return {};
 }

@@ -143,8 +143,9 @@ enum class WarningCode {
 struct Warning {
   WarningCode code;
   std::string message;
-  std::string remedy;    ///< what to try next; "try" in JSON
-  std::string was = {};  ///< code by which the last version said it, where that is another
+  std::string remedy;        ///< what to try next; "try" in JSON
+  std::string was = {};      ///< code by which the last version said it, where that is another
+  std::string channel = {};  ///< of the recording that it is about; "" if it is about none, or several
 };
 
 }  // namespace mbk

@@ -14,7 +14,7 @@
 #include "mbk/files/recording/formats.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/measure/preprocess/exclusions.h"
-#include "mbk/present/request/recording_reader.h"
+#include "mbk/present/request/open_recordings.h"
 #include "mbk/study/store/identifying.h"
 
 namespace mbk::workflow {
@@ -58,7 +58,7 @@ class Adder::File {
   Added add(store::IncomingFile& incoming, const KnownFacts& facts) {
     request::ReadRequest reading = request::reading_for(measuring_.request.reading, measuring_.options);
     reading.files = {incoming.path()};
-    const auto reader = MBK_TRY(request::RecordingReader::of(reading, measuring_.request.sensor));
+    const auto reader = MBK_TRY(request::open_recordings(reading, measuring_.request.sensor));
     if (facts.trial && reader.count() > 1) {
       return bad_usage(fmt::format("the file holds {} trials", reader.count()), "leave --trial out: they are counted");
     }
@@ -112,10 +112,7 @@ class Adder::File {
 
   Result<store::TrialFacts> check(const Recording& recording, const KnownFacts& facts,
                                   const std::vector<std::string>& unseen) const {
-    const auto withdrawn = recording.metadata.find("withdrawn");
-    if (withdrawn != recording.metadata.end() && withdrawn->second == "yes") {
-      return bad_data("the person has withdrawn: these data must not be used", "remove the file");
-    }
+    MBK_TRY(preprocess::check_consent(recording));
     auto identifying = store::identifying_entries(recording.metadata);
     identifying.insert(identifying.end(), unseen.begin(), unseen.end());
     if (!identifying.empty() && !options_.strip) {
@@ -126,7 +123,7 @@ class Adder::File {
   }
 
   /// What a file became when it was added before with --strip.
-  Added find_stripped(const store::IncomingFile& incoming, const request::RecordingReader& reader,
+  Added find_stripped(const store::IncomingFile& incoming, const measurement::RecordingReader& reader,
                       const KnownFacts& facts) {
     const auto there = MBK_TRY(study_.recordings_of(incoming.sha256()));
     std::vector<AddedRecording> found;
@@ -143,7 +140,7 @@ class Adder::File {
   }
 
   /// Each trial as a recording of its own, in HDF5, without what may identify a person.
-  Added add_stripped(const store::IncomingFile& incoming, const request::RecordingReader& reader,
+  Added add_stripped(const store::IncomingFile& incoming, const measurement::RecordingReader& reader,
                      const KnownFacts& facts, const std::vector<std::string>& unseen) {
     std::vector<AddedRecording> all;
     for (int k = 0; k < reader.count(); ++k) {
@@ -164,7 +161,7 @@ class Adder::File {
     }
     request::ReadRequest reading = request::reading_for(measuring_.request.reading, measuring_.options);
     reading.files = {motion};
-    const auto reader = MBK_TRY(request::RecordingReader::of(reading, measuring_.request.sensor));
+    const auto reader = MBK_TRY(request::open_recordings(reading, measuring_.request.sensor));
     auto recording = MBK_TRY(reader.read(0));
     KnownFacts known = facts;
     const auto condition = recording.metadata.find("condition");  // in full; a name has only its letters and digits

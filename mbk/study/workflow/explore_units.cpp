@@ -14,7 +14,7 @@
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/present/report/exploration_text.h"
-#include "mbk/present/request/recording_reader.h"
+#include "mbk/present/request/open_recordings.h"
 #include "mbk/present/result/exploration_json.h"
 
 namespace mbk::workflow {
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-ExploredRecord explored(const request::RecordingReader& reader, int k, const measurement::ExploreOptions& options,
+ExploredRecord explored(const measurement::RecordingReader& reader, int k, const measurement::ExploreOptions& options,
                         bool json) {
   const auto recording = reader.read_perturbation(k);
   if (!recording) return {true, false, "", recording.error()};
@@ -43,7 +43,7 @@ std::string sum_of(const fs::path& file) {
 
 /// The reader of what a key names. The sum of its file stands in the key, so that nothing else is explored in its
 /// place.
-Result<request::RecordingReader> reader_of(const request::ExploreRequest& asked, const Json& key) {
+Result<measurement::RecordingReader> reader_of(const request::ExploreRequest& asked, const Json& key) {
   const fs::path file = key.at("file").get<std::string>();
   if (sum_of(file) != key.at("sha256").get<std::string>()) {
     return bad_data("it has changed since the job was begun", "put it back, or begin again", file.string());
@@ -51,7 +51,7 @@ Result<request::RecordingReader> reader_of(const request::ExploreRequest& asked,
   request::ReadRequest reading = asked.reading;
   reading.files = {file};
   reading.options.trial = key.at("trial").get<std::string>();
-  return request::RecordingReader::of(reading, asked.sensor);
+  return request::open_recordings(reading, asked.sensor);
 }
 
 batch::UnitFunction units_of(const request::ExploreRequest& asked, const measurement::ExploreOptions& options,
@@ -65,7 +65,7 @@ batch::UnitFunction units_of(const request::ExploreRequest& asked, const measure
 }
 
 /// What is read, in the order of the FILEs.   @fails  usage: a folder.
-Result<std::vector<std::string>> keys_of(const request::RecordingReader& reader) {
+Result<std::vector<std::string>> keys_of(const measurement::RecordingReader& reader) {
   std::vector<std::string> keys;
   std::string sum;
   std::error_code ignored;
@@ -86,7 +86,7 @@ Result<std::string> sensor_sum(const request::ExploreRequest& asked) {
 }
 
 /// About how long each takes: as long as its file is large.
-std::vector<double> weights_of(const request::RecordingReader& reader) {
+std::vector<double> weights_of(const measurement::RecordingReader& reader) {
   std::vector<double> weights;
   for (int k = 0; k < reader.count(); ++k) {
     std::error_code error;
@@ -103,7 +103,7 @@ Result<std::vector<ExploredRecord>> explored_here(
     const std::function<void(int done, int of, const std::string& file)>& progress) {
   request::ExploreRequest asked = each.request;
   const auto options = MBK_TRY(request::explore_options(asked));
-  const auto reader = MBK_TRY(request::RecordingReader::of(asked.reading, asked.sensor));
+  const auto reader = MBK_TRY(request::open_recordings(asked.reading, asked.sensor));
   std::vector<ExploredRecord> all(static_cast<std::size_t>(reader.count()));
   int done = 0;
   MBK_TRY(numeric::parallel_for(
@@ -119,7 +119,7 @@ Result<std::vector<ExploredRecord>> explored_here(
 Result<batch::JobRequest> explore_request(const ExploringEach& each) {
   request::ExploreRequest asked = each.request;
   const auto options = MBK_TRY(request::explore_options(asked));
-  const auto reader = MBK_TRY(request::RecordingReader::of(asked.reading, asked.sensor));
+  const auto reader = MBK_TRY(request::open_recordings(asked.reading, asked.sensor));
   auto keys = MBK_TRY(keys_of(reader));
   const auto sensor = MBK_TRY(sensor_sum(asked));
   const std::string listed = fmt::format("{}", fmt::join(keys, "\n"));

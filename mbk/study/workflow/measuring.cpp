@@ -15,7 +15,7 @@
 #include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/present/request/named_robot.h"
-#include "mbk/present/request/recording_reader.h"
+#include "mbk/present/request/open_recordings.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::workflow {
@@ -145,7 +145,7 @@ Result<Recording> read_stored(const Measuring& measuring, const std::filesystem:
     reading.options.rate.reset();
   }
   reading.files = {file};
-  const auto reader = MBK_TRY(request::RecordingReader::of(reading, measuring.request.sensor));
+  const auto reader = MBK_TRY(request::open_recordings(reading, measuring.request.sensor));
   const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
   if (which >= reader.count()) return bad_data(fmt::format("there is no record {} in it", part), "", file.string());
   return what == Reading::perturbation ? reader.read_perturbation(which) : reader.read(which);

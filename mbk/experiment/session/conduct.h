@@ -2,14 +2,15 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "mbk/base/core/result.h"
-#include "mbk/experiment/conduct/trial_measurement.h"
 #include "mbk/experiment/device/device.h"
 #include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/safety/motors_off.h"
@@ -17,30 +18,44 @@
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/files/journal/tick.h"
+#include "mbk/model/trial/measurement.h"
+#include "mbk/model/trial/recording.h"
 
-namespace mbk::conduct {
+namespace mbk::session {
 
 /// An experiment that can begin: its trials, each planned once, and where they are recorded.
 struct Experiment {
-  std::vector<session::Plan> plans;  ///< in the order of the trials
-  std::filesystem::path out;         ///< empty: PROTOCOL.h5
+  std::vector<Plan> plans;    ///< in the order of the trials
+  std::filesystem::path out;  ///< empty: PROTOCOL.h5
 
   /// Recording of a trial: `out`, or where there are several trials relaxed.h5 → relaxed_NAME.h5.
   [[nodiscard]] std::filesystem::path target(std::size_t index) const;
 };
 
 /// Plans every trial.   @param file  how messages call the experiment
-/// @fails  as session::make_plan and session::check_target.
+/// @fails  as make_plan and check_target.
 [[nodiscard]] Result<Experiment> plan_experiment(const std::vector<protocol::Trial>& trials,
                                                  const std::filesystem::path& out, std::string_view file);
 
 /// Where a trial is recorded that may be a repeated one: relaxed.h5, relaxed_2.h5, … the first that is not there yet.
 [[nodiscard]] std::filesystem::path next_free(const std::filesystem::path& target);
 
+/// What makes a measurement of what was recorded while the trial perturbed.
+using Measure = std::function<Result<Measurement>(const Recording&)>;
+
+/// measurement::measure with no option: everything follows from the recording.   @fails  as that
+[[nodiscard]] Result<Measurement> measure_recording(const Recording& recording);
+
+/// Share of the force's variance that a model has to explain on every axis [%].
+inline constexpr double kPoor = 50.0;
+
+/// Whether a trial with this result is worth repeating: it is not usable, or explains less than kPoor on an axis.
+[[nodiscard]] bool poor(const Identification& identification);
+
 /// A trial that is about to begin.
 struct Attempt {
   std::size_t index;  ///< of the trial in its experiment
-  const session::Plan& plan;
+  const Plan& plan;
   std::filesystem::path target;  ///< of the recording
   device::Device& robot;
 };
@@ -48,13 +63,13 @@ struct Attempt {
 /// A trial that is over, and recorded unless its outcome says why not.
 struct Performed {
   const Attempt& attempt;
-  session::TrialOutcome outcome;
+  TrialOutcome outcome;
   std::optional<Result<Measurement>> measured;  ///< absent: the trial was stopped, or is only recorded
 
   /// The gate has tripped.
   [[nodiscard]] bool stopped() const { return outcome.trip.reason != safety::Reason::none; }
   /// It could not be measured, or what was found is poor.
-  [[nodiscard]] bool poor() const { return measured && (!*measured || conduct::poor((*measured)->identification)); }
+  [[nodiscard]] bool poor() const { return measured && (!*measured || session::poor((*measured)->identification)); }
 };
 
 /// What comes after a trial.
@@ -68,7 +83,7 @@ class Watcher {
   Watcher& operator=(const Watcher&) = delete;
   virtual ~Watcher() = default;
 
-  /// As session::Watch.
+  /// As Watch.
   virtual void watch(std::span<const journal::Tick> ticks) = 0;
 };
 
@@ -89,20 +104,24 @@ class Operator {
   virtual void motors(const safety::MotorsOff& /*motors*/) {}
 
   /// What a robot that is not simulated says until the next trial, each time that it changes. From another thread.
-  virtual void idle(const session::IdleState& /*seen*/) {}
+  virtual void idle(const IdleState& /*seen*/) {}
 
   /// The robot's driver does not return, and the trial was given up: nothing follows until it does. From another
   /// thread.
-  virtual void given_up(const session::TrialOutcome& /*outcome*/) {}
+  virtual void given_up(const TrialOutcome& /*outcome*/) {}
+
+  /// Remarks for the recording: asked when the robot is at rest, before the file is written. From another thread if the
+  /// trial was given up.
+  [[nodiscard]] virtual std::vector<std::string> notes() { return {}; }
 
   /// The trial is over. It is recorded, and will be measured next, unless the outcome says why not.
-  virtual void recorded(const session::TrialOutcome& /*outcome*/) {}
+  virtual void recorded(const TrialOutcome& /*outcome*/) {}
 
   /// All is known of it.   @fails  as it likes; no trial follows then
   [[nodiscard]] virtual Result<void> judged(const Performed& /*performed*/) { return {}; }
 
   /// What comes next. After a stop a trial follows only where the gate was reset (Session::reset).
-  [[nodiscard]] virtual Next next(session::Session& /*session*/, const Performed& performed) {
+  [[nodiscard]] virtual Next next(Session& /*session*/, const Performed& performed) {
     return performed.stopped() ? Next::end : Next::go_on;
   }
 };
@@ -120,7 +139,7 @@ struct Conclusion {
 /// nor a request to end (LoopFlags::end_session).
 /// @param measure  after each trial that was not stopped; empty: trials are only recorded
 /// @returns  with a failure as make_device, Session::perform and Operator::judged; data: ticks were lost
-[[nodiscard]] Conclusion run(const Experiment& experiment, session::Session& session, Operator& conductor,
-                             const Measure& measure = measure_recording);
+[[nodiscard]] Conclusion conduct(const Experiment& experiment, Session& session, Operator& conductor,
+                                 const Measure& measure = measure_recording);
 
-}  // namespace mbk::conduct
+}  // namespace mbk::session
