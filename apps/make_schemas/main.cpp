@@ -4,9 +4,9 @@
 #include <iostream>
 
 #include "apps/mbk/commands/commands_json.h"
-#include "mbk/experiment/session/robot_check_report.h"
 #include "mbk/batch/job_status.h"
 #include "mbk/experiment/console/messages.h"
+#include "mbk/experiment/session/robot_check_report.h"
 #include "mbk/present/result/schemas.h"
 #include "mbk/study/longitudinal/report_schemas.h"
 #include "mbk/study/statistics/summary_document.h"

@@ -118,9 +118,9 @@ const OptionTable<JobOptions>& job_table() {
   static const auto kTable = [] {
     OptionTable<JobOptions> table;
     table.group("Many processes and machines")
-        .add({"--engine", "",
-              "processes on this machine (local), a job array (slurm); without it: within this process"},
-             &JobOptions::kind)
+        .add(
+            {"--engine", "", "processes on this machine (local), a job array (slurm); without it: within this process"},
+            &JobOptions::kind)
         .check([](const std::string& given) -> std::string {
           if (given != "mpi") return one_of({kWordList<EngineKind>.begin(), kWordList<EngineKind>.end()}).wrong(given);
           return "mpi is no engine any more; begin the job with local or slurm, and add workers with "
@@ -150,8 +150,7 @@ const OptionTable<JobOptions>& job_table() {
               .help = "passed on to sbatch; may be repeated",
               .repeats = true},
              &JobOptions::extra)
-        .add({"--detach", "",
-              "of Slurm: hand the tasks out and end; the same command later collects what they did"},
+        .add({"--detach", "", "of Slurm: hand the tasks out and end; the same command later collects what they did"},
              &JobOptions::detach)
         .add({"--keep-job", "", "leave the job's folder where all is done"}, &JobOptions::keep);
     return table;

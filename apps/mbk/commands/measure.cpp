@@ -2,14 +2,14 @@
 #include <memory>
 #include <tuple>
 
-#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/options/measure_options.h"
-#include "mbk/files/recording/named_files.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/report_file.h"
 #include "apps/mbk/options/table_options.h"
+#include "apps/mbk/terminal/progress.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/files/recording/named_files.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/measure/analyse/summarise.h"
 #include "mbk/present/report/result_charts.h"

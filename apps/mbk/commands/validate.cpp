@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "apps/mbk/caller.h"
-#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/job_kinds.h"
+#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/threads_option.h"
 #include "apps/mbk/options/word_options.h"
+#include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"

@@ -8,8 +8,8 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/commands_json.h"
-#include "apps/mbk/terminal/manual_page.h"
 #include "apps/mbk/options/output.h"
+#include "apps/mbk/terminal/manual_page.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/write_file.h"

@@ -136,7 +136,8 @@ const OptionTable<SpringFieldRequest>& spring_field_table() {
         .add({"--radius", "MM", "circle in mm in which K is compared with the force (30)", positive()},
              &Request::radius, kMillimetres)
         .add({"--start", "X:Y", "where the search for the equilibrium begins, mm"}, &Request::start)
-        .add({"--rotation", "DEG", "of the disc, degrees anticlockwise (0)", number_within(kAny)}, &Request::rotation_deg)
+        .add({"--rotation", "DEG", "of the disc, degrees anticlockwise (0)", number_within(kAny)},
+             &Request::rotation_deg)
         .add({"--grid-step", "MM", "also the published procedure, on a grid of so many mm (0.15 in Dyck 2013)",
               positive()},
              &Request::grid_step, kMillimetres)

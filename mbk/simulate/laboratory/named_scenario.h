@@ -27,7 +27,6 @@ struct ScenarioText {
 [[nodiscard]] std::vector<std::string> ready_scenario_names();
 
 /// The one that is called so. @fails  usage: none is; the message names those that there are.
-[[nodiscard]] Result<Scenario> find_trial(const std::vector<Scenario>& scenarios,
-                                                      const std::string& name);
+[[nodiscard]] Result<Scenario> find_trial(const std::vector<Scenario>& scenarios, const std::string& name);
 
 }  // namespace mbk::laboratory
