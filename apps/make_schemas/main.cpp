@@ -4,9 +4,9 @@
 #include <iostream>
 
 #include "apps/mbk/commands/commands_json.h"
-#include "apps/mbk/commands/robot_check_report.h"
 #include "mbk/batch/job_status.h"
 #include "mbk/experiment/console/messages.h"
+#include "mbk/experiment/session/robot_check_report.h"
 #include "mbk/present/result/schemas.h"
 #include "mbk/study/longitudinal/report_schemas.h"
 #include "mbk/study/statistics/summary_document.h"
@@ -28,7 +28,7 @@ int main(int count, char** words) {
   mbk::console::add_schemas(schemas);
   mbk::app::add_commands_schema(schemas);
   mbk::validation::add_robot_event_schema(schemas);
-  mbk::app::add_robot_check_schema(schemas);
+  mbk::session::add_robot_check_schema(schemas);
   std::filesystem::create_directories(folder);
   for (const auto& [name, schema] : schemas) {
     std::ofstream file(folder / (name + ".schema.json"));

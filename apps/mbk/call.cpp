@@ -13,14 +13,14 @@
 #include <unordered_map>
 
 #include "apps/mbk/caller.h"
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/commands/commands_json.h"
+#include "apps/mbk/options/output.h"
+#include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/terminal/command.h"
 #include "apps/mbk/terminal/command_list.h"
 #include "apps/mbk/terminal/command_tree.h"
-#include "apps/mbk/commands/commands.h"
-#include "apps/mbk/commands/commands_json.h"
 #include "apps/mbk/terminal/help.h"
-#include "apps/mbk/options/output.h"
-#include "apps/mbk/options/reading_options.h"
 #include "mbk/base/core/edit_distance.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/in_memory.h"
@@ -293,8 +293,8 @@ std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answe
 }
 
 Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call& call) {
-  ReadingArguments reading;
-  SensorArguments sensor;
+  ReadRequest reading;
+  SensorRequest sensor;
   const Parser parser("read");
   add_reading_options(parser.command(), reading);
   add_sensor_options(parser.command(), sensor);

@@ -64,14 +64,4 @@ Answer Caller::take(int exit_code, bool& wrote) {
   return {std::move(output_), false, exit_code, std::move(errors_), std::move(messages_)};
 }
 
-std::shared_ptr<const recording::InMemory> recording_in_memory(const std::filesystem::path& word) {
-  const Caller* const caller = Caller::current();
-  return caller == nullptr ? nullptr : caller->recording(word);
-}
-
-const std::string* document_in_memory(const std::filesystem::path& word) {
-  const Caller* const caller = Caller::current();
-  return caller == nullptr ? nullptr : caller->document(word);
-}
-
 }  // namespace mbk::app

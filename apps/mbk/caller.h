@@ -10,11 +10,12 @@
 
 #include "apps/mbk/call.h"
 #include "mbk/base/core/requester.h"
+#include "mbk/files/recording/in_memory.h"
 
 namespace mbk::app {
 
 /// Who called a command from within the process: gets what it would print, and has what it reads from memory.
-class Caller : public Requester {
+class Caller : public Requester, public recording::RecordingHolder {
  public:
   /// @param call  outlives this
   explicit Caller(const Call& call) : call_(call) {}
@@ -33,8 +34,8 @@ class Caller : public Requester {
   void reached(std::string_view what, double fraction);
 
   /// What a word stands for; nullptr where it is the name of a file.
-  [[nodiscard]] std::shared_ptr<const recording::InMemory> recording(const std::filesystem::path& word) const;
-  [[nodiscard]] const std::string* document(const std::filesystem::path& word) const;
+  [[nodiscard]] std::shared_ptr<const recording::InMemory> recording(const std::filesystem::path& word) const override;
+  [[nodiscard]] const std::string* document(const std::filesystem::path& word) const override;
 
   /// What came; nothing of it stays here.   @param wrote  whether there was any output
   [[nodiscard]] Answer take(int exit_code, bool& wrote);
@@ -48,9 +49,5 @@ class Caller : public Requester {
   std::vector<Error> errors_;
   std::vector<std::string> messages_;
 };
-
-/// What `word` stands for in the call that this thread works for; nullptr where it is the name of a file.
-[[nodiscard]] std::shared_ptr<const recording::InMemory> recording_in_memory(const std::filesystem::path& word);
-[[nodiscard]] const std::string* document_in_memory(const std::filesystem::path& word);
 
 }  // namespace mbk::app

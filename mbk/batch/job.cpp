@@ -20,8 +20,8 @@
 #include "mbk/base/core/vector4.h"
 #include "mbk/base/core/version.h"
 #include "mbk/batch/job_status.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
-#include "mbk/study/store/store_files.h"
 
 namespace mbk::batch {
 namespace {
@@ -77,7 +77,7 @@ Result<void> write_whole(const fs::path& file, std::string_view text) {
                     code == ENOSPC || code == EDQUOT ? "free space on the disk" : "check the permissions of the folder",
                     file.string());
   }
-  return store::rename_on_disk(part, file);
+  return files::rename_on_disk(part, file);
 }
 
 Result<std::string> read_whole(const fs::path& file) {
@@ -166,7 +166,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
   JobFolder made;
   made.folder_ = folder;
   for (const fs::path& one : {folder, made.shards(), made.logs()}) {
-    MBK_TRY(store::make_folder(one));
+    MBK_TRY(files::make_folder(one));
   }
   job.program = program_identity();
   job.simd = word_of(simd());
@@ -273,7 +273,7 @@ Result<std::vector<std::string>> JobFolder::keys(const Chunk& chunk) const {
 Result<void> JobFolder::remove() const {
   std::error_code error;
   // Its name goes first: what is left of a folder without it is no job.
-  MBK_TRY(store::remove_file(folder_ / kJob));
+  MBK_TRY(files::remove_file(folder_ / kJob));
   fs::remove_all(folder_, error);
   if (error) return bad_data(fmt::format("cannot be removed: {}", error.message()), "remove it", folder_.string());
   return {};

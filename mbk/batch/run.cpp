@@ -18,7 +18,7 @@
 #include "mbk/batch/merge.h"
 #include "mbk/batch/shard.h"
 #include "mbk/batch/work.h"
-#include "mbk/study/store/store_files.h"
+#include "mbk/files/contents/durable_files.h"
 
 namespace mbk::batch {
 namespace {
@@ -141,7 +141,7 @@ class Run {
         fs::path aside = file.path;
         aside.replace_extension(kDamagedEnd);
         ++state_.losses[end.error().message];
-        MBK_TRY(store::rename_on_disk(file.path, aside));
+        MBK_TRY(files::rename_on_disk(file.path, aside));
         continue;
       }
       known.finished = true;

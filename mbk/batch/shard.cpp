@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "mbk/study/store/store_files.h"
+#include "mbk/files/contents/durable_files.h"
 
 namespace mbk::batch {
 namespace {
@@ -148,7 +148,7 @@ Result<void> ShardWriter::finish(std::string_view end) {
   const std::lock_guard lock(mutex_);
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (closed != 0) return not_written(part_, errno);
-  return store::rename_on_disk(part_, whole_);
+  return files::rename_on_disk(part_, whole_);
 }
 
 Result<ShardReader> ShardReader::open(const fs::path& file) {

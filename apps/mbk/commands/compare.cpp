@@ -7,15 +7,14 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/commands/stored_result.h"
 #include "apps/mbk/options/measure_options.h"
 #include "apps/mbk/options/report_file.h"
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/measure/analyse/analyse_width.h"
-#include "mbk/measure/analyse/ellipses.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/text.h"
 #include "mbk/present/report/width_text.h"
+#include "mbk/present/request/stored_result.h"
 #include "mbk/present/result/json.h"
 #include "mbk/present/result/width_json.h"
 
@@ -23,7 +22,6 @@ namespace mbk::app {
 namespace {
 
 struct CompareArguments : MeasureArguments {
-  AnalyseArguments analyse;
   ReportArguments report;
 };
 
@@ -43,26 +41,11 @@ bool is_stored(const std::filesystem::path& file) {
   return file.extension() == ".json";
 }
 
-/// As `measure` made it, as far as it was stored.
-Result<Measurement> restored(result::StoredResult stored) {
-  Measurement measured;
-  if (stored.passivity.energy || stored.passivity.judged) {
-    auto passivity = MBK_TRY(passivity_of(stored, {}));
-    measured.passivity = std::move(passivity);
-  }
-  measured.identification = std::move(stored.identification);
-  measured.alternative = std::move(stored.alternative);
-  if (measured.identification.axes == 2 && measured.identification.model.M.allFinite()) {
-    measured.findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
-  }
-  return measured;
-}
-
 Result<std::vector<Compared>> from_stored(const std::filesystem::path& file) {
-  auto results = MBK_TRY(stored_results(file));
+  auto results = MBK_TRY(request::stored_results(file));
   std::vector<Compared> all;
   for (result::StoredResult& stored : results) {
-    auto measured = restored(std::move(stored));
+    auto measured = request::restored(std::move(stored));
     if (!measured) return tl::unexpected(measured.error().in(file.string()));
     std::string name = file.string();
     if (results.size() > 1) name += fmt::format(", result {}", all.size() + 1);
@@ -75,10 +58,10 @@ Result<std::vector<Compared>> from_stored(const std::filesystem::path& file) {
 Result<Compared> from_recording(CompareArguments arguments, const std::filesystem::path& file) {
   arguments.reading.files = {file};
   const bool with_report = arguments.report.file.has_value();
-  auto options = MBK_TRY(measurement_options(arguments, arguments.analyse, with_report));
+  auto options = MBK_TRY(measurement_options(arguments, with_report));
   options.passivity = with_report;
   auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
-  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  for (Recording& recording : recordings) add_arm(arguments.arm, recording);
   auto measured = MBK_TRY(measurement::measure(std::span(recordings), options));
   Compared one{file.string(), {std::move(measured), {}, {}}};
   for (std::size_t k = 0; with_report && k < recordings.size(); ++k) {

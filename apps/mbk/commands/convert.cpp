@@ -6,11 +6,11 @@
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/readers_option.h"
 #include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/terminal/messages.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/files/recording/trial_files.h"
 #include "mbk/files/recording/write.h"
@@ -21,8 +21,8 @@ namespace mbk::app {
 namespace {
 
 struct ConvertArguments {
-  ReadingArguments reading;  ///< its files: those to read, and last the one to write
-  SensorArguments sensor;
+  ReadRequest reading;  ///< its files: those to read, and last the one to write
+  SensorRequest sensor;
   std::string format, bids;
   bool overwrite = false, quiet = false;
   std::optional<Readers> readers;
@@ -47,7 +47,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
 }
 
 /// The one recording that is converted.
-Result<Recording> read_one(const ReadingArguments& reading, const SensorArguments& sensor) {
+Result<Recording> read_one(const ReadRequest& reading, const SensorRequest& sensor) {
   const auto reader = MBK_TRY(open_recordings(reading, sensor));
   if (reader.count() > 1) {
     return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader.count()),
@@ -116,7 +116,7 @@ int copy_arrays(const Conversion& job, int k, const std::filesystem::path& file,
 int convert_one(const Conversion& job, int k, const std::filesystem::path& file) {
   const auto recording = job.reader.read(k);
   if (!recording) {
-    const ReadingArguments& reading = job.arguments.reading;
+    const ReadRequest& reading = job.arguments.reading;
     const bool whole =
         reading.channels.empty() && !reading.parts && recording.error().code == recording::kNothingRecognised;
     return whole ? copy_arrays(job, k, file, recording.error()) : report_error(recording.error());
@@ -146,7 +146,7 @@ int run_bids(const ConvertArguments& arguments, const std::filesystem::path& fol
 }
 
 int run(ConvertArguments arguments) {
-  ReadingArguments& reading = arguments.reading;
+  ReadRequest& reading = arguments.reading;
   Output output;
   output.file = reading.files.back();
   output.overwrite = arguments.overwrite;
@@ -196,7 +196,7 @@ Action add_convert(Command app) {
       "unit\n\n"
       "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
       "What was ignored in reading, or has no place in the new format, is said on standard error.");
-  arguments->reading.as_recorded = true;
+  arguments->reading.options.own_samples = false;
   add_reading_options(command, arguments->reading);
   add_sensor_options(command, arguments->sensor);
   command.get_option("FILE").description("the recording to read (several with --parts), and last the one to write");

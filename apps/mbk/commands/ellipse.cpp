@@ -4,6 +4,7 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/measure/analyse/ellipses.h"
 #include "mbk/present/report/text.h"
 #include "mbk/present/result/json.h"

@@ -9,22 +9,25 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/commands/explore_units.h"
 #include "apps/mbk/options/chart_files.h"
-#include "apps/mbk/options/explore_options.h"
-#include "apps/mbk/options/named_files.h"
+#include "apps/mbk/options/engine_options.h"
 #include "apps/mbk/options/output_options.h"
+#include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/options/table_options.h"
 #include "apps/mbk/options/threads_option.h"
+#include "apps/mbk/terminal/progress.h"
+#include "mbk/files/recording/named_files.h"
 #include "mbk/present/report/exploration_text.h"
 #include "mbk/present/report/result_charts.h"
 #include "mbk/present/result/exploration_json.h"
+#include "mbk/study/workflow/explore_units.h"
 
 namespace mbk::app {
 namespace {
 
-struct ExploreArguments : ExploringArguments {
-  OutputArguments output;
+struct ExploreArguments : request::ExploreRequest {
+  OutputArguments to;
   ReportArguments report;
   FilesBeside beside;
   bool each = false;
@@ -32,25 +35,46 @@ struct ExploreArguments : ExploringArguments {
   EngineArguments engine;
 };
 
+using Explored = Result<std::vector<workflow::ExploredRecord>>;
+
+Explored explored_here(const workflow::ExploringEach& each, const ExploreArguments& arguments) {
+  Progress progress(arguments.to.quiet);
+  return workflow::explored_here(each, arguments.threads,
+                                 [&](int done, int of, const std::string& file) { progress.count(done, of, file); });
+}
+
+/// @param code  what the command ends with where the job did not come to its end
+Explored explored_elsewhere(const workflow::ExploringEach& each, const ExploreArguments& arguments,
+                            std::optional<int>& code) {
+  auto job = MBK_TRY(workflow::explore_request(each));
+  job.folder = job_folder_here(job.kind, job.specification);
+  const auto carried = MBK_TRY(carry_out(arguments.engine, job, arguments.to.quiet));
+  code = carried.code;
+  if (code) return bad_data("some recordings are missing");
+  auto all = MBK_TRY(workflow::explored_of(*carried.folder));
+  MBK_TRY(batch::remove_job(*carried.folder, arguments.engine));
+  return all;
+}
+
 /// A result for each recording.
 int run_each(Command command, const ExploreArguments& arguments) {
-  if (auto ok = check_files(arguments.reading.files, arguments.output.to, arguments.report); !ok) {
+  if (auto ok = check_files(arguments.reading.files, arguments.to.to, arguments.report); !ok) {
     return report_error(ok.error());
   }
   if (arguments.reading.parts) {
     return report_error({ErrorKind::usage, "--parts joins recordings, and --each keeps them apart", "pass one", ""});
   }
-  const ExploringEach each{arguments, exploring_words(command), arguments.output.json, arguments.output.quiet};
+  const workflow::ExploringEach each{arguments, given_options(command, request::explore_table()), arguments.to.json};
   std::optional<int> code;
   const auto explored =
-      arguments.engine.kind ? explored_elsewhere(each, arguments.engine, code) : explored_here(each, arguments.threads);
+      arguments.engine.kind ? explored_elsewhere(each, arguments, code) : explored_here(each, arguments);
   if (code) return *code;
   if (!explored) return report_error(explored.error());
   int worst = kFine;
   bool all_usable = true;
   std::vector<std::string> texts;
   std::vector<Error> failed;
-  for (const ExploredRecord& one : *explored) {
+  for (const workflow::ExploredRecord& one : *explored) {
     if (one.failed) {
       failed.push_back(one.error);
       worst = std::max(worst, report_error(one.error));
@@ -61,28 +85,27 @@ int run_each(Command command, const ExploreArguments& arguments) {
   }
   if (texts.empty()) return worst;
   const std::string text =
-      arguments.output.json ? result::to_json(texts, failed) : fmt::format("{}", fmt::join(texts, "\n"));
-  if (auto ok = arguments.output.to.write(text, arguments.reading.files); !ok) return report_error(ok.error());
+      arguments.to.json ? result::to_json(texts, failed) : fmt::format("{}", fmt::join(texts, "\n"));
+  if (auto ok = arguments.to.to.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return worst != kFine ? worst : all_usable ? kFine : kNotUsable;
 }
 
 /// What can be said before the work begins.
 Result<void> check(const ExploreArguments& a) {
-  if (auto ok = check_files(a.reading.files, a.output.to, a.report); !ok || !a.beside.charts) return ok;
-  return ChartFiles::check(*a.beside.charts, a.output.to.overwrite, {a.reading.files.front()},
+  if (auto ok = check_files(a.reading.files, a.to.to, a.report); !ok || !a.beside.charts) return ok;
+  return ChartFiles::check(*a.beside.charts, a.to.to.overwrite, {a.reading.files.front()},
                            {"response-magnitude", "impulse-response"});
 }
 
 Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
   if (!arguments.beside.charts) return {};
-  auto files =
-      MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files));
+  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.to.to.overwrite, arguments.reading.files));
   return files.write(found.recordings.front().source, report::exploration_charts(found));
 }
 
 int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (auto ok = check(arguments); !ok) return report_error(ok.error());
-  const auto options = exploring_options(arguments);
+  const auto options = request::explore_options(arguments);
   if (!options) return report_error(options.error());
   const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
@@ -91,13 +114,13 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (!found) return report_error(found.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, report, arguments.reading.files); !ok) {
+    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report, arguments.reading.files); !ok) {
       return report_error(ok.error());
     }
   }
   if (auto ok = write_charts(arguments, *found); !ok) return report_error(ok.error());
-  const std::string text = arguments.output.json ? result::to_json(*found) : report::exploration_text(*found);
-  if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
+  const std::string text = arguments.to.json ? result::to_json(*found) : report::exploration_text(*found);
+  if (auto ok = arguments.to.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
 }
 
@@ -122,11 +145,12 @@ Action add_explore(Command app, const std::string& typed) {
       "realisations: they tell nonlinear distortion from noise, and two axes from each other.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
-  add_exploring_options(command, *arguments);
+  add_files_option(command, arguments->reading);
+  add_options(command, request::explore_table(), *arguments);
   const Option each =
       command.add_flag("--each", arguments->each, "a result for each recording, in place of one of all together");
   add_threads_option(command, arguments->threads, "with --each: recordings").needs(each);
-  add_output_options(command, arguments->output, "mbk.explore/1, with --each mbk.explorations/1");
+  add_output_options(command, arguments->to, "mbk.explore/1, with --each mbk.explorations/1");
   add_report_options(command, arguments->report);
   add_charts_option(command, arguments->beside);
   add_engine_options(command, arguments->engine);
@@ -135,7 +159,7 @@ Action add_explore(Command app, const std::string& typed) {
   command.get_option("--engine").needs(each);
   return [command, arguments, typed] {
     ExploreArguments named = *arguments;
-    auto files = named_files(named.reading.files);
+    auto files = recording::named_files(named.reading.files);
     if (!files) return report_error(files.error());
     named.reading.files = std::move(*files);
     return named.each ? run_each(command, named) : run_explore(std::move(named), typed);

@@ -18,8 +18,8 @@ namespace mbk::app {
 namespace {
 
 struct InfoArguments {
-  ReadingArguments reading;
-  SensorArguments sensor;
+  ReadRequest reading;
+  SensorRequest sensor;
   OutputArguments output;
   bool formats = false;
 };
@@ -37,7 +37,7 @@ std::string formats_text() {
 int list_unrecognised(const InfoArguments& arguments, const RecordingReader& reader, const Error& error,
                       const std::string& before = "") {
   if (arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) return report_error(error);
-  const bool no_arm = error.kind == ErrorKind::usage && reader.of_trials(0) && arguments.reading.arm.empty();
+  const bool no_arm = error.kind == ErrorKind::usage && reader.of_trials(0) && arguments.reading.options.arm.empty();
   if (error.kind != ErrorKind::data && !no_arm) return report_error(error);
   const auto contents = reader.list_contents(0);
   if (!contents) return report_error(error);
@@ -83,7 +83,7 @@ int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
 }
 
 int run(const InfoArguments& arguments) {
-  const ReadingArguments& reading = arguments.reading;
+  const ReadRequest& reading = arguments.reading;
   if (arguments.formats) {
     if (auto ok = arguments.output.write(formats_text(), {}); !ok) return report_error(ok.error());
     return kFine;
@@ -152,7 +152,7 @@ Action add_info(Command app) {
       "  mbk info --formats\n"
       "      every format that mbk reads\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
-  arguments->reading.as_recorded = true;
+  arguments->reading.options.own_samples = false;
   add_reading_options(command, arguments->reading);
   command.get_option("FILE").required(false);
   command.add_flag("--formats", arguments->formats, "list the formats that mbk reads");

@@ -2,13 +2,14 @@
 #include <memory>
 #include <tuple>
 
-#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/options/named_files.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/options/table_options.h"
+#include "apps/mbk/terminal/progress.h"
 #include "mbk/base/numeric/parallel.h"
+#include "mbk/files/recording/named_files.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/measure/analyse/summarise.h"
 #include "mbk/present/report/result_charts.h"
@@ -22,7 +23,6 @@ namespace {
 using measurement::Examined;
 
 struct MeasureCommandArguments : MeasureArguments {
-  AnalyseArguments analyse;
   ReportArguments report;
   FilesBeside beside;
 
@@ -53,7 +53,7 @@ std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, con
   const bool with_report = arguments.report.file.has_value(), draws = arguments.draws();
   const auto measured = [&](int i) -> Result<MeasuredOne> {
     auto recording = MBK_TRY(reader.read_perturbation(i));
-    add_arm(arguments.analyse, recording);
+    add_arm(arguments.arm, recording);
     auto one = MBK_TRY(measure_one({&recording, 1}, options, draws));
     result::RecordingFacts facts;
     if (with_report) facts = facts_of(recording, one.measured.identification);
@@ -89,7 +89,7 @@ struct MeasuredTrials {
 /// One fit over all of them: what cannot be read is missing in it, so that there is none.
 Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
   auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
-  for (Recording& recording : recordings) add_arm(arguments.analyse, recording);
+  for (Recording& recording : recordings) add_arm(arguments.arm, recording);
   auto pooled = MBK_TRY(measure_one(recordings, options, arguments.draws()));
   MeasuredTrials found;
   for (std::size_t k = 0; arguments.report.file && k < recordings.size(); ++k) {
@@ -152,10 +152,10 @@ Result<void> check(const MeasureCommandArguments& arguments) {
 /// The work of `measure` and `identify`, which leaves out ellipses, passivity and what they take to compute.
 int run(const MeasureCommandArguments& given, const std::string& typed, bool with_findings) {
   MeasureCommandArguments arguments = given;
-  auto files = named_files(given.reading.files);
+  auto files = recording::named_files(given.reading.files);
   if (!files) return report_error(files.error());
   arguments.reading.files = std::move(*files);
-  auto options = measurement_options(arguments, arguments.analyse, arguments.report.file.has_value());
+  auto options = measurement_options(arguments, arguments.report.file.has_value());
   if (!options) return report_error(options.error());
   options->passivity = with_findings;
   if (auto ok = check(arguments); !ok) return report_error(ok.error());
@@ -194,7 +194,7 @@ Action add(Command app, const char* name, const char* summary, const std::string
   const Command command = app.add_command(name, summary);
   command.footer(footer);
   add_measure_options(command, *arguments);
-  add_analyse_options(command, arguments->analyse);
+  add_options(command, request::arm_table(), *arguments);
   add_output_options(command, arguments->output, "mbk.result/2");
   if (with_findings) add_report_options(command, arguments->report);
   add_summary_option(command, arguments->beside);

@@ -4,34 +4,47 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
-#include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/options/table_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/measure/measurement/measure_movement.h"
 #include "mbk/present/report/movement_text.h"
+#include "mbk/present/request/stage_tables.h"
 #include "mbk/present/result/movement_json.h"
 
 namespace mbk::app {
 namespace movement_command {
 
 struct MovementArguments {
-  ReadingArguments reading;
-  SensorArguments sensor;
-  std::optional<double> from_s, to_s, resample_hz;
-  double cutoff_hz = analyse::MovementOptions().cutoff_hz;
+  ReadRequest reading;
+  SensorRequest sensor;
+  measurement::MovementQualityOptions options;
   OutputArguments output;
 };
 
+OptionTable<measurement::MovementQualityOptions> options_table() {
+  OptionTable<measurement::MovementQualityOptions> table;
+  table.group(request::kWindowGroup)
+      .add(
+          {"--from", "S", "first second of the recording that counts", not_negative()},
+          [](auto& options) -> auto& { return options.window.from_s; })
+      .add(
+          {"--to", "S", "last second that counts", positive()},
+          [](auto& options) -> auto& { return options.window.to_s; })
+      .group("")
+      .add(request::resample_option(), &measurement::MovementQualityOptions::resample)
+      .add(
+          {"--cutoff", "HZ", "of the Savitzky–Golay filter behind the speed, Hz (20)", positive()},
+          [](auto& options) -> auto& { return options.movement.cutoff_hz; });
+  return table;
+}
+
 int run_movement(const MovementArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
-  measurement::MovementQualityOptions options;
-  options.axes = arguments.reading.axes;
-  const auto window = window_limits({arguments.from_s, std::nullopt, arguments.to_s});
-  if (!window) return report_error(window.error());
-  options.window = *window;
-  if (arguments.resample_hz) options.resample = Hertz(*arguments.resample_hz);
-  options.movement.cutoff_hz = arguments.cutoff_hz;
+  measurement::MovementQualityOptions options = arguments.options;
+  options.axes = arguments.reading.options.axes;
+  if (auto ok = request::check_order(options.window); !ok) return report_error(ok.error());
   const auto recordings = read_perturbations(arguments.reading, arguments.sensor);
   if (!recordings) return report_error(recordings.error());
   std::vector<MovementQuality> all;
@@ -70,23 +83,7 @@ Action add_movement(Command app) {
       std::string(kExitCodes));
   add_reading_options(command, arguments->reading);
   add_sensor_options(command, arguments->sensor);
-  const char* const interval = "Analysed interval";
-  command.add_option("--from", arguments->from_s, "first second of the recording that counts")
-      .type_name("S")
-      .check(not_negative())
-      .group(interval);
-  command.add_option("--to", arguments->to_s, "last second that counts")
-      .type_name("S")
-      .check(positive())
-      .group(interval);
-  command
-      .add_option("--resample", arguments->resample_hz,
-                  "put an uneven clock right first, by straight lines; never done unasked")
-      .type_name("HZ")
-      .check(positive());
-  command.add_option("--cutoff", arguments->cutoff_hz, "of the Savitzky–Golay filter behind the speed, Hz (20)")
-      .type_name("HZ")
-      .check(positive());
+  add_options(command, options_table(), arguments->options);
   add_output_options(command, arguments->output, "mbk.movement/1");
   return [arguments] { return run_movement(*arguments); };
 }

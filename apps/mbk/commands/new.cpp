@@ -2,7 +2,7 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/new_commands.h"
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 
 namespace mbk::app {
 

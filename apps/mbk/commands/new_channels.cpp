@@ -7,13 +7,13 @@
 #include <memory>
 #include <optional>
 
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/commands/new_commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/terminal/questions.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/terminal/questions.h"
 #include "apps/mbk/terminal/terminal.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/guess_channels.h"
 #include "mbk/files/recording/read.h"

@@ -6,12 +6,12 @@
 #include <string>
 #include <tuple>
 
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/commands/new_commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/terminal/questions.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/terminal/questions.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/protocol/experiment.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/files/recording/write_file.h"

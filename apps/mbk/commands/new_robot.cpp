@@ -4,11 +4,12 @@
 #include <memory>
 #include <string>
 
-#include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/commands/new_commands.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/terminal/questions.h"
 #include "apps/mbk/options/report_file.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/terminal/questions.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/model/robot_file/robot_file.h"
 

@@ -10,18 +10,20 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/commands/stored_result.h"
 #include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/numeric/parallel.h"
 #include "mbk/measure/measurement/measure.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/passivity_text.h"
 #include "mbk/present/report/text.h"
+#include "mbk/present/request/stored_result.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::app {
 namespace {
+
+using request::AskedBand;
 
 struct PassivityArguments : MeasureArguments {
   std::string band;
@@ -97,10 +99,10 @@ Result<PassivityAnswers> from_recordings(const PassivityArguments& arguments, co
 
 /// All results of a file.
 Result<std::vector<LimbAnswer>> from_file(const std::filesystem::path& file, const AskedBand& band) {
-  const auto results = MBK_TRY(stored_results(file));
+  const auto results = MBK_TRY(request::stored_results(file));
   std::vector<LimbAnswer> answers;
   for (const result::StoredResult& stored : results) {
-    auto passivity = passivity_of(stored, band);
+    auto passivity = request::passivity_of(stored, band);
     if (!passivity) return tl::unexpected(passivity.error().in(file.string()));
     const Identification& id = stored.identification;
     answers.push_back({id.sources, std::move(*passivity), {}, std::nullopt, id.motion});

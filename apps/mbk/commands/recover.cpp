@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/readers_option.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/present/report/text.h"
 

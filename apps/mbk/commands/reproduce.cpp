@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/threads_option.h"
+#include "apps/mbk/terminal/progress.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/text.h"

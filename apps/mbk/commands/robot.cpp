@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/options/output.h"
 #include "apps/mbk/commands/robot_commands.h"
+#include "apps/mbk/options/output.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/model/robot/workspace.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/text.h"

@@ -5,14 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/options/output_options.h"
-#include "apps/mbk/commands/robot_check_report.h"
 #include "apps/mbk/commands/robot_commands.h"
-#include "apps/mbk/options/scenario_argument.h"
+#include "apps/mbk/options/output_options.h"
+#include "apps/mbk/terminal/messages.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/session/live_check.h"
 #include "mbk/experiment/session/machine_check.h"
+#include "mbk/experiment/session/robot_check_report.h"
+#include "mbk/simulate/laboratory/named_scenario.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::app {
@@ -46,14 +46,15 @@ Result<drivers::UdpAddress> address_of(const std::string& given) {
   return drivers::UdpAddress::find(given.substr(0, colon), port);
 }
 
-Result<RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments) {
-  const auto text = MBK_TRY(read_scenario_text(arguments.file));
+Result<session::RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments) {
+  const auto text = MBK_TRY(laboratory::read_scenario_text(arguments.file));
   const auto setup = MBK_TRY(session::read_robot_setup(text.text, text.file, laboratory::read_simulation));
   if (arguments.live && !setup.has_device) {
     return tl::unexpected(
         Error{ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
   }
-  RobotCheckReport::Setup found{arguments.file, session::setup_text(setup), session::check_setup(setup), "", {}};
+  session::RobotCheckReport::Setup found{
+      arguments.file, session::setup_text(setup), session::check_setup(setup), "", {}};
   if (!arguments.live) return found;
   const auto robot = MBK_TRY(protocol::make_device(setup.trial));
   const auto record = MBK_TRY(session::watch_robot(*robot, setup.trial.rate, *arguments.live));
@@ -62,7 +63,7 @@ Result<RobotCheckReport::Setup> check_setup(const RobotCheckArguments& arguments
   return found;
 }
 
-Result<RobotCheckReport::Link> check_link(const RobotCheckArguments& arguments) {
+Result<session::RobotCheckReport::Link> check_link(const RobotCheckArguments& arguments) {
   const auto robot = MBK_TRY(address_of(arguments.link));
   auto wire = MBK_TRY(drivers::UdpBridgeWire::open(robot, static_cast<std::uint16_t>(arguments.local_port)));
   drivers::BridgeCheckOptions options;
@@ -70,19 +71,19 @@ Result<RobotCheckReport::Link> check_link(const RobotCheckArguments& arguments) 
   options.motors = arguments.motors;
   if (options.motors && !arguments.output.quiet) say("the motors of {} go on, with command 0\n", robot.text());
   auto report = MBK_TRY(drivers::check_bridge(wire, options));
-  return RobotCheckReport::Link{robot.text(), options, std::move(report)};
+  return session::RobotCheckReport::Link{robot.text(), options, std::move(report)};
 }
 
-RobotCheckReport::Timing check_timing(const RobotCheckArguments& arguments) {
+session::RobotCheckReport::Timing check_timing(const RobotCheckArguments& arguments) {
   if (*arguments.timing > kSaySo && !arguments.output.quiet) say("measuring for {:g} s\n", *arguments.timing);
-  RobotCheckReport::Timing found{
+  session::RobotCheckReport::Timing found{
       realtime::read_machine(), realtime::measure_lateness(1.0 / arguments.rate_hz, *arguments.timing), {}};
   found.findings = session::check_machine(found.machine, found.lateness);
   return found;
 }
 
-Result<RobotCheckReport> check_all(const RobotCheckArguments& arguments) {
-  RobotCheckReport report;
+Result<session::RobotCheckReport> check_all(const RobotCheckArguments& arguments) {
+  session::RobotCheckReport report;
   if (!arguments.file.empty()) {
     auto setup = MBK_TRY(check_setup(arguments));
     report.setup = std::move(setup);
@@ -103,7 +104,9 @@ int run(const RobotCheckArguments& arguments) {
   }
   const auto report = check_all(arguments);
   if (!report) return report_error(report.error());
-  if (auto ok = arguments.output.to.write(arguments.output.json ? json_of(*report) : text_of(*report), {}); !ok) {
+  if (auto ok =
+          arguments.output.to.write(arguments.output.json ? session::json_of(*report) : session::text_of(*report), {});
+      !ok) {
     return report_error(ok.error());
   }
   return report->wrong() ? kNotUsable : report->incomplete() ? kNotAllTested : kFine;
@@ -130,7 +133,7 @@ Action add_robot_check(Command group) {
   const Option file =
       command
           .add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
-          .check(suggests(ready_scenario_names()));
+          .check(suggests(laboratory::ready_scenario_names()));
   command.add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
       .type_name("S")
       .expected(0, 1)

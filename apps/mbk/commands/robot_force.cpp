@@ -1,30 +1,28 @@
 #include <memory>
 #include <string>
 
-#include "apps/mbk/options/measure_options.h"
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/options/output_options.h"
-#include "apps/mbk/options/preprocess_options.h"
-#include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/commands/robot_commands.h"
-#include "apps/mbk/options/robot_file.h"
+#include "apps/mbk/options/measure_options.h"
+#include "apps/mbk/options/output_options.h"
+#include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/options/table_options.h"
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/write.h"
 #include "mbk/measure/measurement/compute_force.h"
 #include "mbk/present/report/robot_text.h"
+#include "mbk/present/request/named_robot.h"
+#include "mbk/present/request/stage_tables.h"
 #include "mbk/present/result/robot_json.h"
 
 namespace mbk::app {
 namespace {
 
 struct RobotForceArguments {
-  ReadingArguments reading;
-  WindowArguments window;
-  FilterArguments filters;
+  ReadRequest reading;
+  measurement::Options options;
   OutputArguments output;
   std::optional<std::filesystem::path> robot;
-  ForceSource source = ForceSource::virtual_sensor;
-  AccelerationSource acceleration = AccelerationSource::derivative;
 };
 
 int run(const RobotForceArguments& arguments) {
@@ -38,17 +36,12 @@ int run(const RobotForceArguments& arguments) {
   if (arguments.reading.files.size() > 1 && !arguments.reading.parts) {
     return report_error({ErrorKind::usage, "one recording at a time", "or join numbered parts with --parts", ""});
   }
-  const auto signals = signal_options(arguments.window, arguments.filters);
-  if (!signals) return report_error(signals.error());
-  measurement::Options options;
-  options.preprocess = *signals;
-  auto robot = robot_of(arguments.robot);
-  if (!robot) return report_error(robot.error());
+  measurement::Options options = arguments.options;
   preprocess::Options& p = options.preprocess;
+  if (auto ok = request::check_order(p.window); !ok) return report_error(ok.error());
+  auto robot = request::robot_of(arguments.robot);
+  if (!robot) return report_error(robot.error());
   p.robot = std::make_shared<const robot::DynamicModel>(std::move(*robot));
-  p.force_source = arguments.source;
-  if (arguments.acceleration == AccelerationSource::sensor) p.acceleration = AccelerationSource::sensor;
-  if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
   const auto recordings = read_recordings(reading_for(arguments.reading, options));
   if (!recordings) return report_error(recordings.error());
   const auto made = measurement::compute_force(recordings->front(), options);
@@ -84,12 +77,16 @@ Action add_robot_force(Command group) {
                   "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
       .type_name("FILE")
       .check(not_empty());
-  add_choice(command, "--force-source", arguments->source, {ForceSource::virtual_sensor, ForceSource::observer},
+  arguments->options.preprocess.force_source = ForceSource::virtual_sensor;
+  add_choice(command, "--force-source", arguments->options.preprocess.force_source,
+             {ForceSource::virtual_sensor, ForceSource::observer},
              "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
              "(virtual)");
-  add_choice(command, "--acceleration", arguments->acceleration, "where the acceleration comes from (derivative)");
-  add_window_options(command, arguments->window);
-  add_filter_options(command, arguments->filters);
+  add_choice(command, "--acceleration", arguments->options.preprocess.acceleration,
+             "where the acceleration comes from (derivative)");
+  add_options(command, request::window_table(), arguments->options.preprocess.window);
+  add_options(command, request::filter_table(), arguments->options.preprocess);
+  add_option(command, request::resample_option(request::kFilterGroup), arguments->options.resample);
   command.remove_option("--split");  // nothing is held out here
   command.remove_option("--every");
   add_output_options(command, arguments->output, "mbk.force/1");

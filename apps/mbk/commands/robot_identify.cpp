@@ -8,33 +8,29 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/options/output_options.h"
-#include "apps/mbk/options/preprocess_options.h"
-#include "apps/mbk/options/reading_options.h"
 #include "apps/mbk/commands/robot_commands.h"
-#include "apps/mbk/options/robot_file.h"
-#include "apps/mbk/options/word_options.h"
+#include "apps/mbk/options/output_options.h"
+#include "apps/mbk/options/reading_options.h"
+#include "apps/mbk/options/table_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/measure/measurement/identify_robot.h"
 #include "mbk/model/robot/drive_term_names.h"
 #include "mbk/present/report/robot_text.h"
+#include "mbk/present/request/named_robot.h"
+#include "mbk/present/request/stage_tables.h"
 #include "mbk/present/result/robot_json.h"
 
 namespace mbk::app {
 namespace {
 
 struct RobotIdentifyArguments {
-  ReadingArguments reading;
-  WindowArguments window;
-  FilterArguments filters;
+  ReadRequest reading;
+  measurement::RobotOptions options;
   OutputArguments output;
   std::optional<std::filesystem::path> robot;
-  RobotMethod method = RobotMethod::weighted_least_squares;
-  bool consistent = false;
-  double hac_lag_s = 1.0;
   std::vector<std::filesystem::path> held_out;
   std::string fixed, terms, delay = "auto", stribeck_velocity;
-  std::optional<double> smoothing, motion_cutoff_hz;
+  std::optional<double> smoothing;
 };
 
 /// A number, or the word "auto" as an absent one.
@@ -133,24 +129,17 @@ Result<std::vector<Index>> indices_of(const std::string& list, const robot::Robo
 
 int run(const RobotIdentifyArguments& arguments) {
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
-  measurement::RobotOptions options;
-  auto robot = describe_robot(arguments.robot);
+  measurement::RobotOptions options = arguments.options;
+  auto robot = request::describe_robot(arguments.robot);
   if (!robot) return report_error(robot.error());
   if (auto ok = choose(arguments, *robot, options); !ok) return report_error(ok.error());
   const auto fixed = indices_of(arguments.fixed, *robot);
   if (!fixed) return report_error(fixed.error());
   options.fit.fixed = *fixed;
-  const auto signals = signal_options(arguments.window, arguments.filters);
-  if (!signals) return report_error(signals.error());
-  options.preprocess.signals = *signals;
-  if (arguments.motion_cutoff_hz) options.preprocess.motion_cutoff = Hertz(*arguments.motion_cutoff_hz);
-  options.fit.method = arguments.method;
-  options.fit.consistent = arguments.consistent;
-  options.fit.hac_lag_s = arguments.hac_lag_s;
-  if (arguments.filters.resample_hz) options.resample = Hertz(*arguments.filters.resample_hz);
+  if (auto ok = request::check_order(options.preprocess.signals.window); !ok) return report_error(ok.error());
 
-  ReadingArguments reading = arguments.reading;
-  reading.joints = robot->model.mechanism->joint_names();
+  ReadRequest reading = arguments.reading;
+  reading.options.joints = robot->model.mechanism->joint_names();
   const auto recordings = read_recordings(reading);
   if (!recordings) return report_error(recordings.error());
   reading.files = arguments.held_out;
@@ -163,6 +152,58 @@ int run(const RobotIdentifyArguments& arguments) {
   const std::string text = arguments.output.json ? result::to_json(*found) : report::robot_text(*found);
   if (auto ok = arguments.output.write(text, arguments.reading.files); !ok) return report_error(ok.error());
   return found->usable ? kFine : kNotUsable;
+}
+
+}  // namespace
+
+namespace {
+
+OptionTable<RobotIdentifyArguments> model_table() {
+  using Arguments = RobotIdentifyArguments;
+  OptionTable<Arguments> table;
+  table.group("Model")
+      .add({"--terms", "LIST",
+            "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
+            "(viscous,coulomb,offset)",
+            not_empty()},
+           &Arguments::terms)
+      .add({"--fix", "LIST",
+            "coefficients that are known: they keep the value of the robot's description, as in "
+            "--fix link_1.mass_x,link_2.mass_x for links that are symmetric",
+            not_empty()},
+           &Arguments::fixed)
+      .add({"--friction-smoothing", "V",
+            "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
+            "(0.02)",
+            not_negative()},
+           &Arguments::smoothing)
+      .add({"--stribeck-velocity", "V|auto", "rad/s or m/s; auto finds it (0.05)", not_empty()},
+           &Arguments::stribeck_velocity)
+      .add({"--motor-delay", "MS|auto",
+            "by which the motors act after the torque that is recorded; a torque that is held for a sample counts "
+            "as half of one (auto: found)",
+            not_empty()},
+           &Arguments::delay)
+      .add(
+          {"--method", "",
+           "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
+           "noise of the motion does not bias"},
+          [](auto& a) -> auto& { return a.options.fit.method; })
+      .add(
+          {"--consistent", "",
+           "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
+           "and drives that do not feed the motion; what the data leave open stays near the description"},
+          [](auto& a) -> auto& { return a.options.fit.consistent; })
+      .add(
+          {"--motion-cutoff", "HZ",
+           "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
+           "reference, or without one the band of the torque",
+           positive()},
+          [](auto& a) -> auto& { return a.options.preprocess.motion_cutoff; })
+      .add(
+          {"--hac-lag", "S", "reach of the residual's correlation in the standard errors (1)", positive()},
+          [](auto& a) -> auto& { return a.options.fit.hac_lag_s; });
+  return table;
 }
 
 }  // namespace
@@ -195,63 +236,11 @@ Action add_robot_identify(Command group) {
                   "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
       .type_name("FILE")
       .check(not_empty());
-  add_window_options(command, arguments->window);
-  add_filter_options(command, arguments->filters);
-  const char* const model = "Model";
-  command
-      .add_option("--terms", arguments->terms,
-                  "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
-                  "(viscous,coulomb,offset)")
-      .type_name("LIST")
-      .check(not_empty())
-      .group(model);
-  command
-      .add_option("--fix", arguments->fixed,
-                  "coefficients that are known: they keep the value of the robot's description, as in "
-                  "--fix link_1.mass_x,link_2.mass_x for links that are symmetric")
-      .type_name("LIST")
-      .check(not_empty())
-      .group(model);
-  command
-      .add_option("--friction-smoothing", arguments->smoothing,
-                  "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
-                  "(0.02)")
-      .type_name("V")
-      .check(not_negative())
-      .group(model);
-  command.add_option("--stribeck-velocity", arguments->stribeck_velocity, "rad/s or m/s; auto finds it (0.05)")
-      .type_name("V|auto")
-      .check(not_empty())
-      .group(model);
-  command
-      .add_option(
-          "--motor-delay", arguments->delay,
-          "by which the motors act after the torque that is recorded; a torque that is held for a sample counts "
-          "as half of one (auto: found)")
-      .type_name("MS|auto")
-      .check(not_empty())
-      .group(model);
-  add_choice(command, "--method", arguments->method,
-             "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
-             "noise of the motion does not bias")
-      .group(model);
-  command
-      .add_flag("--consistent", arguments->consistent,
-                "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
-                "and drives that do not feed the motion; what the data leave open stays near the description")
-      .group(model);
-  command
-      .add_option("--motion-cutoff", arguments->motion_cutoff_hz,
-                  "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
-                  "reference, or without one the band of the torque")
-      .type_name("HZ")
-      .check(positive())
-      .group(model);
-  command
-      .add_option("--hac-lag", arguments->hac_lag_s, "reach of the residual's correlation in the standard errors (1)")
-      .type_name("S")
-      .check(positive())
-      .group(model);
+  preprocess::Options& signals = arguments->options.preprocess.signals;
+  add_options(command, request::window_table(), signals.window);
+  add_options(command, request::filter_table(), signals);
+  add_option(command, request::resample_option(request::kFilterGroup), arguments->options.resample);
+  add_options(command, model_table(), *arguments);
   add_output_options(command, arguments->output, "mbk.robot/1");
   return [arguments] { return run(*arguments); };
 }

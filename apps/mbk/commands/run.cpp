@@ -12,19 +12,19 @@
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/plan_text.h"
 #include "apps/mbk/commands/run_console.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/readers_option.h"
-#include "apps/mbk/options/scenario_argument.h"
 #include "apps/mbk/terminal/last_words.h"
 #include "apps/mbk/terminal/messages.h"
 #include "apps/mbk/terminal/stop_keys.h"
 #include "apps/mbk/terminal/stop_signals.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/protocol/personal_data.h"
 #include "mbk/experiment/session/conduct.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
 #include "mbk/present/report/text.h"
+#include "mbk/simulate/laboratory/named_scenario.h"
 #include "mbk/simulate/laboratory/simulation.h"
 
 namespace mbk::app {
@@ -50,7 +50,7 @@ struct RunArguments {
 };
 
 Result<std::vector<Trial>> trials_of(const RunArguments& arguments) {
-  const auto text = MBK_TRY(read_scenario_text(arguments.experiment));
+  const auto text = MBK_TRY(laboratory::read_scenario_text(arguments.experiment));
   auto trials = MBK_TRY(protocol::read_experiment(text.text, text.file, laboratory::read_simulation));
   std::vector<Trial> chosen;
   for (const std::string& name : arguments.trials) {
@@ -382,7 +382,7 @@ Action add_run(Command app) {
       "5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
   command.add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
       .required()
-      .check(suggests(ready_scenario_names()));
+      .check(suggests(laboratory::ready_scenario_names()));
   command.add_option("--out", arguments->out, "the recording to write (NAME.h5); several trials get suffixes")
       .type_name("REC")
       .check(not_empty());

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/report_file.h"
 #include "apps/mbk/terminal/messages.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/present/report/html.h"
 

@@ -3,45 +3,36 @@
 #include <memory>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output_options.h"
-#include "apps/mbk/options/preprocess_options.h"
 #include "apps/mbk/options/reading_options.h"
-#include "apps/mbk/options/sensor_options.h"
+#include "apps/mbk/options/table_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/units.h"
 #include "mbk/measure/calibration/force_sensor.h"
 #include "mbk/measure/measurement/find_sensor_delay.h"
+#include "mbk/measure/preprocess/resample.h"
 #include "mbk/present/report/sensor_text.h"
+#include "mbk/present/request/stage_tables.h"
 #include "mbk/present/result/sensor_json.h"
 
 namespace mbk::app {
 namespace {
 
 struct SensorCalibrateArguments {
-  ReadingArguments reading;
+  ReadRequest reading;
   OutputArguments output;
-  std::optional<double> lever_arm_mm, range;
-  std::optional<int> bits;
+  calibration::SensorCalibrationOptions options;
+  calibration::Converter converter{0, 0.0};  ///< bits 0: its step is looked for
   calibration::SensorFrame frame = calibration::SensorFrame::automatic;
-  double hac_lag_s = 1.0;
-  double longest_delay_ms = 50.0;
 };
 
-Result<calibration::SensorCalibrationOptions> options_of(const SensorCalibrateArguments& arguments) {
-  calibration::SensorCalibrationOptions options;
-  options.crosstalk = arguments.reading.axes != 1;
-  if (arguments.lever_arm_mm) options.lever_arm = *arguments.lever_arm_mm / kMillimetres;
-  if (arguments.bits) options.converter = calibration::Converter{*arguments.bits, *arguments.range};
-  options.hac_lag_s = arguments.hac_lag_s;
-  options.longest_delay = arguments.longest_delay_ms / kMilliseconds;
-  return options;
-}
-
 Result<SensorCalibration> calibrate(const SensorCalibrateArguments& arguments) {
-  const auto options = MBK_TRY(options_of(arguments));
-  ReadingArguments reading = arguments.reading;
-  reading.axes = 2;  // --axes counts those of the sensor here; the names are Fx, Fy, Vx, Vy either way
-  reading.untimed = true;
+  calibration::SensorCalibrationOptions options = arguments.options;
+  options.crosstalk = arguments.reading.options.axes != 1;
+  if (arguments.converter.bits > 0) options.converter = arguments.converter;
+  ReadRequest reading = arguments.reading;
+  reading.options.axes = 2;  // --axes counts those of the sensor here; the names are Fx, Fy, Vx, Vy either way
+  reading.options.untimed = true;
   const auto recordings = MBK_TRY(read_recordings(reading));
   std::vector<calibration::SensorRun> runs;
   for (const Recording& recording : recordings) {
@@ -61,6 +52,32 @@ int run_calibrate(const SensorCalibrateArguments& arguments) {
   return kFine;
 }
 
+OptionTable<SensorCalibrateArguments> calibrate_table() {
+  OptionTable<SensorCalibrateArguments> table;
+  table
+      .add(
+          {"--lever-arm-mm", "MM", "from the gauges to the load, kept for --sensor", positive()},
+          [](auto& a) -> auto& { return a.options.lever_arm; }, kMillimetres)
+      .add(
+          {"--bits", "N", "of the converter; otherwise its step is looked for in the data", whole_number(2, 32)},
+          [](auto& a) -> auto& { return a.converter.bits; })
+      .add(
+          {"--range", "V", "of the converter, ± volts", positive(), "--bits"},
+          [](auto& a) -> auto& { return a.converter.range; })
+      .add({"--sensor-frame", "",
+            "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
+            "link where q2 is there"},
+           &SensorCalibrateArguments::frame)
+      .add(
+          {"--longest-delay-ms", "MS", "by which the voltage may come after a reference, either way (50; 0: none)",
+           not_negative()},
+          [](auto& a) -> auto& { return a.options.longest_delay; }, kMilliseconds)
+      .add(
+          {"--hac-lag", "S", "reach of the residual's correlation in the standard errors, s (1)", not_negative()},
+          [](auto& a) -> auto& { return a.options.hac_lag_s; });
+  return table;
+}
+
 Action add_sensor_calibrate(Command sensor) {
   auto arguments = std::make_shared<SensorCalibrateArguments>();
   const Command command = sensor.add_command("calibrate", "slope, zero, crosstalk and noise from known loads");
@@ -73,54 +90,34 @@ Action add_sensor_calibrate(Command sensor) {
       "  mbk sensor calibrate trial.csv --json --out cell.json\n"
       "      a reference sensor's Fx, Fy over time beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
       "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
-  ReadingArguments& reading = arguments->reading;
+  ReadRequest& reading = arguments->reading;
   add_reading_options(command, reading);
   command.get_option("--axes").description("1: each axis separately; otherwise crosstalk is fitted too");
   command.get_option("FILE").description("tables of loads or recordings: .csv, .h5 or .mat");
-  command.add_option("--lever-arm-mm", arguments->lever_arm_mm, "from the gauges to the load, kept for --sensor")
-      .type_name("MM")
-      .check(positive());
-  const Option bits =
-      command.add_option("--bits", arguments->bits, "of the converter; otherwise its step is looked for in the data")
-          .type_name("N")
-          .check(whole_number(2, 32));
-  const Option range = command.add_option("--range", arguments->range, "of the converter, ± volts")
-                           .type_name("V")
-                           .check(positive())
-                           .needs(bits);
-  bits.needs(range);
-  add_sensor_frame(
-      command, arguments->frame,
-      "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
-      "link where q2 is there");
-  command
-      .add_option("--longest-delay-ms", arguments->longest_delay_ms,
-                  "by which the voltage may come after a reference, either way (50; 0: none)")
-      .type_name("MS")
-      .check(not_negative());
-  command
-      .add_option("--hac-lag", arguments->hac_lag_s,
-                  "reach of the residual's correlation in the standard errors, s (1)")
-      .type_name("S")
-      .check(not_negative());
+  add_options(command, calibrate_table(), *arguments);
+  command.get_option("--bits").needs(command.get_option("--range"));
   command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor/1, which --sensor reads");
   arguments->output.to.add_options(command);
   return [arguments] { return run_calibrate(*arguments); };
 }
 
 struct SensorDelayArguments {
-  ReadingArguments reading;
-  WindowArguments window;
-  FilterArguments filters;
+  ReadRequest reading;
+  preprocess::Options signals;
+  std::optional<Hertz> resample;
   OutputArguments output;
   double mass = 0.0;
 };
 
 Result<MeasuredDelay> find_delay(const SensorDelayArguments& arguments) {
-  const auto recordings = MBK_TRY(read_recordings(arguments.reading));
+  auto recordings = MBK_TRY(read_recordings(arguments.reading));
   if (recordings.size() != 1) return bad_usage("a delay is found in one recording", "name one FILE");
-  auto signals = MBK_TRY(signal_options(arguments.window, arguments.filters));
-  signals.axes = arguments.reading.axes;
+  preprocess::Options signals = arguments.signals;
+  MBK_TRY(request::check_order(signals.window));
+  signals.axes = arguments.reading.options.axes;
+  if (arguments.resample) {
+    recordings.front() = MBK_TRY(preprocess::resample(recordings.front(), *arguments.resample));
+  }
   auto found = measurement::find_sensor_delay(recordings.front(), arguments.mass, signals);
   if (!found) return tl::unexpected<Error>(found.error().in(recordings.front().sources.front().label()));
   return found;
@@ -154,8 +151,9 @@ Action add_delay(Command sensor) {
       .type_name("KG")
       .check(positive())
       .required();
-  add_window_options(command, arguments->window);
-  add_filter_options(command, arguments->filters);
+  add_options(command, request::window_table(), arguments->signals.window);
+  add_options(command, request::filter_table(), arguments->signals);
+  add_option(command, request::resample_option(request::kFilterGroup), arguments->resample);
   command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor_delay/1");
   arguments->output.to.add_options(command);
   return [arguments] { return run_delay(*arguments); };

@@ -1,19 +1,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <atomic>
 #include <memory>
-#include <mutex>
 
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/options/threads_option.h"
-#include "mbk/base/core/version.h"
-#include "mbk/base/numeric/parallel.h"
+#include "apps/mbk/terminal/messages.h"
+#include "apps/mbk/terminal/progress.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/study/store/study_list.h"
+#include "mbk/study/workflow/measure_study.h"
 
 namespace mbk::app {
 namespace {
@@ -26,82 +23,6 @@ struct CheckArguments {
   std::string head, why;
   std::int64_t number = 0;
   std::filesystem::path to;
-};
-
-/// Measures the results of this version again, and holds them against what is stored, byte by byte.
-class Repeater {
- public:
-  Repeater(const store::Store& study, const CheckArguments& arguments, store::CheckReport& report)
-      : study_(study), arguments_(arguments), report_(report) {}
-
-  Result<void> repeat_all() {
-    const auto analyses = MBK_TRY(study_.analyses());
-    for (const store::Analysis& analysis : analyses) {
-      MBK_TRY(repeat(analysis));
-    }
-    return {};
-  }
-
- private:
-  Result<void> repeat(const store::Analysis& analysis) {
-    const auto units = MBK_TRY(study_.measured(analysis.number));
-    if (units.empty()) return {};
-    const std::string count = counted(std::ssize(units), "result", "results");
-    if (analysis.version != version()) {
-      report_.notes.push_back(fmt::format("{} of analysis {} not repeated: mbk {} made them, this is {}", count,
-                                          analysis.number, analysis.version, version()));
-      return {};
-    }
-    const auto options = MBK_TRY(options_from_json(analysis.options));
-    if (names_files(options)) {
-      report_.notes.push_back(
-          fmt::format("{} of analysis {} not repeated: they depend on a file (--robot, --sensor) that a study does not "
-                      "keep",
-                      count, analysis.number));
-      return {};
-    }
-    const auto measuring = MBK_TRY(measuring_of(options));
-    return repeat(analysis, *measuring, units);
-  }
-
-  Result<void> repeat(const store::Analysis& analysis, const Measuring& measuring,
-                      const std::vector<store::Unit>& units) {
-    std::vector<std::string> problems(units.size());
-    Progress progress(arguments_.output.quiet, "measured again: ");
-    int done = 0;
-    MBK_TRY(numeric::parallel_for(
-        static_cast<int>(units.size()), arguments_.threads,
-        [&](int k) -> Result<void> {
-          const store::Unit& unit = units[static_cast<std::size_t>(k)];
-          const auto again = measure_unit(measuring, study_.folder(), unit);
-          std::string& problem = problems[static_cast<std::size_t>(k)];
-          if (!again) {
-            problem = again.error().line();
-            return {};
-          }
-          const std::scoped_lock lock(mutex_);
-          const auto stored = MBK_TRY(study_.document(unit, analysis.number));
-          if (stored != again->document) {
-            problem =
-                fmt::format("{}: measured again it gives another result (analysis {})", unit.file, analysis.number);
-          }
-          return {};
-        },
-        [&](int) { progress.count(++done, static_cast<int>(units.size())); }));
-    for (std::string& problem : problems) {
-      if (problem.empty()) {
-        ++report_.repeated;
-      } else {
-        report_.problems.push_back(std::move(problem));
-      }
-    }
-    return {};
-  }
-
-  const store::Store& study_;
-  const CheckArguments& arguments_;
-  store::CheckReport& report_;
-  std::mutex mutex_;  ///< the store is for one thread at a time
 };
 
 std::string check_text(const store::CheckReport& report, bool quick) {
@@ -127,8 +48,11 @@ int run_check(const CheckArguments& arguments) {
   auto report = study->check(arguments.remove_leftovers, [&](int done, int of) { progress.count(done, of); });
   if (!report) return report_error(report.error());
   if (!arguments.quick) {
-    Repeater repeater(*study, arguments, *report);
-    if (auto ok = repeater.repeat_all(); !ok) return report_error(ok.error());
+    Progress again(arguments.output.quiet, "measured again: ");
+    const auto count = [&](int done, int of) { again.count(done, of); };
+    if (auto ok = workflow::repeat_results(*study, arguments.threads, count, *report); !ok) {
+      return report_error(ok.error());
+    }
   }
   const std::string text = arguments.output.json ? store::to_json(*report) : check_text(*report, arguments.quick);
   if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());

@@ -2,9 +2,10 @@
 
 #include <memory>
 
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/options/study_options.h"
+#include "apps/mbk/options/table_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 
 namespace mbk::app {
@@ -14,18 +15,18 @@ struct InitArguments {
   StudyArguments study;
   std::filesystem::path folder;
   std::string title;
-  MeasuringArguments measuring;
+  request::MeasureRequest measuring;
 };
 
 /// The options that were given, where a study can keep them.
 Result<std::string> kept_options(Command command) {
-  const GivenOptions given = given_options(command);
-  if (names_files(given)) {
+  const OptionTexts given = given_options(command, workflow::measuring_table());
+  if (workflow::names_files(given)) {
     return bad_usage("--robot and --sensor name files, which a study does not keep",
                      "pass them to 'mbk study measure'");
   }
-  MBK_TRY(measuring_of(given));
-  return options_to_json(given);
+  MBK_TRY(workflow::measuring_of(given));
+  return workflow::options_to_json(given);
 }
 
 int run_init(Command command, const InitArguments& arguments) {
@@ -46,12 +47,12 @@ int run_defaults(Command command, const InitArguments& arguments) {
   if (!options) return report_error(options.error());
   auto study = open_study(arguments.study);
   if (!study) return report_error(study.error());
-  if (!given_options(command).empty()) {
+  if (!given_options(command, workflow::measuring_table()).empty()) {
     if (auto ok = study->set_options(*options, arguments.study.role); !ok) return report_error(ok.error());
   }
-  const auto stored = default_options(*study);
+  const auto stored = workflow::default_options(*study);
   if (!stored) return report_error(stored.error());
-  const std::string text = options_text(*stored);
+  const std::string text = typed_text(*stored);
   if (auto ok = print_text((text.empty() ? "none: as 'mbk measure' without options" : text) + "\n"); !ok) {
     return report_error(ok.error());
   }
@@ -74,7 +75,6 @@ Action add_study_init(Command group) {
   command.add_option("--title", arguments->title, "one line; name nobody").type_name("TEXT").check(not_empty());
   add_choice_of_role(command, arguments->study);
   add_measuring_options(command, arguments->measuring);
-  command.remove_option("--threads");
   return [command, arguments] { return run_init(command, *arguments); };
 }
 
@@ -89,7 +89,6 @@ Action add_study_defaults(Command group) {
       "      replaces all of them; the next 'mbk study measure' measures everything with these");
   add_study_and_role(command, arguments->study);
   add_measuring_options(command, arguments->measuring);
-  command.remove_option("--threads");
   return [command, arguments] { return run_defaults(command, *arguments); };
 }
 

@@ -1,17 +1,19 @@
 #include "mbk/study/store/study_list.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
 
-#include "apps/mbk/options/option_checks.h"
-#include "apps/mbk/commands/study_bids.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/study_options.h"
 #include "apps/mbk/options/word_options.h"
+#include "apps/mbk/terminal/messages.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/present/report/text.h"
+#include "mbk/study/workflow/export_bids.h"
 
 namespace mbk::app {
 namespace {
@@ -36,8 +38,8 @@ struct ListArguments : AnalysisArguments {
 };
 
 std::string analysis_line(const store::Analysis& analysis) {
-  const auto options = options_from_json(analysis.options);
-  const std::string text = options ? options_text(*options) : analysis.options;
+  const auto options = workflow::options_from_json(analysis.options);
+  const std::string text = options ? typed_text(*options) : analysis.options;
   return fmt::format("analysis {}: mbk {}, {}\n", analysis.number, analysis.version,
                      text.empty() ? "no options" : text);
 }
@@ -147,11 +149,28 @@ int run_show(const ListArguments& arguments) {
                        "'mbk study measure' makes one; 'mbk study list' shows the state", ""});
 }
 
+int export_bids(const store::Store& study, const StudyList& list, const std::filesystem::path& folder) {
+  const auto exported = workflow::export_bids(study, list, folder);
+  if (!exported) return report_error(exported.error());
+  int code = kFine;
+  for (const Error& error : exported->failed) code = std::max(code, report_error(error));
+  for (const std::string& one : exported->lost) say("mbk: {}: not written: {}\n", folder.string(), one);
+  if (!exported->excluded.empty()) {
+    say("mbk: {} left out, since they are excluded: {}\n",
+        counted(std::ssize(exported->excluded), "recording", "recordings"),
+        fmt::format("{}", fmt::join(exported->excluded, ", ")));
+  }
+  const std::string line =
+      fmt::format("{}: BIDS motion, {}\n", folder.string(), counted(exported->written, "recording", "recordings"));
+  if (auto ok = print_text(line); !ok) return report_error(ok.error());
+  return code;
+}
+
 int run_export(const ListArguments& arguments) {
   std::optional<store::Store> study;
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
-  if (arguments.bids) return export_bids(*study, *list, *arguments.bids, false);
+  if (arguments.bids) return export_bids(*study, *list, *arguments.bids);
   Result<std::string> text = std::string();
   if (arguments.format == ExportFormat::latex) {
     const auto outcomes = summarised(*study, *list);

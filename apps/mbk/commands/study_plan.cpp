@@ -3,10 +3,10 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
+#include "apps/mbk/terminal/messages.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/study/statistics/study_statistics.h"
 
 namespace mbk::app {

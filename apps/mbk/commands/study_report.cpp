@@ -6,8 +6,8 @@
 
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/report_file.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/html.h"

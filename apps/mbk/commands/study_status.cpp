@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "apps/mbk/commands/study_commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/options/study_options.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/batch/job_status.h"
 
 namespace mbk::app {

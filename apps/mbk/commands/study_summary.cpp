@@ -8,13 +8,14 @@
 #include <memory>
 #include <string_view>
 
-#include "apps/mbk/commands/bootstrap_units.h"
-#include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
+#include "apps/mbk/options/engine_options.h"
+#include "apps/mbk/terminal/progress.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/statistics/study_statistics_text.h"
+#include "mbk/study/workflow/bootstrap_units.h"
 
 namespace mbk::app {
 namespace {
@@ -110,15 +111,20 @@ std::string summary_text(const store::StudyList& list, const std::vector<store::
 /// @returns  what the command is to end with, where the draws are not all there
 Result<std::optional<int>> resample(const SummaryArguments& arguments, const store::Store& study,
                                     statistics::StudyStatistics& found) {
-  const Bootstrap bootstrap{statistics::people_tables(found), arguments.seed, *arguments.draws};
-  std::optional<int> code;
-  const auto draws = arguments.engine.kind
-                         ? draws_elsewhere(bootstrap, arguments.engine, study.folder(), arguments.output.quiet, code)
-                         : draws_here(bootstrap, arguments.output.quiet);
-  if (code) return code;
-  if (!draws) return tl::unexpected(draws.error());
-  statistics::add_bootstrap(found, bootstrap.tables, *draws, arguments.seed);
-  return code;
+  const workflow::Bootstrap bootstrap{statistics::people_tables(found), arguments.seed, *arguments.draws};
+  workflow::Draws draws;
+  if (arguments.engine.kind) {
+    const auto carried = MBK_TRY(
+        carry_out(arguments.engine, workflow::draws_request(bootstrap, study.folder()), arguments.output.quiet));
+    if (carried.code) return carried.code;
+    draws = MBK_TRY(workflow::draws_of(*carried.folder));
+    MBK_TRY(batch::remove_job(*carried.folder, arguments.engine));
+  } else {
+    Progress progress(arguments.output.quiet, "resampling: ");
+    draws = MBK_TRY(workflow::draws_here(bootstrap, [&](int done, int of) { progress.count(done, of); }));
+  }
+  statistics::add_bootstrap(found, bootstrap.tables, draws, arguments.seed);
+  return std::nullopt;
 }
 
 Result<void> check_bootstrap(const SummaryArguments& arguments) {

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/progress.h"
+#include "mbk/base/core/option_checks.h"
+#include "mbk/files/contents/read_text.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/teleoperation_text.h"
 #include "mbk/present/result/teleoperation_json.h"

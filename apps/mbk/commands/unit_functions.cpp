@@ -3,11 +3,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/mbk/commands/bootstrap_units.h"
-#include "apps/mbk/options/engine_options.h"
-#include "apps/mbk/commands/explore_units.h"
 #include "apps/mbk/commands/job_kinds.h"
-#include "apps/mbk/commands/measure_units.h"
+#include "apps/mbk/options/engine_options.h"
+#include "mbk/study/workflow/bootstrap_units.h"
+#include "mbk/study/workflow/explore_units.h"
+#include "mbk/study/workflow/measure_units.h"
+#include "mbk/study/workflow/simulate_recordings.h"
 
 namespace mbk::app {
 
@@ -18,10 +19,10 @@ Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use) {
       bad_data(fmt::format("this mbk does not know jobs of the kind '{}'", kind), "use the mbk that began it");
   try {
     if (kind == kValidateKind) return with_validation_units(json, folder, use);
-    if (kind == kMeasureKind) compute = measure_units(json);
-    if (kind == kBootstrapKind) compute = bootstrap_units(json);
-    if (kind == kExploreKind) compute = explore_units(json);
-    if (kind == kSimulateKind) compute = simulate_units(json);
+    if (kind == workflow::kMeasureKind) compute = workflow::measure_units(json);
+    if (kind == workflow::kBootstrapKind) compute = workflow::bootstrap_units(json);
+    if (kind == workflow::kExploreKind) compute = workflow::explore_units(json);
+    if (kind == workflow::kSimulateKind) compute = workflow::simulate_units(json);
   } catch (const nlohmann::json::exception&) {
     return bad_data("the job's specification cannot be read", "begin the job again", folder.folder().string());
   }

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "apps/mbk/caller.h"
-#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/job_kinds.h"
-#include "apps/mbk/options/option_checks.h"
+#include "apps/mbk/options/chart_files.h"
 #include "apps/mbk/options/output.h"
-#include "apps/mbk/terminal/progress.h"
 #include "apps/mbk/options/threads_option.h"
 #include "apps/mbk/options/word_options.h"
+#include "apps/mbk/terminal/progress.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/text.h"
@@ -146,7 +146,7 @@ class RunsElsewhere {
     engine.folder = stage_folder(folder_, stages);
     nlohmann::json specification = specification_;
     specification["stage"] = stages++;
-    Request request{std::string(kValidateKind), specification.dump()};
+    batch::JobRequest request{std::string(kValidateKind), specification.dump()};
     request.title = fmt::format("mbk validate {} --runs {} --seed {}", arguments_.study,
                                 specification_.at("runs").get<int>(), specification_.at("seed").get<std::uint64_t>());
     for (int k = 0; k < count; ++k) request.keys.push_back(std::to_string(k));
@@ -158,7 +158,7 @@ class RunsElsewhere {
       code = carried->code;
       return bad_data("some runs are missing");
     }
-    return results_of(*carried->folder);
+    return batch::results_of(*carried->folder);
   }
 
   /// Removes the jobs, unless they are to be kept.
@@ -282,7 +282,7 @@ Result<void> with_validation_units(const nlohmann::json& specification, const ba
                           const std::function<Result<std::string>(int)>& work) -> Result<std::vector<std::string>> {
     if (stage < wanted) {  // is done, and stands beside this one
       const auto earlier = batch::JobFolder::open(stage_folder(folder.folder().parent_path(), stage++));
-      return earlier ? results_of(*earlier) : tl::unexpected(earlier.error());
+      return earlier ? batch::results_of(*earlier) : tl::unexpected(earlier.error());
     }
     used = use([&](std::int64_t number, const std::string&) { return work(static_cast<int>(number)); });
     return bad_data("the study goes on in the process that began the job");

@@ -7,8 +7,8 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/engine_options.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/vector4.h"
 #include "mbk/batch/merge.h"
 

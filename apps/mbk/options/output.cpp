@@ -6,14 +6,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "apps/mbk/caller.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/terminal/terminal.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/files/recording/write_file.h"
 
@@ -96,23 +94,6 @@ Result<void> print_text(const std::string& text) {
 Result<void> Output::show(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
   const bool printed = !file && Caller::current() == nullptr;
   return printed ? write_to_stdout(for_people(text, terminal_at(STDOUT_FILENO))) : write(text, sources);
-}
-
-Result<std::string> read_text(const std::filesystem::path& file) {
-  if (const std::string* const document = document_in_memory(file)) return *document;
-  constexpr std::uintmax_t kLargest = 256u << 20u;
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    return bad_data(std::filesystem::exists(file, error) ? "not a file" : "no such file", "check the name",
-                    file.string());
-  }
-  if (std::filesystem::file_size(file, error) > kLargest)
-    return bad_data("larger than 256 MB", "a result is far smaller: check the name", file.string());
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.good() && !stream.eof()) return bad_data("cannot be read", "check its permissions", file.string());
-  if (text.empty()) return bad_data("the file is empty", "nothing was written, or the copy failed", file.string());
-  return text;
 }
 
 }  // namespace mbk::app

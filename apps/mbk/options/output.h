@@ -45,7 +45,4 @@ struct Output {
 [[nodiscard]] Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,
                                           const std::vector<std::filesystem::path>& inputs);
 
-/// The whole of a text file, at most 256 MB.
-[[nodiscard]] Result<std::string> read_text(const std::filesystem::path& file);
-
 }  // namespace mbk::app

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/present/report/html.h"
 
 namespace mbk::app {

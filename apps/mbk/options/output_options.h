@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/terminal/command.h"
 #include "apps/mbk/options/output.h"
+#include "apps/mbk/terminal/command.h"
 
 namespace mbk::app {
 

@@ -1,6 +1,6 @@
 #include "apps/mbk/options/threads_option.h"
 
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 
 namespace mbk::app {
 

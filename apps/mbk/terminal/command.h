@@ -7,6 +7,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "mbk/base/core/option_checks.h"
+
 // Every source of a command includes this; CLI11 itself only those that implement it and read the whole tree.
 namespace CLI {  // NOLINT(readability-identifier-naming): their name
 class App;
@@ -16,11 +18,7 @@ class ParseError;
 
 namespace mbk::app {
 
-/// What the value of an option may be.
-struct Check {
-  std::function<std::string(const std::string& given)> wrong;  ///< what is wrong with a value; "": nothing
-  std::vector<std::string> words = {};                         ///< that it can be, for a shell to offer
-};
+using Check = OptionCheck;
 
 /// An option, flag or positional argument of a command. A handle: copies are the same option. What sets something
 /// returns it, for the next call.

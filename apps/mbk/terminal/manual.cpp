@@ -8,9 +8,9 @@
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/commands/commands_json.h"
-#include "apps/mbk/terminal/manual_page.h"
-#include "apps/mbk/options/option_checks.h"
 #include "apps/mbk/options/output.h"
+#include "apps/mbk/terminal/manual_page.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/write_file.h"
 

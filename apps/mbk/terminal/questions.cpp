@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/option_checks.h"
+#include "mbk/base/core/option_checks.h"
 #include "mbk/base/core/trimmed.h"
 
 namespace mbk::app {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
+
 namespace mbk {
 
 /// Thrown where whoever asked for the work no longer wants it. No failure of the work, so no Error: it passes through
@@ -17,6 +20,9 @@ class Requester {
 
   /// Whether the work is no longer wanted. Asked often and from several threads at once.
   [[nodiscard]] virtual bool stopped() = 0;
+
+  /// The text that `word` stands for where a file would be named; nullptr: it is the name of a file.
+  [[nodiscard]] virtual const std::string* document(const std::filesystem::path& /*word*/) const { return nullptr; }
 
   /// That of this thread; nullptr: nobody's.
   [[nodiscard]] static Requester* current() noexcept;

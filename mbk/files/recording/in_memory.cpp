@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mbk/base/core/requester.h"
 #include "mbk/files/recording/annotations.h"
 #include "mbk/files/recording/assemble.h"
 #include "mbk/files/recording/channel_table.h"
@@ -125,6 +126,11 @@ const InMemory::Signal* InMemory::find(std::string_view name) const {
                                [&](const auto* kind) { return std::ranges::find(wanted, kind) != wanted.end(); });
   });
   return same == signals_.end() ? nullptr : &*same;
+}
+
+std::shared_ptr<const InMemory> held_recording(const std::filesystem::path& word) {
+  const auto* const holder = dynamic_cast<const RecordingHolder*>(Requester::current());
+  return holder == nullptr ? nullptr : holder->recording(word);
 }
 
 }  // namespace mbk::recording

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -54,5 +55,16 @@ class InMemory {
   std::vector<Event> events_;
   std::shared_ptr<const Recording> recording_;  ///< that was read from a file; nullptr where there was none
 };
+
+/// A Requester that has recordings in memory under names.
+class RecordingHolder {
+ public:
+  virtual ~RecordingHolder() = default;
+  /// What `word` stands for where a file would be named; nullptr: it is the name of a file.
+  [[nodiscard]] virtual std::shared_ptr<const InMemory> recording(const std::filesystem::path& word) const = 0;
+};
+
+/// What `word` stands for with whom this thread works for; nullptr where it is the name of a file.
+[[nodiscard]] std::shared_ptr<const InMemory> held_recording(const std::filesystem::path& word);
 
 }  // namespace mbk::recording

@@ -274,4 +274,22 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
   return constant;
 }
 
+Result<SpringConstant> spring_constant_of(const Recording& recording, const StretchOptions& options) {
+  const std::string file = recording.sources.empty() ? std::string() : recording.sources.front().label();
+  const Channel* const position = recording.find("position");
+  const Channel* const reaction = recording.find("reaction");
+  if (position == nullptr || reaction == nullptr) {
+    return bad_data(fmt::format("there is no {} of one axis", position == nullptr ? "position" : "reaction"),
+                    "name the columns, as in --channels time=1,x=2:mm,F=3", file);
+  }
+  if (position->unit == "rad" || reaction->unit == "N.m") {
+    return bad_data("it measures an angle or a moment, and a spring is stretched in mm and N",
+                    "name the units, as in --channels time=1,x=2:mm,F=3:N", file);
+  }
+  auto constant = fit_spring_constant(recording.time, position->values, reaction->values, options);
+  if (!constant) return tl::unexpected(constant.error().in(file));
+  constant->sources = recording.sources;
+  return constant;
+}
+
 }  // namespace mbk::calibration

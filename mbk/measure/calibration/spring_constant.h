@@ -2,6 +2,7 @@
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
+#include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/springs.h"
 
 namespace mbk::calibration {
@@ -31,6 +32,11 @@ struct StretchOptions {
 /// than a third of the stretch is straight; a line explains less than 90 % of the tension's variance.
 [[nodiscard]] Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& position,
                                                          const Vector& reaction, const StretchOptions& options = {});
+
+/// The same of a recording of one axis, with position and reaction.
+/// @fails  data: one of them is not there, or is an angle or a moment. As fit_spring_constant; the message names the
+/// file.
+[[nodiscard]] Result<SpringConstant> spring_constant_of(const Recording& recording, const StretchOptions& options = {});
 
 /// T of a hook fit at the stretch s [N]: the root of s = s₀ + T/k + s_h (1 − exp(−T/F_h)). Below s₀ it goes on as
 /// a line with the slope at s₀.

@@ -43,12 +43,13 @@ Result<dsp::FilterChain> chain_of(const FilterPlan& filters, const dsp::Padding&
 }  // namespace
 
 FilterPlan reference_filters(const Options& options) {
-  const bool chapter5 = options.procedure == Procedure::chapter5;
+  const Procedure procedure = options.procedure.value_or(Procedure::chapter3);
+  const bool chapter5 = procedure == Procedure::chapter5;
   const bool changed = options.smoothing_order || options.smoothing_window || options.acceleration;
   return with_choices(
       {{6, chapter5 ? 151 : 101},
        Hertz(chapter5 ? 4.5 : 5.0),
-       fmt::format("{} of the published procedure{}", word_of(options.procedure), changed ? ", changed as asked" : "")},
+       fmt::format("{} of the published procedure{}", word_of(procedure), changed ? ", changed as asked" : "")},
       options);
 }
 

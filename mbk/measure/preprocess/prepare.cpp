@@ -114,7 +114,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   trial.recording_duration = inspection.duration + inspection.interval_median;
   Preparation& how = trial.preparation;
   how.mode = options.mode;
-  how.procedure = options.procedure;
+  how.procedure = options.procedure.value_or(Procedure::chapter3);
   how.cut_before_filter = !published;
   how.acceleration_from_sensor =
       options.acceleration.value_or(published && options.procedure == Procedure::chapter5

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"
@@ -88,7 +89,7 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
   };
   std::error_code code;
   if (fs::exists(folder / kDatabaseName, code)) return there();
-  MBK_TRY(make_folder(folder));
+  MBK_TRY(files::make_folder(folder));
   for (const auto& entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     const bool ours = name == kRecordingsName || name == "lock" || name.find(".part") != std::string::npos;
@@ -100,7 +101,7 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
   fs::permissions(folder, fs::perms::owner_all, code);
   if (code)
     return bad_data("its permissions cannot be set: " + code.message(), "choose another folder", folder.string());
-  MBK_TRY(make_folder(folder / kRecordingsName));
+  MBK_TRY(files::make_folder(folder / kRecordingsName));
   return guarded(folder, [&]() -> Result<void> {
     // Whole before it has its name: who finds it finds a study.
     const std::string temporary = temporary_name();
@@ -131,7 +132,7 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
                       folder.string());
     }
     ::unlink(path.c_str());
-    return flush_folder(folder);
+    return files::flush_folder(folder);
   });
 }
 
@@ -191,7 +192,7 @@ Result<IncomingFile> Store::bring_in(const fs::path& file, const std::string& ex
   IncomingFile incoming;
   incoming.lock_ = MBK_TRY(FolderLock::take(folder(), FolderLock::Kind::shared, database_->waiting));
   const fs::path to = folder() / kRecordingsName / temporary_name();
-  auto copied = MBK_TRY(copy_hashed(file, to));
+  auto copied = MBK_TRY(files::copy_hashed(file, to));
   incoming.path_ = to;
   incoming.sha256_ = std::move(copied.sha256);
   incoming.bytes_ = copied.bytes;
@@ -221,7 +222,7 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
   }
   // The file has its name, and the disk has that, before any row speaks of it.
   const fs::path to = folder() / stored_name(incoming.sha256_, incoming.extension_);
-  MBK_TRY(make_folder(to.parent_path()));
+  MBK_TRY(files::make_folder(to.parent_path()));
   return guarded(folder(), [&]() -> Result<std::vector<AddedRecording>> {
     SQLite::Database& connection = database_->connection;
     std::vector<AddedRecording> added;
@@ -285,7 +286,7 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
       added.push_back({r, false});
     }
     if (!any_new) return added;
-    MBK_TRY(rename_on_disk(incoming.path_, to));
+    MBK_TRY(files::rename_on_disk(incoming.path_, to));
     incoming.path_.clear();
     transaction.commit();
     return added;
@@ -355,15 +356,6 @@ std::optional<fs::path> find_study(const fs::path& from) {
     folder = folder.parent_path();
   }
   return std::nullopt;
-}
-
-Result<std::string> file_sha256(const fs::path& file) {
-  recording::Sha256 sum;
-  MBK_TRY(read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
-    sum.add(piece);
-    return {};
-  }));
-  return sum.hex();
 }
 
 }  // namespace mbk::store

@@ -179,7 +179,4 @@ class Store {
 /// A study in `from` or the nearest folder above it; nothing where there is none.
 [[nodiscard]] std::optional<std::filesystem::path> find_study(const std::filesystem::path& from);
 
-/// The hash of a file's bytes.   @fails  data: it cannot be read.
-[[nodiscard]] Result<std::string> file_sha256(const std::filesystem::path& file);
-
 }  // namespace mbk::store

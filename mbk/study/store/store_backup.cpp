@@ -7,6 +7,7 @@
 #include <set>
 #include <system_error>
 
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"
@@ -40,7 +41,7 @@ Result<void> copy_database(Database& from, const fs::path& to) {
 
 Result<void> copy_recording(const fs::path& from, const fs::path& to, bool link) {
   if (link && ::link(from.c_str(), to.c_str()) == 0) return {};
-  MBK_TRY(copy_hashed(from, to));
+  MBK_TRY(files::copy_hashed(from, to));
   return {};
 }
 
@@ -58,8 +59,8 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
     const fs::path parent = to.has_parent_path() ? to.parent_path() : fs::path(".");
     TemporaryFolder temporary{parent / fmt::format(".{}.{}.part", to.filename().string(), ::getpid())};
     fs::remove_all(temporary.path, code);
-    MBK_TRY(make_folder(temporary.path));
-    MBK_TRY(make_folder(temporary.path / kRecordingsName));
+    MBK_TRY(files::make_folder(temporary.path));
+    MBK_TRY(files::make_folder(temporary.path / kRecordingsName));
     MBK_TRY(copy_database(*database_, temporary.path));
     CheckReport report;
     {
@@ -69,11 +70,11 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
       for (const StoredRecording& one : recordings) names.insert(stored_name(one.sha256, one.extension));
       for (const std::string& name : names) {
         const fs::path target = temporary.path / name;
-        MBK_TRY(make_folder(target.parent_path()));
+        MBK_TRY(files::make_folder(target.parent_path()));
         MBK_TRY(copy_recording(folder() / name, target, link));
       }
       for (const std::string& name : names) {
-        MBK_TRY(flush_folder((temporary.path / name).parent_path()));
+        MBK_TRY(files::flush_folder((temporary.path / name).parent_path()));
       }
       report = MBK_TRY(copy.check(false, {}));
     }
@@ -81,7 +82,7 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
       return bad_data("the copy is not sound: " + report.problems.front(),
                       "no backup was made; 'mbk study check' says what is wrong with the study", folder().string());
     }
-    MBK_TRY(rename_on_disk(temporary.path, parent / to.filename()));
+    MBK_TRY(files::rename_on_disk(temporary.path, parent / to.filename()));
     temporary.path.clear();
     return report;
   });

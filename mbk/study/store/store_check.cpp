@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/study/store/store.h"
 #include "mbk/study/store/store_database.h"
 #include "mbk/study/store/store_files.h"
@@ -209,7 +210,7 @@ class Checker {
   void check_files(const std::function<void(int, int)>& progress) {
     int done = 0;
     for (const auto& [name, recording] : files_) {
-      const auto found = file_sha256(database_.folder / name);
+      const auto found = files::file_sha256(database_.folder / name);
       if (found && *found == recording.sha256) {
         ++report_.files;
         report_.bytes += recording.bytes;
@@ -246,12 +247,12 @@ class Checker {
       if (entry.path().filename().string().find(".part") != std::string::npos) half.push_back(entry.path());
     }
     for (const fs::path& file : half) {
-      MBK_TRY(remove_file(file));
+      MBK_TRY(files::remove_file(file));
     }
     if (!half.empty()) note(fmt::format("{} removed that an interrupted process left half-written", count(half)));
     for (const fs::path& file : whole) {
       if (!remove_leftovers) continue;
-      MBK_TRY(remove_file(file));
+      MBK_TRY(files::remove_file(file));
     }
     if (!whole.empty() && remove_leftovers) note(fmt::format("{} removed that no recording refers to", count(whole)));
     if (!whole.empty() && !remove_leftovers) {
@@ -312,12 +313,12 @@ Result<std::int64_t> finish_erasing(Database& database) {
   std::int64_t count = 0;
   std::set<fs::path> folders;
   for (const std::string& name : names) {
-    auto removed = MBK_TRY(remove_file(database.folder / name));
+    auto removed = MBK_TRY(files::remove_file(database.folder / name));
     count += removed ? 1 : 0;
     folders.insert((database.folder / name).parent_path());
   }
   for (const fs::path& folder : folders) {
-    MBK_TRY(flush_folder(folder));
+    MBK_TRY(files::flush_folder(folder));
   }
   WriteTransaction transaction(connection);
   for (const std::string& name : names) execute(connection, "DELETE FROM erasure WHERE file = ?", name);

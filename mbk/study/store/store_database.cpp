@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "mbk/base/core/printable.h"
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/files/contents/sha256.h"
 #include "mbk/study/store/store_files.h"
 
@@ -145,7 +146,7 @@ Result<std::unique_ptr<Database>> Database::snapshot(const std::filesystem::path
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto before = whole_state(file);
     std::string bytes;
-    MBK_TRY(read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
+    MBK_TRY(files::read_pieces(file, [&](std::span<const std::byte> piece) -> Result<void> {
       bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
       return {};
     }));

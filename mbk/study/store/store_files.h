@@ -1,11 +1,9 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 
 #include "mbk/base/core/result.h"
@@ -43,30 +41,5 @@ class FolderLock {
 
 /// Names that nothing refers to.
 [[nodiscard]] bool is_temporary(const std::filesystem::path& file);
-
-/// Makes a folder for the owner alone, on the disk when this ends; fine where it is there.
-[[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
-
-/// Calls `take` with what a file holds, piece by piece.   @fails  data: it cannot be read; as `take`.
-[[nodiscard]] Result<void> read_pieces(const std::filesystem::path& file,
-                                       const std::function<Result<void>(std::span<const std::byte>)>& take);
-
-struct CopiedFile {
-  std::string sha256;
-  std::int64_t bytes = 0;
-};
-
-/// A copy for the owner alone under a name that is not there yet, on the disk when this ends; what fails leaves
-/// nothing.
-[[nodiscard]] Result<CopiedFile> copy_hashed(const std::filesystem::path& from, const std::filesystem::path& to);
-
-/// Renames a file, and waits until the disk has it.
-[[nodiscard]] Result<void> rename_on_disk(const std::filesystem::path& from, const std::filesystem::path& to);
-
-/// A folder's names are on the disk.
-[[nodiscard]] Result<void> flush_folder(const std::filesystem::path& folder);
-
-/// Removes a file, fine where there is none.   @returns  whether there was one
-[[nodiscard]] Result<bool> remove_file(const std::filesystem::path& file);
 
 }  // namespace mbk::store

@@ -9,6 +9,7 @@
 
 #include <csignal>
 
+#include "mbk/files/contents/durable_files.h"
 #include "mbk/study/store/store_files.h"
 #include "mbk/study/store/study_list.h"
 #include "mbk/study/store/test_study.h"
@@ -46,7 +47,7 @@ TEST(AStudy, KeepsARecordingUnderItsHashAndForItsOwnerAlone) {
   const auto added = add(study, folder.file("Jane Doe.H5", "bytes"), of(7));
   ASSERT_TRUE(added) << added.error().line();
   const StoredRecording& one = added->front().recording;
-  EXPECT_EQ(one.sha256, file_sha256(folder / "Jane Doe.H5").value());
+  EXPECT_EQ(one.sha256, files::file_sha256(folder / "Jane Doe.H5").value());
   const fs::path stored = folder / "study" / stored_name(one.sha256, ".h5");
   EXPECT_EQ(text_of(stored), "bytes");
   struct stat status {};

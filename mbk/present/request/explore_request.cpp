@@ -1,0 +1,143 @@
+#include "mbk/present/request/explore_request.h"
+
+#include "mbk/base/core/units.h"
+#include "mbk/files/recording/channel_table.h"
+#include "mbk/present/request/signal_names.h"
+#include "mbk/present/request/stage_tables.h"
+
+namespace mbk::request {
+namespace {
+
+/// The schedule, and other signals than motion and force, where they are named.
+Result<void> name_signals(ExploreRequest& request, measurement::ExploreOptions& options) {
+  const SignalName schedule{request.schedule, "schedule", options.schedule, nullptr};
+  if (request.input.empty() && request.output.empty() && request.reference.empty()) {
+    const bool is_channel = request.reading.channels.empty() && !recording::kinds_called(request.schedule).empty();
+    if (!is_channel) return place_signals(request.reading, {&schedule, 1});
+    options.schedule = request.schedule;  // and all other channels by their names
+    return {};
+  }
+  if (request.input.empty() || request.output.empty()) {
+    return bad_usage("a response needs --input and --output", "name both, or neither for that of force to motion");
+  }
+  measurement::ExploredSignals& signals = options.signals.emplace();
+  const SignalName names[] = {{request.input, "input", signals.input, &signals.input_sign},
+                              {request.output, "output", signals.output, &signals.output_sign},
+                              {request.reference, "drive", signals.reference, nullptr},
+                              schedule};
+  signals.input_name = shown_name(request.input);
+  signals.output_name = shown_name(request.output);
+  return place_signals(request.reading, names);
+}
+
+OptionTable<explore::FrequencyResponseOptions> response_table() {
+  using Options = explore::FrequencyResponseOptions;
+  OptionTable<Options> table;
+  table.group("Frequency response")
+      .add({"--method", std::string(option_values::kAuto),
+            "robust: periods and realisations of a periodic perturbation, noise and nonlinear distortion "
+            "apart; fast: periods of one; local-polynomial: any perturbation, without leakage; welch: averaged "
+            "spectra; auto: the first of these that the data allow, and says why (auto)"},
+           &Options::method)
+      .add({"--period", "S", "of the perturbation, s; otherwise found in the reference or the motion", positive()},
+           &Options::period_s)
+      .add({"--segment", "S",
+            "length of the segments that welch averages; local polynomials reach over its inverse, s (2)", positive()},
+           &Options::segment_s)
+      .add({"--max-frequency", "HZ", "highest frequency that is shown, Hz (50)", positive()},
+           &Options::max_frequency_hz);
+  return table;
+}
+
+OptionTable<measurement::ExploreOptions> course_table() {
+  using Options = measurement::ExploreOptions;
+  OptionTable<Options> table;
+  table.group("Ramps and holds")
+      .add(
+          {"--plateau-from", "MS",
+           "begin of the window in which the force is averaged, ms after the onset (when the hand rests; 140 "
+           "in a reach)",
+           not_negative()},
+          [](auto& options) -> auto& { return options.plateau.from_s; }, kMilliseconds)
+      .add(
+          {"--plateau-to", "MS", "its end, ms after the onset (300; 200 in a reach)", positive()},
+          [](auto& options) -> auto& { return options.plateau.to_s; }, kMilliseconds)
+      .add(
+          {"--trigger", "EVENT",
+           "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
+           "(trigger)",
+           not_empty()},
+          [](auto& options) -> auto& { return options.reaches.trigger; })
+      .group("Change over time")
+      .add({"--after-onset", "MS",
+            "M, B and K from so long after each step or pulse of the reference, before the person can "
+            "answer, ms; 100 to 150",
+            positive()},
+           &Options::after_onset_s, kMilliseconds);
+  return table;
+}
+
+}  // namespace
+
+const OptionTable<ExploreRequest>& explore_table() {
+  static const auto kTable = [] {
+    const auto options = [](auto& request) -> auto& {
+      return request.options;
+    };
+    const char* const in_time = "Change over time";
+    OptionTable<ExploreRequest> table;
+    table.include(read_table(), &ExploreRequest::reading)
+        .add({"--input", "NAME",
+              "another response than that of force to motion: from this channel, column, row or variable", not_empty()},
+             &ExploreRequest::input)
+        .add({"--output", "NAME", "to this, likewise", not_empty()}, &ExploreRequest::output)
+        .add({"--reference", "NAME", "what drives both, likewise", not_empty()}, &ExploreRequest::reference)
+        .include(sensor_table(), &ExploreRequest::sensor)
+        .add(
+            protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; })
+        .include(
+            window_table(), [](auto& request) -> auto& { return request.options.preprocess.window; })
+        .add(
+            resample_option(), [](auto& request) -> auto& { return request.options.resample; })
+        .add(
+            force_delay_option(), [](auto& request) -> auto& { return request.options.force_delay; }, kMilliseconds)
+        .add(
+            force_rotation_option(kWindowGroup), [](auto& request) -> auto& { return request.options.force_rotation; },
+            kDegrees)
+        .add(
+            {"--only", "", "nothing but this part (all of them)"},
+            [](auto& request) -> auto& { return request.options.only; })
+        .include(
+            response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
+        .include(course_table(), options)
+        .group(in_time)
+        .add({"--schedule", "NAME",
+              "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction, "
+              "not over time",
+              not_empty()},
+             &ExploreRequest::schedule)
+        .add(
+            {.name = "--align",
+             .value = "EVENT",
+             .help = "count time from this event, repetition by repetition, or from the onsets of the reference "
+                     "(reference)",
+             .check = not_empty(),
+             .excludes = "--schedule"},
+            [](auto& request) -> auto& { return request.options.align; });
+    return table;
+  }();
+  return kTable;
+}
+
+Result<measurement::ExploreOptions> explore_options(ExploreRequest& request) {
+  measurement::ExploreOptions options = request.options;
+  MBK_TRY(check_order(options.preprocess.window));
+  options.preprocess.axes = request.reading.options.axes;
+  options.reaches.from_s = options.plateau.from_s;
+  options.reaches.to_s = options.plateau.to_s;
+  MBK_TRY(name_signals(request, options));
+  if (options.schedule == "schedule") options.schedule_name = shown_name(request.schedule);
+  return options;
+}
+
+}  // namespace mbk::request

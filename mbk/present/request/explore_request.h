@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "mbk/base/core/option_table.h"
+#include "mbk/measure/measurement/explore.h"
+#include "mbk/present/request/read_request.h"
+#include "mbk/present/request/sensor_request.h"
+
+namespace mbk::request {
+
+/// How recordings are read and explored.
+struct ExploreRequest {
+  ReadRequest reading;
+  SensorRequest sensor;
+  measurement::ExploreOptions options;
+  std::string schedule, input, output, reference;  ///< as signals are named (signal_names.h)
+};
+
+/// Every option that a result depends on, but FILE.
+[[nodiscard]] const OptionTable<ExploreRequest>& explore_table();
+
+/// @param request  whose channels then name the signals too, where others than motion and force were asked for
+/// @fails  usage: options that do not belong together.
+[[nodiscard]] Result<measurement::ExploreOptions> explore_options(ExploreRequest& request);
+
+}  // namespace mbk::request

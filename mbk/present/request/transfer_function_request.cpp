@@ -1,0 +1,201 @@
+#include "mbk/present/request/transfer_function_request.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "mbk/present/request/signal_names.h"
+#include "mbk/present/request/stage_tables.h"
+
+namespace mbk::request {
+namespace {
+
+/// A whole number at the front of `text`, which is shortened by it.
+std::optional<Index> take_number(std::string_view& text) {
+  Index value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// The number that `text` is.
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "2:5" is every model of 2 to 5 poles with fewer zeros; "4/1,4/2" are these.
+Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given) {
+  constexpr Index kMax = 12;
+  std::vector<std::pair<Index, Index>> orders;
+  const auto wrong =
+      bad_usage(fmt::format("--orders: {} is neither FROM:TO nor POLES/ZEROS,…", quoted(given)),
+                fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMax));
+  std::string_view rest = given;
+  for (bool more = true; more;) {
+    const auto first = take_number(rest);
+    const char mark = rest.empty() ? '\0' : rest.front();
+    if (!first || *first < 1 || *first > kMax || (mark != ':' && mark != '/')) return wrong;
+    rest.remove_prefix(1);
+    const auto second = take_number(rest);
+    if (!second || *second < 0) return wrong;
+    if (mark == '/') {
+      if (*second > *first) return wrong;
+      orders.emplace_back(*first, *second);
+    } else {
+      if (*second < *first || *second > kMax) return wrong;
+      for (Index poles = *first; poles <= *second; ++poles) {
+        for (Index zeros = 0; zeros < poles; ++zeros) orders.emplace_back(poles, zeros);
+      }
+    }
+    more = !rest.empty();
+    if (more && rest.front() != ',') return wrong;
+    if (more) rest.remove_prefix(1);
+  }
+  return orders;
+}
+
+/// Poles and zeros, or the orders to choose from.
+Result<void> set_orders(const TransferFunctionRequest& request, identify::TransferFunctionOptions& fit) {
+  if (!request.orders.empty()) {
+    if (request.poles || request.zeros)
+      return bad_usage("--orders chooses poles and zeros automatically", "leave --poles and --zeros out");
+    fit.orders = MBK_TRY(orders_of(request.orders));
+    return {};
+  }
+  if (!request.poles) {
+    return bad_usage("--poles is missing", "pass --poles 4 --zeros 3, or --orders 1:4 to try several");
+  }
+  fit.poles = *request.poles;
+  fit.zeros = request.zeros.value_or(*request.poles - 1);
+  if (fit.zeros > fit.poles) {
+    return bad_usage(
+        fmt::format("{} zeros beside {} poles: a system that ends has at most as many", fit.zeros, fit.poles),
+        "exchange input and output, or take fewer zeros");
+  }
+  return {};
+}
+
+}  // namespace
+
+const OptionTable<TransferFunctionRequest>& transfer_function_signal_table() {
+  static const auto kTable = [] {
+    OptionTable<TransferFunctionRequest> table;
+    table
+        .add({"--input", "NAME",
+              "the cause: a channel, or a column's number or name, a row or a variable of the file (input)",
+              not_empty()},
+             &TransferFunctionRequest::input)
+        .add({"--output", "NAME", "the effect, likewise (output)", not_empty()}, &TransferFunctionRequest::output)
+        .add({"--reference", "NAME", "what drives the loop, likewise, for clsrivc", not_empty()},
+             &TransferFunctionRequest::reference);
+    return table;
+  }();
+  return kTable;
+}
+
+const OptionTable<TransferFunctionRequest>& transfer_function_clock_table() {
+  static const auto kTable = [] {
+    OptionTable<TransferFunctionRequest> table;
+    OptionFacts resample = resample_option();
+    resample.help += ", and srivc does without";
+    table
+        .include(
+            window_table(), [](auto& request) -> auto& { return request.options.window; })
+        .add(resample, &TransferFunctionRequest::resample)
+        .add({"--sample-rate", "HZ|recorded",
+              "leave samples out, behind a low-pass (oe and bj: down to 50 to 100; the others: recorded)", not_empty()},
+             &TransferFunctionRequest::sample_rate);
+    return table;
+  }();
+  return kTable;
+}
+
+const OptionTable<TransferFunctionRequest>& transfer_function_model_table() {
+  using Request = TransferFunctionRequest;
+  static const auto kTable = [] {
+    OptionTable<Request> table;
+    table.group("Model")
+        .add({"--poles", "N", "how many", whole_number(1, 20)}, &Request::poles)
+        .add({"--zeros", "N", "how many (one fewer than poles)", whole_number(0, 20)}, &Request::zeros)
+        .add({"--orders", "FROM:TO|LIST",
+              "choose among models: 2:5 for 2 to 5 poles with fewer zeros, or a list POLES/ZEROS", not_empty()},
+             &Request::orders)
+        .add({"--invert", "",
+              "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
+              "impedance"},
+             &Request::invert)
+        .add(
+            {"--method", "",
+             "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
+             "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
+             "bj: Box-Jenkins, with a model of the noise"},
+            [](auto& request) -> auto& { return request.options.fit.method; })
+        .add(
+            {"--hold", std::string(option_values::kAuto),
+             "the input between its samples, for continuous time: zero keeps each value, first moves in "
+             "straight lines; auto sees it in the input's steps (auto)"},
+            [](auto& request) -> auto& { return request.options.fit.hold; })
+        .add({"--delay", "S|auto", "seconds by which the effect lags; auto finds it (0)", not_empty()}, &Request::delay)
+        .add(
+            {"--max-delay", "S",
+             "how far --delay auto looks, s (0.5, and no more than a tenth of the shortest recording)", positive()},
+            [](auto& request) -> auto& { return request.options.max_delay; })
+        .add_row({{"--from-rest", "",
+                   "the system is at rest at zero where a segment begins; otherwise an initial state and an offset are "
+                   "found for each"},
+                  [](Request& request, const auto& /*flag*/) { request.options.fit.free_start = false; },
+                  [](const Request& request) { return request.options.fit.free_start; }})
+        .add(
+            {"--noise-order", "N", "greatest order of the noise model of rivc and bj (8)", whole_number(1, 50)},
+            [](auto& request) -> auto& { return request.options.fit.max_noise_order; })
+        .add(
+            {"--hac-lag", "S", "reach of the residual's correlation in the standard errors; 0 takes it as white (1)",
+             not_negative()},
+            [](auto& request) -> auto& { return request.options.fit.hac_lag_s; });
+    return table;
+  }();
+  return kTable;
+}
+
+Result<measurement::TransferFunctionMeasurement> transfer_function_options(TransferFunctionRequest& request) {
+  measurement::TransferFunctionMeasurement options = request.options;
+  MBK_TRY(check_order(options.window));
+  identify::TransferFunctionOptions& fit = options.fit;
+  MBK_TRY(set_orders(request, fit));
+  if (fit.method == TransferFunctionMethod::closed_loop && request.reference.empty()) {
+    return bad_usage("--method clsrivc needs the reference that drives the loop", "name it by --reference");
+  }
+  fit.find_delay = request.delay == "auto";
+  if (!fit.find_delay) {
+    const auto delay = number_in(request.delay);
+    if (!delay || !(*delay >= 0.0 && *delay < 1e6)) {
+      return bad_usage(
+          fmt::format("--delay: {} is neither a number of seconds from 0 on nor 'auto'", mbk::quoted(request.delay)));
+    }
+    fit.delay = *delay;
+  }
+  if (request.sample_rate == "recorded") {
+    options.sample_rate_hz = 0.0;
+  } else if (!request.sample_rate.empty()) {
+    options.sample_rate_hz = number_in(request.sample_rate);
+    if (!options.sample_rate_hz || !(*options.sample_rate_hz > 0.0)) {
+      return bad_usage(fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'",
+                                   mbk::quoted(request.sample_rate)));
+    }
+  }
+  for (const double hz : request.start_poles_hz) fit.start_poles.push_back(2.0 * std::numbers::pi * hz);
+  const SignalName signals[] = {{request.input, "input", options.input, &options.input_sign},
+                                {request.output, "output", options.output, &options.output_sign},
+                                {request.reference, "drive", options.reference, nullptr}};
+  MBK_TRY(place_signals(request.reading, signals));
+  return options;
+}
+
+}  // namespace mbk::request
