@@ -224,7 +224,6 @@ void describe(Fields<MatrixSpread>& fields) {
 }
 
 void describe(Fields<MixedDifference>& fields) {
-  using From = const MixedDifference&;
   fields.type("StudyMixedDifference", "Participants as random effect; also of those who have one of the two only.");
   fields.add("weighted", &MixedDifference::weighted, "each mean by the standard errors of its trials");
   fields.add("participants", &MixedDifference::participants);
