@@ -15,8 +15,8 @@
 #include "mbk/model/impedance/passivity_index.h"
 #include "mbk/simulate/laboratory/scenario.h"
 #include "mbk/simulate/participant/arm.h"
-#include "mbk/validate/simulated_trials.h"
 #include "mbk/teleop/judge.h"
+#include "mbk/validate/simulated_trials.h"
 #include "thesis/drawing.h"
 #include "thesis/exhibits.h"
 

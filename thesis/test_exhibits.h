@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mbk/present/result/reproduction_json.h"
-#include "thesis/reproduce.h"
 #include "tests/support/schemas.h"
+#include "thesis/reproduce.h"
 
 /// Exhibits as tests look at them.
 namespace mbk::thesis {

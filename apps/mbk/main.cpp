@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/command.h"
 #include "apps/mbk/terminal/command_list.h"
-#include "apps/mbk/commands/commands.h"
 #include "apps/mbk/terminal/help.h"
 #include "apps/mbk/terminal/last_words.h"
 #include "apps/mbk/terminal/messages.h"
-#include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/process.h"
 #include "mbk/base/core/printable.h"
 #include "mbk/base/core/vector4.h"

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "mbk/base/core/printable.h"
-#include "mbk/files/contents/sha256.h"
 #include "mbk/batch/command_output.h"
 #include "mbk/batch/engines.h"
+#include "mbk/files/contents/sha256.h"
 
 namespace mbk::batch {
 namespace {

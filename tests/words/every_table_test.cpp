@@ -38,9 +38,9 @@
 #include "mbk/model/trial/transfer_function.h"
 #include "mbk/model/trial/verdict.h"
 #include "mbk/model/trial/warning.h"
+#include "mbk/teleop/design.h"
 #include "mbk/validate/fault_kinds.h"
 #include "mbk/validate/virtual_sensor_trials.h"
-#include "mbk/teleop/design.h"
 
 namespace mbk {
 namespace {

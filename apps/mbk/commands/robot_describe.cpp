@@ -1,8 +1,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/mbk/options/output.h"
 #include "apps/mbk/commands/robot_commands.h"
+#include "apps/mbk/options/output.h"
 #include "mbk/measure/identify/base_parameters.h"
 #include "mbk/model/robot_file/robot_file.h"
 #include "mbk/present/report/robot_description_text.h"

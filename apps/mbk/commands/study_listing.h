@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/mbk/terminal/command.h"
 #include "apps/mbk/options/study_options.h"
+#include "apps/mbk/terminal/command.h"
 #include "mbk/study/statistics/study_statistics.h"
 #include "mbk/study/store/study_list.h"
 

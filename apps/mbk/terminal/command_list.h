@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "apps/mbk/terminal/command.h"
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/terminal/command.h"
 
 namespace mbk::app {
 

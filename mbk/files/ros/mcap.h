@@ -21,7 +21,8 @@ namespace mbk::recording {
 /// The same while the file is read, of which a part is in memory; all of it is read.
 [[nodiscard]] Result<Contents> decode_mcap(FileInPassing& file);
 
-/// The name of the metadata record by which mbk knows files that it wrote itself until version 0.1, and of the one that has their metadata.
+/// The name of the metadata record by which mbk knows files that it wrote itself until version 0.1, and of the one that
+/// has their metadata.
 inline constexpr std::string_view kMcapLayoutRecord = "mbk.recording", kMcapMetadataRecord = "mbk.metadata";
 /// How an MCAP file begins and ends.
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";

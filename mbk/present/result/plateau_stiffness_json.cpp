@@ -33,7 +33,8 @@ void describe(Fields<StiffnessRegression>& fields) {
   fields.add("displacements", &Regression::displacements, "that were used");
   fields.add("directions", &Regression::directions, "different ones");
   fields.add("amplitude", &Regression::amplitude, "mean of the commanded ones [m or rad]");
-  fields.add("reached", &Regression::reached, "displacement over what was commanded, in the direction in which it is least");
+  fields.add("reached", &Regression::reached,
+             "displacement over what was commanded, in the direction in which it is least");
   fields.add("linear_p", &Regression::linear_p,
              "probability of such a lack of fit over the directions where K is all there is");
   fields.add("ellipse", &Regression::ellipse);
