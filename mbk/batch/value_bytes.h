@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -190,9 +191,10 @@ void read(const Json& json, Type& value) {
     value.reset();
     if (!json.empty()) read(json.at(0), value.emplace());
   } else if constexpr (EigenMatrix<Type>) {
-    const auto rows = json.at(0).get<std::size_t>(), columns = json.at(1).get<std::size_t>();
-    const std::size_t size = json.size() - 2;
-    if (rows > size || columns > size) throw Json::other_error::create(0, "a matrix has another size", &json);
+    const auto rows = json.at(0).get<std::uint32_t>(), columns = json.at(1).get<std::uint32_t>();
+    if (std::uint64_t{rows} * columns != json.size() - 2) {
+      throw Json::other_error::create(0, "a matrix has another size", &json);
+    }
     value.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
     for (Eigen::Index k = 0; k < value.size(); ++k) json.at(static_cast<std::size_t>(k) + 2).get_to(value.data()[k]);
   } else {

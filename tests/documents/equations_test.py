@@ -35,7 +35,7 @@ def tests_in(*files):
 def programs():
     """The tests of each GoogleTest program: a module has <module>_test, folders of tests/ what their lists say."""
     found = {f"{lists.parent.name}_test": tests_in(*lists.parent.glob("*_test.cpp"))
-             for lists in (SOURCE / "mbk").glob("*/**/CMakeLists.txt")}
+             for lists in [*(SOURCE / "mbk").glob("*/**/CMakeLists.txt"), SOURCE / "thesis/CMakeLists.txt"]}
     for lists in (SOURCE / "tests").glob("*/CMakeLists.txt"):
         for name in re.findall(r"mbk_test\((\w+)", lists.read_text()):
             found[name] = tests_in(*lists.parent.glob("*_test.cpp"))

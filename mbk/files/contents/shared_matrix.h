@@ -56,7 +56,7 @@ class SharedMatrix : public Eigen::Map<Matrix> {
   /// Memory of its own, not set to anything.
   void resize(Index rows, Index columns) { *this = SharedMatrix(Matrix(rows, columns)); }
   /// Memory of its own, in which what is there stays.
-  void conservativeResize(Index rows, Index columns) {
+  void conservativeResize(Index rows, Index columns) {  // NOLINT(readability-identifier-naming): as Eigen calls it
     if (!own_) *this = SharedMatrix(Matrix(*this));
     own_->conservativeResize(rows, columns);
     stand_at(own_->data(), rows, columns);
