@@ -1,6 +1,6 @@
 # The outside headers that most files include, read once for each way of compiling instead of once for each file
 # (-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without). Every file still includes what it uses, which clang-tidy, that
-# compiles without them, confirms. docs/guide/build.md shows what it saves.
+# compiles without them, confirms.
 #
 # GCC gives a file the optimisation level of the precompiled header that it uses, whatever the file's command line says.
 # So each level has a holder of its own: `library` (-O2), `loops` (-O3) and `tests` (-O2, with GoogleTest).
