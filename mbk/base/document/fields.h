@@ -49,12 +49,12 @@ concept Described = requires(Fields<T>& fields) {
 /// The description of T.
 template <Described T>
 const Fields<T>& fields_of() {
-  static const Fields<T> all = [] {
+  static const Fields<T> kAll = [] {
     Fields<T> made;
     describe(made);
     return made;
   }();
-  return all;
+  return kAll;
 }
 
 /// The types that a document refers to, each written once.
