@@ -377,7 +377,7 @@ Action add_run(Command app) {
       "The space bar and Ctrl-C stop the robot, e ends a trial early. What is recorded goes to\n"
       "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
       "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
-      "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n"
+      "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost, 4 computed but not usable,\n"
       "5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
   command.add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")

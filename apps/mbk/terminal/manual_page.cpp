@@ -63,10 +63,15 @@ struct Prose {
       const bool indented = line.starts_with(' ');
       if (in_section && !indented) sections += ".EE\n";
       in_section = in_section && indented;
+      if (!in_section && !in_paragraph && indented) {  // the root command has lines without a heading
+        sections += ".SH EXAMPLES\n.EX\n";
+        in_section = true;
+      }
       if (in_section) {
         sections += roff(line) + "\n";
       } else if (!indented && line.ends_with(':')) {
-        sections += ".SH " + roff(upper_case(line.substr(0, line.size() - 1))) + "\n.EX\n";
+        const std::string heading = line.substr(0, line.size() - 1);
+        sections += ".SH " + roff(upper_case(heading == "Example" ? "Examples" : heading)) + "\n.EX\n";
         in_section = true;
       } else if (trimmed(line).empty()) {
         in_paragraph = false;
@@ -123,7 +128,8 @@ std::string manual_file(const CommandText& command) {
 std::string manual_page(const CommandText& command, const CommandText& root, const std::string& version) {
   const Prose prose(command.description + "\n\n" + command.footer);
   const std::string name = command.joined("-"), &first = prose.paragraphs.front();
-  const std::string summary = &command == &root ? first.substr(0, first.find(':')) : first;
+  const std::string summary =
+      &command == &root ? first.substr(name.size() + 1, first.find(':') - name.size() - 1) : first;
   // No date: a page belongs to a version, and the same version gives the same bytes.
   std::string page =
       fmt::format(".TH {} 1 \"\" \"mbk {}\" \"mbk manual\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}.SH DESCRIPTION\n",
@@ -134,9 +140,10 @@ std::string manual_page(const CommandText& command, const CommandText& root, con
     page += entry(bold(below.joined("-")) + "(1)", below.description);
   }
   page += options_of(command) + prose.sections + ".SH EXIT STATUS\n" + roff(prose.exit_codes) + "\n.SH SEE ALSO\n";
-  page += bold(&command == &root ? "mbk-measure" : root.name()) + "(1)";
-  for (const CommandText& below : command.commands) page += ",\n" + bold(below.joined("-")) + "(1)";
-  return page + "\n";
+  std::vector<std::string> others;
+  if (&command != &root) others.push_back(bold(root.name()) + "(1)");
+  for (const CommandText& below : command.commands) others.push_back(bold(below.joined("-")) + "(1)");
+  return page + fmt::format("{}\n", fmt::join(others, ",\n"));
 }
 
 }  // namespace mbk::app
