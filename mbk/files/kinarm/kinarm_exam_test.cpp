@@ -123,7 +123,7 @@ TEST(KinarmExam, ParametersAreMetadataAndThePersonStaysInTheExam) {
   std::string all = notes(contents);
   for (const auto& [key, value] : contents.metadata) all += key + "=" + value + "\n";
   for (const char* personal : {"Doe", "Jane", "1970", "Roe", "51"}) EXPECT_THAT(all, Not(HasSubstr(personal)));
-  EXPECT_THAT(all, HasSubstr("all of SUBJECT"));
+  EXPECT_THAT(all, HasSubstr("SUBJECT"));
   EXPECT_THAT(all, HasSubstr("EXPERIMENT:OPERATOR"));
 }
 
@@ -139,7 +139,7 @@ TEST(KinarmExam, TorqueXOfOldRecordersIsLeftOut) {
     const Contents old = decoded(exam.bytes());
     EXPECT_EQ(find(old, "Right_FS_TorqueX"), nullptr) << version;
     EXPECT_NE(find(old, "Right_FS_TorqueZ"), nullptr);
-    EXPECT_THAT(notes(old), HasSubstr("Right_FS_TorqueX was left out"));
+    EXPECT_THAT(notes(old), HasSubstr("Right_FS_TorqueX"));
   }
   for (const char* version : {"3.4.2", "3.10", "4.0.0"}) {
     exam.trials.front().parameters =
@@ -157,12 +157,15 @@ TEST(KinarmExam, TrialsStandInTheOrderOfTheirNumbers) {
   exam.trials[2].number = 7;
   const KinarmExam opened_exam = opened(exam.bytes());
   EXPECT_THAT(names(opened_exam.trials()), ElementsAre("2", "7", "12"));
-  EXPECT_EQ(opened_exam.trials()[0].description, "TP 4, block 2, trial 1, repeat 1, 0.060 s, 60 frames, 2 events");
+  EXPECT_THAT(opened_exam.trials()[0].description,
+              AllOf(HasSubstr("TP 4"), HasSubstr("block 2"), HasSubstr("trial 1"), HasSubstr("repeat 1"),
+                    HasSubstr("0.060 s"), HasSubstr("60 frames"), HasSubstr("2 events")));
   const auto contents = opened_exam.decode({"7", std::nullopt});
   ASSERT_TRUE(contents);
   EXPECT_EQ(values(*contents, "Right_L1Ang")[5], static_cast<double>(exam.trials[2].values("Right_L1Ang")[5]));
-  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("several trials"));
-  EXPECT_THAT(refusal(exam.bytes(), {"3", std::nullopt}), HasSubstr("there are 3 trials, 2 to 12"));
+  EXPECT_THAT(refusal(exam.bytes()), AllOf(HasSubstr("--trial"), HasSubstr("3 trials")));
+  EXPECT_THAT(refusal(exam.bytes(), {"3", std::nullopt}),
+              AllOf(HasSubstr("'3'"), HasSubstr("3 trials"), HasSubstr("12")));
 }
 
 TEST(KinarmExam, PartsOfASplitTrialAreJoined) {
@@ -185,7 +188,7 @@ TEST(KinarmExam, PartsOfASplitTrialAreJoined) {
   EXPECT_EQ(joint[100], static_cast<double>(exam.trials[2].values("Right_L2Ang")[0]));
   ASSERT_EQ(contents->events.size(), 4U);
   EXPECT_EQ(contents->events[1].time, 0.1 + static_cast<double>(0.1F));
-  EXPECT_THAT(notes(*contents), HasSubstr("into 2 parts"));
+  EXPECT_THAT(notes(*contents), HasSubstr("2 parts"));
 }
 
 // ---- the hand ----
@@ -198,7 +201,7 @@ TEST(KinarmExam, TheHandFollowsFromTheJointsOfAnEndPointRobot) {
   EXPECT_EQ(means(contents, "Right_L1Ang"), "joint_1");
   EXPECT_EQ(means(contents, "Right_Hand.x"), "");
   EXPECT_LT(largest(values(contents, "Right_hand_x") - values(contents, "Right_Hand.x")), 1e-7);
-  EXPECT_THAT(notes(contents), HasSubstr("agrees within"));
+  EXPECT_THAT(notes(contents), AllOf(HasSubstr("Right_Hand"), HasSubstr("rounding")));
   // Velocity and acceleration are the derivatives of the position, whose numbers are smooth in this test.
   const Vector x = values(contents, "Right_hand_x"), v = values(contents, "Right_hand_velocity_x");
   const Vector a = values(contents, "Right_hand_acceleration_x");
@@ -227,7 +230,7 @@ TEST(KinarmExam, ThePointerOfAnExoskeletonTurnsItsSignOnTheLeft) {
     const std::string name(side);
     EXPECT_LT(largest(values(contents, name + "_hand_y") - values(contents, name + "_Hand.y")), 1e-7) << side;
     EXPECT_EQ(means(contents, name + "_hand_y"), "hand_y");
-    EXPECT_THAT(notes(contents), HasSubstr("agrees within"));
+    EXPECT_THAT(notes(contents), AllOf(HasSubstr(name + "_Hand"), HasSubstr("rounding")));
   }
 }
 
@@ -240,9 +243,9 @@ TEST(KinarmExam, AWrongGeometryIsNoHand) {
     const Contents contents = decoded(exam.bytes());
     EXPECT_EQ(means(contents, "Right_hand_x"), "") << wrong;
     EXPECT_EQ(means(contents, "Right_hand_acceleration_x"), "");
-    EXPECT_THAT(notes(contents), HasSubstr("do not fit"));
-    EXPECT_THAT(notes(contents), HasSubstr("lengths of 0.31 m, 0.28 m and a pointer of"));
-    EXPECT_THAT(notes(contents), HasSubstr("taken as stored"));
+    EXPECT_THAT(notes(contents), AllOf(HasSubstr("0.31 m"), HasSubstr("0.28 m"), HasSubstr("pointer")));
+    EXPECT_THAT(notes(contents), HasSubstr("--channels Fx=-force_x,Fy=-force_y,x=hand_x,y=hand_y"));
+    EXPECT_THAT(notes(contents), Not(HasSubstr(" kg")));  // of which a sign is inferred
   }
 }
 
@@ -255,7 +258,7 @@ TEST(KinarmExam, AHandThatWasSampledAtOtherTimesIsNoWrongGeometry) {
   }
   const Contents contents = decoded(exam.bytes());
   EXPECT_EQ(means(contents, "Right_hand_x"), "hand_x");
-  EXPECT_THAT(notes(contents), HasSubstr("more than the"));
+  EXPECT_THAT(notes(contents), AllOf(HasSubstr("Right_Hand"), HasSubstr("motion")));
 }
 
 TEST(KinarmExam, AConstantOffsetOfTheRecordedHandIsSaid) {
@@ -263,7 +266,7 @@ TEST(KinarmExam, AConstantOffsetOfTheRecordedHandIsSaid) {
   for (float& x : exam.trials.front().hand_x) x += 0.25F;
   const Contents contents = decoded(exam.bytes());
   EXPECT_EQ(means(contents, "Right_hand_x"), "hand_x");
-  EXPECT_THAT(notes(contents), HasSubstr("stands (0.25, "));
+  EXPECT_THAT(notes(contents), AllOf(HasSubstr("Right_Hand"), HasSubstr("0.25")));
 }
 
 TEST(KinarmExam, OfTwoArmsOneMustBeNamed) {
@@ -273,7 +276,7 @@ TEST(KinarmExam, OfTwoArmsOneMustBeNamed) {
   exam.common += ExamOfTest::end_point(left, "LEFT");
   test::add_arm(exam.trials.front(), "Left", left, 2.0);
   exam.trials.front().hand = "Left_Hand";
-  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("--side right or --side left"));
+  EXPECT_THAT(refusal(exam.bytes()), AllOf(HasSubstr("--side right"), HasSubstr("--side left")));
   const Contents contents = decoded(exam.bytes(), {"", Arm::left});
   EXPECT_EQ(means(contents, "Left_hand_x"), "hand_x");
   EXPECT_EQ(means(contents, "Left_M2TorCMD"), "torque_2");
@@ -296,7 +299,7 @@ TEST(KinarmExam, WithoutARightArmTheRightHandIsTheLeft) {
   EXPECT_EQ(find(contents, "Right_Hand.x"), nullptr);
   EXPECT_NE(find(contents, "Left_Hand.x"), nullptr);
   EXPECT_EQ(means(contents, "Left_hand_x"), "hand_x");
-  EXPECT_THAT(notes(contents), HasSubstr("is the left hand"));
+  EXPECT_THAT(notes(contents), AllOf(HasSubstr("RIGHT_KINARM:IS_PRESENT"), HasSubstr("Left_Hand")));
 }
 
 TEST(KinarmExam, AnUnknownRobotGivesNoHandAndSaysWhy) {
@@ -304,7 +307,7 @@ TEST(KinarmExam, AnUnknownRobotGivesNoHandAndSaysWhy) {
   exam.trials.front().parameters = test::exam_group("RIGHT_KINARM") + test::exam_parameter("VERSION", "NHP_UTS_1");
   const Contents contents = decoded(exam.bytes());
   EXPECT_EQ(find(contents, "Right_hand_x"), nullptr);
-  EXPECT_THAT(notes(contents), HasSubstr("'NHP_UTS_1', whose geometry is not known"));
+  EXPECT_THAT(notes(contents), HasSubstr("'NHP_UTS_1'"));
 }
 
 // ---- the sign of the force ----
@@ -318,7 +321,6 @@ TEST(KinarmExam, TheSignOfTheForceIsInferred) {
       const Contents contents = decoded(small_exam(arm).bytes());
       EXPECT_EQ(means(contents, "Right_force_x"), "force_x");
       EXPECT_EQ(largest(values(contents, "Right_force_x") - sign * values(contents, "Right_FS_ForceX")), 0.0);
-      EXPECT_THAT(notes(contents), HasSubstr(sign > 0 ? "on the robot, as stored" : "of the robot on the hand"));
       EXPECT_THAT(notes(contents), HasSubstr("1.2 kg")) << commanded << sign;
     }
   }
@@ -343,7 +345,7 @@ TEST(KinarmExam, NoiseDoesNotDecideTheSign) {
     for (float& value : signal.values) value = noise(random);
   }
   const Contents contents = decoded(exam.bytes());
-  EXPECT_THAT(notes(contents), HasSubstr("undecided"));
+  EXPECT_THAT(notes(contents), HasSubstr("evidence"));
   EXPECT_EQ(means(contents, "Right_force_x"), "force_x");
 }
 
@@ -423,7 +425,9 @@ TEST(KinarmExam, AnExamOfC3dFilesIsTheSame) {
                    n.group(kExperiment, "EXPERIMENT") + n.texts(kExperiment, "TASK_PROTOCOL", {"Reaching"}) +
                    n.texts(kExperiment, "SUBJECT_NAME", {"Jane Doe"});
   const std::string bytes = exam_of_c3d(file.bytes(), common.bytes());
-  EXPECT_EQ(opened(bytes).trials().front().description, "TP 4, block 1, trial 1, repeat 1, 0.400 s, 400 frames");
+  EXPECT_THAT(opened(bytes).trials().front().description,
+              AllOf(HasSubstr("TP 4"), HasSubstr("block 1"), HasSubstr("trial 1"), HasSubstr("repeat 1"),
+                    HasSubstr("0.400 s"), HasSubstr("400 frames")));
   const Contents c3d = decoded(bytes), kinarm = decoded(exam.bytes());
   EXPECT_EQ(c3d.format, "KINARM exam (C3D)");
   for (const char* name :
@@ -451,19 +455,19 @@ TEST(KinarmExam, AC3dChannelWithoutScaleIsLeftOutAndCountsOfFramesAreSettledByTh
   const Contents contents = decoded(bytes);
   EXPECT_EQ(find(contents, "Right_FS_ForceY"), nullptr);
   EXPECT_EQ(values(contents, "Right_FS_ForceX").size(), 400);
-  EXPECT_THAT(notes(contents), HasSubstr("('Right_FS_ForceY' is the first)"));
-  EXPECT_THAT(notes(contents), HasSubstr("the number of frames is 400 (the header"));
+  EXPECT_THAT(notes(contents), HasSubstr("'Right_FS_ForceY'"));
+  EXPECT_THAT(notes(contents), AllOf(HasSubstr("400"), HasSubstr("POINT:FRAMES"), HasSubstr("399")));
 }
 
 // ---- what cannot be read ----
 
 TEST(KinarmExam, RefusesWhatIsNoExamOrHoldsNoTrial) {
-  EXPECT_THAT(refusal(test::zip_of({{"a.txt", "b"}})), HasSubstr("no KINARM exam"));
+  EXPECT_THAT(refusal(test::zip_of({{"a.txt", "b"}})), HasSubstr("KINARM"));
   ExamOfTest exam = small_exam();
   exam.trials.clear();
-  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("no trial"));
+  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("trial"));
   exam.trials.push_back(TrialOfTest());
-  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("no signal"));
+  EXPECT_THAT(refusal(exam.bytes()), HasSubstr("signal"));
 }
 
 TEST(KinarmExam, RefusesVersionsAndCountsThatItCannotRead) {
@@ -475,11 +479,11 @@ TEST(KinarmExam, RefusesVersionsAndCountsThatItCannotRead) {
     }
     return refusal(test::zip_of(changed));
   };
-  EXPECT_THAT(with("1/header.bin", 0, 9), HasSubstr("version 9 of header.bin"));
-  EXPECT_THAT(with("1/header.bin", 4, -1), HasSubstr("negative"));
-  EXPECT_THAT(with("1/parameters.bin", 4, 77), HasSubstr("unknown type 77"));
-  EXPECT_THAT(with("L1Ang.kinematics", 4, 0x7FFFFFFF), HasSubstr("the label is 2147483647"));
-  EXPECT_THAT(with("examevents.bin", 4, 1000000), HasSubstr("count of events"));
+  EXPECT_THAT(with("1/header.bin", 0, 9), AllOf(HasSubstr("version 9"), HasSubstr("header.bin")));
+  EXPECT_THAT(with("1/header.bin", 4, -1), HasSubstr("count"));
+  EXPECT_THAT(with("1/parameters.bin", 4, 77), HasSubstr("type 77"));
+  EXPECT_THAT(with("L1Ang.kinematics", 4, 0x7FFFFFFF), HasSubstr("2147483647"));
+  EXPECT_THAT(with("examevents.bin", 4, 1000000), AllOf(HasSubstr("events"), HasSubstr("1000000")));
 }
 
 TEST(KinarmExam, ASignalOfAnotherLengthIsLeftOutAndSaid) {
@@ -489,7 +493,7 @@ TEST(KinarmExam, ASignalOfAnotherLengthIsLeftOutAndSaid) {
   const Contents contents = decoded(exam.bytes());
   EXPECT_EQ(find(contents, "EMG_biceps"), nullptr);
   EXPECT_EQ(find(contents, "EMG_triceps")->unit, "V");
-  EXPECT_THAT(notes(contents), HasSubstr("EMG_biceps was left out"));
+  EXPECT_THAT(notes(contents), AllOf(HasSubstr("EMG_biceps"), HasSubstr("399 samples")));
 }
 
 TEST(KinarmExam, SurvivesMembersCutAnywhere) {
@@ -517,7 +521,7 @@ TEST(KinarmExam, VideoFramesAreSummedUp) {
   ExamOfTest exam = small_exam();
   exam.trials.front().video =
       test::raw(std::int32_t{1}) + test::raw(std::int32_t{1}) + test::raw(0.5F) + test::raw(0.5156250F);
-  EXPECT_THAT(notes(decoded(exam.bytes())), HasSubstr("1 video frames were acknowledged, 15.6 ms"));
+  EXPECT_THAT(notes(decoded(exam.bytes())), AllOf(HasSubstr("1 video frame"), HasSubstr("15.6 ms")));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace mbk::recording {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::Pair;
 
 Contents with_events(Index times, Index values, std::size_t names) {
@@ -24,9 +25,8 @@ TEST(TakeAnnotations, TakesMetadataAndNotesOtherTexts) {
   contents.texts = {{"metadata.name", {"Anna"}}, {"who", {"me"}}, {"metadata.rows", {"a", "b"}}, {"metadata", {"x"}}};
   take_annotations(contents);
   EXPECT_THAT(contents.metadata, ElementsAre(Pair("name", "Anna"), Pair("rows", "a; b")));
-  EXPECT_THAT(contents.notes, ElementsAre("variable 'who' is text; ignored",
-                                          "metadata 'rows' has 2 lines, which are one here, with '; ' between them",
-                                          "variable 'metadata' is text; ignored"));
+  EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("'who'"), AllOf(HasSubstr("'rows'"), HasSubstr("2 lines")),
+                                          HasSubstr("'metadata'")));
 }
 
 TEST(TakeAnnotations, TakesEventsThatFitTogether) {
@@ -44,7 +44,7 @@ TEST(TakeAnnotations, LeavesEventsOfAnotherShapeAsTheyAre) {
     take_annotations(contents);
     EXPECT_TRUE(contents.events.empty());
     EXPECT_EQ(contents.arrays.size(), 2u);
-    EXPECT_THAT(contents.notes, ElementsAre("variable 'events.name' is text; ignored"));
+    EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("'events.name'")));
   }
 }
 

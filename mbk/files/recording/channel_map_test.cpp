@@ -1,10 +1,13 @@
 #include "mbk/files/recording/channel_map.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace mbk::recording {
 namespace channel_map_test {
+
+using testing::HasSubstr;
 
 Error error_of(std::string_view text) {
   const auto map = parse_channel_map(text);
@@ -62,12 +65,12 @@ TEST(ParseChannelMap, RefusesWhatIsNotAnEntry) {
 TEST(ParseChannelMap, NamesTheNearestChannel) {
   const Error error = error_of("hnad_x=2");
   EXPECT_EQ(error.kind, ErrorKind::usage);
-  EXPECT_EQ(error.line(), "unknown channel 'hnad_x'; did you mean 'hand_x'?");
+  EXPECT_THAT(error.line(), AllOf(HasSubstr("'hnad_x'"), HasSubstr("'hand_x'")));
 }
 
 TEST(ParseChannelMap, QuotesWhatItRefusesOnOnePrintableLine) {
-  EXPECT_EQ(error_of("x\n\xE9=2").message, "unknown channel 'x?é'");
-  EXPECT_EQ(error_of("\x01").message, "channel entry '?' has no '='");
+  EXPECT_THAT(error_of("x\n\xE9=2").message, HasSubstr("'x?é'"));
+  EXPECT_THAT(error_of("\x01").message, HasSubstr("'?'"));
 }
 
 TEST(ParseChannelMap, RefusesAChannelTwice) {
@@ -77,11 +80,11 @@ TEST(ParseChannelMap, RefusesAChannelTwice) {
 TEST(ParseChannelMap, RefusesUnitsOfTheWrongDimension) {
   const Error error = error_of("y=2:N");
   EXPECT_EQ(error.kind, ErrorKind::data);
-  EXPECT_EQ(error.line(), "channel y cannot be in N; possible are m, cm, mm, um, in, ft, mil");
+  EXPECT_THAT(error.line(), AllOf(HasSubstr("channel y"), HasSubstr("m, cm, mm, um, in, ft, mil")));
 }
 
 TEST(ParseChannelMap, RefusesAVoltageInNewtons) {
-  EXPECT_EQ(error_of("Vx=2:N").line(), "channel Vx cannot be in N; possible are V, mV, uV");
+  EXPECT_THAT(error_of("Vx=2:N").line(), AllOf(HasSubstr("channel Vx"), HasSubstr("V, mV, uV")));
 }
 
 TEST(ParseChannelMap, LeavesCommasInBracketsToTheName) {
@@ -126,7 +129,7 @@ TEST(ParseChannelMap, KeepsTheCommasOfSlices) {
 }
 
 TEST(ParseChannelMap, DoesNotTakeAVelocityForAVoltage) {
-  EXPECT_EQ(error_of("vx=2").line(), "unknown channel 'vx'; did you mean 'Vx'?");
+  EXPECT_THAT(error_of("vx=2").line(), AllOf(HasSubstr("'vx'"), HasSubstr("'Vx'")));
 }
 
 struct Reading {

@@ -94,7 +94,7 @@ TEST(DecodeCsv, ReadsNumbersWithAndWithoutAHeader) {
 TEST(DecodeCsv, FindsTheSeparatorAndSaysSo) {
   EXPECT_EQ(values_of("0;1.5\n0.25;-2\n"), kTwoByTwo);
   EXPECT_EQ(values_of("0\t1.5\n0.25\t-2\n"), kTwoByTwo);
-  EXPECT_THAT(csv("0;1\n")->notes, Contains("columns are separated by semicolons"));
+  EXPECT_THAT(csv("0;1\n")->notes, Contains(HasSubstr("semicolon")));
 }
 
 TEST(DecodeCsv, ToleratesByteOrderMarkCarriageReturnsCommentsAndPlusSigns) {
@@ -187,53 +187,51 @@ TEST(DecodeCsv, RefusesNumbersTooLargeForADouble) {
 }
 
 TEST(DecodeCsv, RefusesAHeaderThatDoesNotFitTheColumns) {
-  EXPECT_EQ(error_of("a,b,c,d,e\n1,2,3,4,5,6,7,8\n").line(),
-            "line 1: the header names 5 columns, line 2 has 8; give every column one name");
-  EXPECT_THAT(error_of("a,b,c\n1,2\n3,4\n").message, HasSubstr("names 3 columns, line 2 has 2"));
+  EXPECT_THAT(error_of("a,b,c,d,e\n1,2,3,4,5,6,7,8\n").line(),
+              AllOf(HasSubstr("line 1"), HasSubstr("5 columns"), HasSubstr("line 2")));
+  EXPECT_THAT(error_of("a,b,c\n1,2\n3,4\n").message, AllOf(HasSubstr("3 columns"), HasSubstr("line 2")));
 }
 
 TEST(DecodeCsv, RefusesLinesOfUnequalLength) {
   EXPECT_EQ(error_of("1,2\n3\n4,5\n").where, "line 2");
-  EXPECT_THAT(error_of("1,2\n3,4,5\n6,7\n").message, HasSubstr("3 cells where the lines before have 2"));
+  EXPECT_THAT(error_of("1,2\n3,4,5\n6,7\n").message, HasSubstr("3 cells"));
 }
 
 TEST(DecodeCsv, NamesLineColumnAndTextOfWhatIsNotANumber) {
-  EXPECT_EQ(
-      obstacle_of("t,x\n0,1\n1,two\n2,3\n", 1).line(),
-      "line 3, column 2: 'two' is not a number; the table must hold numbers, separated by commas, semicolons, tabs or "
-      "blanks");
+  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,two\n2,3\n", 1).line(),
+              AllOf(HasSubstr("line 3"), HasSubstr("column 2"), HasSubstr("'two'")));
 }
 
 TEST(DecodeCsv, KeepsControlCharactersOutOfMessages) {
-  EXPECT_THAT(error_of("1\n2\n\x1b[2Jx\n").message, HasSubstr("'?[2Jx' is not a number"));
+  EXPECT_THAT(error_of("1\n2\n\x1b[2Jx\n").message, HasSubstr("'?[2Jx'"));
 }
 
 TEST(DecodeCsv, RefusesATableOfOneEndlessLine) {
-  EXPECT_THAT(error_of("0" + std::string(20'000, ',') + "\n").message, HasSubstr("more than 10000 columns"));
+  EXPECT_THAT(error_of("0" + std::string(20'000, ',') + "\n").message, HasSubstr("10000 columns"));
 }
 
 TEST(DecodeCsv, ReadsDecimalCommasAndSaysSo) {
   for (const char* text : {"t;x\n0;1,5\n0,25;-2\n", "0\t1,5\n0,25\t-2,0\n", "0 1,5\n0,25 -2\n", "0|+1,5\n2,5e-1|-2\n",
                            "t,x\n0,\"1,5\"\n\"0,25\",-2\n"}) {
     EXPECT_EQ(values_of(text), kTwoByTwo) << text;
-    EXPECT_THAT(csv(text)->notes, Contains("numbers have decimal commas")) << text;
+    EXPECT_THAT(csv(text)->notes, Contains(HasSubstr("decimal comma"))) << text;
   }
 }
 
 TEST(DecodeCsv, RefusesCommasThatMayStandForTwoThings) {
-  EXPECT_THAT(error_of("t;x\n1;1,500\n2;2,125\n").message, HasSubstr("decimal comma or one between thousands"));
+  EXPECT_THAT(error_of("t;x\n1;1,500\n2;2,125\n").message, AllOf(HasSubstr("'1,500'"), HasSubstr("thousands")));
   EXPECT_THAT(values_of("t;x\n1;1,500\n2;0,125\n"), (Matrix(2, 2) << 1, 1.5, 2, 0.125).finished());
   EXPECT_THAT(error_of("t;x\n0.5;1,5\n1.5;2,5\n").line(),
-              HasSubstr("line 2, column 2: '1,5' has a comma where other numbers have decimal points"));
+              AllOf(HasSubstr("line 2"), HasSubstr("column 2"), HasSubstr("'1,5'"), HasSubstr("decimal point")));
   EXPECT_THAT(error_of("t;x\n0.5;1\n1.5;2\n2.5;2,5\n").where, "line 4, column 2");
-  EXPECT_THAT(error_of("t,x\n0,001,1,5\n0,002,1,6\n").line(), HasSubstr("export it with semicolons"));
-  EXPECT_THAT(error_of("0,001,1,5\n0,002,1,6\n").line(), HasSubstr("both readings are possible; export it"));
-  EXPECT_THAT(error_of("t,x\n0,1\n0,5,1\n1,1,5\n").line(), HasSubstr("export it with semicolons"));
-  EXPECT_THAT(error_of("t;x\n0;\"1,234\"\n1;\"5,678\"\n").message, HasSubstr("between thousands"));
+  EXPECT_THAT(error_of("t,x\n0,001,1,5\n0,002,1,6\n").line(), HasSubstr("semicolons"));
+  EXPECT_THAT(error_of("0,001,1,5\n0,002,1,6\n").line(), AllOf(HasSubstr("comma"), HasSubstr("semicolons")));
+  EXPECT_THAT(error_of("t,x\n0,1\n0,5,1\n1,1,5\n").line(), HasSubstr("semicolons"));
+  EXPECT_THAT(error_of("t;x\n0;\"1,234\"\n1;\"5,678\"\n").message, AllOf(HasSubstr("'1,234'"), HasSubstr("thousands")));
 }
 
 TEST(DecodeCsv, LeavesPointsAmongDecimalCommasAside) {
-  EXPECT_THAT(obstacle_of("t;x\n0,5;1\n1,5;1.234\n", 1).line(), HasSubstr("the file has decimal commas"));
+  EXPECT_THAT(obstacle_of("t;x\n0,5;1\n1,5;1.234\n", 1).line(), HasSubstr("decimal comma"));
   EXPECT_THAT(obstacle_of("t;x\n0,5;1.234,5\n1,5;2\n", 1).message, HasSubstr("'1.234,5'"));
 }
 
@@ -243,7 +241,7 @@ TEST(DecodeCsv, FindsBlanksAndVerticalBars) {
   EXPECT_EQ(values_of("t x\n0 1.5 \n0.25\t-2\n"), kTwoByTwo);
   EXPECT_EQ(values_of("t|x\n0|1.5\n0.25|-2\n"), kTwoByTwo);
   EXPECT_EQ(values_of("0, 1.5\n0.25, -2\n"), kTwoByTwo);
-  EXPECT_THAT(csv("0 1.5\n0.25 -2\n")->notes, Contains("columns are separated by blanks"));
+  EXPECT_THAT(csv("0 1.5\n0.25 -2\n")->notes, Contains(HasSubstr("blank")));
   EXPECT_EQ(values_of("sep=;\n0;1.5\n0.25;-2\n"), kTwoByTwo);
 }
 
@@ -258,12 +256,10 @@ TEST(DecodeCsv, LeavesColumnsOfWordsAsideUnlessTheyAreAskedFor) {
   const auto contents = csv(text);
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays[2].values, kTwoByTwo.col(1));
-  EXPECT_THAT(contents->notes,
-              Contains("columns that do not hold numbers throughout were left aside: 2 'state', 4 'ok'"));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("2 'state'"), HasSubstr("4 'ok'"))));
   EXPECT_EQ(obstacle_of(text, 1).where, "line 2, column 2");
   EXPECT_EQ(obstacle_of("0,1.5,go\n0.25,-2,stop\n", 2).where, "line 1, column 3");
-  EXPECT_EQ(obstacle_of("t,x\n0,1\n0.1,NA\n", 1).remedy,
-            "leave the cell empty, or write nan, where a value is missing");
+  EXPECT_THAT(obstacle_of("t,x\n0,1\n0.1,NA\n", 1).remedy, AllOf(HasSubstr("cell"), HasSubstr("nan")));
 }
 
 TEST(DecodeCsv, TakesALineOfUnits) {
@@ -273,15 +269,15 @@ TEST(DecodeCsv, TakesALineOfUnits) {
   EXPECT_EQ(contents->arrays[1].unit, "mm");
   EXPECT_EQ(contents->arrays[2].unit, "N");
   EXPECT_EQ(contents->arrays[3].unit, "");
-  EXPECT_THAT(contents->notes, Contains("line 2 was taken as the units of the columns"));
-  EXPECT_THAT(error_of("time,x_mm\ns,m\n0,1\n").message, HasSubstr("'x_mm' is in mm by its name, and in m by"));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("line 2"), HasSubstr("unit"))));
+  EXPECT_THAT(error_of("time,x_mm\ns,m\n0,1\n").message, AllOf(HasSubstr("'x_mm'"), HasSubstr("unit")));
 }
 
 TEST(DecodeCsv, PassesOverLinesOfTextAboveTheTable) {
   const std::string text = "Recorder 7\nRate;1000\n\nDate;2024-03-01\ntime;x\ns;m\n0;1.5\n0.25;-2\n";
   EXPECT_EQ(values_of(text), kTwoByTwo);
   EXPECT_EQ(names_of(text), (std::vector<std::string>{"time", "x"}));
-  EXPECT_THAT(csv(text)->notes, Contains("3 lines of text above the table were not read"));
+  EXPECT_THAT(csv(text)->notes, Contains(HasSubstr("3 lines")));
   std::string many;
   for (int k = 0; k < 300; ++k) many += fmt::format("remark {}: nothing, or much\n", k);
   EXPECT_EQ(values_of(many + "t,x\n0,1.5\n0.25,-2\n"), kTwoByTwo);
@@ -289,8 +285,8 @@ TEST(DecodeCsv, PassesOverLinesOfTextAboveTheTable) {
 
 TEST(DecodeCsv, RefusesNumbersAboveAHeader) {
   EXPECT_THAT(error_of("a,b\n1,2\n3,4\nc,d\n5,6\n7,8\n").line(),
-              HasSubstr("line 2: numbers stand above the header in line 4"));
-  EXPECT_THAT(error_of("a,b,c\n1,2,go\n3,4,go\nc,d,e\n5,6,go\n7,8,go\n").message, HasSubstr("several tables"));
+              AllOf(HasSubstr("line 2"), HasSubstr("header"), HasSubstr("line 4")));
+  EXPECT_THAT(error_of("a,b,c\n1,2,go\n3,4,go\nc,d,e\n5,6,go\n7,8,go\n").message, HasSubstr("line 4"));
 }
 
 /// So many rows of cells that count up.
@@ -303,17 +299,14 @@ std::string counting(int rows, int columns, char separator = ',') {
 }
 
 TEST(DecodeCsv, RefusesAHeaderThatStandsAgain) {
-  EXPECT_EQ(
-      error_of("t,x\n" + counting(50, 2) + "t,x\n0,3\n").line(),
-      "line 52: the names of line 1 stand again: another recording begins there; write each recording to a file of "
-      "its own");
-  EXPECT_THAT(error_of("\"t\" x\n" + counting(50, 2, ' ') + "t x\n0 3\n").message, HasSubstr("stand again"));
+  EXPECT_THAT(error_of("t,x\n" + counting(50, 2) + "t,x\n0,3\n").line(),
+              AllOf(HasSubstr("line 52"), HasSubstr("line 1"), HasSubstr("recording")));
+  EXPECT_THAT(error_of("\"t\" x\n" + counting(50, 2, ' ') + "t x\n0 3\n").message, HasSubstr("line 1"));
 }
 
 TEST(DecodeCsv, SaysWhereAnotherTableMayBegin) {
-  EXPECT_THAT(
-      error_of("t,x,y\n" + counting(50, 3) + "frequency,gain\n1,2\n").line(),
-      HasSubstr("line 52: it holds words in 2 cells, and the lines before 3 cells with numbers: another table may"));
+  EXPECT_THAT(error_of("t,x,y\n" + counting(50, 3) + "frequency,gain\n1,2\n").line(),
+              AllOf(HasSubstr("line 52"), HasSubstr("2 cells"), HasSubstr("3 cells"), HasSubstr("table")));
 }
 
 TEST(DecodeCsv, TakesTheSeparatorThatFitsTheHeader) {
@@ -329,7 +322,7 @@ TEST(DecodeCsv, JoinsNamesInTwoLines) {
   for (const char* head : {"time,hand,hand,force,force\n,x,y,x,y\n", "time,hand,,force,\n,x,y,x,y\n",
                            ",hand,,force,\ntime,x,y,x,y\n", "Recorder 7\n,hand,,force,\ntime,x,y,x,y\ns,mm,mm,N,N\n"}) {
     EXPECT_EQ(names_of(head + rows), names) << head;
-    EXPECT_THAT(csv(head + rows)->notes, Contains(HasSubstr("together are the names of the columns"))) << head;
+    EXPECT_THAT(csv(head + rows)->notes, Contains(HasSubstr("names"))) << head;
   }
   EXPECT_EQ(csv("h,hand,,force,\ntime,x,y,x,y\ns,mm,mm,N,N\n" + rows)->arrays[1].unit, "mm");
   EXPECT_EQ(names_of("a,b,c,d,e\ntime,p,q,r,s\n" + rows)[1], "p");  // the lower line tells them apart
@@ -340,19 +333,19 @@ TEST(DecodeCsv, LeavesCommentsBehindNumbersOut) {
   const auto contents = csv("t,x\n0,1.5\n0.25,-2 # touched, twice\n");
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(values_of("t,x\n0,1.5\n0.25,-2 # touched, twice\n"), kTwoByTwo);
-  EXPECT_THAT(contents->notes, Contains("comments behind the numbers of 1 lines, from line 3 on, were left out"));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("comment"), HasSubstr("line 3"))));
   EXPECT_THAT(obstacle_of("t,x\n0,go #1\n1,go #2\n", 1).message, HasSubstr("'go #1'"));
 }
 
 TEST(DecodeCsv, SaysWhatToDoAboutACellThatIsNoNumber) {
-  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,#DIV/0!\n2,1\n", 1).remedy, HasSubstr("leave the cell empty"));
-  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,1.5 mm\n2,1\n", 1).remedy, HasSubstr("their unit in the name of the column"));
-  EXPECT_THAT(obstacle_of("t;x\n0;1\n1;[1, 2]\n2;1\n", 1).remedy, HasSubstr("each as a column of its own"));
+  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,#DIV/0!\n2,1\n", 1).remedy, HasSubstr("cell"));
+  EXPECT_THAT(obstacle_of("t,x\n0,1\n1,1.5 mm\n2,1\n", 1).remedy, HasSubstr("unit"));
+  EXPECT_THAT(obstacle_of("t;x\n0;1\n1;[1, 2]\n2;1\n", 1).remedy, HasSubstr("column"));
 }
 
 TEST(DecodeCsv, ReadsQuotedNamesWithSeparators) {
   EXPECT_EQ(names_of("\"time, s\",\"say \"\"x\"\"\"\n0,1\n"), (std::vector<std::string>{"time, s", "say \"x\""}));
-  EXPECT_EQ(obstacle_of("t,note,x\n0,\"a, b\",1\n1,\"c\",2\n", 1).message, "'a, b' is not a number");
+  EXPECT_THAT(obstacle_of("t,note,x\n0,\"a, b\",1\n1,\"c\",2\n", 1).message, HasSubstr("'a, b'"));
   EXPECT_EQ(values_of("\"t\",\"x\"\n\"0\",\"1.5\"\n\"0.25\",\"-2\"\n"), kTwoByTwo);
 }
 
@@ -361,20 +354,19 @@ TEST(DecodeCsv, ReadsTimesOfDayAcrossMidnight) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays[0].values, Vector((Vector(3) << 86399.5, 86399.75, 86400.25).finished()));
   EXPECT_EQ(contents->arrays[0].unit, "s");
-  EXPECT_THAT(contents->notes,
-              Contains("'time' holds times of day, which were taken as seconds since midnight; midnight passes once"));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'time'"), HasSubstr("seconds"), HasSubstr("midnight"))));
 }
 
 TEST(DecodeCsv, ReadsDatesAsIso8601WritesThem) {
   const auto contents = csv("time,x\n2024-02-29T23:59:59.5+01:00,1\n2024-03-01 00:00:00Z,2\n");
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays[0].values, Vector((Vector(2) << 82799.5, 86400).finished()));
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("seconds since 2024-02-29 00:00")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("seconds"), HasSubstr("2024-02-29 00:00"))));
   EXPECT_EQ(values_of("time,x\n2024/02/29 10:00:00,1\n2024/03/01 10:00:00,2\n")(1, 0), 86400 + 36000);
   EXPECT_EQ(values_of("time;x\n29.02.2024 10:00:00;1\n01.03.2024 10:00:00,5;2\n")(1, 0), 86400 + 36000.5);
   EXPECT_THAT(obstacle_of("time,x\n01/02/2024 10:15:30,1\n01/02/2024 10:15:31,2\n", 0).remedy,
               HasSubstr("2024-03-01T"));
-  EXPECT_THAT(obstacle_of("time,x\n2024-02-30,1\n2024-02-31,2\n", 0).message, HasSubstr("is not a number"));
+  EXPECT_THAT(obstacle_of("time,x\n2024-02-30,1\n2024-02-31,2\n", 0).message, HasSubstr("'2024-02-30'"));
 }
 
 TEST(DecodeCsv, ReadsHoursThatAreCountedTwiceTo12) {
@@ -386,15 +378,16 @@ TEST(DecodeCsv, ReadsHoursThatAreCountedTwiceTo12) {
   EXPECT_EQ(values_of("time;x\n9.2.2024 10:00:00,25;1\n10.2.2024 10:00:00,5;2\n")(1, 0), 86400 + 36000.5);
   for (const char* time : {"13:00:00 PM", "0:00:00 AM", "10:00:00 XM", "AM", "2024-03-01 AM", "13/1/2024 1:00:00 AM"}) {
     EXPECT_THAT(obstacle_of(std::string("time,x\n") + time + ",1\n" + time + ",2\n", 0).message,
-                HasSubstr("is not a number"))
+                HasSubstr("'" + std::string(time) + "'"))
         << time;
   }
 }
 
 TEST(DecodeCsv, RefusesTimesAmongOtherNumbers) {
-  EXPECT_THAT(obstacle_of("time,x\n10:15:30,1\n37,2\n10:15:31,3\n", 0).message, HasSubstr("times and other numbers"));
+  EXPECT_THAT(obstacle_of("time,x\n10:15:30,1\n37,2\n10:15:31,3\n", 0).message,
+              AllOf(HasSubstr("'time'"), HasSubstr("numbers")));
   EXPECT_THAT(obstacle_of("time,x\n10:15:30,1\n2024-03-01T10:15:31,3\n", 0).message,
-              HasSubstr("with and without a date"));
+              AllOf(HasSubstr("'time'"), HasSubstr("date")));
 }
 
 TEST(DecodeCsv, ReadsUtf16) {
@@ -408,7 +401,7 @@ TEST(DecodeCsv, ReadsUtf16) {
   for (const std::string& text : {little, big}) {
     EXPECT_EQ(values_of(text), kTwoByTwo);
     EXPECT_EQ(names_of(text)[1], "x [µm]");
-    EXPECT_THAT(csv(text)->notes, Contains("its text is UTF-16"));
+    EXPECT_THAT(csv(text)->notes, Contains(HasSubstr("UTF-16")));
   }
 }
 
@@ -416,7 +409,7 @@ TEST(DecodeCsv, ToleratesASeparatorAtTheEndOfEveryLine) {
   EXPECT_EQ(values_of("t,x\n0,1.5,\n0.25,-2,\n"), kTwoByTwo);
   EXPECT_EQ(values_of("t,x,\n0,1.5,\n0.25,-2,\n"), kTwoByTwo);
   EXPECT_EQ(values_of("0,1.5,\n0.25,-2,\n"), kTwoByTwo);
-  EXPECT_THAT(csv("0,1,\n")->notes, Contains("every line ends with a separator, which was not taken as a column"));
+  EXPECT_THAT(csv("0,1,\n")->notes, Contains(HasSubstr("separator")));
 }
 
 TEST(DecodeCsv, RefusesASeparatorAtTheEndOfSomeLines) {
@@ -427,19 +420,19 @@ TEST(DecodeCsv, LeavesAnIncompleteLastLineAsideAndSaysSo) {
   for (const char* text :
        {"t,x\n0,1.5\n0.25,-2\n0.5", "0,1.5\n0.25,-2\n0.5,", "0,1.5\n0.25,-2\n0.5,1e", "0,1.5\n0.25,-2\n0.5,-"}) {
     EXPECT_EQ(values_of(text), kTwoByTwo) << text;
-    EXPECT_THAT(csv(text)->notes, Contains(HasSubstr("is incomplete"))) << text;
+    EXPECT_THAT(csv(text)->notes, Contains(HasSubstr(text[0] == 't' ? "line 4" : "line 3"))) << text;
   }
 }
 
 TEST(DecodeCsv, SaysThatALastNumberWithoutLineEndMayBeCut) {
   EXPECT_EQ(values_of("0,1.5\n0.25,-2"), kTwoByTwo);
-  EXPECT_THAT(csv("0,1.5\n0.25,-2")->notes, Contains(HasSubstr("line 2 has no line end")));
+  EXPECT_THAT(csv("0,1.5\n0.25,-2")->notes, Contains(HasSubstr("line 2")));
 }
 
 TEST(DecodeCsv, RefusesAFileWithoutNumbers) {
-  EXPECT_EQ(error_of("t,x\n").message, "the file holds no line of numbers");
-  EXPECT_EQ(error_of("# nothing\n").message, "the file holds no line of numbers");
-  EXPECT_THAT(error_of("t,x\n0.5").message, HasSubstr("the only line of numbers, line 2, is incomplete"));
+  EXPECT_THAT(error_of("t,x\n").message, HasSubstr("numbers"));
+  EXPECT_THAT(error_of("# nothing\n").message, HasSubstr("numbers"));
+  EXPECT_THAT(error_of("t,x\n0.5").message, HasSubstr("line 2"));
 }
 
 TEST(DecodeCsv, CutAnywhereGivesAnErrorOrTheCompleteLines) {
@@ -524,7 +517,7 @@ TEST(DecodeCsv, OfAFileInPassingNamesTheLineOfAnErrorBehindTheFirstPiece) {
   const auto found = decode_csv(passing);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().line(), error_of(text).line());
-  EXPECT_THAT(found.error().message, HasSubstr("2 cells where"));
+  EXPECT_THAT(found.error().message, HasSubstr("2 cells"));
 }
 
 TEST(DecodeCsv, OfAFileThatBecomesShorterSaysSo) {
@@ -536,7 +529,7 @@ TEST(DecodeCsv, OfAFileThatBecomesShorterSaysSo) {
   std::filesystem::resize_file(file, FileInPassing::kPiece + 1000);
   const auto found = decode_csv(passing);
   ASSERT_FALSE(found);
-  EXPECT_THAT(found.error().message, HasSubstr("became shorter"));
+  EXPECT_THAT(found.error().message, HasSubstr("shorter"));
 }
 
 TEST(DecodeCsv, KeepsEpochTimestamps) {

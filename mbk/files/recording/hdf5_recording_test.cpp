@@ -80,8 +80,7 @@ TEST(ContentsOfHdf5, PutsLinesOfMetadataIntoOneAndSaysSo) {
   const auto recording = recorded(root);
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->metadata.at("remark"), "first; second?");
-  EXPECT_THAT(recording->notes,
-              ElementsAre("metadata 'remark' has 2 lines, which are one here, with '; ' between them"));
+  EXPECT_THAT(recording->notes, ElementsAre(AllOf(HasSubstr("'remark'"), HasSubstr("2 lines"))));
 }
 
 TEST(ContentsOfHdf5, TakesTheUnitOfTheMapBeforeThatOfTheFile) {
@@ -92,20 +91,20 @@ TEST(ContentsOfHdf5, TakesTheUnitOfTheMapBeforeThatOfTheFile) {
 TEST(ContentsOfHdf5, RefusesAUnitThatTheChannelCannotHave) {
   Group root = own();
   root.groups["channels"].datasets["hand_x"].attributes["unit"] = {{}, Texts{"furlong"}};
-  EXPECT_THAT(recorded(root).error().line(), HasSubstr("'hand_x' is in 'furlong', which channel hand_x cannot be in"));
+  EXPECT_THAT(recorded(root).error().line(), AllOf(HasSubstr("'hand_x'"), HasSubstr("'furlong'")));
   EXPECT_THAT(recorded(root, "x=hand_x").error().line(), HasSubstr("'furlong'"));
   EXPECT_TRUE(recorded(root, "x=hand_x:cm"));
   root = own();
   root.datasets["time"].attributes["unit"] = {{}, Texts{"fortnight"}};
-  EXPECT_THAT(recorded(root).error().line(), HasSubstr("--channels time=time:UNIT; possible are s, ms"));
+  EXPECT_THAT(recorded(root).error().line(), AllOf(HasSubstr("--channels time=time:UNIT"), HasSubstr("s, ms")));
   EXPECT_THAT(recorded(root, "x=hand_x").error().line(), HasSubstr("--channels time=time:UNIT"));
 }
 
 TEST(ContentsOfHdf5, SaysWhereTheFileNamesAnotherFrame) {
   Group root = own();
   root.groups["channels"].datasets["hand_x"].attributes["frame"] = {{}, Texts{"tool"}};
-  EXPECT_THAT(recorded(root)->notes, ElementsAre("'hand_x' says that its frame is 'tool'; mbk takes it in the frame "
-                                                 "'base'"));
+  EXPECT_THAT(recorded(root)->notes,
+              ElementsAre(AllOf(HasSubstr("'hand_x'"), HasSubstr("'tool'"), HasSubstr("'base'"))));
 }
 
 Group other() {
@@ -130,9 +129,10 @@ TEST(ContentsOfHdf5, ListsOtherFilesByTheirPaths) {
   EXPECT_EQ(contents.arrays[0].name, "trial/clock");
   EXPECT_EQ(contents.arrays[2].name, "trial/pos");
   EXPECT_EQ(contents.arrays[2].values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());  // as h5py shows it
-  EXPECT_THAT(contents.notes,
-              ElementsAre("'images' is an array of 3 dimensions; ignored", "'size' is a single number (7); ignored",
-                          "'table' is of a compound type; ignored", "variable 'label' is text; ignored"));
+  EXPECT_THAT(contents.notes, ElementsAre(AllOf(HasSubstr("'images'"), HasSubstr("3 dimensions")),
+                                          AllOf(HasSubstr("'size'"), HasSubstr("number")),
+                                          AllOf(HasSubstr("'table'"), HasSubstr("of a compound type")),
+                                          AllOf(HasSubstr("'label'"), HasSubstr("text"))));
 }
 
 TEST(ContentsOfHdf5, LetsAPathBeSaidWithSlashesOrDots) {
@@ -158,11 +158,10 @@ TEST(ContentsOfHdf5, CountsColumnsOfTheNamedMatrixInItsUnit) {
 
 TEST(ContentsOfHdf5, SaysWhatIsThereWhereNothingIsRecognised) {
   EXPECT_THAT(recorded(other()).error().line(),
-              HasSubstr("no channel is recognised; it has the variables trial/clock (4×1), trial/force (4×1), "
-                        "trial/pos (4×2)"));
+              AllOf(HasSubstr("trial/clock (4×1)"), HasSubstr("trial/force (4×1)"), HasSubstr("trial/pos (4×2)")));
   Group texts;
   texts.datasets["label"] = Dataset{{{1}, Texts{"x"}}, {}};
-  EXPECT_THAT(recorded(texts).error().line(), HasSubstr("it has no numeric variable; variable 'label' is text"));
+  EXPECT_THAT(recorded(texts).error().line(), AllOf(HasSubstr("variable"), HasSubstr("'label'")));
 }
 
 TEST(ContentsOfHdf5, ReadsTheColumnsOfATableInTheirUnits) {
@@ -182,7 +181,7 @@ TEST(ContentsOfHdf5, ReadsTheColumnsOfATableInTheirUnits) {
   EXPECT_DOUBLE_EQ(recording->find("joint_1")->values[0], M_PI / 180);
   EXPECT_EQ(recording->time[3], 3.0);
   EXPECT_EQ(recorded(table({}), "x=log/x")->find("hand_x")->values[3], 3000.0);
-  EXPECT_THAT(recorded(table({"mm"}), "x=log/x").error().line(), HasSubstr("'log/time' is in 'mm'"));
+  EXPECT_THAT(recorded(table({"mm"}), "x=log/x").error().line(), AllOf(HasSubstr("'log/time'"), HasSubstr("'mm'")));
 }
 
 TEST(ContentsOfHdf5, LeavesOutWhatIsDamagedUnlessItIsAskedFor) {
@@ -190,12 +189,13 @@ TEST(ContentsOfHdf5, LeavesOutWhatIsDamagedUnlessItIsAskedFor) {
   root.groups["trial"].datasets["gaze"].value.data = hdf5::Unread{"a chunk has a wrong checksum", true};
   const auto recording = recorded(root, "t=trial/clock,Fx=trial/force");
   ASSERT_TRUE(recording) << recording.error().line();
-  EXPECT_THAT(recording->notes, Contains("'trial/gaze' is damaged and was left out: a chunk has a wrong checksum; the "
-                                         "rest of the file was read"));
-  EXPECT_THAT(recorded(root, "t=trial/clock,Fx=trial.gaze").error().message,
-              HasSubstr("channel force_x: 'trial/gaze' is damaged: a chunk has a wrong checksum"));
-  EXPECT_THAT(recorded(root, "t=trial/clock,Fx=trial.gaze[2]").error().message, HasSubstr("is damaged"));
-  EXPECT_THAT(recorded(root, "x=1", "trial/gaze").error().message, HasSubstr("is damaged"));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("'trial/gaze'"), HasSubstr("a chunk has a wrong checksum"))));
+  EXPECT_THAT(
+      recorded(root, "t=trial/clock,Fx=trial.gaze").error().message,
+      AllOf(HasSubstr("channel force_x"), HasSubstr("'trial/gaze'"), HasSubstr("a chunk has a wrong checksum")));
+  EXPECT_THAT(recorded(root, "t=trial/clock,Fx=trial.gaze[2]").error().message,
+              HasSubstr("a chunk has a wrong checksum"));
+  EXPECT_THAT(recorded(root, "x=1", "trial/gaze").error().message, HasSubstr("a chunk has a wrong checksum"));
 }
 
 TEST(ContentsOfHdf5, DoesNotTakeADamagedChannelForOneThatIsNotThere) {
@@ -206,7 +206,7 @@ TEST(ContentsOfHdf5, DoesNotTakeADamagedChannelForOneThatIsNotThere) {
   ASSERT_TRUE(recorded(root));
   root.groups["raw"].datasets["reference_x"].value.data = hdf5::Unread{"a part of it was never written", true};
   EXPECT_THAT(recorded(root).error().message,
-              HasSubstr("'raw/reference_x' is damaged: a part of it was never written"));
+              AllOf(HasSubstr("'raw/reference_x'"), HasSubstr("a part of it was never written")));
   EXPECT_TRUE(recorded(root, "x=hand_x,Fx=force_x"));
 }
 
@@ -217,9 +217,9 @@ TEST(ContentsOfHdf5, TakesAChannelThatHasTwoNamesOnce) {
   root.groups["raw"].datasets["hand_x"] = numbers(Vector::LinSpaced(5, 0, 2));
   const auto recording = recorded(root);
   ASSERT_TRUE(recording) << recording.error().line();
-  EXPECT_THAT(recording->notes, Contains("'raw/hand_x' holds the same numbers as 'hand_x', which is read as hand_x"));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("'raw/hand_x'"), HasSubstr("'hand_x'"))));
   root.groups["raw"].datasets["hand_x"] = numbers(Vector::LinSpaced(5, 0, 3));
-  EXPECT_THAT(recorded(root).error().message, HasSubstr("both are hand_x"));
+  EXPECT_THAT(recorded(root).error().message, AllOf(HasSubstr("'raw/hand_x'"), HasSubstr("'hand_x'")));
 }
 
 Value one(double value, hdf5::Stored stored = hdf5::Stored::float64) {
@@ -257,7 +257,8 @@ std::string error_of(Group root, const std::string& map = "") {
 TEST(AttributesOfHdf5, ScaleNumbersAsNwbAndCfDefineThem) {
   const auto nwb = with_force(kForce, {{"conversion", one(2.0)}, {"offset", one(0.5)}, {"unit", text("newtons")}});
   EXPECT_EQ(force_of(nwb), (2.0 * kForce.array() + 0.5).matrix());
-  EXPECT_THAT(recorded(nwb)->notes, ElementsAre("conversion = 2, offset = 0.5 were applied to 'force_x'"));
+  EXPECT_THAT(recorded(nwb)->notes,
+              ElementsAre(AllOf(HasSubstr("conversion = 2"), HasSubstr("offset = 0.5"), HasSubstr("'force_x'"))));
   const auto cf = with_force(kForce, {{"scale_factor", one(0.5)}, {"add_offset", text("-1")}, {"units", text("mN")}});
   EXPECT_EQ(force_of(cf), ((0.5 * kForce.array() - 1.0) / 1000).matrix());
   const auto plain = with_force(kForce, {{"conversion", one(1.0)}, {"offset", one(0.0)}, {"resolution", one(-1.0)}});
@@ -278,19 +279,19 @@ TEST(AttributesOfHdf5, AreRefusedWhereTheyDoNotSayWhatIsToBeDone) {
                                            {{"scale_factor", {{2}, Numbers{Vector::Constant(2, 3.0)}}}}};
   for (const Attributes& attributes : unclear) {
     const Group root = with_force(kForce, attributes);
-    EXPECT_THAT(error_of(root), HasSubstr("channel force_x: the file says " + attributes.begin()->first + " = "));
+    EXPECT_THAT(error_of(root), AllOf(HasSubstr("'force_x'"), HasSubstr(attributes.begin()->first + " = ")));
     EXPECT_EQ(recorded(root, "x=hand_x,Fx=force_x*1")->find("force_x")->values, kForce);
     EXPECT_EQ(recorded(root, "x=hand_x,Fx=force_x*2")->find("force_x")->values, 2.0 * kForce);
     EXPECT_TRUE(recorded(root, "x=hand_x"));
   }
   EXPECT_THAT(error_of(with_force(kForce, {{"gain", one(4.448)}}), "x=hand_x,Fx=-force_x"),
-              HasSubstr("--channels Fx=force_x*GAIN, or Fx=force_x*1"));
+              AllOf(HasSubstr("--channels Fx=force_x*GAIN"), HasSubstr("Fx=force_x*1")));
   for (const Attributes& attributes : {Attributes{{"gain", one(1.0)}, {"offset", one(0.0)}},
                                        Attributes{{"calibration", text("2024-03-01")}, {"filter_delay", one(0.004)}}}) {
     EXPECT_EQ(force_of(with_force(kForce, attributes)), kForce);
   }
   EXPECT_THAT(recorded(with_force(kForce, {{"filter_delay", one(0.004)}}))->notes,
-              ElementsAre("filter_delay = 0.004 was not applied to 'force_x'"));
+              ElementsAre(AllOf(HasSubstr("filter_delay = 0.004"), HasSubstr("'force_x'"))));
 }
 
 TEST(AttributesOfHdf5, MarkMissingNumbersBeforeTheyAreScaled) {
@@ -299,7 +300,7 @@ TEST(AttributesOfHdf5, MarkMissingNumbersBeforeTheyAreScaled) {
   EXPECT_TRUE(std::isnan(force[2]));
   EXPECT_EQ(force[3], 2.0);
   EXPECT_THAT(recorded(root)->notes,
-              Contains("1 of the numbers is _FillValue (-99) and is missing (NaN) in 'force_x'"));
+              Contains(AllOf(HasSubstr("_FillValue"), HasSubstr("-99"), HasSubstr("NaN"), HasSubstr("'force_x'"))));
   // -99.9 stands in the file as the nearest float32.
   Vector real = kForce;
   real[2] = static_cast<double>(-99.9F);
@@ -332,7 +333,7 @@ TEST(AttributesOfHdf5, NameUnitsInWordsAndTimesSinceADate) {
   EXPECT_EQ(recording->find("hand_x")->values[3], 0.001);
   EXPECT_DOUBLE_EQ(recording->time[3], 3e-6);
   root.datasets["hand_x"].attributes["unit"] = text("m");
-  EXPECT_THAT(error_of(root), HasSubstr("'hand_x' is in 'Millimeters, m'"));
+  EXPECT_THAT(error_of(root), AllOf(HasSubstr("'hand_x'"), HasSubstr("'Millimeters, m'")));
 }
 
 TEST(AttributesOfHdf5, HoldForEachColumnOfAMatrix) {
@@ -340,7 +341,7 @@ TEST(AttributesOfHdf5, HoldForEachColumnOfAMatrix) {
   root.datasets["data"] = numbers(Vector::LinSpaced(8, 1, 8), {4, 2});
   root.datasets["data"].attributes = {{"scale_factor", {{2}, Numbers{(Vector(2) << 1, 10).finished()}}},
                                       {"units", {{2}, Texts{"mm", "N"}}}};
-  EXPECT_THAT(error_of(root, "x=data[1],Fx=data[2]"), HasSubstr("'data' is in 'mm, N'"));
+  EXPECT_THAT(error_of(root, "x=data[1],Fx=data[2]"), AllOf(HasSubstr("'data'"), HasSubstr("'mm, N'")));
   const auto recording = recorded(root, "x=data[1]:mm,Fx=data[2]:N");
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->find("hand_x")->values[1], 0.003);
@@ -369,7 +370,8 @@ TEST(TimeSeriesOfNwb, HaveTheTimeThatTheirStartAndRateSay) {
   ReadOptions options;
   options.channels = parse_channel_map("Fx=a/data[1]").value();
   options.rate = Hertz(500);
-  EXPECT_THAT(assemble(contents_of_hdf5(root), options).error().line(), HasSubstr("rate 500 Hz contradicts the file"));
+  EXPECT_THAT(assemble(contents_of_hdf5(root), options).error().line(),
+              AllOf(HasSubstr("500 Hz"), HasSubstr("1000 Hz")));
 }
 
 TEST(TimeSeriesOfNwb, AreNotTakenForSimultaneousWhereTheyStartAtOtherTimes) {
@@ -378,7 +380,7 @@ TEST(TimeSeriesOfNwb, AreNotTakenForSimultaneousWhereTheyStartAtOtherTimes) {
   root.groups["b"] = series(0.5);
   EXPECT_TRUE(recorded(root, "Fx=a/data[1],Fy=b/data[1]"));
   root.groups["b"] = series(0.6);
-  EXPECT_THAT(error_of(root, "Fx=a/data[1],Fy=b/data[1]"), HasSubstr("clocks of their own"));
+  EXPECT_THAT(error_of(root, "Fx=a/data[1],Fy=b/data[1]"), HasSubstr("--clock"));
   root.groups["b"].datasets.erase("starting_time");
   root.groups["b"].datasets["timestamps"] = numbers((Vector(4) << 500, 501, 502, 503).finished(), {}, "ms");
   EXPECT_TRUE(recorded(root, "Fx=a/data[1],Fy=b/data[1]"));
@@ -402,10 +404,10 @@ TEST(ContentsOfHdf5, TakesDifferencesOfTimesBeforeTheyAreRounded) {
   for (const auto& recording : {recorded(root), recorded(matrix, "time=log[2]:ns,x=hand_x")}) {
     ASSERT_TRUE(recording) << recording.error().line();
     EXPECT_EQ(recording->time, (Vector(4) << 0, 0.001, 0.002, 0.003).finished());
-    EXPECT_THAT(recording->notes, Contains("time counts from its first stamp, 1709288130000000001 ns"));
+    EXPECT_THAT(recording->notes, Contains(HasSubstr("1709288130000000001 ns")));
     EXPECT_NEAR(recording->time_zero, 1709288130.0, 1e-6);
   }
-  EXPECT_THAT(recorded(root)->notes, Contains("'hand_x' holds whole numbers above 2^53, which were rounded"));
+  EXPECT_THAT(recorded(root)->notes, Contains(AllOf(HasSubstr("'hand_x'"), HasSubstr("2^53"))));
 }
 
 TEST(ContentsOfHdf5, TakesSlicesOfArraysOfMoreDimensions) {
@@ -422,8 +424,8 @@ TEST(ContentsOfHdf5, TakesSlicesOfArraysOfMoreDimensions) {
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->find("hand_x")->values, Vector::LinSpaced(9, 27, 51));
   EXPECT_EQ(recording->find("force_x")->values, 10 * Vector::LinSpaced(9, 29, 53));
-  EXPECT_THAT(recording->notes, Contains("'data' (2×9×3) holds 2 trials along its dimension 1; time runs along its "
-                                         "dimension 2"));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("'data'"), HasSubstr("2×9×3"), HasSubstr("2 trials"),
+                                               HasSubstr("dimension 1"), HasSubstr("dimension 2"))));
 }
 
 TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {
@@ -437,7 +439,7 @@ TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {
     return recording ? recording->time[1] : 0.0;
   };
   Group attribute = without_time(), number = without_time(), of_one = without_time(), two = without_time();
-  EXPECT_THAT(error_of(without_time()), HasSubstr("no time that is recognised"));
+  EXPECT_THAT(error_of(without_time()), AllOf(HasSubstr("time"), HasSubstr("--rate")));
   attribute.attributes["Sampling rate"] = one(500.0);
   EXPECT_EQ(time_of(attribute), 0.002);
   number.datasets["fs_khz"] = Dataset{one(0.5), {}};
@@ -445,14 +447,14 @@ TEST(SampleRates, AreTakenFromTheFileAndHeldAgainstTime) {
   of_one.datasets["force_x"].attributes["SampleRate"] = one(500.0);
   EXPECT_EQ(time_of(of_one), 0.002);
   two.attributes = {{"fs", one(500.0)}, {"sampling_rate", one(1000.0)}};
-  EXPECT_THAT(error_of(two), HasSubstr("no time that is recognised"));
+  EXPECT_THAT(error_of(two), AllOf(HasSubstr("time"), HasSubstr("--rate")));
 
   Group timed = with_force(kForce, {});
   timed.attributes["fs"] = one(1030.0);  // nominal
   EXPECT_EQ(time_of(timed), 0.001);
   timed.datasets["fs"] = Dataset{one(1.0), {}};
   timed.attributes.clear();
-  EXPECT_THAT(error_of(timed), HasSubstr("a rate of 1 Hz, and its time 'time' runs at 1000 Hz; correct the one"));
+  EXPECT_THAT(error_of(timed), AllOf(HasSubstr("1 Hz"), HasSubstr("'time'"), HasSubstr("1000 Hz")));
   EXPECT_EQ(recorded(timed, "x=hand_x,time=time:s")->time[1], 0.001);
 }
 
@@ -461,7 +463,7 @@ TEST(ContentsOfHdf5, LeavesSidesOfOneOut) {
   root.datasets["p"] = numbers(Vector::LinSpaced(8, 0, 7), {4, 1, 2});
   const Contents contents = contents_of_hdf5(std::move(root));
   EXPECT_EQ(contents.arrays.at(0).values, (Matrix(4, 2) << 0, 1, 2, 3, 4, 5, 6, 7).finished());
-  EXPECT_THAT(contents.notes, ElementsAre("'p' (4×1×2) was read as 4×2"));
+  EXPECT_THAT(contents.notes, ElementsAre(AllOf(HasSubstr("'p'"), HasSubstr("4×1×2"), HasSubstr("4×2"))));
 }
 
 TEST(DecodeHdf5, RefusesARecordingOfMbkOfWhichAnythingIsDamaged) {
@@ -485,7 +487,7 @@ TEST(DecodeHdf5, RefusesARecordingOfMbkOfWhichAnythingIsDamaged) {
     const auto contents = decode_hdf5(std::as_bytes(std::span(changed)));
     if (contents) continue;
     ++refused;
-    EXPECT_THAT(contents.error().remedy, HasSubstr("copy it again"));
+    EXPECT_EQ(contents.error().kind, ErrorKind::data);
   }
   EXPECT_GT(refused, 0);
 }
@@ -501,10 +503,10 @@ TEST(DecodeHdf5, NamesTheObjectThatIsDamaged) {
   const double value = 1.5;
   bytes[bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof value))] = 1;
   EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes)))->notes,
-              ElementsAre(HasSubstr("'x' is damaged and was left out: a chunk has a wrong checksum")));
+              ElementsAre(AllOf(HasSubstr("'x'"), HasSubstr("checksum"))));
   bytes.replace(0, 10, "MATLAB 7.3");
   EXPECT_THAT(decode_hdf5(std::as_bytes(std::span(bytes)))->notes,
-              ElementsAre(HasSubstr("variable 'x' is damaged and was left out: a chunk has a wrong checksum")));
+              ElementsAre(AllOf(HasSubstr("'x'"), HasSubstr("checksum"))));
 }
 
 TEST(TakeColumns, BearASideThatNoNumberCanHoldBesideOneOfZero) {

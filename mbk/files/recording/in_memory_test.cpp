@@ -70,7 +70,7 @@ TEST(InMemory, IsReadByAMapAsAFileIs) {
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_NEAR(recording->find("position")->values[1], M_PI / 180.0, 1e-15);
   EXPECT_EQ(recording->find("reaction")->values[2], -4.0);
-  EXPECT_THAT(made->read({}).error().message, HasSubstr("no channel is recognised"));
+  EXPECT_THAT(made->read({}).error().message, AllOf(HasSubstr("angle of knee"), HasSubstr("load")));
   options.trial = "3";
   EXPECT_EQ(made->read(options).error().kind, ErrorKind::usage);
 }
@@ -106,9 +106,10 @@ TEST(InMemory, KeepsWhatWasReadAsItWas) {
 
 TEST(InMemory, SaysWhatIsWrong) {
   EXPECT_EQ(InMemory::of(std::vector<InMemory::Signal>()).error().kind, ErrorKind::usage);
-  EXPECT_THAT(InMemory::of({{"", "", ramp(1.0)}}).error().message, HasSubstr("no name"));
+  EXPECT_THAT(InMemory::of({{"", "", ramp(1.0)}}).error().message, HasSubstr("name"));
   EXPECT_THAT(InMemory::of({{"x", "", ramp(1.0)}, {"x", "", ramp(1.0)}}).error().message, HasSubstr("'x'"));
-  EXPECT_THAT(InMemory::of({{"x", "", ramp(1.0)}, {"F", "", Vector(Vector::Zero(3))}}).error().message, HasSubstr("3"));
+  EXPECT_THAT(InMemory::of({{"x", "", ramp(1.0)}, {"F", "", Vector(Vector::Zero(3))}}).error().message,
+              AllOf(HasSubstr("50 samples"), HasSubstr("'F'")));
   EXPECT_THAT(InMemory::of({{"x", "", Vector()}}).error().message, HasSubstr("empty"));
   EXPECT_EQ(InMemory::of({{"x", "", ramp(1.0)}}, std::nan("")).error().kind, ErrorKind::usage);
 }

@@ -79,7 +79,7 @@ TEST(JointNames, JointsOfARobotAreFoundByName) {
   EXPECT_EQ(value(*read, "torque_1"), -3.0);
   EXPECT_EQ(read->find("torque_1")->origin.joint, "shoulder");
   EXPECT_EQ(read->find("joint_3"), nullptr);
-  EXPECT_THAT(read->notes, Contains(HasSubstr("matched to the robot by name: 1 shoulder, 2 elbow")));
+  EXPECT_THAT(read->notes, Contains(AllOf(HasSubstr("1 shoulder"), HasSubstr("2 elbow"))));
 }
 
 TEST(JointNames, ARobotMayHaveTheLastOfMany) {
@@ -93,14 +93,15 @@ TEST(JointNames, ARobotMayHaveTheLastOfMany) {
 
 TEST(JointNames, AJointThatIsNotThereIsAnErrorWithBothLists) {
   const std::string error = error_of(topic({"elbow", "lift"}), of_robot({"shoulder", "elbow"}));
-  EXPECT_THAT(error, HasSubstr("no joint shoulder; its joints are elbow, lift, those of the robot shoulder, elbow"));
-  EXPECT_THAT(error, HasSubstr("--channels q1=/js.position.elbow,tau1=/js.effort.elbow,…"));
+  EXPECT_THAT(error, AllOf(HasSubstr("elbow, lift"), HasSubstr("shoulder, elbow")));
+  EXPECT_THAT(error, HasSubstr("--channels q1=/js.position.elbow,tau1=/js.effort.elbow"));
 }
 
 TEST(JointNames, AJointOfTwoTopicsIsThatOfTheNamedClock) {
   const Contents two = both(topic({"elbow", "shoulder"}), topic({"shoulder", "elbow"}, "/fast"));
-  EXPECT_THAT(error_of(two, of_robot({"shoulder", "elbow"})),
-              HasSubstr("joint 'shoulder' stands in '/js.position.shoulder' and in '/fast.position.shoulder'"));
+  EXPECT_THAT(
+      error_of(two, of_robot({"shoulder", "elbow"})),
+      AllOf(HasSubstr("'shoulder'"), HasSubstr("'/js.position.shoulder'"), HasSubstr("'/fast.position.shoulder'")));
   ReadOptions options = of_robot({"shoulder", "elbow"});
   options.clock = "/fast";
   const auto read = assemble(two, options);
@@ -111,9 +112,8 @@ TEST(JointNames, AJointOfTwoTopicsIsThatOfTheNamedClock) {
 
 TEST(JointNames, AMapThatContradictsNamesIsRefused) {
   const std::string swapped = "q1=/js.position.elbow,q2=/js.position.shoulder";
-  EXPECT_THAT(
-      error_of(topic({"elbow", "shoulder"}), of_robot({"shoulder", "elbow"}, swapped)),
-      HasSubstr("joint_1 is read from '/js.position.elbow', which belongs to 'elbow', the 2nd joint of the robot"));
+  EXPECT_THAT(error_of(topic({"elbow", "shoulder"}), of_robot({"shoulder", "elbow"}, swapped)),
+              AllOf(HasSubstr("joint_1"), HasSubstr("'/js.position.elbow'"), HasSubstr("'elbow'"), HasSubstr("2nd")));
   Contents table;
   table.format = "CSV";
   table.table = true;
@@ -121,7 +121,8 @@ TEST(JointNames, AMapThatContradictsNamesIsRefused) {
     table.arrays.push_back({.name = name, .values = SharedMatrix::of_column(Vector::LinSpaced(5, 0.0, 1.0))});
   }
   const Names joints = {"shoulder_joint", "elbow_joint"};
-  EXPECT_THAT(error_of(table, of_robot(joints, "tau1=tau_elbow_joint")), HasSubstr("the 2nd joint of the robot"));
+  EXPECT_THAT(error_of(table, of_robot(joints, "tau1=tau_elbow_joint")),
+              AllOf(HasSubstr("'tau_elbow_joint'"), HasSubstr("2nd")));
   EXPECT_EQ(error_of(table, of_robot(joints, "tau2=tau_elbow_joint,q1=3")), "");
 }
 
@@ -150,8 +151,7 @@ TEST(JointNames, AColumnOfAChannelsNameThatIsAnotherJointIsRefused) {
     table.arrays.push_back({.name = name, .values = SharedMatrix::of_column(Vector::LinSpaced(5, 0.0, 1.0))});
   }
   // The chain begins behind joint_1 of the arm.
-  EXPECT_THAT(error_of(table, of_robot({"joint_2", "joint_3"})),
-              HasSubstr("joint_2 is read from 'joint_2', which belongs to 'joint_2', the 1st joint of the robot"));
+  EXPECT_THAT(error_of(table, of_robot({"joint_2", "joint_3"})), AllOf(HasSubstr("'joint_2'"), HasSubstr("1st")));
   EXPECT_EQ(error_of(table, of_robot({"joint_1", "joint_2"})), "");
   EXPECT_EQ(error_of(table, of_robot({"shoulder", "elbow"})), "");
 }

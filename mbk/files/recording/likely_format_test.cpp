@@ -30,13 +30,13 @@ TEST(LikelyFormat, KnowsFilesByTheirFirstBytes) {
            std::pair{"TDSm\x0E\0"s, "TDMS"},
            {"\xFF"s + "BIOSEMI", "BDF"},
            {"0       X X X X", "EDF"},
-           {"#ROSBAG V1.2\n", "version 1"},
+           {"#ROSBAG V1.2\n", "ROS bag"},
            {"SQLite format 3\0"s, "SQLite"},
            {"PAR1\x15", "Parquet"},
            {"ARROW1\0\0"s, "Arrow"},
            {"\x80\x04\x95\x10", "pickle"},
-           {"X\n\0\0\0\3"s, "R object"},
-           {"RDX3\nX", "R data"},
+           {"X\n\0\0\0\3"s, ".rds"},
+           {"RDX3\nX", ".RData"},
            {"\x1F\x8B\x08", "gzip"},
            {"\xFD"s + "7zXZ\0"s, "xz"},
            {"\x28\xB5\x2F\xFD", "Zstandard"},
@@ -48,7 +48,7 @@ TEST(LikelyFormat, KnowsFilesByTheirFirstBytes) {
            {"ID;PWXL;N;E", "SYLK"},
            {"\xEF\xBB\xBF<?xml version", "XML"},
            {"{\"schema\": \"mbk.result/2\"}", "JSON"},
-           {"function y = f(x)", "MATLAB program"},
+           {"function y = f(x)", "MATLAB"},
        }) {
     EXPECT_THAT(what(bytes), HasSubstr(is)) << bytes;
   }
@@ -56,12 +56,12 @@ TEST(LikelyFormat, KnowsFilesByTheirFirstBytes) {
 }
 
 TEST(LikelyFormat, LooksIntoArchives) {
-  EXPECT_EQ(what(zip("[Content_Types].xml", "xl/workbook.xml")), "an Excel workbook");
-  EXPECT_EQ(what(zip("mimetypeapplication/vnd.oasis.opendocument.spreadsheet")), "an OpenDocument sheet");
-  EXPECT_EQ(what(zip("[Content_Types].xml", "simulink/blockdiagram.xml")), "a Simulink model (.slx)");
-  EXPECT_EQ(what(zip("raw/01_01.c3d")), "a zip archive with C3D files");
-  EXPECT_EQ(what(zip("readme.txt")), "a zip archive");
-  EXPECT_EQ(what("PK\5\6" + std::string(18, '\0')), "an empty zip archive");
+  EXPECT_THAT(what(zip("[Content_Types].xml", "xl/workbook.xml")), HasSubstr("Excel"));
+  EXPECT_THAT(what(zip("mimetypeapplication/vnd.oasis.opendocument.spreadsheet")), HasSubstr("OpenDocument"));
+  EXPECT_THAT(what(zip("[Content_Types].xml", "simulink/blockdiagram.xml")), HasSubstr("Simulink"));
+  EXPECT_THAT(what(zip("raw/01_01.c3d")), AllOf(HasSubstr("zip"), HasSubstr("C3D")));
+  EXPECT_THAT(what(zip("readme.txt")), AllOf(HasSubstr("zip"), Not(HasSubstr("C3D"))));
+  EXPECT_THAT(what("PK\5\6" + std::string(18, '\0')), HasSubstr("zip"));
 }
 
 TEST(LikelyFormat, IsSaidByTheReader) {
@@ -71,16 +71,15 @@ TEST(LikelyFormat, IsSaidByTheReader) {
     EXPECT_FALSE(recording);
     return recording ? "" : recording.error().line();
   };
-  EXPECT_THAT(line("\x01\x7F\x03"), HasSubstr("no known format: it is binary data (01 7f 03 …), and not HDF5, MAT,"));
-  EXPECT_THAT(line(std::string(300, '\0')), HasSubstr("it begins with zeros alone; copy it again"));
+  EXPECT_THAT(line("\x01\x7F\x03"), AllOf(HasSubstr("01 7f 03"), HasSubstr("HDF5"), HasSubstr("MAT")));
+  EXPECT_THAT(line(std::string(300, '\0')), HasSubstr("zeros"));
   for (const char* text : {"Dear all,\nhere are the data.\n", "[a]\nkey=value\n", "T;X\na;b\n"}) {
-    EXPECT_THAT(line(text), HasSubstr("it is text without a table of numbers (")) << text;
-    EXPECT_THAT(line(text), HasSubstr("Dexterit-E as .kinarm")) << text;
+    EXPECT_THAT(line(text), AllOf(HasSubstr("table"), HasSubstr("Dexterit-E"), HasSubstr(".kinarm"))) << text;
   }
   // A table is a table, whatever its first letters.
   const auto table = read(folder.write("trial.csv", "ID;Pressure\n0;1\n1;2\n"), {});
   ASSERT_FALSE(table);
-  EXPECT_THAT(table.error().line(), HasSubstr("no channel is recognised"));
+  EXPECT_THAT(table.error().line(), AllOf(HasSubstr("2 columns"), HasSubstr("Pressure")));
 }
 
 }  // namespace likely_format_test

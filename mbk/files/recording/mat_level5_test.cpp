@@ -162,11 +162,10 @@ TEST(DecodeMatLevel5, LeavesAsideWhatIsNotARealMatrixAndSaysSo) {
   ASSERT_TRUE(contents) << contents.error().line();
   ASSERT_EQ(contents->arrays.size(), 1u);
   EXPECT_TRUE(contents->arrays[0].obstacle);
-  EXPECT_THAT(contents->notes,
-              ElementsAre(HasSubstr("variable 'nlid' is an object of MATLAB class 'nldat', which"),
-                          "variable 'text' is text in a way that is not read; ignored",
-                          "variable 'sparse' is a sparse matrix; ignored", "variable 'z' is complex; ignored",
-                          "variable 'images' is an array of 4 dimensions; ignored"));
+  EXPECT_THAT(contents->notes, ElementsAre(AllOf(HasSubstr("'nlid'"), HasSubstr("'nldat'")), HasSubstr("'text'"),
+                                           AllOf(HasSubstr("'sparse'"), HasSubstr("matrix")),
+                                           AllOf(HasSubstr("'z'"), HasSubstr("complex")),
+                                           AllOf(HasSubstr("'images'"), HasSubstr("4 dimensions"))));
 }
 
 TEST(DecodeMatLevel5, ReadsObjectsOfTheOldKindAsStructures) {
@@ -181,8 +180,7 @@ TEST(DecodeMatLevel5, ReadsObjectsOfTheOldKindAsStructures) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays.at(0).name, "old.force");
   EXPECT_EQ(contents->arrays.at(0).values, kValues);
-  EXPECT_THAT(contents->notes,
-              ElementsAre("variable 'old' is an object of class 'sensor' and was read as a structure"));
+  EXPECT_THAT(contents->notes, ElementsAre(AllOf(HasSubstr("'old'"), HasSubstr("'sensor'"), HasSubstr("structure"))));
 }
 
 TEST(DecodeMatLevel5, KeepsArraysOfMoreDimensionsAsTheyStand) {
@@ -207,9 +205,9 @@ TEST(DecodeMatLevel5, ReadsCellsThatHoldNumbersAndStructures) {
   EXPECT_EQ(contents->arrays[2].name, "c{4}{1}");
   EXPECT_EQ(contents->arrays[2].values, 3 * kValues);
   EXPECT_TRUE(contents->texts.empty());
-  EXPECT_THAT(contents->notes, ElementsAre("texts in the cell array 'c' were ignored"));
+  EXPECT_THAT(contents->notes, ElementsAre(AllOf(HasSubstr("text"), HasSubstr("'c'"))));
   const auto many = decode(header5() + matrix5("c", {1025, 1}, double5("", kValues), 1));
-  EXPECT_THAT(error_of(header5() + matrix5("c", {2, 1}, double5("", kValues), 1)), HasSubstr("a cell is missing"));
+  EXPECT_THAT(error_of(header5() + matrix5("c", {2, 1}, double5("", kValues), 1)), HasSubstr("cell"));
   EXPECT_FALSE(many && many->notes.empty());
 }
 
@@ -222,7 +220,7 @@ TEST(DecodeMatLevel5, TellsFieldsOfOneNameApart) {
   EXPECT_EQ(contents->arrays[0].name, "s.a");
   EXPECT_EQ(contents->arrays[2].name, "s.a#2");
   EXPECT_EQ(contents->arrays[2].values, 2 * kValues);
-  EXPECT_THAT(contents->notes, ElementsAre("structure 's' has several fields 'a'; one is called 'a#2' here"));
+  EXPECT_THAT(contents->notes, ElementsAre(AllOf(HasSubstr("'s'"), HasSubstr("'a'"), HasSubstr("'a#2'"))));
 }
 
 TEST(DecodeMatLevel5, TakesUnsignedDimensions) {
@@ -235,7 +233,7 @@ TEST(DecodeMatLevel5, TakesUnsignedDimensions) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays.at(0).values, kValues);
   variable.replace(at, 4, raw(std::uint32_t{7}));
-  EXPECT_THAT(error_of(header5() + variable), HasSubstr("its dimensions are broken"));
+  EXPECT_THAT(error_of(header5() + variable), HasSubstr("dimensions"));
 }
 
 TEST(DecodeMatLevel5, LeavesSidesOfOneOut) {
@@ -244,7 +242,7 @@ TEST(DecodeMatLevel5, LeavesSidesOfOneOut) {
   const auto contents = decode(header5() + matrix5("p", {3, 1, 2}, element5(9, bytes)));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays.at(0).values, (Matrix(3, 2) << 1, 4, 2, 5, 3, 6).finished());
-  EXPECT_THAT(contents->notes, ElementsAre("variable 'p' (3×1×2) was read as 3×2"));
+  EXPECT_THAT(contents->notes, ElementsAre(AllOf(HasSubstr("'p'"), HasSubstr("3×1×2"), HasSubstr("3×2"))));
 }
 
 std::string utf16(std::u16string_view text) {
@@ -290,52 +288,54 @@ TEST(DecodeMatLevel5, TakesTextWithoutBytesAsBlanks) {
   EXPECT_THAT(lines_of(matrix5("t", {2, 3}, element5(1, ""), 4)), ElementsAre("", ""));
   const auto many = decode(header5() + matrix5("t", {1, 2147483647}, element5(1, ""), 4));
   ASSERT_TRUE(many);
-  EXPECT_THAT(many->notes, ElementsAre(HasSubstr("text in a way that is not read")));
+  EXPECT_THAT(many->notes, ElementsAre(AllOf(HasSubstr("'t'"), HasSubstr("text"))));
 }
 
 TEST(DecodeMatLevel5, RefusesTextThatDoesNotMatchItsDimensions) {
   EXPECT_THAT(error_of(header5() + matrix5("t", {1, 3}, element5(4, utf16(u"ab")), 4)),
-              HasSubstr("variable 't': dimensions 1×3 do not match 4 stored bytes of text"));
-  EXPECT_THAT(error_of(header5() + matrix5("t", {1, 1}, element5(4, "abc"), 4)), HasSubstr("do not match"));
-  EXPECT_THAT(error_of(header5() + matrix5("t", {2, 1}, element5(16, "abc"), 4)), HasSubstr("do not match"));
+              AllOf(HasSubstr("'t'"), HasSubstr("1×3"), HasSubstr("byte")));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {1, 1}, element5(4, "abc"), 4)),
+              AllOf(HasSubstr("'t'"), HasSubstr("1×1")));
+  EXPECT_THAT(error_of(header5() + matrix5("t", {2, 1}, element5(16, "abc"), 4)),
+              AllOf(HasSubstr("'t'"), HasSubstr("2×1")));
   EXPECT_THAT(error_of(header5() + matrix5("t", {3, 1}, matrix5("", {1, 1}, element5(1, "a"), 4), 1)),
-              HasSubstr("a cell is missing"));
+              HasSubstr("cell"));
   const auto many = decode(header5() + matrix5("t", {2147483647, 0}, element5(1, ""), 4));
   ASSERT_TRUE(many);
-  EXPECT_THAT(many->notes, ElementsAre(HasSubstr("text in a way that is not read")));
+  EXPECT_THAT(many->notes, ElementsAre(AllOf(HasSubstr("'t'"), HasSubstr("text"))));
 }
 
 TEST(DecodeMatLevel5, RefusesDimensionsThatDoNotMatchTheData) {
   EXPECT_THAT(error_of(header5() + matrix5("z", {2, 3}, element5(9, raw(1.0)))),
-              HasSubstr("variable 'z': dimensions 2×3 do not match 8 stored bytes"));
+              AllOf(HasSubstr("'z'"), HasSubstr("2×3"), HasSubstr("byte")));
   EXPECT_THAT(error_of(header5() + matrix5("z", {2147483647, 2147483647, 2147483647}, element5(9, raw(1.0)))),
-              HasSubstr("do not match"));
+              AllOf(HasSubstr("'z'"), HasSubstr("2147483647×2147483647×2147483647")));
   EXPECT_THAT(error_of(header5() + matrix5("z", {-1, 1}, element5(9, raw(1.0)))),
-              HasSubstr("dimension -1 is negative"));
+              AllOf(HasSubstr("dimension"), HasSubstr("-1")));
 }
 
 TEST(DecodeMatLevel5, RefusesStructuresNestedTooDeeply) {
   std::string inner = double5("", kValues);
   for (int i = 0; i < 40; ++i) inner = struct5("", {{"f", inner}});
-  EXPECT_THAT(error_of(header5() + struct5("s", {{"f", inner}})), HasSubstr("nested too deeply"));
+  EXPECT_THAT(error_of(header5() + struct5("s", {{"f", inner}})), HasSubstr("structure"));
 }
 
 TEST(DecodeMatLevel5, RefusesCompressedDataWhoseChecksumIsWrong) {
   std::string file = header5() + compressed5(double5("z", kValues));
   file.back() = static_cast<char>(file.back() ^ 1);
-  EXPECT_THAT(error_of(file), HasSubstr("compressed data is damaged (its stream or its checksum is broken)"));
+  EXPECT_THAT(error_of(file), HasSubstr("checksum"));
 }
 
 TEST(DecodeMatLevel5, RefusesCompressedDataThatHoldsMoreOrLessThanClaimed) {
-  const std::string matrix = double5("z", kValues);
-  EXPECT_THAT(error_of(header5() + compressed5(matrix + "12345678")), HasSubstr("more than"));
-  EXPECT_THAT(error_of(header5() + compressed5(matrix.substr(0, matrix.size() - 8))), HasSubstr("fewer than"));
+  const std::string matrix = double5("z", kValues), claimed = std::to_string(matrix.size()) + " bytes";
+  EXPECT_THAT(error_of(header5() + compressed5(matrix + "12345678")), HasSubstr(claimed));
+  EXPECT_THAT(error_of(header5() + compressed5(matrix.substr(0, matrix.size() - 8))), HasSubstr(claimed));
 }
 
 TEST(DecodeMatLevel5, DoesNotBelieveAnAbsurdClaim) {
   std::string matrix = double5("z", kValues);
   matrix.replace(4, 4, raw(std::uint32_t{0xFFFFFFF0}));
-  EXPECT_THAT(error_of(header5() + compressed5(matrix)), HasSubstr("claim to hold 4294967288 bytes"));
+  EXPECT_THAT(error_of(header5() + compressed5(matrix)), HasSubstr("4294967288 bytes"));
 }
 
 TEST(DecodeMatLevel5, RefusesAFileCutAnywhere) {

@@ -97,8 +97,8 @@ TEST(PutOnClock, MakesNothingUpOverAGap) {
       EXPECT_EQ(values[k], 1.0) << t;
     }
   }
-  EXPECT_THAT(common->notes, ElementsAre("x of 'b' (1 Hz) was put on the clock of 'a' (10 Hz) by linear interpolation; "
-                                         "29 samples in its gaps are NaN"));
+  EXPECT_THAT(common->notes, ElementsAre(AllOf(HasSubstr("'b'"), HasSubstr("1 Hz"), HasSubstr("'a'"),
+                                               HasSubstr("10 Hz"), HasSubstr("29 samples"), HasSubstr("NaN"))));
 }
 
 TEST(PutOnClock, SpreadsWhatIsNoNumberToBothSidesOnly) {
@@ -117,7 +117,7 @@ TEST(PutOnClock, LeavesOutWhatNotEveryStreamCovers) {
   EXPECT_DOUBLE_EQ(common->time[0], 2.1);
   EXPECT_DOUBLE_EQ(common->time[common->time.size() - 1], 5.0);
   EXPECT_EQ(common->time.size(), 30);
-  EXPECT_EQ(common->notes.back(), "70 samples of 'a' were left out, as not every stream covers them");
+  EXPECT_THAT(common->notes.back(), AllOf(HasSubstr("70 samples"), HasSubstr("'a'")));
 }
 
 TEST(PutOnClock, SaysWhatFoldsDown) {
@@ -126,7 +126,7 @@ TEST(PutOnClock, SaysWhatFoldsDown) {
   const auto common = put_on_clock(slow, std::vector<ClockedSignal>{{"force_x", &fast, &values}});
   ASSERT_TRUE(common);
   EXPECT_EQ(values.size(), 50);
-  EXPECT_THAT(common->notes, ElementsAre(HasSubstr("; what it holds above 50 Hz folds down")));
+  EXPECT_THAT(common->notes, ElementsAre(HasSubstr("50 Hz")));
 }
 
 TEST(PutOnClock, TouchesNothingWhereThereIsOneStream) {
@@ -142,14 +142,15 @@ TEST(PutOnClock, TouchesNothingWhereThereIsOneStream) {
 TEST(PutOnClock, RefusesStampsThatDoNotRise) {
   const Clock good = steady("good", 0.0, 1.0, 4);
   Vector values = Vector::Zero(4);
-  for (const auto& [stamps, says] :
-       {std::pair{(Vector(4) << 0, 2, 1, 3).finished(), "sample 3 at 1.000000 s follows one at 2.000000 s"},
-        {(Vector(4) << 0, 1, 1, 3).finished(), "does not rise"},
-        {(Vector(4) << 0, 1, kNaN, 3).finished(), "no numbers"},
-        {(Vector(4) << 0, 1, 2, HUGE_VAL).finished(), "no numbers"}}) {
+  for (const auto& [stamps, says] : {std::pair{(Vector(4) << 0, 2, 1, 3).finished(), "sample 3"},
+                                     {(Vector(4) << 0, 1, 1, 3).finished(), "sample 3"},
+                                     {(Vector(4) << 0, 1, kNaN, 3).finished(), "number"},
+                                     {(Vector(4) << 0, 1, 2, HUGE_VAL).finished(), "number"}}) {
     const Clock bad{"bad", stamps};
-    EXPECT_THAT(refused(good, std::vector<ClockedSignal>{{"x", &bad, &values}}), HasSubstr(says));
-    EXPECT_THAT(refused(bad, std::vector<ClockedSignal>{{"x", &good, &values}}), HasSubstr(says));
+    EXPECT_THAT(refused(good, std::vector<ClockedSignal>{{"x", &bad, &values}}),
+                AllOf(HasSubstr("'bad'"), HasSubstr(says)));
+    EXPECT_THAT(refused(bad, std::vector<ClockedSignal>{{"x", &good, &values}}),
+                AllOf(HasSubstr("'bad'"), HasSubstr(says)));
   }
 }
 
@@ -157,10 +158,10 @@ TEST(PutOnClock, RefusesStreamsThatDoNotMeet) {
   const Clock a = steady("a", 0.0, 1.0, 4), b = steady("b", 10.0, 1.0, 4), none{"none", Vector()};
   const Clock between{"between", (Vector(2) << 1.2, 1.7).finished()};  // overlaps, but there is no stamp of `a` in it
   Vector four = Vector::Zero(4), two = Vector::Zero(2), zero;
-  EXPECT_THAT(refused(a, std::vector<ClockedSignal>{{"x", &b, &four}}), HasSubstr("not recorded at the same time"));
-  EXPECT_THAT(refused(a, std::vector<ClockedSignal>{{"x", &between, &two}}), HasSubstr("not recorded at the same"));
-  EXPECT_THAT(refused(a, std::vector<ClockedSignal>{{"x", &none, &zero}}), HasSubstr("'none' has no samples"));
-  EXPECT_THAT(refused(none, std::vector<ClockedSignal>{{"x", &a, &four}}), HasSubstr("'none' has no samples"));
+  EXPECT_THAT(refused(a, std::vector<ClockedSignal>{{"x", &b, &four}}), HasSubstr("mbk info"));
+  EXPECT_THAT(refused(a, std::vector<ClockedSignal>{{"x", &between, &two}}), HasSubstr("mbk info"));
+  EXPECT_THAT(refused(a, std::vector<ClockedSignal>{{"x", &none, &zero}}), HasSubstr("'none'"));
+  EXPECT_THAT(refused(none, std::vector<ClockedSignal>{{"x", &a, &four}}), HasSubstr("'none'"));
 }
 
 TEST(PutOnClock, RefusesASignalOfAnotherLengthThanItsClock) {
@@ -168,7 +169,7 @@ TEST(PutOnClock, RefusesASignalOfAnotherLengthThanItsClock) {
   Vector wrong = Vector::Zero(7), right = Vector::Zero(8);
   for (const Clock* const chosen : {&a, &b}) {
     EXPECT_THAT(refused(*chosen, std::vector<ClockedSignal>{{"y", &b, &right}, {"x", &b, &wrong}}),
-                HasSubstr("x has 7 samples, the clock of 'b' has 8"));
+                AllOf(HasSubstr("7 samples"), HasSubstr("'b'")));
   }
 }
 
@@ -200,11 +201,12 @@ Contents two_streams() {
 TEST(AssembleStreams, AsksWhoseStampsTheRecordingHas) {
   const auto recording = assemble(two_streams(), {});
   ASSERT_FALSE(recording);
-  EXPECT_THAT(recording.error().line(), HasSubstr("'robot' (1000 Hz), 'tracker' (100 Hz)"));
+  EXPECT_THAT(recording.error().line(),
+              AllOf(HasSubstr("'robot'"), HasSubstr("1000 Hz"), HasSubstr("'tracker'"), HasSubstr("100 Hz")));
   EXPECT_THAT(recording.error().remedy, HasSubstr("--clock 'robot'"));
   ReadOptions options;
   options.clock = "gaze";
-  EXPECT_THAT(assemble(two_streams(), options).error().line(), HasSubstr("there is no clock 'gaze'"));
+  EXPECT_THAT(assemble(two_streams(), options).error().line(), HasSubstr("'gaze'"));
 }
 
 TEST(AssembleStreams, PutsEveryChannelOnTheChosenClock) {
@@ -241,7 +243,7 @@ TEST(AssembleStreams, DoesNotReadBeyondAnArrayThatHasNoClock) {
       options.channels = parse_channel_map(columns == 1 ? "Fx=robot/Fx,Fy=loose" : "Fx=robot/Fx,Fy=loose[2]").value();
       const auto recording = assemble(std::move(contents), options);
       ASSERT_FALSE(recording);
-      EXPECT_THAT(recording.error().line(), HasSubstr("force_y has"));
+      EXPECT_THAT(recording.error().line(), HasSubstr("force_y"));
     }
   }
 }
@@ -257,7 +259,7 @@ TEST(AssembleStreams, TakesNoChannelForTheTimeOfAStream) {
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_NEAR(recording->time[0], 5.251, 1e-9);
   options.channels = parse_channel_map("time=robot/time,Fx=robot/Fx,x=tracker/x").value();
-  EXPECT_THAT(assemble(contents, options).error().line(), HasSubstr("leave time out of --channels"));
+  EXPECT_THAT(assemble(contents, options).error().line(), AllOf(HasSubstr("--channels"), HasSubstr("--clock")));
   options.channels = parse_channel_map("time=robot/time,Fx=robot/Fx").value();  // as asked, of one stream
   const auto named = assemble(contents, options);
   ASSERT_TRUE(named) << named.error().line();

@@ -83,7 +83,7 @@ TEST_F(ReadParts, CountsTimeOnWhereTheFilesSayTheRate) {
   EXPECT_NEAR(recording->events[2].time, 0.02 + 12 / 200.0, 1e-8);  // a 32-bit real
   file.rate = 50.0;
   EXPECT_THAT(bad({first, folder_.write("a2.c3d", file.bytes())}, options).message,
-              HasSubstr("it runs at 100 Hz, the parts before it at 200 Hz"));
+              AllOf(HasSubstr("100 Hz"), HasSubstr("200 Hz")));
 }
 
 TEST_F(ReadParts, JoinsMetadataAndEventsAndSaysWhereTheyDiffer) {
@@ -98,34 +98,35 @@ TEST_F(ReadParts, JoinsMetadataAndEventsAndSaysWhereTheyDiffer) {
   const auto recording = read_parts({folder_ / "log_1.mat", folder_ / "log_2.mat"}, {});
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->metadata, (std::map<std::string, std::string>{{"participant", "7"}, {"part", "1"}}));
-  EXPECT_THAT(recording->notes, testing::Contains("metadata 'part' differs between the parts: '1' was kept, not '2'"));
+  EXPECT_THAT(recording->notes, testing::Contains(AllOf(HasSubstr("'part'"), HasSubstr("'1'"), HasSubstr("'2'"))));
   ASSERT_EQ(recording->events.size(), 2u);
   EXPECT_EQ(recording->events[1].time, 2.5);
 }
 
 TEST_F(ReadParts, NamesAMissingPart) {
-  EXPECT_THAT(bad({log("log_1.mat", 0), log("log_3.mat", 1)}).message, HasSubstr("part 2 is missing between"));
+  EXPECT_THAT(bad({log("log_1.mat", 0), log("log_3.mat", 1)}).message, HasSubstr("part 2"));
 }
 
 TEST_F(ReadParts, RefusesTimeThatRestarts) {
   const Error error = bad({log("log_1.mat", 0), log("log_2.mat", 0)});
-  EXPECT_THAT(error.line(), HasSubstr("log_2.mat: time restarts at 0 s after 0.009 s"));
+  EXPECT_THAT(error.line(), AllOf(HasSubstr("log_2.mat"), HasSubstr("0 s"), HasSubstr("0.009 s")));
 }
 
 TEST_F(ReadParts, RefusesTimeThatRunsBack) {
-  EXPECT_THAT(bad({log("log_1.mat", 5), log("log_2.mat", 4)}).message, HasSubstr("time does not run on"));
+  EXPECT_THAT(bad({log("log_1.mat", 5), log("log_2.mat", 4)}).message, AllOf(HasSubstr("4 s"), HasSubstr("5.009 s")));
 }
 
 TEST_F(ReadParts, RefusesNamesThatDoNotBelongTogether) {
-  EXPECT_THAT(bad({log("log_1.mat", 0), log("run_2.mat", 1)}).message, HasSubstr("not parts of one record"));
+  EXPECT_THAT(bad({log("log_1.mat", 0), log("run_2.mat", 1)}).message,
+              AllOf(HasSubstr("log_1.mat"), HasSubstr("run_2.mat")));
   EXPECT_EQ(bad({log("log_1.mat", 0), log("final.mat", 1)}).kind, ErrorKind::usage);
-  EXPECT_THAT(bad({log("log_1.mat", 0), log("log_01.mat", 1)}).message, HasSubstr("twice"));
+  EXPECT_THAT(bad({log("log_1.mat", 0), log("log_01.mat", 1)}).message, HasSubstr("part 1"));
   EXPECT_EQ(bad({}).kind, ErrorKind::usage);
 }
 
 TEST_F(ReadParts, RefusesPartsWithOtherChannels) {
   const Error error = bad({folder_.write("a1.csv", "t,x\n0,1\n"), folder_.write("a2.csv", "t,y\n1,1\n")});
-  EXPECT_THAT(error.message, HasSubstr("has the channels hand_y [m] where the first part has hand_x [m]"));
+  EXPECT_THAT(error.message, AllOf(HasSubstr("hand_y [m]"), HasSubstr("hand_x [m]")));
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ TEST(Preamble, TakesARateHoweverItIsWritten) {
     const Preamble found = of({"title", line});
     ASSERT_TRUE(found.rate_hz) << line;
     EXPECT_DOUBLE_EQ(*found.rate_hz, 500.0) << line;
-    EXPECT_THAT(found.rate_from, HasSubstr("line 2, '")) << line;
-    EXPECT_THAT(found.notes, Contains(HasSubstr("the sampling rate is 500 Hz"))) << line;
+    EXPECT_THAT(found.rate_from, HasSubstr("line 2")) << line;
+    EXPECT_THAT(found.notes, Contains(AllOf(HasSubstr("line 2"), HasSubstr("500 Hz")))) << line;
   }
 }
 
@@ -71,14 +71,15 @@ TEST(Preamble, NamesARateThatMayBeSomethingElse) {
         "Fs: 100, 200", "Fs=1000; rate=50", "Sample Rate,1,rpm", "SampleRate=1e400", "rate: 5 (nominal)"}) {
     const Preamble found = of({line});
     EXPECT_FALSE(found.rate_hz) << line;
-    EXPECT_THAT(found.notes, ElementsAre("line 1, '" + std::string(line) + "', was not used"));
+    EXPECT_THAT(found.notes, ElementsAre(AllOf(HasSubstr("line 1"), HasSubstr("'" + std::string(line) + "'"))));
   }
 }
 
 TEST(Preamble, TakesNoRateWhereTwoLinesDiffer) {
   const Preamble found = of({"Fs=1000", "SampleRate=500"});
   EXPECT_FALSE(found.rate_hz);
-  EXPECT_THAT(found.notes, ElementsAre("line 1, 'Fs=1000', was not used", "line 2, 'SampleRate=500', was not used"));
+  EXPECT_THAT(found.notes, ElementsAre(AllOf(HasSubstr("line 1"), HasSubstr("'Fs=1000'")),
+                                       AllOf(HasSubstr("line 2"), HasSubstr("'SampleRate=500'"))));
   EXPECT_EQ(of({"Fs=1000", "SampleRate=1 kHz"}).rate_hz, 1000.0);
 }
 
@@ -94,7 +95,7 @@ TEST(Preamble, TakesUnitsOfEachDimension) {
   EXPECT_THAT(units_of("inDegrees;yes;"), ElementsAre("deg"));
   EXPECT_THAT(units_of("inDegrees=no"), IsEmpty());
   EXPECT_THAT(of({"Units: mm"}).notes,
-              ElementsAre("line 1, 'Units: mm': lengths are in mm, unless their column says another unit"));
+              ElementsAre(AllOf(HasSubstr("line 1"), HasSubstr("'Units: mm'"), HasSubstr("length"))));
 }
 
 TEST(Preamble, NamesAUnitThatMayBeOfSomethingElse) {
@@ -102,7 +103,7 @@ TEST(Preamble, NamesAUnitThatMayBeOfSomethingElse) {
                            "Angles: mm", "Position: in inches", "gain=4.45", "Conversion (deg)"}) {
     const Preamble found = of({line});
     EXPECT_THAT(found.units, IsEmpty()) << line;
-    EXPECT_THAT(found.notes, ElementsAre(HasSubstr("was not used"))) << line;
+    EXPECT_THAT(found.notes, ElementsAre(HasSubstr("'" + std::string(line) + "'"))) << line;
   }
   EXPECT_THAT(of({"inDegrees=yes", "Units: rad"}).units, IsEmpty());
   EXPECT_THAT(of({"inDegrees=yes", "Units: rad"}).notes, testing::SizeIs(2));
@@ -111,7 +112,7 @@ TEST(Preamble, NamesAUnitThatMayBeOfSomethingElse) {
 TEST(Preamble, NamesDates) {
   for (const char* line :
        {"Recorded on 2024-03-01 10:15", "Date;01.03.2024", "3/1/24", "Created: March 1", "Start time: 9"}) {
-    EXPECT_THAT(of({line}).notes, ElementsAre(HasSubstr("was not used"))) << line;
+    EXPECT_THAT(of({line}).notes, ElementsAre(HasSubstr("'" + std::string(line) + "'"))) << line;
   }
 }
 
@@ -144,7 +145,7 @@ TEST(PreambleOfATable, GivesTheRateWhereThereIsNoTime) {
   const auto recording = read_table("Fs,500\nhand_x,hand_y,force_x\n1,2,3\n2,3,4\n3,4,5\n");
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->time, Vector(Vector::LinSpaced(3, 0.0, 0.004)));
-  EXPECT_THAT(recording->notes, Contains("line 1, 'Fs,500': the sampling rate is 500 Hz"));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("line 1"), HasSubstr("'Fs,500'"), HasSubstr("500 Hz"))));
 }
 
 TEST(PreambleOfATable, IsNoHeaderWhereThereIsNone) {
@@ -159,16 +160,14 @@ TEST(PreambleOfATable, IsNoHeaderWhereThereIsNone) {
 TEST(PreambleOfATable, RefusesARateThatItsTimeContradicts) {
   const auto recording = read_table("SampleRate=500\ntime,hand_x,hand_y,force_x\n" + kRows);
   ASSERT_FALSE(recording);
-  EXPECT_THAT(
-      recording.error().line(),
-      HasSubstr("the file says a rate of 500 Hz (line 1, 'SampleRate=500'), and its time 'time' runs at 1000 Hz"));
-  EXPECT_THAT(recording.error().remedy, HasSubstr("correct the one that is wrong"));
+  EXPECT_THAT(recording.error().line(), AllOf(HasSubstr("500 Hz"), HasSubstr("line 1"), HasSubstr("'SampleRate=500'"),
+                                              HasSubstr("'time'"), HasSubstr("1000 Hz")));
+  EXPECT_THAT(recording.error().remedy, HasSubstr("--channels time=time:s"));
   // A rate may be a nominal one.
   const auto nominal = read_table("SampleRate=1050\ntime,hand_x,hand_y,force_x\n" + kRows);
   ASSERT_TRUE(nominal) << nominal.error().line();
-  EXPECT_THAT(nominal->notes,
-              Contains(HasSubstr("says a rate of 1050 Hz (line 1, 'SampleRate=1050'), and its time 'time' runs "
-                                 "at 1000 Hz, which was taken")));
+  EXPECT_THAT(nominal->notes, Contains(AllOf(HasSubstr("1050 Hz"), HasSubstr("line 1"), HasSubstr("'SampleRate=1050'"),
+                                             HasSubstr("'time'"), HasSubstr("1000 Hz"))));
   EXPECT_TRUE(read_table("SampleRate=1000\ntime,hand_x,hand_y,force_x\n" + kRows));
 }
 
@@ -178,7 +177,7 @@ TEST(PreambleOfATable, GivesUnitsToTheColumnsThatCanHaveThem) {
   EXPECT_EQ(recording->find("hand_x")->values[0], 0.020);
   EXPECT_EQ(recording->find("hand_y")->values[0], 1.0);
   EXPECT_EQ(recording->find("force_x")->values[0], 1.0);
-  EXPECT_THAT(recording->notes, Contains("hand_x is taken in mm, as the file says of its lengths"));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("hand_x"), HasSubstr("mm"))));
   const auto mapped = read_table("# force in lbf, time in ms\nt,a,b,c\n" + kRows, "time=1,x=2,Fx=4");
   ASSERT_TRUE(mapped) << mapped.error().line();
   EXPECT_EQ(mapped->find("force_x")->values[0], 4.4482216152605);
@@ -195,14 +194,14 @@ TEST(PreambleOfATable, ReadsAMotionThatASpreadsheetSaved) {
     ASSERT_TRUE(recording) << recording.error().line();
     EXPECT_DOUBLE_EQ(recording->find("joint_1")->values[0], -1.5707963267948966);
     EXPECT_EQ(recording->find("torque_1")->values[0], 1.0);
-    EXPECT_THAT(recording->notes, Contains("joint_1 is taken in deg, as the file says of its angles"));
+    EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("joint_1"), HasSubstr("deg"))));
   }
 }
 
 TEST(PreambleOfATable, AsksWhetherTheOneAxisIsMeant) {
   const auto recording = read_table("Angles in degrees\ntime,position,reaction,n\n" + kRows);
   ASSERT_FALSE(recording);
-  EXPECT_THAT(recording.error().line(), HasSubstr("its angles are in deg, and not whether 'position' is one"));
+  EXPECT_THAT(recording.error().line(), AllOf(HasSubstr("deg"), HasSubstr("'position'")));
   EXPECT_TRUE(read_table("Angles in degrees\ntime,position,reaction,n\n" + kRows, "x=position:deg,F=reaction", 1));
 }
 
@@ -211,7 +210,8 @@ TEST(PreambleOfATable, NamesWhatStandsAmongItsRows) {
       read_table("time,hand_x,hand_y,force_x\n" + kRows + "# units: mm\n# touched\n0.004,20,1,1\n# Fs=500\n");
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->find("hand_x")->values[0], 20);
-  EXPECT_THAT(recording->notes, ElementsAre("line 6, '# units: mm', was not used", "line 9, '# Fs=500', was not used"));
+  EXPECT_THAT(recording->notes, ElementsAre(AllOf(HasSubstr("line 6"), HasSubstr("'# units: mm'")),
+                                            AllOf(HasSubstr("line 9"), HasSubstr("'# Fs=500'"))));
 }
 
 TEST(PreambleOfATable, LeavesTheCommentsOfOurOwnFilesAlone) {

@@ -62,7 +62,7 @@ TEST_F(Read, ScalesAndShiftsASourceBeforeTheUnit) {
   EXPECT_EQ(recording.find("force_x")->unit, "N");
   EXPECT_EQ(recording.find("force_y")->values, Vector(Eigen::Vector2d(-2.0 / 1e3, 4.0 / 1e3)));
   EXPECT_EQ(recording.find("hand_x")->values, Vector(Eigen::Vector2d(5.0 / 1e3, 15.0 / 1e3)));
-  EXPECT_THAT(recording.notes, Contains("force_x is Vx*-8.56+0.54, as asked, in N"));
+  EXPECT_THAT(recording.notes, Contains(AllOf(HasSubstr("force_x"), HasSubstr("Vx*-8.56+0.54"))));
 }
 
 TEST_F(Read, TakesANameBeforeArithmetic) {
@@ -81,11 +81,11 @@ TEST_F(Read, TakesANameBeforeArithmetic) {
 TEST_F(Read, NamesWhatArithmeticDoesNotFind) {
   const std::string csv = "time,a\n0,1\n0.1,1\n";
   EXPECT_THAT(bad(csv, with_channels("x=b*2+1")).message,
-              HasSubstr("there is no 'b*2+1' and no 'b'; it has 2 columns"));
-  EXPECT_EQ(bad(csv, with_channels("x=a*2:furlong")).message, "unknown unit 'furlong' of channel x");
+              AllOf(HasSubstr("'b*2+1'"), HasSubstr("'b'"), HasSubstr("2 columns")));
+  EXPECT_THAT(bad(csv, with_channels("x=a*2:furlong")).message, HasSubstr("'furlong'"));
   const Error none = bad(csv, with_channels("x=a*0"));
   EXPECT_EQ(none.kind, ErrorKind::usage);
-  EXPECT_EQ(none.message, "channel x: the gain 0 leaves nothing of 'a'");
+  EXPECT_THAT(none.message, AllOf(HasSubstr("channel x"), HasSubstr("gain"), HasSubstr("'a'")));
 }
 
 // ---- columns of several matrices ----
@@ -109,26 +109,25 @@ TEST_F(Read, TakesTheUnitOfAMatrixFromItsNameAndTheOnlyColumnOfAVector) {
   const Recording recording = good(bytes, with_channels("x=pos_mm[2],Fx=load[1]"));
   EXPECT_EQ(recording.find("hand_x")->values, Vector::Constant(5, 0.25));
   EXPECT_EQ(recording.find("force_x")->values, Vector::Constant(5, 3.0));
-  EXPECT_THAT(recording.notes, Contains("hand_x is taken in mm, as its name 'pos_mm' says"));
-  EXPECT_THAT(recording.notes, Contains("time is 'time', by its name"));
+  EXPECT_THAT(recording.notes, Contains(AllOf(HasSubstr("hand_x"), HasSubstr("'pos_mm'"))));
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("'time'")));
 }
 
 TEST_F(Read, TakesANameWithBracketsBeforeAColumn) {
   EXPECT_EQ(good("time,pos[1]\n0,5\n1,5\n", with_channels("x=pos[1]")).channels.front().values[0], 5.0);
   EXPECT_THAT(bad("time,pos\n0,5\n1,5\n", with_channels("x=pos[1]")).message,
-              HasSubstr("there is no 'pos[1]'; it has 2"));
+              AllOf(HasSubstr("'pos[1]'"), HasSubstr("2 columns")));
 }
 
 TEST_F(Read, SaysWhatThereIsWhereAColumnOfAMatrixIsNot) {
   const std::string bytes = header5() + double5("pos", Matrix::Zero(30, 3)) + double5("force", Matrix::Zero(29, 3));
-  EXPECT_EQ(bad(bytes, with_channels("x=pos[4]")).line(),
-            (folder_ / "file").string() +
-                ", variable 'pos': channel x: there is no column 4; the matrix is 30×3; they are counted from 1");
-  EXPECT_THAT(bad(bytes, with_channels("x=pos[0]")).message, HasSubstr("there is no column 0"));
+  EXPECT_THAT(bad(bytes, with_channels("x=pos[4]")).line(),
+              AllOf(HasSubstr("'pos'"), HasSubstr("channel x"), HasSubstr("column 4"), HasSubstr("30×3")));
+  EXPECT_THAT(bad(bytes, with_channels("x=pos[0]")).message, HasSubstr("column 0"));
   EXPECT_THAT(bad(bytes, with_channels("x=posi[1]")).message,
-              HasSubstr("there is no 'posi'; it has the variables pos (30×3), force (29×3)"));
+              AllOf(HasSubstr("'posi'"), HasSubstr("pos (30×3)"), HasSubstr("force (29×3)")));
   EXPECT_THAT(bad(bytes, with_channels("x=pos[1],Fx=force[1]")).message,
-              HasSubstr("hand_x ('pos[1]') has 30 samples, force_x ('force[1]') has 29"));
+              AllOf(HasSubstr("'pos[1]'"), HasSubstr("30 samples"), HasSubstr("'force[1]'")));
   EXPECT_THAT(bad(bytes, with_channels("x=pos")).remedy, HasSubstr("\"x=pos[1]\""));
   EXPECT_THAT(bad(bytes, with_channels("x=2")).remedy, HasSubstr("\"x=pos[2]\""));
   EXPECT_THAT(bad(bytes).remedy, HasSubstr("\"time=pos[1],x=pos[2],Fx=force[1]\""));
@@ -207,13 +206,12 @@ TEST_F(Read, AsksWhichOfSeveralMatricesIsMeant) {
   options.variable = "b";
   EXPECT_EQ(good(two, options).samples(), 40);
   options.variable = "c";
-  EXPECT_THAT(bad(two, options).message,
-              HasSubstr("there is no variable 'c'; it has the variables a (19×30), b (19×40)"));
+  EXPECT_THAT(bad(two, options).message, AllOf(HasSubstr("'c'"), HasSubstr("a (19×30)"), HasSubstr("b (19×40)")));
 }
 
 TEST_F(Read, DoesNotTransposeALogsMatrix) {
   const std::string tall = header5() + double5("logs", logs(30).transpose());
-  EXPECT_THAT(bad(tall).line(), HasSubstr("variable 'logs': matrix is 30×19, a logs matrix has 19 rows"));
+  EXPECT_THAT(bad(tall).line(), AllOf(HasSubstr("'logs'"), HasSubstr("30×19"), HasSubstr("19 rows")));
   EXPECT_THAT(bad(tall).remedy, HasSubstr("--channels"));
   EXPECT_EQ(good(tall, with_channels("time=1,x=2,Fx=10")).find("force_x")->values, logs(30).row(9).transpose());
 }
@@ -265,25 +263,24 @@ TEST_F(Read, CountsLinesOfTheNamedField) {
 
 TEST_F(Read, NamesWhatIsNotThere) {
   EXPECT_THAT(bad("t,u\n0,1\n", with_channels("x=v")).message,
-              HasSubstr("channel x: there is no 'v'; it has 2 columns: t, u"));
-  EXPECT_THAT(bad("t,u\n0,1\n", with_channels("x=3")).message, HasSubstr("there is no column 3"));
-  EXPECT_THAT(bad("t,u\n0,1\n", with_channels("x=0")).message, HasSubstr("there is no column 0"));
-  EXPECT_THAT(bad(header5() + double5("z", logs(5)), with_channels("x=20")).message,
-              HasSubstr("there is no column 20"));
+              AllOf(HasSubstr("channel x"), HasSubstr("'v'"), HasSubstr("2 columns"), HasSubstr("t, u")));
+  EXPECT_THAT(bad("t,u\n0,1\n", with_channels("x=3")).message, HasSubstr("column 3"));
+  EXPECT_THAT(bad("t,u\n0,1\n", with_channels("x=0")).message, HasSubstr("column 0"));
+  EXPECT_THAT(bad(header5() + double5("z", logs(5)), with_channels("x=20")).message, HasSubstr("column 20"));
   EXPECT_THAT(bad(header5() + double5("z", logs(50)), with_channels("x=z")).message,
-              HasSubstr("variable 'z' is 19×50"));
+              AllOf(HasSubstr("'z'"), HasSubstr("19×50")));
 }
 
 TEST_F(Read, RefusesAUnitThatTheChannelOfThatManyAxesCannotHave) {
   EXPECT_THAT(bad("t,u,v\n0,1,2\n", with_channels("time=t,x=u:rad,y=v")).message,
-              HasSubstr("hand_x cannot be in 'rad'"));
+              AllOf(HasSubstr("hand_x"), HasSubstr("'rad'")));
   EXPECT_EQ(good("t,u,v\n0,1,2\n", with_channels("time=t,x=u:rad,F=v:N.m")).find("position")->unit, "rad");
 }
 
 TEST_F(Read, RefusesLengthsThatDiffer) {
   const std::string bytes =
       header5() + double5("t", Vector::LinSpaced(5, 0, 1)) + double5("x", Vector::LinSpaced(6, 0, 1));
-  EXPECT_THAT(bad(bytes).message, HasSubstr("time ('t') has 5 samples, hand_x ('x') has 6"));
+  EXPECT_THAT(bad(bytes).message, AllOf(HasSubstr("'t'"), HasSubstr("5 samples"), HasSubstr("'x'")));
 }
 
 // ---- names ----
@@ -319,11 +316,11 @@ TEST_F(Read, BelievesTheUnitInANamedColumnAndSaysSo) {
   const Recording recording = good("t,pos_mm,signal_in\n0,153,7\n", with_channels("t=t,y=pos_mm,x=signal_in"));
   EXPECT_EQ(recording.find("hand_y")->values[0], 0.153);
   EXPECT_EQ(recording.find("hand_x")->values[0], 7);  // an input, not inches
-  EXPECT_THAT(recording.notes, Contains("hand_y is taken in mm, as its name 'pos_mm' says"));
+  EXPECT_THAT(recording.notes, Contains(AllOf(HasSubstr("hand_y"), HasSubstr("'pos_mm'"))));
 }
 
 TEST_F(Read, RefusesTwoColumnsForOneChannel) {
-  EXPECT_THAT(bad("t,x,hand_x\n0,1,2\n").message, HasSubstr("'x' and 'hand_x' both are hand_x"));
+  EXPECT_THAT(bad("t,x,hand_x\n0,1,2\n").message, AllOf(HasSubstr("'x'"), HasSubstr("'hand_x'")));
 }
 
 TEST_F(Read, OffersTheNumbersOfARepeatedName) {
@@ -331,24 +328,23 @@ TEST_F(Read, OffersTheNumbersOfARepeatedName) {
   const std::string sto =
       "a\nendheader\ntime_s\thand_x\thand_y\tforce_x\tforce_y\tforce_x\n0\t1\t2\t3\t4\t5\n0.1\t1\t2\t3\t4\t6\n";
   for (const std::string& text : {csv, sto}) {
-    EXPECT_THAT(bad(text).line(),
-                HasSubstr("'force_x' (column 4) and 'force_x' (column 6) both are force_x; say which, as in --channels "
-                          "t=1:s,x=2,y=3,Fx=4,Fy=5 (or Fx=6)"));
+    EXPECT_THAT(bad(text).line(), AllOf(HasSubstr("'force_x'"), HasSubstr("column 4"), HasSubstr("column 6"),
+                                        HasSubstr("--channels t=1:s,x=2,y=3,Fx=4,Fy=5"), HasSubstr("Fx=6")));
     EXPECT_THAT(bad(text, with_channels("time=time_s,x=hand_x:mm,Fx=-force_x")).line(),
-                HasSubstr("channel force_x: the name 'force_x' stands 2 times, in the columns 4, 6; say which by its "
-                          "number: --channels time=time_s,x=hand_x:mm,force_x=-4 (or force_x=6)"));
-    EXPECT_THAT(bad(text, with_channels("Fx=force_x*2+1")).message, HasSubstr("stands 2 times"));
+                AllOf(HasSubstr("'force_x'"), HasSubstr("--channels time=time_s,x=hand_x:mm,force_x=-4"),
+                      HasSubstr("force_x=6")));
+    EXPECT_THAT(bad(text, with_channels("Fx=force_x*2+1")).remedy, HasSubstr("force_x=6"));
     EXPECT_EQ(good(text, with_channels("x=2,Fx=6")).find("force_x")->values[1], 6);
   }
   const Recording same = good("t,x,F,F\n0,1,2,2\n0.1,2,3,3\n", with_channels("x=x,F=F"));
   EXPECT_EQ(same.find("reaction")->values[1], 3);
-  EXPECT_THAT(bad("t,x,F,F\n0,1,2,2\n0.1,2,3,word\n", with_channels("x=x,F=F")).message, HasSubstr("stands 2 times"));
+  EXPECT_THAT(bad("t,x,F,F\n0,1,2,2\n0.1,2,3,word\n", with_channels("x=x,F=F")).line(),
+              AllOf(HasSubstr("'F'"), HasSubstr("=4")));
 }
 
 TEST_F(Read, OffersTheNumbersOfTwoTimes) {
   EXPECT_THAT(bad("time,x,time,F\n0,1,0,2\n1,1,2,3\n", with_channels("x=x,F=F")).line(),
-              HasSubstr("'time' (column 1) and 'time' (column 3) both may be the time; say which in --channels, as in "
-                        "time=1 or time=3"));
+              AllOf(HasSubstr("column 1"), HasSubstr("column 3"), HasSubstr("time=1"), HasSubstr("time=3")));
   EXPECT_EQ(good("time,x,time,F\n0,1,0,2\n1,1,1,3\n", with_channels("x=x,F=F")).time[1], 1.0);
 }
 
@@ -369,8 +365,8 @@ TEST_F(Read, TakesTheUnitOfANameHoweverItIsWritten) {
 TEST_F(Read, NamesAUnitInTheNameThatTheChannelCannotHave) {
   const std::string text = "t,x,cell [V]\n0,1,2\n1,2,3\n";
   EXPECT_THAT(good(text, with_channels("x=x,Fx=3")).notes,
-              Contains("the name of 'cell [V]' says V, which force_x cannot be in: it was taken in N"));
-  EXPECT_THAT(good(text, with_channels("x=x,Fx=3:N")).notes, testing::Each(testing::Not(HasSubstr("cannot be in"))));
+              Contains(AllOf(HasSubstr("'cell [V]'"), HasSubstr("force_x"))));
+  EXPECT_THAT(good(text, with_channels("x=x,Fx=3:N")).notes, testing::Each(testing::Not(HasSubstr("'cell [V]'"))));
 }
 
 TEST_F(Read, TakesNoCurrentForATorque) {
@@ -379,7 +375,7 @@ TEST_F(Read, TakesNoCurrentForATorque) {
     const std::string text = "t,q1," + std::string(name) + "\n0,1,2\n1,2,3\n";
     for (const std::string& source : {std::string(name), std::string("3")}) {
       EXPECT_THAT(bad(text, with_channels("q1=2,tau1=" + source)).line(),
-                  AllOf(HasSubstr("is one by its name"), HasSubstr("torque constant"), HasSubstr("*0.12:N.m")))
+                  AllOf(HasSubstr("current"), HasSubstr("*0.12:N.m")))
           << name;
       EXPECT_EQ(good(text, with_channels("q1=2,tau1=" + source + "*0.5:N.m")).find("torque_1")->values[0], 1.0) << name;
       EXPECT_EQ(good(text, with_channels("q1=2,tau1=" + source + ":N.m")).find("torque_1")->values[0], 2.0) << name;
@@ -394,9 +390,9 @@ TEST_F(Read, TakesNoCurrentForATorque) {
 
 TEST_F(Read, ListsTheColumnsWhereNothingIsRecognised) {
   EXPECT_THAT(bad("u,v\n0,1\n").line(),
-              HasSubstr("no channel is recognised; it has 2 columns: u, v; say which is which, as in --channels"));
-  EXPECT_THAT(bad("time,b\n0,1\n").message, HasSubstr("no channel but time"));
-  EXPECT_THAT(bad("0,1\n1,2\n").message, HasSubstr("it has 2 columns without names"));
+              AllOf(HasSubstr("channel"), HasSubstr("2 columns"), HasSubstr("u, v"), HasSubstr("--channels")));
+  EXPECT_THAT(bad("time,b\n0,1\n").message, AllOf(HasSubstr("2 columns"), HasSubstr("time, b")));
+  EXPECT_THAT(bad("0,1\n1,2\n").message, AllOf(HasSubstr("2 columns"), HasSubstr("name")));
 }
 
 // ---- time ----
@@ -456,16 +452,17 @@ TEST_F(Read, MakesTheTimeFromTheRateThatTheFileSays) {
 TEST_F(Read, RefusesARateThatContradictsTheFilesOwn) {
   ReadOptions options = with_channels("Fx=Force X");
   options.rate = Hertz(100);
-  EXPECT_EQ(bad(test::small_c3d().bytes(), options).line().substr((folder_ / "file").string().size()),
-            ": rate 100 Hz contradicts the file, which says 200 Hz; leave --rate out");
+  EXPECT_THAT(bad(test::small_c3d().bytes(), options).line(),
+              AllOf(HasSubstr("100 Hz"), HasSubstr("200 Hz"), HasSubstr("--rate")));
   options.rate = Hertz(200);
   EXPECT_EQ(good(test::small_c3d().bytes(), options).time[1], 0.005);
 }
 
 TEST_F(Read, RefusesChannelsOfDifferentRatesAndSaysWhatToDo) {
   const Error error = bad(test::small_c3d().bytes(), with_channels("x=HAND.x,Fx=Force X"));
-  EXPECT_EQ(error.message, "hand_x ('HAND.x') runs at 100 Hz, force_x ('Force X') at 200 Hz");
-  EXPECT_THAT(error.remedy, HasSubstr("every 2nd sample of the faster: force_x=Force X@100"));
+  EXPECT_THAT(error.message,
+              AllOf(HasSubstr("'HAND.x'"), HasSubstr("100 Hz"), HasSubstr("'Force X'"), HasSubstr("200 Hz")));
+  EXPECT_THAT(error.remedy, HasSubstr("force_x=Force X@100"));
 }
 
 TEST_F(Read, TakesEveryKthSampleWhereItIsAsked) {
@@ -475,16 +472,16 @@ TEST_F(Read, TakesEveryKthSampleWhereItIsAsked) {
   for (Index k = 0; k < 6; ++k) {
     EXPECT_EQ(recording.find("force_x")->values[k], -1e3 * whole.find("force_x")->values[2 * k]);
   }
-  EXPECT_THAT(recording.notes, Contains(HasSubstr("force_x is every 2nd sample of 'Force X', as asked")));
+  EXPECT_THAT(recording.notes, Contains(AllOf(HasSubstr("force_x"), HasSubstr("2nd"), HasSubstr("'Force X'"))));
 }
 
 TEST_F(Read, ThinsOnlyByWholeNumbersAndWhereTheFileSaysTheRate) {
   const std::string file = test::small_c3d().bytes();
-  EXPECT_THAT(bad(file, with_channels("Fx=Force X@60")).message, HasSubstr("of which '60' is no whole part"));
-  EXPECT_THAT(bad(file, with_channels("Fx=Force X@400")).message, HasSubstr("of which '400' is no whole part"));
-  EXPECT_THAT(bad(file, with_channels("Fx=Force X@")).message, HasSubstr("of which '' is no whole part"));
-  EXPECT_THAT(bad(file, with_channels("Fx=none@100")).message, HasSubstr("there is no 'none'"));
-  EXPECT_THAT(bad("t,Fx\n0,1\n1,2\n", with_channels("Fx=Fx@1")).message, HasSubstr("does not say the rate"));
+  EXPECT_THAT(bad(file, with_channels("Fx=Force X@60")).message, HasSubstr("'60'"));
+  EXPECT_THAT(bad(file, with_channels("Fx=Force X@400")).message, HasSubstr("'400'"));
+  EXPECT_THAT(bad(file, with_channels("Fx=Force X@")).message, AllOf(HasSubstr("'Force X'"), HasSubstr("''")));
+  EXPECT_THAT(bad(file, with_channels("Fx=none@100")).message, HasSubstr("'none'"));
+  EXPECT_THAT(bad("t,Fx\n0,1\n1,2\n", with_channels("Fx=Fx@1")).message, AllOf(HasSubstr("rate"), HasSubstr("'Fx'")));
   EXPECT_EQ(good("t,Fx@1\n0,1\n1,2\n", with_channels("Fx=Fx@1")).samples(), 2);  // a name goes before
 }
 
@@ -507,7 +504,7 @@ TEST_F(Read, RefusesAUnitOfTheFileThatIsUnknownOrOfAnotherDimensionUntilTheMapSa
   const std::string file = test::small_c3d().bytes();
   for (const char* source : {"EMG", "Angle"}) {
     const Error error = bad(file, with_channels(std::string("Fx=") + source));
-    EXPECT_THAT(error.message, HasSubstr("which channel force_x cannot be in"));
+    EXPECT_THAT(error.message, AllOf(HasSubstr("force_x"), HasSubstr("'" + std::string(source) + "'")));
     EXPECT_THAT(error.remedy, HasSubstr(std::string("force_x=") + source + ":UNIT"));
     EXPECT_EQ(good(file, with_channels(std::string("Fx=") + source + ":N")).find("force_x")->unit, "N");
   }
@@ -519,10 +516,11 @@ TEST_F(Read, AsksWhichOfSeveralColumnsOfOneLabelIsMeant) {
   file.channels = {"Fx", "EMG", "Fx"};
   file.analog_units = {"N", "", "N"};
   const Error error = bad(file.bytes(), with_channels("Fx=Fx"));
-  EXPECT_EQ(error.message, "channel force_x: the name 'Fx' is not unique: 'Fx#1' (column 7), 'Fx#2' (column 9)");
-  EXPECT_EQ(error.remedy, "name one of them, or give its column number");
-  EXPECT_THAT(bad(file.bytes(), with_channels("x=HAND.x")).message, HasSubstr("'HAND#2.x' (column 4)"));
-  EXPECT_THAT(bad(file.bytes()).message, HasSubstr("no channel is recognised"));
+  EXPECT_THAT(error.message, AllOf(HasSubstr("'Fx'"), HasSubstr("'Fx#1'"), HasSubstr("column 7"), HasSubstr("'Fx#2'"),
+                                   HasSubstr("column 9")));
+  EXPECT_THAT(bad(file.bytes(), with_channels("x=HAND.x")).message,
+              AllOf(HasSubstr("'HAND#2.x'"), HasSubstr("column 4")));
+  EXPECT_THAT(bad(file.bytes()).message, AllOf(HasSubstr("channel"), HasSubstr("9 columns")));
   EXPECT_EQ(good(file.bytes(), with_channels("Fx=Fx#2")).find("force_x")->values[0],
             good(file.bytes(), with_channels("Fx=9")).find("force_x")->values[0]);
 }
@@ -535,8 +533,8 @@ TEST_F(Read, NamesMayHoldColons) {
   EXPECT_EQ(recording.find("hand_y")->values[1], (1.0 - 7.0) * 0.5 / 1e2);
   file.channels[0] = "Arm:N";
   EXPECT_EQ(good(file.bytes(), with_channels("Fx=Arm:N")).samples(), 12);
-  EXPECT_EQ(bad("t,y\n0,1\n", with_channels("y=2:counts")).message, "unknown unit 'counts' of channel hand_y");
-  EXPECT_THAT(bad("t,y\n0,1\n", with_channels("y=z:counts")).message, HasSubstr("there is no 'z:counts'"));
+  EXPECT_THAT(bad("t,y\n0,1\n", with_channels("y=2:counts")).message, HasSubstr("'counts'"));
+  EXPECT_THAT(bad("t,y\n0,1\n", with_channels("y=z:counts")).message, HasSubstr("'z:counts'"));
 }
 
 // ---- files ----
@@ -548,18 +546,18 @@ TEST_F(Read, DecidesByContentNotByName) {
 
 TEST_F(Read, RefusesWhatIsNotARecording) {
   EXPECT_THAT(bad("").message, HasSubstr("empty"));
-  EXPECT_THAT(bad(std::string("\x7f\x46LF\x02\x01\x01\0\0\0", 10)).line(), HasSubstr("no known format"));
+  EXPECT_THAT(bad(std::string("\x7f\x46LF\x02\x01\x01\0\0\0", 10)).line(), HasSubstr("7f 46"));
   EXPECT_THAT(bad("\x89HDF\r\n\x1a\n....").message, HasSubstr("HDF5"));
   EXPECT_THAT(bad(std::string("\x02\x50") + std::string(600, '\0')).message, HasSubstr("C3D"));
-  EXPECT_THAT(bad(header5()).message, HasSubstr("no channel is recognised; it has no numeric variable"));
-  EXPECT_THAT(bad("Dear reader,\nthis is a letter.\n").message, HasSubstr("'this is a letter.' is not a number"));
+  EXPECT_THAT(bad(header5()).message, AllOf(HasSubstr("channel"), HasSubstr("variable")));
+  EXPECT_THAT(bad("Dear reader,\nthis is a letter.\n").message, HasSubstr("'this is a letter.'"));
 }
 
 TEST_F(Read, RefusesWhatCannotBeOpened) {
-  EXPECT_THAT(read(folder_ / "none.mat", {}).error().message, HasSubstr("no such file"));
-  EXPECT_THAT(read(folder_ / "", {}).error().message, HasSubstr("is a folder"));
+  EXPECT_THAT(read(folder_ / "none.mat", {}).error().where, HasSubstr("none.mat"));
+  EXPECT_THAT(read(folder_ / "", {}).error().message, HasSubstr("folder"));
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  EXPECT_THAT(read(folder_ / "pipe", {}).error().message, HasSubstr("not a regular file"));
+  EXPECT_THAT(read(folder_ / "pipe", {}).error().message, HasSubstr("regular file"));
   EXPECT_EQ(read(folder_ / "none.mat", {}).error().kind, ErrorKind::data);
 }
 
@@ -567,12 +565,12 @@ TEST_F(Read, RefusesAnUnreadableFile) {
   if (::geteuid() == 0) GTEST_SKIP() << "everything is readable to root";
   const auto file = folder_.write("secret", "t,x\n0,1\n");
   std::filesystem::permissions(file, std::filesystem::perms::none);
-  EXPECT_THAT(read(file, {}).error().message, HasSubstr("cannot be opened"));
+  EXPECT_THAT(read(file, {}).error().message, HasSubstr("Permission denied"));
 }
 
 TEST_F(Read, RefusesAFileAboveTheLimitBeforeReadingIt) {
   std::filesystem::resize_file(folder_.write("large", "x"), (std::uintmax_t{8} << 30) + 1);  // sparse
-  EXPECT_THAT(read(folder_ / "large", {}).error().message, HasSubstr("above the limit"));
+  EXPECT_THAT(read(folder_ / "large", {}).error().message, HasSubstr("8589934593"));
 }
 
 // ---- real files ----
@@ -600,7 +598,7 @@ TEST(ReadRealFiles, AnkleBothAsTableAndAsMatrixBesideObjects) {
   options.rate = Hertz(1000);
   const auto matrix = read(data / "ankle/z.mat", options);
   ASSERT_TRUE(matrix) << matrix.error().line();
-  EXPECT_THAT(matrix->notes, Contains(HasSubstr("variable 'z_df' is an object of MATLAB class 'nldat'")));
+  EXPECT_THAT(matrix->notes, Contains(AllOf(HasSubstr("'z_df'"), HasSubstr("'nldat'"))));
   // The table was written with seven significant digits of the torque, eight decimals of the angle.
   EXPECT_LT((matrix->find("position")->values - table->find("position")->values).cwiseAbs().maxCoeff(), 0.6e-8);
   EXPECT_LT((matrix->find("reaction")->values - table->find("reaction")->values).cwiseAbs().maxCoeff(), 0.6e-5);

@@ -68,15 +68,15 @@ std::string error_of(const Array& array, const char* source) {
 
 TEST(PlanOf, RefusesWhatMayBeTakenInTwoWays) {
   const Array close = counted({30, 50, 2});
-  EXPECT_THAT(error_of(close, "data[:,:,1]"), HasSubstr("may be taken in two ways; write ':' for time and 'trial'"));
+  EXPECT_THAT(error_of(close, "data[:,:,1]"), AllOf(HasSubstr("':'"), HasSubstr("'trial'")));
   EXPECT_EQ(error_of(close, "data[:,trial,1]"), "none");
   // Of trials by samples by channels, this would be one sample of each trial.
-  EXPECT_THAT(error_of(counted({40, 2000, 6}), "data[:,2]"), HasSubstr("as in data[trial,:,1]"));
-  EXPECT_THAT(error_of(close, "data[trial,2]"), HasSubstr("a slice has one ':'"));
-  EXPECT_THAT(error_of(close, "data[trial,:,trial]"), HasSubstr("a slice has one ':'"));
-  EXPECT_THAT(error_of(close, "data[:]"), HasSubstr("a slice has one ':'"));
-  EXPECT_THAT(error_of(close, "data[1,:,3]"), HasSubstr("there is no 3 in its dimension 3"));
-  EXPECT_THAT(error_of(close, "data[1,:,1,1]"), HasSubstr("'data' is 30×50×2, and 4 of its dimensions are named"));
+  EXPECT_THAT(error_of(counted({40, 2000, 6}), "data[:,2]"), HasSubstr("data[trial,:,1]"));
+  EXPECT_THAT(error_of(close, "data[trial,2]"), AllOf(HasSubstr("slice"), HasSubstr("':'")));
+  EXPECT_THAT(error_of(close, "data[trial,:,trial]"), AllOf(HasSubstr("slice"), HasSubstr("':'")));
+  EXPECT_THAT(error_of(close, "data[:]"), AllOf(HasSubstr("slice"), HasSubstr("':'")));
+  EXPECT_THAT(error_of(close, "data[1,:,3]"), HasSubstr("dimension 3"));
+  EXPECT_THAT(error_of(close, "data[1,:,1,1]"), AllOf(HasSubstr("'data'"), HasSubstr("30×50×2"), HasSubstr(" 4 ")));
 }
 
 TEST(ExampleSlice, TakesTheLongestDimensionForTime) {

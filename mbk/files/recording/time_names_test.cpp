@@ -56,7 +56,7 @@ TEST(TimeNames, AreRecognisedWithTheUnitThatTheySay) {
       const auto recording = assembled({column(name, 0.0, step)}, is_table);
       ASSERT_TRUE(recording) << name << recording.error().line();
       EXPECT_NEAR(recording->time[kRows - 1], 0.002 * (kRows - 1), 1e-9) << name;
-      EXPECT_THAT(recording->notes, Contains(HasSubstr("'" + name + "' was taken as the time"))) << name;
+      EXPECT_THAT(recording->notes, Contains(HasSubstr("'" + name + "'"))) << name;
     }
   }
 }
@@ -67,7 +67,7 @@ TEST(TimeNames, AreInTheUnitThatTheirSizeSaysSince1970) {
     const auto recording = assembled({column("timestamp", 1.7e9 * scale, 0.01 * scale)});
     ASSERT_TRUE(recording) << unit << recording.error().line();
     EXPECT_NEAR(recording->time[kRows - 1] - recording->time[0], 0.01 * (kRows - 1), 1e-5) << unit;
-    EXPECT_THAT(recording->notes, Contains(HasSubstr("in " + unit + " since 1970")));
+    EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("'timestamp'"), HasSubstr("1970"))));
   }
   EXPECT_EQ(unit_since_1970(12.0), nullptr);
   EXPECT_EQ(unit_since_1970(5e10), nullptr);
@@ -77,18 +77,18 @@ TEST(TimeNames, LeaveAFileAloneThatHasATime) {
   const auto recording = assembled({column("timestamp", 1.7e18, 2e6), column("time", 0.0, 0.002)});
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->time_origin.source, "time");
-  EXPECT_THAT(recording->notes, Not(Contains(HasSubstr("timestamp' runs"))));
-  EXPECT_THAT(recording->notes, Not(Contains(HasSubstr("differs"))));
+  EXPECT_THAT(recording->notes, Not(Contains(HasSubstr("time=timestamp"))));
 }
 
 TEST(TimeNames, OfSecondClocksAreComparedWithTheFirst) {
   const auto rate = assembled({column("time", 0.0, 0.002), column("timestamp", 0.0, 0.004)});
   ASSERT_TRUE(rate) << rate.error().line();
-  EXPECT_THAT(rate->notes, Contains(HasSubstr("'timestamp' runs at 250 Hz where 'time' runs at 500 Hz")));
+  EXPECT_THAT(rate->notes, Contains(AllOf(HasSubstr("'timestamp'"), HasSubstr("250 Hz"), HasSubstr("'time'"),
+                                          HasSubstr("500 Hz"), HasSubstr("time=timestamp"))));
   for (const bool is_table : {true, false}) {
     const auto drift = assembled({column("time", 0.0, 0.002), column("t_sensor", 7.0, 0.00201)}, is_table);
     ASSERT_TRUE(drift) << drift.error().line();
-    EXPECT_THAT(drift->notes, Contains(HasSubstr("'t_sensor' differs from 'time' by up to 3.99 ms")));
+    EXPECT_THAT(drift->notes, Contains(AllOf(HasSubstr("'t_sensor'"), HasSubstr("'time'"), HasSubstr("3.99 ms"))));
   }
   // A clock of 16 ms that says the same, a duration and a constant are no other clocks.
   Array coarse = column("SystemTime", 0.0, 0.002), duration = column("reaction_time", 0.0, 1.0),
@@ -98,13 +98,13 @@ TEST(TimeNames, OfSecondClocksAreComparedWithTheFirst) {
   duration.values = SharedMatrix::of_column(Vector((ticks.array() * 9).sin()));
   const auto same = assembled({column("time", 0.0, 0.002), coarse, duration, still});
   ASSERT_TRUE(same) << same.error().line();
-  EXPECT_THAT(same->notes, Not(Contains(HasSubstr("takes that"))));
+  EXPECT_THAT(same->notes, Not(Contains(HasSubstr("\"time="))));
 }
 
 TEST(TimeNames, ThatContradictEachOtherAreRefused) {
   const auto two = assembled({column("timestamp", 0.0, 0.002), column("rosbagTimestamp", 1.7e18, 2.2e6)});
   ASSERT_FALSE(two);
-  EXPECT_THAT(two.error().line(), HasSubstr("'timestamp' and 'rosbagTimestamp' both may be the time"));
+  EXPECT_THAT(two.error().line(), AllOf(HasSubstr("'timestamp'"), HasSubstr("'rosbagTimestamp'")));
   const auto named = assemble(table({column("timestamp", 0.0, 0.002), column("rosbagTimestamp", 1.7e18, 2.2e6)}),
                               {.channels = {{"time", "timestamp", "", false}}});
   EXPECT_TRUE(named) << named.error().line();
@@ -114,7 +114,7 @@ TEST(TimeNames, ThatContradictEachOtherAreRefused) {
 TEST(TimeNames, AreAdvisedWhereTheyOnlySpeakOfTime) {
   const auto recording = assembled({column("t_robot", 0.0, 0.002), column("t_sensor", 0.0, 0.002)});
   ASSERT_FALSE(recording);
-  EXPECT_THAT(recording.error().line(), HasSubstr("it may be t_robot, t_sensor"));
+  EXPECT_THAT(recording.error().line(), AllOf(HasSubstr("t_robot"), HasSubstr("t_sensor")));
   EXPECT_THAT(recording.error().remedy, HasSubstr("\"time=t_robot\""));
 }
 
@@ -123,11 +123,11 @@ TEST(UnitsOfNames, AreNamedWhereTheyAreNotKnown) {
   contents.arrays.back().name = "reaction (dyn)";
   const auto recording = assemble(contents, {});
   ASSERT_TRUE(recording) << recording.error().line();
-  EXPECT_THAT(recording->notes, Contains(HasSubstr("reaction cannot be in 'dyn'")));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("'reaction (dyn)'"), HasSubstr("'dyn'"))));
   const auto mapped =
       assemble(std::move(contents), {.channels = {{"reaction", "reaction (dyn)", "", false}}, .axes = 1});
   ASSERT_TRUE(mapped) << mapped.error().line();
-  EXPECT_THAT(mapped->notes, Contains(HasSubstr("says dyn, which reaction cannot be in: it was taken in")));
+  EXPECT_THAT(mapped->notes, Contains(HasSubstr("'reaction (dyn)'")));
 }
 
 }  // namespace time_names_test

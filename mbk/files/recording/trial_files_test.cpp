@@ -31,10 +31,9 @@ TEST(FilesOfTrials, RefusesToWriteTrialsOverEachOther) {
   const auto many = files("out/all.h5", {"1", "2", "3"});
   ASSERT_FALSE(many);
   EXPECT_EQ(many.error().kind, ErrorKind::usage);
-  EXPECT_THAT(many.error().line(), HasSubstr("3 trials would be written to one file; put {trial} where their names are "
-                                             "to stand, as in out/all_{trial}.h5, or take one with --trial"));
-  EXPECT_THAT(files("{trial}.h5", {"a b", "a_b"}).error().message, HasSubstr("would both be written to a_b.h5"));
-  EXPECT_THAT(files("{trial}.h5", {""}).error().line(), HasSubstr("holds one record"));
+  EXPECT_THAT(many.error().line(), AllOf(HasSubstr("3 trials"), HasSubstr("out/all_{trial}.h5"), HasSubstr("--trial")));
+  EXPECT_THAT(files("{trial}.h5", {"a b", "a_b"}).error().message, HasSubstr("a_b.h5"));
+  EXPECT_THAT(files("{trial}.h5", {""}).error().line(), HasSubstr("{trial}"));
 }
 
 }  // namespace trial_files_test

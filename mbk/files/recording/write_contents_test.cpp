@@ -85,8 +85,8 @@ TEST_F(WriteContents, FindsOtherNamesWhereOneStandsInTheWay) {
   contents.arrays.push_back({"", Matrix(Matrix::Ones(4, 1))});
   std::vector<std::string> said;
   const Contents read = back(contents, "a.h5", Format::hdf5, said);
-  EXPECT_THAT(
-      said, ElementsAre("'pressure/left' is called 'pressure_left' there", "'pressure' is called 'pressure_2' there"));
+  EXPECT_THAT(said, ElementsAre(AllOf(HasSubstr("'pressure/left'"), HasSubstr("'pressure_left'")),
+                                AllOf(HasSubstr("'pressure'"), HasSubstr("'pressure_2'"))));
   EXPECT_EQ(values(read, "pressure_left").size(), 2);
   EXPECT_EQ(values(read, "pressure_2").size(), 3);
   EXPECT_EQ(values(read, "column_5").size(), 4);
@@ -100,16 +100,16 @@ TEST_F(WriteContents, GivesVariablesNamesThatMatlabHas) {
   for (const Format format : {Format::mat5, Format::mat73}) {
     std::vector<std::string> said;
     const Contents read = back(contents, format == Format::mat5 ? "a.mat" : "b.mat", format, said);
-    EXPECT_THAT(
-        said, ElementsAre("'trial/gaze' is called 'trial_gaze' there",
-                          "'signals(1).values' is called 'signals_1__values' there",
-                          "'signals(1)_values' is called 'signals_1__values_2' there", "'3rd' is called 'x3rd' there"));
+    EXPECT_THAT(said, ElementsAre(AllOf(HasSubstr("'trial/gaze'"), HasSubstr("'trial_gaze'")),
+                                  AllOf(HasSubstr("'signals(1).values'"), HasSubstr("'signals_1__values'")),
+                                  AllOf(HasSubstr("'signals(1)_values'"), HasSubstr("'signals_1__values_2'")),
+                                  AllOf(HasSubstr("'3rd'"), HasSubstr("'x3rd'"))));
     EXPECT_EQ(values(read, "trial_gaze"), kWide);
     EXPECT_EQ(values(read, "signals_1__values_2").size(), 5);
     EXPECT_EQ(values(read, "rates_hz.pressure")(0, 0), 100.0);
     EXPECT_EQ(read.metadata.at("participant"), "7");
     EXPECT_EQ(read.events.size(), 1u);
-    EXPECT_THAT(read.notes, Contains(HasSubstr("'units.pressure' is text")));
+    EXPECT_THAT(read.notes, Contains(HasSubstr("'units.pressure'")));
   }
 }
 
@@ -117,7 +117,7 @@ TEST_F(WriteContents, MakesOneTableOfSignalsOfOneLength) {
   std::vector<std::string> said;
   Contents contents = example();
   const Contents read = back(contents, "a.csv", Format::csv, said);
-  EXPECT_THAT(said, ElementsAre("1 events have no place in such a CSV file"));
+  EXPECT_THAT(said, ElementsAre(AllOf(HasSubstr("1 event"), HasSubstr("CSV"))));
   ASSERT_EQ(read.arrays.size(), 3u);
   EXPECT_EQ(read.arrays[0].name, "trial/gaze[1] [deg]");
   EXPECT_EQ(values(read, "trial/gaze[2] [deg]"), Matrix(kWide.row(1).transpose()));
@@ -126,8 +126,8 @@ TEST_F(WriteContents, MakesOneTableOfSignalsOfOneLength) {
   contents.arrays.front().rate_hz = 100.0;
   contents.arrays.front().name = "a,b\"";
   const Contents timed = back(contents, "timed.csv", Format::csv, said);
-  EXPECT_THAT(said, Contains("the time, by the rate that the file says, is the first column"));
-  EXPECT_THAT(said, Contains("'a,b\"[1] [deg]' is called 'a_b_[1] [deg]' there"));
+  EXPECT_THAT(said, Contains(AllOf(HasSubstr("time"), HasSubstr("column"))));
+  EXPECT_THAT(said, Contains(AllOf(HasSubstr("'a,b\"[1] [deg]'"), HasSubstr("'a_b_[1] [deg]'"))));
   EXPECT_EQ(values(timed, "time_s")(3, 0), 0.03);
 }
 
@@ -135,15 +135,15 @@ TEST_F(WriteContents, RefusesATableOfDifferentLengthsOrClocks) {
   Contents contents = example();
   contents.arrays.push_back({"short", Matrix(Matrix::Ones(3, 1))});
   EXPECT_THAT(refused(contents, "a.csv", Format::csv).line(),
-              HasSubstr("'trial/gaze' has 4 samples, 'short' has 3: they are no one table; write .h5 or .mat"));
+              AllOf(HasSubstr("'trial/gaze'"), HasSubstr("4 samples"), HasSubstr("'short'"), HasSubstr(".h5")));
   contents.arrays.pop_back();
   contents.clocks = {{"a", Vector::LinSpaced(4, 0, 1)}, {"b", Vector::LinSpaced(4, 0, 2)}};
   contents.arrays[0].clock = 0;
   contents.arrays[1].clock = 1;
-  EXPECT_THAT(refused(contents, "a.csv", Format::csv).message, HasSubstr("of another clock"));
+  EXPECT_THAT(refused(contents, "a.csv", Format::csv).message, HasSubstr("clock"));
   contents.arrays.clear();
   for (const Format format : {Format::csv, Format::hdf5, Format::mat5}) {
-    EXPECT_THAT(refused(contents, "a", format).message, HasSubstr("no numeric array"));
+    EXPECT_THAT(refused(contents, "a", format).message, HasSubstr("array"));
   }
 }
 

@@ -132,7 +132,7 @@ TEST(WriteMat, LeavesAUnitAsideThatAChannelCannotHave) {
   ASSERT_TRUE(recording) << recording.error().line();
   EXPECT_EQ(recording->find("hand_x")->unit, "m");
   EXPECT_EQ(recording->metadata, written.metadata);
-  EXPECT_THAT(recording->notes, Contains(HasSubstr("'unit_hand_x' is 'V', which hand_x cannot be in")));
+  EXPECT_THAT(recording->notes, Contains(AllOf(HasSubstr("'unit_hand_x'"), HasSubstr("'V'"))));
 }
 
 TEST(WriteMat, WritesEqualRecordingsAsEqualBytes) {
@@ -166,10 +166,10 @@ TEST(WriteMat, RefusesWhatMatlabCannotHold) {
   };
   for (const std::string& key : {std::string(), std::string("7a"), std::string("a b"), std::string("_a"),
                                  std::string("é"), "a" + std::string(63, 'b')}) {
-    EXPECT_THAT(said(key, "x"), HasSubstr("cannot be the name of a MATLAB field")) << key;
+    EXPECT_THAT(said(key, "x"), HasSubstr("MATLAB")) << key;
   }
   for (const std::string& value : {std::string("two\nlines"), std::string("\xff"), std::string("a\0b", 3)}) {
-    EXPECT_THAT(said("key", value), HasSubstr("'key' is not one line of UTF-8"));
+    EXPECT_THAT(said("key", value), AllOf(HasSubstr("'key'"), HasSubstr("UTF-8")));
   }
   Recording recording = example();
   recording.events = {{0.0, "\t", 0.0}};
@@ -218,7 +218,7 @@ TEST(WriteMat, RefusesChannelsOfAnotherLength) {
   recording.channels.push_back({"joint_1", "rad", "joint", Vector::Zero(199)});
   const auto refused = write_mat(recording, folder / "log.mat", false);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("'joint_1' has 199 samples, time has 200"));
+  EXPECT_THAT(refused.error().message, AllOf(HasSubstr("'joint_1'"), HasSubstr("199 samples")));
 }
 
 TEST(WriteMat, RefusesAFolderThatIsNotThere) {

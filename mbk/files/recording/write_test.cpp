@@ -19,9 +19,9 @@
 namespace mbk::recording {
 namespace write_test {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 struct Kind {
   Format format;
@@ -192,7 +192,7 @@ TEST(Write, LeavesNothingBehindOnAFullDisk) {
   for (const auto& one : refused) {
     ASSERT_FALSE(one);
     EXPECT_EQ(one.error().kind, ErrorKind::data);
-    EXPECT_THAT(one.error().line(), HasSubstr("the space on the disk"));
+    EXPECT_THAT(one.error().line(), HasSubstr("disk"));
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
 }
@@ -211,35 +211,29 @@ TEST(Write, LeavesNothingBehindWhereTheFolderCannotBeWritten) {
 TEST(Write, RefusesWhatIsNoRecording) {
   const test::Folder folder;
   const auto said = [&](const Recording& recording) {
-    std::string lines;
+    std::vector<std::string> messages;
     for (const Kind& kind : kKinds) {
       const auto ok = write(recording, folder / kind.file, kind.format, false);
-      const std::string line = ok ? "" : ok.error().line();
-      lines += line.substr(line.rfind(": ") == line.npos ? 0 : line.find(": ") + 2) + "\n";
+      messages.push_back(ok ? std::string() : ok.error().message);
     }
-    return lines;
+    return messages;
   };
-  const auto each = [](const std::string& line) {
-    std::string lines;
-    for (std::size_t k = 0; k < kKinds.size(); ++k) lines += line + "\n";
-    return lines;
-  };
-  EXPECT_EQ(said({}), each("a recording without samples is not written"));
+  EXPECT_THAT(said({}), Each(HasSubstr("sample")));
   Recording recording = example();
   recording.channels.clear();
-  EXPECT_EQ(said(recording), each("a recording without channels is not written"));
+  EXPECT_THAT(said(recording), Each(HasSubstr("channel")));
   recording = example();
   recording.channels.push_back(recording.channels.front());
-  EXPECT_EQ(said(recording), each("channel 'hand_x' is there twice"));
+  EXPECT_THAT(said(recording), Each(HasSubstr("'hand_x'")));
   recording = example();
   recording.channels[1].values.resize(7);
-  EXPECT_EQ(said(recording), each("channel 'hand_y' has 7 samples, time has 200"));
+  EXPECT_THAT(said(recording), Each(AllOf(HasSubstr("'hand_y'"), HasSubstr("7 samples"))));
   recording = example();
   recording.metadata["note"] = "two\nlines";
-  EXPECT_EQ(said(recording), each("metadata 'note' is not one line of UTF-8; write it without control characters"));
+  EXPECT_THAT(said(recording), Each(AllOf(HasSubstr("'note'"), HasSubstr("UTF-8"))));
   recording = example();
   recording.events.front().name = "\xff";
-  EXPECT_THAT(said(recording), HasSubstr("the event name '"));
+  EXPECT_THAT(said(recording), Each(AllOf(HasSubstr("event"), HasSubstr("UTF-8"))));
   EXPECT_TRUE(std::filesystem::is_empty(folder / ""));
 }
 
@@ -252,13 +246,13 @@ TEST(Write, RefusesKeysThatAFormatCannotHold) {
     return ok ? "" : ok.error().line();
   };
   const auto [mat, mat73, hdf5, csv] = kKinds;
-  EXPECT_THAT(said(mat, "a b"), HasSubstr("'a b' cannot be the name of a MATLAB field"));
-  EXPECT_THAT(said(mat73, "a b"), HasSubstr("'a b' cannot be the name of a MATLAB field"));
+  EXPECT_THAT(said(mat, "a b"), AllOf(HasSubstr("'a b'"), HasSubstr("MATLAB")));
+  EXPECT_THAT(said(mat73, "a b"), AllOf(HasSubstr("'a b'"), HasSubstr("MATLAB")));
   EXPECT_EQ(said(hdf5, "a b/ü"), "");
-  EXPECT_THAT(said(hdf5, ""), HasSubstr("cannot be the name of an attribute"));
-  EXPECT_THAT(said(hdf5, "format"), HasSubstr("this attribute names the layout"));
-  EXPECT_THAT(said(csv, "a b"), HasSubstr("'a b' cannot be written as a comment"));
-  EXPECT_THAT(said(csv, "a:b"), HasSubstr("without spaces and colons"));
+  EXPECT_THAT(said(hdf5, ""), HasSubstr("attribute"));
+  EXPECT_THAT(said(hdf5, "format"), HasSubstr("'format'"));
+  EXPECT_THAT(said(csv, "a b"), AllOf(HasSubstr("'a b'"), HasSubstr("comment")));
+  EXPECT_THAT(said(csv, "a:b"), AllOf(HasSubstr("'a:b'"), HasSubstr("colon")));
   EXPECT_EQ(said(csv, "größe"), "");
 }
 
@@ -267,7 +261,7 @@ TEST(Write, SaysWhichFramesAreLost) {
   recording.channels[2].frame = "tool";
   EXPECT_THAT(lost_in(recording, Format::hdf5), ElementsAre());
   for (const Format format : {Format::mat5, Format::mat73, Format::csv}) {
-    EXPECT_THAT(lost_in(recording, format), ElementsAre(StartsWith("the frame of force_x ('tool')")));
+    EXPECT_THAT(lost_in(recording, format), ElementsAre(AllOf(HasSubstr("force_x"), HasSubstr("'tool'"))));
   }
 }
 
@@ -290,8 +284,7 @@ TEST(WriteMat, RefusesMoreThanAV5FileHolds) {
   recording.channels = {{"hand_x", "m", "base", recording.time}};
   const auto refused = write(recording, folder / "a.mat", Format::mat5, false);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().line(),
-              HasSubstr("14128182 samples are too many for a MAT v5 file; write it as MAT v7.3"));
+  EXPECT_THAT(refused.error().line(), AllOf(HasSubstr("14128182 samples"), HasSubstr("MAT v5"), HasSubstr("MAT v7.3")));
 }
 
 using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
@@ -397,9 +390,10 @@ TEST(FormatOf, RefusesWhatItDoesNotKnow) {
     EXPECT_TRUE(!format && format.error().kind == ErrorKind::usage);
     return format ? "" : format.error().line();
   };
-  EXPECT_EQ(said("a.xls", ""), "a.xls: '.xls' is not a format that is written; let it end with .h5, .mat or .csv");
-  EXPECT_EQ(said("a", ""), "a: the name does not say a format; let it end with .h5, .mat or .csv");
-  EXPECT_EQ(said("a.mat", "mat4"), "'mat4' is not a format that is written; choose mat5, mat73, hdf5 or csv");
+  EXPECT_THAT(said("a.xls", ""), AllOf(HasSubstr("'.xls'"), HasSubstr(".h5"), HasSubstr(".mat"), HasSubstr(".csv")));
+  EXPECT_THAT(said("a", ""), AllOf(HasSubstr(".h5"), HasSubstr(".mat"), HasSubstr(".csv")));
+  EXPECT_THAT(said("a.mat", "mat4"),
+              AllOf(HasSubstr("'mat4'"), HasSubstr("mat5"), HasSubstr("mat73"), HasSubstr("hdf5"), HasSubstr("csv")));
 }
 
 }  // namespace write_test
