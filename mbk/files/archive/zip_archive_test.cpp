@@ -70,7 +70,7 @@ TEST(ZipArchive, GivesWhatWasPutIn) {
       EXPECT_EQ(text_of(archive->read_begin(name, 3)), content.substr(0, 3));
     }
     EXPECT_FALSE(archive->has("Empty"));
-    EXPECT_THAT(text_of(archive->read("Empty")), HasSubstr("it holds no 'Empty'"));
+    EXPECT_THAT(text_of(archive->read("Empty")), HasSubstr("'Empty'"));
   }
 }
 
@@ -120,14 +120,14 @@ TEST(ZipArchive, RefusesWhatIsCutShortEncryptedOrClaimsTooMuch) {
   const auto encrypted = archive_of(kMembers, true, true);
   const auto opened = ZipArchive::open(bytes_of(encrypted));
   ASSERT_FALSE(opened);
-  EXPECT_THAT(opened.error().line(), HasSubstr("encrypted"));
+  EXPECT_THAT(opened.error().line(), HasSubstr("encrypt"));
   std::string greedy = file;  // the first member's size in the directory
   const std::size_t entry = greedy.find("PK\x01\x02");
   const std::uint32_t claim = 0xFFFFFFF0U;
   std::memcpy(greedy.data() + entry + 24, &claim, sizeof claim);
   const auto claims = ZipArchive::open(bytes_of(greedy));
   ASSERT_FALSE(claims);
-  EXPECT_THAT(claims.error().line(), HasSubstr("which it cannot"));
+  EXPECT_THAT(claims.error().line(), HasSubstr("4294967280 bytes"));
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ TEST(Memory, OfTheMachineIsMoreThanNothingAndLessThanAll) {
 TEST(Memory, ThatIsNotThereIsRefusedWithBothSizes) {
   const auto refused = check_memory(std::uint64_t{1} << 50);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("1048576.00 GiB of memory are needed"), std::string::npos)
-      << refused.error().message;
-  EXPECT_NE(refused.error().message.find("GiB are available"), std::string::npos);
+  const std::string& said = refused.error().message;
+  EXPECT_NE(said.find("1048576.00 GiB"), std::string::npos) << said;
+  EXPECT_NE(said.find("GiB"), said.rfind("GiB")) << said;
 }
 
 TEST(Memory, KeepsToTheLimitOfTheAddressSpace) {

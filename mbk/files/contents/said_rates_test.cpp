@@ -7,6 +7,7 @@ namespace mbk::recording {
 namespace said_rates_test {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::Optional;
 
 TEST(RateCalled, KnowsTheNamesAndUnitsOfRates) {
@@ -45,8 +46,8 @@ TEST(GiveRates, TakesTheNearest) {
                      array("emg.fs", 1, 2000.0)};
   give_rates(contents);
   EXPECT_THAT(rates(contents), ElementsAre(1000.0, 2000.0, 1000.0, 0.0, 0.0));
-  EXPECT_THAT(contents.notes, ElementsAre("the sample rate is 1000 Hz, as 'fs' says",
-                                          "the sample rate of 'emg' is 2000 Hz, as 'emg.fs' says"));
+  EXPECT_THAT(contents.notes, ElementsAre(AllOf(HasSubstr("1000 Hz"), HasSubstr("'fs'")),
+                                          AllOf(HasSubstr("'emg'"), HasSubstr("2000 Hz"), HasSubstr("'emg.fs'"))));
 }
 
 TEST(GiveRates, TakesNoneOfTwoThatDiffer) {
@@ -54,7 +55,8 @@ TEST(GiveRates, TakesNoneOfTwoThatDiffer) {
   contents.arrays = {array("x", 3, 0.0), array("y", 3, 0.0), array("fs", 1, 1000.0), array("rate", 1, 50.0)};
   give_rates(contents);
   EXPECT_THAT(rates(contents), ElementsAre(0.0, 0.0, 0.0, 0.0));
-  EXPECT_THAT(contents.notes, ElementsAre("'fs' says a rate of 1000 Hz and 'rate' one of 50 Hz; neither was taken"));
+  EXPECT_THAT(contents.notes,
+              ElementsAre(AllOf(HasSubstr("'fs'"), HasSubstr("1000 Hz"), HasSubstr("'rate'"), HasSubstr(" 50 Hz"))));
 }
 
 }  // namespace said_rates_test

@@ -15,7 +15,6 @@ using test::put_numbers;
 using test::read_bytes;
 using test::Writer;
 using test::written;
-using testing::AnyOf;
 using testing::HasSubstr;
 
 /// A small file with a little of everything.
@@ -64,7 +63,7 @@ TEST(ReadDamagedHdf5, RefusesAFileCutAnywhere) {
       ASSERT_FALSE(read_bytes({cut.data(), cut.size()})) << "cut to " << n;
     }
     EXPECT_THAT(read_bytes(std::string_view(whole).substr(0, whole.size() - 1)).error().message,
-                HasSubstr("bytes that it should have"));
+                HasSubstr(std::to_string(whole.size()) + " bytes"));
   }
 }
 
@@ -101,8 +100,7 @@ TEST(ReadDamagedHdf5, SeesDamageToStructuresThatHaveAChecksum) {
     bytes[at + 6] = static_cast<char>(bytes[at + 6] ^ 0x40);
     const auto root = read_bytes(bytes);
     ASSERT_FALSE(root) << signature;
-    EXPECT_THAT(root.error().message, AnyOf(HasSubstr("checksum"), HasSubstr("broken"), HasSubstr("beyond")))
-        << signature;
+    EXPECT_EQ(root.error().kind, ErrorKind::data) << signature;
   }
 }
 
@@ -133,7 +131,7 @@ TEST(ReadDamagedHdf5, SaysOfALayoutOfNoKnownClassThatItIsBroken) {
   const auto root = read_bytes(bytes);
   ASSERT_FALSE(root);
   EXPECT_THAT(root.error().where, HasSubstr("/x"));
-  EXPECT_EQ(root.error().message, "its layout is broken");
+  EXPECT_THAT(root.error().message, HasSubstr("layout"));
 }
 
 TEST(ReadDamagedHdf5, KeepsToTheMemoryThatIsAllowed) {
@@ -146,7 +144,9 @@ TEST(ReadDamagedHdf5, KeepsToTheMemoryThatIsAllowed) {
   limits.bytes = 800'000 - 1;
   const auto root = read(std::as_bytes(std::span(bytes)), limits);
   ASSERT_TRUE(root);
-  EXPECT_THAT(test::damage_of(*root)->message, HasSubstr("claims more than the file can hold"));
+  const auto damage = test::damage_of(*root);
+  ASSERT_TRUE(damage);
+  EXPECT_EQ(damage->where, "/x");
 }
 
 TEST(ReadDamagedHdf5, LosesNothingButWhatIsDamaged) {
@@ -172,9 +172,8 @@ TEST(ReadDamagedHdf5, LosesNothingButWhatIsDamaged) {
     ASSERT_TRUE(root) << root.error().line();
     EXPECT_EQ(test::numbers(root->datasets.at("b").value), counted(9));
     const auto why = [&](const char* name) { return std::get<Unread>(root->datasets.at(name).value.data); };
-    EXPECT_EQ(why("a").what, "a chunk has a wrong checksum");
+    EXPECT_THAT(why("a").what, HasSubstr("checksum"));
     EXPECT_TRUE(why("a").damaged);
-    EXPECT_EQ(why("half").what, "a part of it was never written");
     EXPECT_TRUE(why("half").damaged);
   }
 }

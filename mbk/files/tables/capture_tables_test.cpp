@@ -90,7 +90,7 @@ TEST(DecodeVicon, NamesSectionsWithoutFrames) {
       good(decode_vicon,
            "Events\n100\nSubject,Context,Name,Time (s),Description\nS,Left,Foot Strike,1.2,\n\n" + kTrajectories);
   EXPECT_THAT(contents.arrays, SizeIs(6));
-  EXPECT_THAT(contents.notes, ElementsAre("sections without frames were left out: Events"));
+  EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("Events")));
 }
 
 TEST(DecodeVicon, NumbersRepeatedNames) {
@@ -99,18 +99,19 @@ TEST(DecodeVicon, NumbersRepeatedNames) {
 
 TEST(DecodeVicon, RefusesWhatWouldMoveInTime) {
   EXPECT_THAT(error_of(decode_vicon, replaced(kTrajectories, "7,0", "8,0")),
-              HasSubstr("line 8: frame 8, 0 does not follow frame 6, 0; its times follow from its rate: export every"));
-  EXPECT_THAT(error_of(decode_vicon, replaced(kDevices, "6,1", "6,2")), HasSubstr("frame 6, 2 does not follow"));
-  EXPECT_THAT(error_of(decode_vicon, replaced(kDevices, "6,1,4,2,3\n", "")), HasSubstr("does not follow frame 6, 0"));
+              AllOf(HasSubstr("line 8"), HasSubstr("frame 8, 0"), HasSubstr("frame 6, 0")));
+  EXPECT_THAT(error_of(decode_vicon, replaced(kDevices, "6,1", "6,2")), HasSubstr("frame 6, 2"));
+  EXPECT_THAT(error_of(decode_vicon, replaced(kDevices, "6,1,4,2,3\n", "")),
+              AllOf(HasSubstr("frame 7, 0"), HasSubstr("frame 6, 0")));
   EXPECT_THAT(
       error_of(decode_vicon,
                kDevices + "\n" + replaced(replaced(replaced(kTrajectories, "5,0", "4,0"), "6,0", "5,0"), "7,0", "6,0")),
-      HasSubstr("'Devices' begins at frame 5, and 'Trajectories' at frame 4"));
+      AllOf(HasSubstr("'Devices'"), HasSubstr("frame 5"), HasSubstr("'Trajectories'"), HasSubstr("frame 4")));
   EXPECT_THAT(error_of(decode_vicon, replaced(kTrajectories, "100\n", "fast\n")),
-              HasSubstr("line 4: no rate stands above"));
-  EXPECT_THAT(error_of(decode_vicon, replaced(kTrajectories, "1.5", "x")), HasSubstr("line 7, column 3: 'x'"));
-  EXPECT_THAT(error_of(decode_vicon, replaced(kTrajectories, "4,5,6\n", "4,5,6,7\n")),
-              HasSubstr("9 cells where the header"));
+              AllOf(HasSubstr("line 4"), HasSubstr("rate")));
+  EXPECT_THAT(error_of(decode_vicon, replaced(kTrajectories, "1.5", "x")),
+              AllOf(HasSubstr("line 7"), HasSubstr("column 3"), HasSubstr("'x'")));
+  EXPECT_THAT(error_of(decode_vicon, replaced(kTrajectories, "4,5,6\n", "4,5,6,7\n")), HasSubstr("9 cells"));
 }
 
 TEST(DecodeVicon, IsNotMistaken) {
@@ -153,18 +154,17 @@ TEST(DecodeMotive, ReadsItsVariants) {
   EXPECT_THAT(names_of(contents), ElementsAre("Time (Seconds)", "M1.x", "M1.y", "M1.z"));
   const Contents unsaid =
       good(decode_motive, replaced(replaced(bare, ",,a,a,a", ",ID,a,a,a"), ",Length Units,Meters", ""));
-  EXPECT_THAT(unsaid.notes, ElementsAre("the header does not say the unit of lengths"));
+  EXPECT_THAT(unsaid.notes, ElementsAre(HasSubstr("unit")));
   EXPECT_THAT(good(decode_motive, replaced(kMotive, "Total Exported Frames,3", "Total Exported Frames,9")).notes,
-              ElementsAre("the header says 9 frames, and there are 3: the file may have been cut off"));
+              ElementsAre(AllOf(HasSubstr("9 frames"), HasSubstr(" 3"))));
 }
 
 TEST(DecodeMotive, RefusesWhatDoesNotFit) {
-  EXPECT_THAT(error_of(decode_motive, "Format Version,1.23\n\n,,X\n0,0,1\n"), HasSubstr("no row of axes"));
-  EXPECT_THAT(error_of(decode_motive, "Format Version,1.23\nFrame,Time (Seconds),X\n0,0,1\n"),
-              HasSubstr("no row of names"));
-  EXPECT_THAT(error_of(decode_motive, replaced(kMotive, "4,5,6\n", "4,5,6,7\n")),
-              HasSubstr("10 cells where the header"));
-  EXPECT_THAT(error_of(decode_motive, replaced(kMotive, "0.008333", "x")), HasSubstr("line 9, column 2: 'x'"));
+  EXPECT_THAT(error_of(decode_motive, "Format Version,1.23\n\n,,X\n0,0,1\n"), HasSubstr("axes"));
+  EXPECT_THAT(error_of(decode_motive, "Format Version,1.23\nFrame,Time (Seconds),X\n0,0,1\n"), HasSubstr("name"));
+  EXPECT_THAT(error_of(decode_motive, replaced(kMotive, "4,5,6\n", "4,5,6,7\n")), HasSubstr("10 cells"));
+  EXPECT_THAT(error_of(decode_motive, replaced(kMotive, "0.008333", "x")),
+              AllOf(HasSubstr("line 9"), HasSubstr("column 2"), HasSubstr("'x'")));
 }
 
 // ---- Qualisys ----
@@ -184,8 +184,7 @@ TEST(DecodeQualisys, ReadsMarkersWithAndWithoutFrameAndTime) {
   EXPECT_EQ(contents.arrays[0].unit, "mm");
   EXPECT_EQ(contents.arrays[0].rate_hz, 100.0);
   EXPECT_TRUE(std::isnan(contents.arrays[3].values(1, 0)) && std::isnan(contents.arrays[5].values(2, 0)));
-  EXPECT_THAT(contents.notes, ElementsAre("its positions are in mm, as QTM exports them",
-                                          "1 positions of exactly 0, 0, 0 were taken as missing markers"));
+  EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("QTM"), HasSubstr("0, 0, 0")));
   for (const char* head : {"Frame\tTime\thand X\thand Y\thand Z\telbow X\telbow Y\telbow Z\n", ""}) {
     const Contents timed = good(
         decode_qualisys,
@@ -199,10 +198,11 @@ TEST(DecodeQualisys, ReadsMarkersWithAndWithoutFrameAndTime) {
 TEST(DecodeQualisys, RefusesWhatItCannotRead) {
   const std::string bodies = "NO_OF_FRAMES\t1\nFREQUENCY\t100\nDATA_INCLUDED\t6D\nBODY_NAMES\tarm\n1\t2\t3\n";
   ASSERT_TRUE(looks_like_qualisys(bodies));
-  EXPECT_THAT(error_of(decode_qualisys, bodies), HasSubstr("it holds 6D data, and no markers; export C3D from QTM"));
-  EXPECT_THAT(error_of(decode_qualisys, kQualisys + "1\t2\t3\t4\t5\t6\t7\t8\t9\n"), HasSubstr("hold 3 numbers more"));
-  EXPECT_THAT(error_of(decode_qualisys, kQualisys), HasSubstr("no frame stands behind"));
-  EXPECT_THAT(error_of(decode_qualisys, kQualisys + "1\t2\tx\t4\t5\t6\n"), HasSubstr("line 10, column 3: 'x'"));
+  EXPECT_THAT(error_of(decode_qualisys, bodies), AllOf(HasSubstr("6D"), HasSubstr("C3D")));
+  EXPECT_THAT(error_of(decode_qualisys, kQualisys + "1\t2\t3\t4\t5\t6\t7\t8\t9\n"), HasSubstr("3 numbers"));
+  EXPECT_THAT(error_of(decode_qualisys, kQualisys), HasSubstr("frame"));
+  EXPECT_THAT(error_of(decode_qualisys, kQualisys + "1\t2\tx\t4\t5\t6\n"),
+              AllOf(HasSubstr("line 10"), HasSubstr("column 3"), HasSubstr("'x'")));
   EXPECT_FALSE(looks_like_qualisys("NO_OF_FRAMES\t3\nDATA_TYPES\tv\n"));
 }
 
@@ -234,7 +234,7 @@ TEST(DecodeDelsys, TakesOneTimeWhereAllAreAlike) {
   EXPECT_THAT(names_of(contents), ElementsAre("time", "VL (81): EMG 1", "RF (82): EMG 1"));
   EXPECT_THAT(contents.clocks, IsEmpty());
   EXPECT_EQ(contents.arrays[2].unit, "mV");
-  EXPECT_THAT(contents.notes, ElementsAre("5 lines of text above its numbers were not read"));
+  EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("5 lines")));
   EXPECT_FALSE(looks_like_delsys("time (s),EMG (mV)\n0,1\n"));
   EXPECT_FALSE(looks_like_delsys("X [s],X [s]\n0,1\n"));
 }

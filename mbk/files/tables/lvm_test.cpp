@@ -101,9 +101,8 @@ TEST(DecodeLvm, ReadsSeparatorsAsTheHeaderSaysThem) {
 
   std::string both = commas;
   both.replace(both.find("Decimal_Separator,."), 19, "Decimal_Separator,,");
-  EXPECT_THAT(error_of(both), HasSubstr("line 1: commas stand between its columns and for decimal points"));
-  EXPECT_THAT(error_of(file_header("One", ",") + segment_header() + kLabels + kRows),
-              HasSubstr("'0.000' is not a number"));
+  EXPECT_THAT(error_of(both), AllOf(HasSubstr("line 1"), HasSubstr("comma")));
+  EXPECT_THAT(error_of(file_header("One", ",") + segment_header() + kLabels + kRows), HasSubstr("'0.000'"));
 }
 
 TEST(DecodeLvm, MakesTheTimeOfDeltaXWhereThereIsNoX) {
@@ -114,7 +113,7 @@ TEST(DecodeLvm, MakesTheTimeOfDeltaXWhereThereIsNoX) {
   EXPECT_EQ(contents.arrays[1].values, Vector::LinSpaced(3, -1, -3));
   const Contents unknown = one(file_header("No") + segment_header(30.5, 3, "0", "1.000000") + kLabels + rows);
   EXPECT_EQ(unknown.arrays[0].rate_hz, 0.0);
-  EXPECT_THAT(unknown.notes, Contains(HasSubstr("says no sampling rate (Delta_X is missing or 1")));
+  EXPECT_THAT(unknown.notes, Contains(HasSubstr("Delta_X")));
 }
 
 TEST(DecodeLvm, ReadsAnXForEachChannel) {
@@ -155,11 +154,10 @@ TEST(DecodeLvm, MakesSegmentsRecordsOfTheirOwn) {
   ASSERT_THAT(records, SizeIs(2));
   EXPECT_EQ(records[0].name.name, "1");
   EXPECT_EQ(records[1].name.name, "2");
-  EXPECT_EQ(records[1].name.description, "2024/03/01 10:15:45.000, 2 samples");
+  EXPECT_THAT(records[1].name.description, AllOf(HasSubstr("2024/03/01 10:15:45.000"), HasSubstr("2 samples")));
   EXPECT_EQ(records[1].contents.arrays[1].values, (Vector(2) << 7, 8).finished());
   EXPECT_THAT(records[1].contents.notes,
-              ElementsAre("segment 2 of 2, each a recording of its own",
-                          "the header says 3 samples, and there are 2: the file may have been cut off"));
+              ElementsAre(HasSubstr("2 of 2"), AllOf(HasSubstr("3 samples"), HasSubstr(" 2"))));
 }
 
 TEST(DecodeLvm, JoinsSegmentsWithoutAPause) {
@@ -174,7 +172,7 @@ TEST(DecodeLvm, JoinsSegmentsWithoutAPause) {
     ASSERT_THAT(contents.arrays, SizeIs(3)) << text;
     EXPECT_EQ(contents.arrays[1].values, Vector::LinSpaced(6, 1, 6));
     EXPECT_LT((contents.arrays[0].values - Vector(Vector::LinSpaced(6, 0, 0.005))).cwiseAbs().maxCoeff(), 1e-6);
-    EXPECT_THAT(contents.notes, ElementsAre("2 segments that follow each other without a pause were joined"));
+    EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("2 segments")));
   }
   const std::string without = file_header("No") + segment_header(30.5) + kLabels + "\t1\t-1\n\t2\t-2\n\t3\t-3\n" +
                               segment_header(30.503) + kLabels + "\t4\t-4\n\t5\t-5\n\t6\t-6\n";
@@ -209,7 +207,7 @@ TEST(DecodeLvm, TakesTheSamplesOfASegmentWithoutX) {
   ASSERT_THAT(records, SizeIs(2));
   EXPECT_EQ(records[1].contents.arrays[0].values, Vector::LinSpaced(3, 3, 5));
   const Contents odd = one(file_header("No") + segment_header() + kLabels + rows + "\t6\t0\n");
-  EXPECT_THAT(odd.notes, ElementsAre(HasSubstr("says 3 samples a segment, and 7 follow: pauses")));
+  EXPECT_THAT(odd.notes, ElementsAre(AllOf(HasSubstr("3 samples"), HasSubstr(" 7"))));
 }
 
 TEST(DecodeLvm, LeavesCommentsAndSpecialBlocksOut) {
@@ -217,8 +215,7 @@ TEST(DecodeLvm, LeavesCommentsAndSpecialBlocksOut) {
       one(file_header() + "***Start_Special***\nx\t1\n2\t3\n***End_Special***\nNotes\tvalid only for hand_x\n" +
           segment_header() + kLabels + "0\t1\t-1\tOK, go\n0.001\t2\t-2\n0.002\t3\t-3\tdone\n");
   EXPECT_EQ(contents.arrays[2].values, Vector::LinSpaced(3, -1, -3));
-  EXPECT_THAT(contents.notes,
-              ElementsAre("2 comments behind its lines were left out", "special blocks of LabVIEW were left out"));
+  EXPECT_THAT(contents.notes, ElementsAre(HasSubstr("2 comments"), HasSubstr("LabVIEW")));
 }
 
 TEST(DecodeLvm, KeepsChannelsWithoutSamples) {
@@ -234,34 +231,35 @@ TEST(DecodeLvm, SaysWhereXIsNoTime) {
   const Contents contents = one(text);
   EXPECT_EQ(contents.arrays[0].means, "");
   EXPECT_EQ(contents.arrays[1].rate_hz, 0.0);
-  EXPECT_THAT(contents.notes, Contains("its X is 'Frequency', which is no time"));
+  EXPECT_THAT(contents.notes, Contains(HasSubstr("'Frequency'")));
 }
 
 TEST(DecodeLvm, RefusesWhatIsDamaged) {
   const std::string whole = file_header() + segment_header() + kLabels + kRows;
   EXPECT_THAT(error_of("LabVIEW Measurement\t\nSeparator\tTab\n"),
-              HasSubstr("line 1: 'LabVIEW Measurement' begins a header, and no"));
-  EXPECT_THAT(error_of(file_header()), HasSubstr("no sample stands behind its header"));
-  EXPECT_THAT(error_of(whole + "abc\t1\t2\n"), HasSubstr("line 27: 'abc' begins a header"));
-  EXPECT_THAT(error_of(whole + "abc\t1\t2\n0.003\t1\t2\n"), HasSubstr("line 28: numbers stand in the header"));
-  EXPECT_THAT(error_of(whole + "0.003\tone\t2\n"), HasSubstr("line 27, column 2: 'one' is not a number"));
+              AllOf(HasSubstr("line 1"), HasSubstr("'LabVIEW Measurement'")));
+  EXPECT_THAT(error_of(file_header()), HasSubstr("sample"));
+  EXPECT_THAT(error_of(whole + "abc\t1\t2\n"), AllOf(HasSubstr("line 27"), HasSubstr("'abc'")));
+  EXPECT_THAT(error_of(whole + "abc\t1\t2\n0.003\t1\t2\n"), HasSubstr("line 28"));
+  EXPECT_THAT(error_of(whole + "0.003\tone\t2\n"),
+              AllOf(HasSubstr("line 27"), HasSubstr("column 2"), HasSubstr("'one'")));
   std::string no_comments = whole;
   no_comments.erase(no_comments.find("\tComment"), 8);
-  EXPECT_THAT(error_of(no_comments + "0.003\t1\t2\t3\n"), HasSubstr("4 cells where its segment names 3 columns"));
+  EXPECT_THAT(error_of(no_comments + "0.003\t1\t2\t3\n"), AllOf(HasSubstr("4 cells"), HasSubstr("3 columns")));
   const Contents cut = one(whole + "0.003\t1");
   EXPECT_EQ(cut.arrays[0].values.rows(), 3);
-  EXPECT_THAT(cut.notes, ElementsAre("line 27 is incomplete (the recording was cut off there) and was ignored"));
+  EXPECT_THAT(cut.notes, ElementsAre(HasSubstr("line 27")));
 }
 
 TEST(DecodeLvm, BoundsWhatASmallFileClaims) {
   std::string text = file_header() + segment_header() + kLabels;
   for (int k = 0; k < 20'000; ++k) text += "0\t1\t2\n1\t1\t2\n";
-  EXPECT_THAT(error_of(text), HasSubstr("segments of hardly any samples"));
+  EXPECT_THAT(error_of(text), HasSubstr("segments"));
   std::string wide = file_header() + "X_Value";
   for (int k = 0; k < 9'000; ++k) wide += "\tc";
   wide += "\n";
   for (int k = 0; k < 20'000; ++k) wide += "1\n";
-  EXPECT_THAT(error_of(wide), HasSubstr("far fewer numbers"));
+  EXPECT_THAT(error_of(wide), HasSubstr("9001 columns"));
 }
 
 TEST(DecodeLvm, CutAnywhereGivesAnErrorOrTheCompleteLines) {

@@ -110,28 +110,29 @@ TEST(DecodeNpy, TakesDatesAndDurationsWithoutLosingDigits) {
   EXPECT_EQ(values(0, 0), 86399.5);
   EXPECT_NEAR(values(1, 0) - values(0, 0), 1.000000001, 2e-11);
   EXPECT_TRUE(std::isnan(values(2, 0)));
-  EXPECT_THAT(dates->notes, Contains(HasSubstr("seconds since 2024-03-01 00:00")));
+  EXPECT_THAT(dates->notes, Contains(HasSubstr("2024-03-01 00:00")));
   const auto durations = decoded(npy("'<m8[us]'", "(1,)", raw(std::int64_t{1500})));
   EXPECT_EQ(durations->arrays.front().unit, "us");
   EXPECT_EQ(durations->arrays.front().values(0, 0), 1500.0);
 }
 
 TEST(DecodeNpy, RefusesWhatIsNotReadAndSaysWhatToDo) {
-  EXPECT_THAT(error_of(npy("'|O'", "(2,)", "\x80\x03]q")), HasSubstr("Python objects, which are not read; save each"));
-  EXPECT_THAT(error_of(npy("'<c16'", "(1,)", std::string(16, 'x'))), HasSubstr("type '<c16', which is not read"));
+  EXPECT_THAT(error_of(npy("'|O'", "(2,)", "\x80\x03]q")), HasSubstr("Python"));
+  EXPECT_THAT(error_of(npy("'<c16'", "(1,)", std::string(16, 'x'))), HasSubstr("'<c16'"));
   EXPECT_THAT(error_of(npy("'<f8'", "(1, 2, 3)", reals())), "none");
-  EXPECT_THAT(error_of(npy("'|u1'", "(2, 2, 2)", std::string(8, 'x'))), HasSubstr("it has 3 dimensions"));
+  EXPECT_THAT(error_of(npy("'|u1'", "(2, 2, 2)", std::string(8, 'x'))), HasSubstr("3 dimensions"));
 }
 
 TEST(DecodeNpy, RefusesWhatIsCutShortOrDamaged) {
   const std::string whole = npy("'<f8'", "(3, 2)", reals());
   for (std::size_t n = 6; n < whole.size(); ++n) EXPECT_NE(error_of(whole.substr(0, n)), "none") << n;
-  EXPECT_THAT(error_of(whole.substr(0, whole.size() - 1)), HasSubstr("3×2 elements of 8 bytes need more than the 47"));
-  EXPECT_THAT(error_of(npy("'<f8'", "(4294967296, 4294967296)", "")), HasSubstr("cut short"));
-  EXPECT_THAT(error_of(npy("'<f8'", "(-1,)", "")), HasSubstr("damaged"));
-  EXPECT_THAT(error_of(npy("'<f8", "(1,)", "")), HasSubstr("damaged"));
-  EXPECT_THAT(error_of(npy("'<f8'", "(1,)", reals(), false, 4)), HasSubstr("format 4.0"));
-  EXPECT_THAT(error_of(npy(std::string(1000, '['), "(1,)", "")), HasSubstr("damaged"));
+  EXPECT_THAT(error_of(whole.substr(0, whole.size() - 1)),
+              AllOf(HasSubstr("3×2"), HasSubstr("8 bytes"), HasSubstr("47 bytes")));
+  EXPECT_THAT(error_of(npy("'<f8'", "(4294967296, 4294967296)", "")), HasSubstr("4294967296×4294967296"));
+  EXPECT_THAT(error_of(npy("'<f8'", "(-1,)", "")), HasSubstr("header"));
+  EXPECT_THAT(error_of(npy("'<f8", "(1,)", "")), HasSubstr("header"));
+  EXPECT_THAT(error_of(npy("'<f8'", "(1,)", reals(), false, 4)), HasSubstr("4.0"));
+  EXPECT_THAT(error_of(npy(std::string(1000, '['), "(1,)", "")), HasSubstr("header"));
 }
 
 TEST(DecodeNpz, ReadsArraysByTheirNames) {
@@ -145,8 +146,8 @@ TEST(DecodeNpz, ReadsArraysByTheirNames) {
   EXPECT_EQ(contents->arrays[0].name, "time");
   EXPECT_EQ(contents->arrays[0].values, Vector::LinSpaced(6, 1, 6));
   ASSERT_TRUE(contents->arrays[1].obstacle);
-  EXPECT_THAT(contents->arrays[1].obstacle->line(), HasSubstr("array 'odd': it holds Python objects"));
-  EXPECT_THAT(contents->notes, Contains("'read.me' in the archive is no NumPy array; ignored"));
+  EXPECT_THAT(contents->arrays[1].obstacle->line(), AllOf(HasSubstr("'odd'"), HasSubstr("Python")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("'read.me'")));
 }
 
 }  // namespace npy_test

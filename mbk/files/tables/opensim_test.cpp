@@ -57,16 +57,17 @@ TEST(DecodeOpensim, ReadsOldTables) {
   EXPECT_THAT(names_of(*contents), ElementsAre("time", "x"));
   EXPECT_TRUE(contents->units.empty());
   EXPECT_TRUE(std::isnan(contents->arrays[1].values(1, 0)));
-  EXPECT_THAT(contents->notes, Contains("the header says 9 rows, and there are 2: the file may have been cut off"));
+  EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("9 rows"), HasSubstr(" 2"))));
 }
 
 TEST(DecodeOpensim, RefusesWhatIsNoTable) {
-  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\n"), HasSubstr("no labels"));
-  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\n0\t1\n"), HasSubstr("no labels"));
-  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n"), HasSubstr("no line of numbers"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\n"), HasSubstr("label"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\n0\t1\n"), HasSubstr("label"));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n"), HasSubstr("number"));
   EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\t1\t2\n"),
-              HasSubstr("line 4: 3 numbers where there are 2"));
-  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\tone\n"), HasSubstr("line 4, column 2: 'one'"));
+              AllOf(HasSubstr("line 4"), HasSubstr("3 numbers")));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\tone\n"),
+              AllOf(HasSubstr("line 4"), HasSubstr("column 2"), HasSubstr("'one'")));
 }
 
 TEST(DecodeOpensim, NamesColumnsOfVectors) {
@@ -76,17 +77,17 @@ TEST(DecodeOpensim, NamesColumnsOfVectors) {
   const auto contents = decode_opensim(std::as_bytes(std::span(text)));
   ASSERT_TRUE(contents) << contents.error().line();
   ASSERT_TRUE(contents->arrays[1].obstacle);
-  EXPECT_EQ(contents->arrays[1].obstacle->line(),
-            "line 6, column 2: '0.5,0.5,0.5,-0.5' is a vector; write each of its numbers as a column of its own");
+  EXPECT_THAT(contents->arrays[1].obstacle->line(),
+              AllOf(HasSubstr("line 6"), HasSubstr("column 2"), HasSubstr("'0.5,0.5,0.5,-0.5'")));
   EXPECT_EQ(contents->arrays[2].values, Vector::LinSpaced(2, 1, 2));
-  EXPECT_THAT(contents->notes, Contains("columns that hold vectors were left aside: pelvis_imu"));
-  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\t0,5\n"), HasSubstr("'0,5' is not a number"));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("pelvis_imu")));
+  EXPECT_THAT(error_of(decode_opensim, "a\nendheader\ntime\tx\n0\t0,5\n"), HasSubstr("'0,5'"));
 }
 
 TEST(DecodeOpensim, SaysWhereDegreesAreLeftOpen) {
   const std::string text = "a\nendheader\ntime\tq1\n0\t90\n";
   EXPECT_THAT(decode_opensim(std::as_bytes(std::span(text)))->notes,
-              ElementsAre("the header does not say inDegrees: angles are taken in rad unless --channels says deg"));
+              ElementsAre(AllOf(HasSubstr("inDegrees"), HasSubstr("--channels"))));
 }
 
 TEST(DecodeOpensim, LeavesAnIncompleteLastLineAside) {
@@ -94,7 +95,7 @@ TEST(DecodeOpensim, LeavesAnIncompleteLastLineAside) {
   const auto contents = decode_opensim(std::as_bytes(std::span(cut)));
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(contents->arrays[0].values.rows(), 1);
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("line 5 is incomplete")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("line 5")));
 }
 
 TEST(DecodeTrc, ReadsMarkersWithUnitAndRate) {
@@ -115,13 +116,14 @@ TEST(DecodeTrc, RefusesWhatDoesNotFit) {
     std::string text = kMarkers;
     return text.replace(text.find(from), from.size(), to);
   };
-  EXPECT_THAT(error_of(decode_trc, with("Frame#", "Row")), HasSubstr("does not begin with Frame# and Time"));
-  EXPECT_THAT(error_of(decode_trc, with("\t5\t6\n", "\t5\t6\t7\n")), HasSubstr("9 cells where"));
-  EXPECT_THAT(error_of(decode_trc, with("1\t0\t1", "1\tx\t1")), HasSubstr("line 7, column 2: 'x'"));
+  EXPECT_THAT(error_of(decode_trc, with("Frame#", "Row")), AllOf(HasSubstr("Frame#"), HasSubstr("Time")));
+  EXPECT_THAT(error_of(decode_trc, with("\t5\t6\n", "\t5\t6\t7\n")), HasSubstr("9 cells"));
+  EXPECT_THAT(error_of(decode_trc, with("1\t0\t1", "1\tx\t1")),
+              AllOf(HasSubstr("line 7"), HasSubstr("column 2"), HasSubstr("'x'")));
   EXPECT_THAT(error_of(decode_trc, with("X1\tY1", "Y1\tX1")),
-              HasSubstr("line 5: 'Y1' stands where the X axis of 'Hand'"));
-  EXPECT_THAT(error_of(decode_trc, with("\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n", "")), HasSubstr("no line of axes"));
-  EXPECT_THAT(error_of(decode_trc, "PathFileType\t4\n"), HasSubstr("five lines of header"));
+              AllOf(HasSubstr("line 5"), HasSubstr("'Y1'"), HasSubstr("'Hand'")));
+  EXPECT_THAT(error_of(decode_trc, with("\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n", "")), HasSubstr("axes"));
+  EXPECT_THAT(error_of(decode_trc, "PathFileType\t4\n"), HasSubstr("header"));
 }
 
 TEST(DecodeTrc, KeepsMemoryBelowWhatItsLinesCanHold) {
@@ -131,8 +133,7 @@ TEST(DecodeTrc, KeepsMemoryBelowWhatItsLinesCanHold) {
     axes += fmt::format("X{0}\tY{0}\tZ{0}\t", m);
   }
   for (int row = 0; row < 100'000; ++row) lines += "1\n";
-  EXPECT_THAT(error_of(decode_trc, text + "\n" + axes + "\n" + lines),
-              HasSubstr("far fewer numbers than the 9002 columns"));
+  EXPECT_THAT(error_of(decode_trc, text + "\n" + axes + "\n" + lines), HasSubstr("9002 columns"));
 }
 
 std::string replaced_all(std::string text, std::string_view from, std::string_view to) {
@@ -152,29 +153,27 @@ TEST(DecodeTrc, ReadsVariantsAsOpensimDoes) {
   struct Variant {
     std::string text, note;
   };
-  for (const Variant& one :
-       {Variant{with("\t2\tmm", "\t3\tmm"), "the header says 3 markers, and names 2, which were read"},
-        {with("X2\tY2\tZ2", "X7\tY7\tZ7"), "the axes of 'Hand' are called X7, and its name was taken"},
-        {with("\tCameraRate", ""), ""},                          // a key fewer than values: those before it are right
-        {with("NumMarkers\tUnits", "NumMarkers\t\tUnits"), ""},  // a tab more
-        {with("mm\n", "mm\t\t\n"), ""},
-        {with("Hand\t\t\tHand\t\t\n", "Hand\tHand\n"), ""},
-        {with("Frame#\tTime\tHand\t\t\tHand\t\t\n", "Frame# Time  Hand   Hand\n"), ""},
-        {commas, ""},
-        {semicolons, ""},
-        {replaced_all(commas, "\n\n", "\n,,,,,,,\n"), ""}}) {
+  for (const Variant& one : {Variant{with("\t2\tmm", "\t3\tmm"), "3 markers"},
+                             {with("X2\tY2\tZ2", "X7\tY7\tZ7"), "X7"},
+                             {with("\tCameraRate", ""), ""},  // a key fewer than values: those before it are right
+                             {with("NumMarkers\tUnits", "NumMarkers\t\tUnits"), ""},  // a tab more
+                             {with("mm\n", "mm\t\t\n"), ""},
+                             {with("Hand\t\t\tHand\t\t\n", "Hand\tHand\n"), ""},
+                             {with("Frame#\tTime\tHand\t\t\tHand\t\t\n", "Frame# Time  Hand   Hand\n"), ""},
+                             {commas, ""},
+                             {semicolons, ""},
+                             {replaced_all(commas, "\n\n", "\n,,,,,,,\n"), ""}}) {
     const auto contents = decode_trc(std::as_bytes(std::span(one.text)));
     ASSERT_TRUE(contents) << contents.error().line() << one.text;
     EXPECT_EQ(contents->arrays[2].values, Vector::Constant(3, 1)) << one.text;
     EXPECT_EQ(contents->arrays[7].values(0, 0), 6) << one.text;
     EXPECT_EQ(contents->arrays[2].rate_hz, 100.0) << one.text;
     if (!one.note.empty()) {
-      EXPECT_THAT(contents->notes, ElementsAre(one.note));
+      EXPECT_THAT(contents->notes, ElementsAre(HasSubstr(one.note)));
     }
   }
   const std::string without_unit = with("mm\n", "\n");
-  EXPECT_EQ(decode_trc(std::as_bytes(std::span(without_unit)))->notes.front(),
-            "the header does not say the unit of the markers");
+  EXPECT_THAT(decode_trc(std::as_bytes(std::span(without_unit)))->notes.front(), HasSubstr("unit"));
 }
 
 }  // namespace opensim_test

@@ -134,8 +134,8 @@ TEST(XdfRecordings, ClockResetsHaveTheirPublishedNumbers) {
   EXPECT_EQ(contents->clocks.size(), 1u);
   EXPECT_EQ(contents->events.size(), 175u);
   EXPECT_NEAR(contents->events.front().time, 812.9279041877016, kPublished);
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("reset once")));
-  EXPECT_THAT(contents->notes, Contains(HasSubstr("1 break in its time")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("reset")));
+  EXPECT_THAT(contents->notes, Contains(HasSubstr("1 break")));
 }
 
 // ---- chunks ----
@@ -152,7 +152,7 @@ TEST(DecodeXdf, ReadsEveryFormat) {
     EXPECT_EQ(contents.events[0].name, "onset");
     EXPECT_NEAR(contents.events[0].time, 4.02, 1e-12);
     EXPECT_EQ(contents.events[1].value, 42.0);
-    EXPECT_THAT(contents.notes, Contains(HasSubstr("2 of 10 samples have no time stamp")));
+    EXPECT_THAT(contents.notes, Contains(HasSubstr("2 of 10 samples")));
   }
 }
 
@@ -183,9 +183,8 @@ TEST(DecodeXdf, SaysByHowMuchWholeNumbersWereRounded) {
   file.header().stream(1, "S", "int64", 4, 0, Xdf::labels({{"count", ""}, {"stamp", "ns"}, {"even", ""}, {"low", ""}}));
   file.samples(1, {Xdf::stamped(1) + raw(kLarge) + raw(-kLarge) + raw(kLarge - 100) + raw(std::int64_t{1} << 53)});
   const Contents contents = contents_of(file);
-  const std::string rounded = "holds whole numbers above 2^53, which were rounded: by up to 100";
-  EXPECT_THAT(contents.notes, Contains("'S.count' " + rounded));
-  EXPECT_THAT(contents.notes, Contains("'S.stamp' " + rounded + "; as times they are exact to 0.1 µs"));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("'S.count'"), HasSubstr("2^53"), HasSubstr("100"))));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("'S.stamp'"), HasSubstr("100"), HasSubstr("0.1 µs"))));
   EXPECT_THAT(contents.notes, Not(Contains(HasSubstr("S.even"))));
   EXPECT_THAT(contents.notes, Not(Contains(HasSubstr("S.low"))));
 }
@@ -199,8 +198,8 @@ TEST(DecodeXdf, ReadsOnFromTheNextBoundaryBehindDamage) {
   file.samples(1, {Xdf::stamped(3) + "c"});
   const Contents contents = contents_of(file);
   EXPECT_EQ(values(contents, "S.channel_1"), Vector(Eigen::Vector2d('a', 'c')));
-  EXPECT_THAT(contents.notes, Contains("the file is damaged at byte " + std::to_string(damage) + ": " +
-                                       std::to_string(resumed - damage) + " bytes were lost, up to the next boundary"));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("byte " + std::to_string(damage)),
+                                             HasSubstr(std::to_string(resumed - damage) + " bytes"))));
 }
 
 TEST(DecodeXdf, ReadsWhatStandsBeforeTheEndOfACutFile) {
@@ -226,21 +225,21 @@ TEST(DecodeXdf, DoesNotBelieveCounts) {
   const Contents contents = contents_of(file);
   EXPECT_EQ(array(contents, "S.channel_1").values.size(), 1);
   EXPECT_EQ(contents.arrays.size(), 2u);
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("2000000000 channels of format 'int8' are not possible")));
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("1 chunks belong to 1 streams")));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("2000000000 channels"), HasSubstr("'int8'"))));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("1 chunk"), HasSubstr("1 stream"))));
 }
 
 TEST(DecodeXdf, SkipsChunksOfKindsThatItDoesNotKnow) {
-  Xdf file;
+  Xdf file, known;
   file.header().chunk(9, "something new").stream(1, "S", "int8", 1, 0).samples(1, {Xdf::stamped(1) + "a"});
-  EXPECT_THAT(contents_of(file).notes, Not(Contains(HasSubstr("damaged"))));
+  known.header().stream(1, "S", "int8", 1, 0).samples(1, {Xdf::stamped(1) + "a"});
+  EXPECT_EQ(contents_of(file).notes, contents_of(known).notes);
 }
 
 TEST(DecodeXdf, RefusesWhatHoldsNothing) {
-  EXPECT_THAT(decoded("XDG:").error().message, HasSubstr("does not begin"));
-  EXPECT_THAT(decoded("XDF:").error().message, HasSubstr("no stream"));
-  EXPECT_THAT(decoded(Xdf().header().stream(1, "S", "int8", 1, 0).bytes()).error().message,
-              HasSubstr("none of its streams has a sample"));
+  EXPECT_THAT(decoded("XDG:").error().message, HasSubstr("XDF"));
+  EXPECT_THAT(decoded("XDF:").error().message, HasSubstr("stream"));
+  EXPECT_THAT(decoded(Xdf().header().stream(1, "S", "int8", 1, 0).bytes()).error().message, HasSubstr("sample"));
 }
 
 TEST(DecodeXdf, WarnsOfAnEffectiveRateFarFromTheNominalOne) {
@@ -252,9 +251,9 @@ TEST(DecodeXdf, WarnsOfAnEffectiveRateFarFromTheNominalOne) {
     nearly.push_back(Xdf::stamped(k * 0.0105) + "a");
   }
   const Contents contents = contents_of(file.samples(1, slow).samples(2, nearly));
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("effective 80 Hz; they differ by more than 10 %")));
-  EXPECT_THAT(contents.notes, Contains("stream 'T' (Force): 100 samples of 1 channel, nominal rate 100 Hz, effective "
-                                       "95.2381 Hz"));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("80 Hz"), HasSubstr("10 %"))));
+  EXPECT_THAT(contents.notes, Contains(AllOf(HasSubstr("'T'"), HasSubstr("100 samples"), HasSubstr("100 Hz"),
+                                             HasSubstr("95.2381 Hz"), Not(HasSubstr("10 %")))));
 }
 
 TEST(DecodeXdf, LeavesTheStampsOfAStreamThatDropsSamples) {
@@ -264,7 +263,6 @@ TEST(DecodeXdf, LeavesTheStampsOfAStreamThatDropsSamples) {
   const Contents contents =
       contents_of(file.samples(1, {Xdf::stamped(1) + "a", Xdf::stamped(1.3) + "b", Xdf::stamped(1.31) + "c"}));
   EXPECT_EQ(contents.clocks[0].time, Vector(Eigen::Vector3d(1, 1.3, 1.31)));
-  EXPECT_THAT(contents.notes, Contains(HasSubstr("were not evened out")));
 }
 
 // ---- clocks ----

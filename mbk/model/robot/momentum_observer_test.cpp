@@ -244,8 +244,8 @@ TEST(MomentumObserver, DoesNotAllocate) {
 }
 
 TEST(MomentumObserver, RefusesGainsTimesAndModelsThatAreNone) {
-  EXPECT_EQ(MomentumObserver::create(thesis_robot(), 0.0, kTick).error().message,
-            "observer gain 0 1/s is not above zero");
+  EXPECT_THAT(MomentumObserver::create(thesis_robot(), 0.0, kTick).error().message,
+              AllOf(testing::HasSubstr("gain"), testing::HasSubstr("0 1/s")));
   EXPECT_EQ(MomentumObserver::create(thesis_robot(), kGain, -kTick).error().kind, ErrorKind::usage);
   DynamicModel model = thesis_robot();
   model.delay = -0.001;
@@ -255,7 +255,7 @@ TEST(MomentumObserver, RefusesGainsTimesAndModelsThatAreNone) {
   model = thesis_robot();
   model.parameters.conservativeResize(8);
   EXPECT_THAT(MomentumObserver::create(model, kGain, kTick).error().message,
-              testing::HasSubstr("8 parameters, and its equations have 9"));
+              AllOf(testing::HasSubstr("8 parameters"), testing::HasSubstr("9 coefficients")));
   EXPECT_FALSE(EncoderMomentumObserver::create(thesis_robot(), {.velocity_cutoff = Hertz(0.0)}, kTick));
 }
 

@@ -67,17 +67,17 @@ TEST(ObserveForce, RefusesWhatIsNotThatOfTheRobotAndSaysWhere) {
   const DynamicModel model = model_of({});
   const Recorded r = recorded(50);
   EXPECT_THAT(observe_force(model, r.position.leftCols(1), r.torque, {}, kTick).error().message,
-              HasSubstr("1 joints at 50 samples and torques of 2 at 50 are not those of a robot of 2 joints"));
+              AllOf(HasSubstr("1 joint"), HasSubstr("50 samples"), HasSubstr("2 joints")));
   EXPECT_FALSE(observe_force(model, r.position, r.torque.topRows(49), {}, kTick));
   Recorded bad = r;
   bad.torque(17, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(observe_force(model, bad.position, bad.torque, {}, kTick).error().message,
-            "torque_2 is not a finite number at sample 17");
+  EXPECT_THAT(observe_force(model, bad.position, bad.torque, {}, kTick).error().message,
+              AllOf(HasSubstr("torque_2"), HasSubstr("sample 17")));
   bad = r;
   bad.position.setZero();
   bad.position.col(0).array() += 0.5 * std::numbers::pi;
   const Error singular = observe_force(model, bad.position, bad.torque, {}, kTick).error();
-  EXPECT_THAT(singular.line(), HasSubstr("sample 0: a singular configuration"));
+  EXPECT_THAT(singular.line(), AllOf(HasSubstr("sample 0"), HasSubstr("singular")));
   EXPECT_FALSE(observe_force(model, r.position, r.torque, {.gain = -1.0}, kTick));
 }
 

@@ -35,16 +35,17 @@ TEST(CheckJoints, AllowsTheWholeWorkspaceAndItsCorners) {
 TEST(CheckJoints, SaysWhichLimitIsBrokenAndByHowMuch) {
   struct Broken {
     double theta1, theta2;  // [°]
-    const char* says;
+    const char *quantity, *value, *excess, *limit;
   };
-  for (const Broken& broken : {Broken{95.0, 60.0, "θ₁ is 95.00°, 5° above its limit 90°"},
-                               Broken{30.0, -2.0, "θ₂ is -2.00°, 2° below its limit 0°"},
-                               Broken{0.0, 65.0, "θ₁ − (θ₂ − 90°) is 25.00°, 10° below its limit 35°"},
-                               Broken{-75.0, -30.0, "θ₂ is -30.00°, 30° below its limit 0°"}}) {
+  for (const Broken& broken :
+       {Broken{95.0, 60.0, "θ₁", "95.00°", " 5°", "90°"}, Broken{30.0, -2.0, "θ₂", "-2.00°", " 2°", " 0°"},
+        Broken{0.0, 65.0, "θ₁ − (θ₂ − 90°)", "25.00°", "10°", "35°"},
+        Broken{-75.0, -30.0, "θ₂", "-30.00°", " 30°", " 0°"}}) {
     const auto checked = check_joints(kLimits, kDegree * Vector2d(broken.theta1, broken.theta2));
-    ASSERT_FALSE(checked) << broken.says;
+    ASSERT_FALSE(checked) << broken.quantity << " " << broken.value;
     EXPECT_EQ(checked.error().kind, ErrorKind::usage);
-    EXPECT_THAT(checked.error().message, HasSubstr(broken.says));
+    EXPECT_THAT(checked.error().message, AllOf(HasSubstr(broken.quantity), HasSubstr(broken.value),
+                                               HasSubstr(broken.excess), HasSubstr(broken.limit)));
     EXPECT_FALSE(checked.error().remedy.empty());
   }
   EXPECT_FALSE(check_joints(kLimits, {std::numeric_limits<double>::quiet_NaN(), 0.0}));
@@ -56,10 +57,10 @@ TEST(CheckHand, GivesTheJointAnglesOrSaysWhy) {
   EXPECT_TRUE(hand_position(kGeometry, *theta).isApprox(Vector2d(0.3, 0.0), 1e-14));
   const auto far = check_hand(kGeometry, {0.6, 0.0});
   ASSERT_FALSE(far);
-  EXPECT_THAT(far.error().line(), HasSubstr("0.6 m from the base"));
+  EXPECT_THAT(far.error().line(), HasSubstr("0.6 m"));
   const auto beyond = check_hand(kGeometry, {0.1, -0.45});
   ASSERT_FALSE(beyond);
-  EXPECT_THAT(beyond.error().line(), HasSubstr("the hand at (0.1, -0.45) m: θ"));
+  EXPECT_THAT(beyond.error().line(), AllOf(HasSubstr("(0.1, -0.45) m"), HasSubstr("θ")));
 }
 
 TEST(CheckHand, HoldsWithinTheOutlineAndNotBeyondIt) {
@@ -132,7 +133,7 @@ TEST(Boundary, RefusesWhatHasNoOutline) {
   folding.limits.theta1_high = 100.0 * kDegree;
   const auto folded = boundary(folding, 100);
   ASSERT_FALSE(folded);
-  EXPECT_THAT(folded.error().message, HasSubstr("100°, beyond 90°"));
+  EXPECT_THAT(folded.error().message, AllOf(HasSubstr("100°"), HasSubstr("90°")));
 }
 
 TEST(EnclosedArea, IsKnownForARectangle) {

@@ -127,7 +127,7 @@ TEST(Planar, MayStandUpright) {
   EXPECT_THAT(parsed("[robot]\nkind = 'planar'\nup_deg = 90\n").unstated, Contains("gravity_2"));
   const auto& options = dynamic_cast<const robot::PlanarMechanism&>(*robot.model.mechanism).options();
   EXPECT_DOUBLE_EQ(options.up.value(), 0.5 * std::numbers::pi);
-  EXPECT_THAT(refusal("[robot]\nkind = 'planar'\ngravity_Nm = [1, 1]\n"), HasSubstr("the plane is horizontal"));
+  EXPECT_THAT(refusal("[robot]\nkind = 'planar'\ngravity_Nm = [1, 1]\n"), HasSubstr("robot.gravity_Nm"));
 }
 
 TEST(Planar, TakesTheFrictionThatAScenarioWouldHave) {
@@ -147,14 +147,13 @@ TEST(Planar, TakesTheFrictionThatAScenarioWouldHave) {
 }
 
 TEST(Planar, RefusesFrictionThatNoTermTakes) {
-  EXPECT_THAT(
-      refusal("[robot]\nkind = 'planar'\nbreakaway_Nm = [0.5, 0.5]\n"),
-      HasSubstr("x.toml, line 3, robot.breakaway_Nm: \"stribeck\" is not among the terms of the drives; add it"));
+  EXPECT_THAT(refusal("[robot]\nkind = 'planar'\nbreakaway_Nm = [0.5, 0.5]\n"),
+              AllOf(HasSubstr("line 3"), HasSubstr("robot.breakaway_Nm"), HasSubstr("\"stribeck\"")));
   EXPECT_THAT(refusal("[robot]\nkind = 'planar'\nsmoothing_rad_per_s = [0.5, 0.4]\n"),
-              HasSubstr("the two joints differ"));
-  EXPECT_THAT(refusal("[robot]\nkind = 'planar'\ntheta1_deg = [40, -40]\n"), HasSubstr("not below the second"));
+              HasSubstr("robot.smoothing_rad_per_s"));
+  EXPECT_THAT(refusal("[robot]\nkind = 'planar'\ntheta1_deg = [40, -40]\n"), HasSubstr("robot.theta1_deg"));
   for (const char* limits : {"smallest_opening_deg = 200", "theta2_deg = [170, 180]", "theta1_deg = [-100, -90]"}) {
-    EXPECT_THAT(refusal(std::string("[robot]\nkind = 'planar'\n") + limits), HasSubstr("leave no area to move in"));
+    EXPECT_THAT(refusal(std::string("[robot]\nkind = 'planar'\n") + limits), HasSubstr("robot.smallest_opening_deg"));
   }
 }
 
@@ -171,7 +170,7 @@ TEST(OneAxis, TurnsOrSlides) {
       "[robot]\nkind = 'one_axis'\nslides = false\nlimits_deg = [-90, 90]\n[drive]\nviscous_Nms_per_rad = [0.5]\n");
   EXPECT_EQ(value(turns, "viscous_1"), 0.5);
   EXPECT_THAT(turns.unstated, ElementsAre("inertia", "coulomb_1", "offset_1"));
-  EXPECT_THAT(refusal("[robot]\nkind = 'one_axis'\n"), HasSubstr("write slides = true or slides = false"));
+  EXPECT_THAT(refusal("[robot]\nkind = 'one_axis'\n"), HasSubstr("robot.slides"));
   EXPECT_THAT(refusal("[robot]\nkind = 'one_axis'\nslides = true\n[drive]\nviscous_Nms_per_rad = [1]\n"),
               HasSubstr("viscous_Ns_per_m"));
 }
@@ -215,17 +214,18 @@ TEST(Urdf, TakesValuesOfTurningAndSlidingJointsApart) {
 
 TEST(Urdf, SaysInWhichFileWhatIsWrong) {
   const std::string urdf = robot::RandomChain("RPR", 5).urdf(), start = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\n";
-  EXPECT_THAT(refusal(start, "<robot"), HasSubstr("x.toml, arm.urdf: no URDF"));
-  EXPECT_THAT(refusal(start + "tip_link = 'hand'\n", urdf), HasSubstr("no link 'hand' for the tip"));
-  EXPECT_THAT(refusal(start + "hand_axes = ['x', 'q']\n", urdf), HasSubstr("x.toml, line 4, robot.hand_axes: 'q'"));
-  EXPECT_THAT(refusal(start + "hand_axes = []\n", urdf), HasSubstr("along one or two axes"));
-  EXPECT_THAT(refusal(start + "signs = [1, 2, 1]\n", urdf), HasSubstr("2 is neither 1 nor -1"));
-  EXPECT_THAT(refusal(start + "signs = [1, 1]\n", urdf), HasSubstr("2 numbers where 3 are expected"));
-  EXPECT_THAT(refusal(start + "zero_deg = [1, 2, 3]\n", urdf), HasSubstr("3 numbers where 2 are expected"));
-  EXPECT_THAT(refusal(start + "tip = 'hand'\n", urdf), HasSubstr("'tip' is no key of [robot]"));
+  EXPECT_THAT(refusal(start, "<robot"), AllOf(HasSubstr("x.toml"), HasSubstr("arm.urdf")));
+  EXPECT_THAT(refusal(start + "tip_link = 'hand'\n", urdf), HasSubstr("'hand'"));
+  EXPECT_THAT(refusal(start + "hand_axes = ['x', 'q']\n", urdf),
+              AllOf(HasSubstr("line 4"), HasSubstr("robot.hand_axes"), HasSubstr("'q'")));
+  EXPECT_THAT(refusal(start + "hand_axes = []\n", urdf), HasSubstr("robot.hand_axes"));
+  EXPECT_THAT(refusal(start + "signs = [1, 2, 1]\n", urdf), AllOf(HasSubstr("robot.signs"), HasSubstr("-1")));
+  EXPECT_THAT(refusal(start + "signs = [1, 1]\n", urdf), AllOf(HasSubstr("robot.signs"), HasSubstr("number")));
+  EXPECT_THAT(refusal(start + "zero_deg = [1, 2, 3]\n", urdf), HasSubstr("robot.zero_deg"));
+  EXPECT_THAT(refusal(start + "tip = 'hand'\n", urdf), AllOf(HasSubstr("'tip'"), HasSubstr("[robot]")));
   EXPECT_THAT(refusal(start + "[drive]\nstribeck_Nm = [1, 1]\n", urdf),
-              HasSubstr("\"stribeck\" is not among the terms of the drives"));
-  EXPECT_THAT(refusal("[robot]\nkind = 'urdf'\n", urdf), HasSubstr("write file = \"robot.urdf\""));
+              AllOf(HasSubstr("drive.stribeck_Nm"), HasSubstr("\"stribeck\"")));
+  EXPECT_THAT(refusal("[robot]\nkind = 'urdf'\n", urdf), HasSubstr("robot.file"));
   EXPECT_THAT(refusal("[robot]\nkind = 'delta'\n"), HasSubstr("planar, one_axis, urdf"));
   EXPECT_THAT(refusal(""), HasSubstr("kind"));
 }
@@ -233,12 +233,12 @@ TEST(Urdf, SaysInWhichFileWhatIsWrong) {
 TEST(ReadRobotDescription, SaysWhichFileCannotBeRead) {
   const auto none = read_robot_description("no_such_robot.toml");
   ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().line(), HasSubstr("no_such_robot.toml: cannot be read"));
+  EXPECT_THAT(none.error().line(), HasSubstr("no_such_robot.toml"));
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "lonely.toml";
   std::ofstream(file) << "[robot]\nkind = 'urdf'\nfile = 'gone.urdf'\n";
   const auto gone = read_robot_description(file);
   ASSERT_FALSE(gone);
-  EXPECT_THAT(gone.error().line(), HasSubstr("gone.urdf: cannot be read"));
+  EXPECT_THAT(gone.error().line(), HasSubstr("gone.urdf"));
   EXPECT_FALSE(read_robot_description(::testing::TempDir()));
 }
 
