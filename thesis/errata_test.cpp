@@ -84,7 +84,8 @@ TEST(Errata, BoundaryOfTheTheoremIsNotPassive) {
 TEST(Errata, PolesOfTheImpedanceAreNotWhatTheTheoremAsks) {
   const Exhibit exhibit = erratum_made("erratum-3");
   const ReproducedTable& rows = table(exhibit, "erratum-3");
-  EXPECT_EQ(rows.title, "Z of P1: finite poles at 0; one at infinity");
+  for (const char* const fact : {"P1", " 0", "infinity"})
+    EXPECT_NE(rows.title.find(fact), std::string::npos) << rows.title;
   EXPECT_EQ(said(rows, 0, 3), "yes");
   for (std::size_t i = 1; i < 4; ++i) EXPECT_EQ(said(rows, i, 3), "no");
   EXPECT_GT(number(rows, 3, 1), 0.0) << "H alone calls −K passive";

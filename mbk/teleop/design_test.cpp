@@ -54,9 +54,9 @@ TEST(ParseDesign, AsksForWhatAnArchitectureNeedsAndNothingElse) {
       "[master]\nmass_kg = 1\ndamping_N_s_per_m = 1\n[slave]\nmass_kg = 1\ndamping_N_s_per_m = 1\n"
       "controller_damping_N_s_per_m = 1\ncontroller_stiffness_N_per_m = 1\n";
   EXPECT_THAT(line_of("[architecture]\nkind = \"position-position\"\n" + robots),
-              HasSubstr("[master] has no 'controller_damping_N_s_per_m'"));
+              AllOf(HasSubstr("[master]"), HasSubstr("'controller_damping_N_s_per_m'")));
   EXPECT_THAT(line_of("[architecture]\nkind = \"position-force\"\n" + robots),
-              HasSubstr("[channels] has no 'force_to_master'"));
+              AllOf(HasSubstr("[channels]"), HasSubstr("'force_to_master'")));
   const std::string force = "[channels]\nforce_to_master = 1\n";
   EXPECT_EQ(line_of("[architecture]\nkind = \"position-force\"\n" + robots + force), "");
   EXPECT_THAT(line_of("[architecture]\nkind = \"position-force\"\n" + robots + force + "force_to_slave = 1\n"),
@@ -74,8 +74,8 @@ TEST(ParseDesign, RefusesNumbersWhoseExactAnswerTakesForEver) {
   EXPECT_EQ(line_of(with("1e12", "0.001")), "");
   EXPECT_EQ(line_of(with("0", "0")), "");
   EXPECT_THAT(line_of(with("1", "1e-320")), HasSubstr("delay.to_slave_ms"));
-  EXPECT_THAT(line_of(with("1", "1e-320")), HasSubstr("closer to zero than 1e-06 s; write 0 where it is none"));
-  EXPECT_THAT(line_of(with("1e300", "1")), HasSubstr("1e+300 is beyond 1e+12 in SI units"));
+  EXPECT_THAT(line_of(with("1", "1e-320")), HasSubstr("1e-06 s"));
+  EXPECT_THAT(line_of(with("1e300", "1")), AllOf(HasSubstr("1e+300"), HasSubstr("1e+12")));
   EXPECT_THAT(line_of(with("-1e-300", "1")), HasSubstr("slave.controller_stiffness_N_per_m"));
   const std::string start = "[two_port]\nform = \"z\"\nz11 = {numerator = [1]}\nz22 = {numerator = [1]}\n";
   EXPECT_THAT(line_of(start + "z12 = {numerator = [1e300]}\nz21 = {numerator = [0]}\n"),

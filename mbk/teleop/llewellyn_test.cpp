@@ -77,7 +77,8 @@ TEST(Llewellyn, NamesEntriesWithPolesOnTheRight) {
   const AbsoluteStability stability =
       llewellyn(two_port(Form::z, {{{{5}, {1}}, {{1}, {1, -1}}, {{0}, {1}}, {{5}, {1}}}}));
   EXPECT_THAT(violated(stability), testing::ElementsAre(right_poles));
-  EXPECT_EQ(outcome(stability, right_poles).violated.front().detail, "z12 has a pole at s = 1");
+  EXPECT_THAT(outcome(stability, right_poles).violated.front().detail,
+              AllOf(testing::HasSubstr("z12"), testing::HasSubstr("s = 1")));
 }
 
 TEST(Llewellyn, AsksForSimplePolesOnTheAxisWithPositiveResidues) {

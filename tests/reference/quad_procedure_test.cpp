@@ -148,11 +148,13 @@ TEST(QuadProcedure, RefusesWhatItCannotRead) {
   EXPECT_FALSE(identify(log, {}));
   log.x = log.y = log.Fx = log.Fy = log.xr = log.yr = std::vector<double>(62000, 1.0);
   log.Fy.pop_back();
-  EXPECT_EQ(identify(log, {}).error().message, "Fy has 61999 samples, but x has 62000");
+  const auto says = [&](const char* fact, const Settings& settings = {}) {
+    return identify(log, settings).error().message.find(fact) != std::string::npos;
+  };
+  EXPECT_TRUE(says("Fy") && says("61999") && says("62000"));
   log.Fy.push_back(NAN);
-  EXPECT_EQ(identify(log, {}).error().message, "Fy is not finite at sample 61999");
-  EXPECT_EQ(identify(log, {.procedure = Procedure::chapter5}).error().message,
-            "the procedure of chapter 5 needs the handle's mass");
+  EXPECT_TRUE(says("Fy") && says("sample 61999"));
+  EXPECT_TRUE(says("mass", {.procedure = Procedure::chapter5}));
   EXPECT_FALSE(read_log("/nowhere/log.mat"));
 }
 

@@ -2,11 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace mbk::console {
 namespace {
 
 using namespace std::chrono_literals;
 using Time = Refusals::Time;
+
+/// As a summary counts one kind.
+std::string counted(int times, Refusal kind) {
+  return std::to_string(times) + " × " + std::string(word_of(kind));
+}
 
 TEST(Refusals, TheFirstFewAreSaidAndTheOthersCounted) {
   Refusals refusals;
@@ -16,7 +23,8 @@ TEST(Refusals, TheFirstFewAreSaidAndTheOthersCounted) {
   EXPECT_FALSE(refusals.summary(Time(9s)));
   const auto line = refusals.summary(Time(10s));
   ASSERT_TRUE(line);
-  EXPECT_EQ(*line, "995 more within 10 s: 995 × wrong token");
+  EXPECT_TRUE(line->starts_with("995 ")) << *line;
+  EXPECT_NE(line->find(counted(995, Refusal::token)), std::string::npos) << *line;
   EXPECT_FALSE(refusals.summary(Time(30s)));
 }
 
@@ -25,7 +33,10 @@ TEST(Refusals, AFloodOfOneKindHidesNoOther) {
   for (int k = 0; k < 1000; ++k) (void)refusals.take(Refusal::token, Time());
   EXPECT_TRUE(refusals.take(Refusal::host, Time(1s)));
   for (int k = 0; k < 6; ++k) (void)refusals.take(Refusal::origin, Time(1s));
-  EXPECT_EQ(refusals.summary(Time(10s)).value(), "996 more within 10 s: 995 × wrong token, 1 × foreign origin");
+  const std::string line = refusals.summary(Time(10s)).value();
+  EXPECT_TRUE(line.starts_with("996 ")) << line;
+  EXPECT_NE(line.find(counted(995, Refusal::token)), std::string::npos) << line;
+  EXPECT_NE(line.find(counted(1, Refusal::origin)), std::string::npos) << line;
 }
 
 TEST(Refusals, AnHourOfAFloodIsAFewLines) {
@@ -50,7 +61,8 @@ TEST(Refusals, NothingIsSummedUpWhereAllWasSaid) {
 TEST(Refusals, AtTheEndTheSpellIsNotWaitedFor) {
   Refusals refusals;
   for (int k = 0; k < 7; ++k) (void)refusals.take(Refusal::command, Time());
-  EXPECT_EQ(refusals.summary(Time(1s), true).value(), "2 more within 10 s: 2 × command out of place");
+  const std::string line = refusals.summary(Time(1s), true).value();
+  EXPECT_NE(line.find(counted(2, Refusal::command)), std::string::npos) << line;
   EXPECT_FALSE(refusals.summary(Time(1s), true));
 }
 

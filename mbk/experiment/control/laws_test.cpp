@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <string>
 
 #include "tests/support/allocations.h"
 
@@ -109,8 +110,8 @@ TEST(Laws, DoNotAllocate) {
 TEST(Laws, RefuseGainsAndTimesThatAreNone) {
   JointPositionControl::Gains gains;
   gains.derivative[1] = -1.0;
-  EXPECT_EQ(JointPositionControl::create(gains, kTick).error().message,
-            "derivative gain -1 N·m·s/rad is below zero or not finite");
+  const std::string refused = JointPositionControl::create(gains, kTick).error().message;
+  EXPECT_NE(refused.find("-1 N·m·s/rad"), std::string::npos) << refused;
   EXPECT_FALSE(JointPositionControl::create({}, 0.0));
   LineConstraint::Options options;
   options.stiffness = std::numeric_limits<double>::infinity();

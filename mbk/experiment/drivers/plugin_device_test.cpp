@@ -75,8 +75,8 @@ TEST(PluginDevice, ReadsAndCommandsThroughTheWiring) {
 TEST(PluginDevice, SaysWhatItsOpenSays) {
   const auto started = my_robot("both at zero")->start();
   ASSERT_FALSE(started);
-  EXPECT_NE(started.error().line().find("two wheels: settings 'both at zero' are not two angles"), std::string::npos)
-      << started.error().line();
+  for (const char* const fact : {"two wheels", "'both at zero'"})
+    EXPECT_NE(started.error().line().find(fact), std::string::npos) << started.error().line();
 }
 
 TEST(PluginDevice, BeginsAgain) {
@@ -111,12 +111,11 @@ TEST(PluginDevice, DoesNotAllocateWhileItRuns) {
 }
 
 TEST(PluginDevice, NamesWhatIsMissing) {
-  EXPECT_NE(refusal("/nowhere/robot.so").find("cannot be loaded"), std::string::npos);
-  EXPECT_NE(refusal(MBK_PLUGIN_WITHOUT_ENTRY).find("does not export mbk_device_plugin_get"), std::string::npos);
-  EXPECT_NE(refusal(MBK_PLUGIN_OTHER_VERSION).find("version 3 of the interface, and this is version 2"),
-            std::string::npos);
-  EXPECT_NE(refusal(MBK_PLUGIN_OTHER_SIZE).find("has 8 bytes"), std::string::npos);
-  EXPECT_NE(refusal(MBK_PLUGIN_WITHOUT_FUNCTIONS).find("it lacks read, close"), std::string::npos);
+  EXPECT_NE(refusal("/nowhere/robot.so").find("/nowhere/robot.so"), std::string::npos);
+  EXPECT_NE(refusal(MBK_PLUGIN_WITHOUT_ENTRY).find("mbk_device_plugin_get"), std::string::npos);
+  EXPECT_NE(refusal(MBK_PLUGIN_OTHER_VERSION).find("version 3"), std::string::npos);
+  EXPECT_NE(refusal(MBK_PLUGIN_OTHER_SIZE).find("8 bytes"), std::string::npos);
+  EXPECT_NE(refusal(MBK_PLUGIN_WITHOUT_FUNCTIONS).find("read, close"), std::string::npos);
   EXPECT_NE(refusal(MBK_MY_ROBOT).find("has_force"), std::string::npos);
 }
 
@@ -147,7 +146,7 @@ TEST(PluginDevice, WantsASample) {
   auto device = PluginDevice::create({MBK_PLUGIN_WITHOUT_SAMPLES, ""}, {}).value();
   const auto started = device->start();
   ASSERT_FALSE(started);
-  EXPECT_NE(started.error().line().find("no sample"), std::string::npos);
+  EXPECT_NE(started.error().line().find("sample"), std::string::npos);
 }
 
 }  // namespace

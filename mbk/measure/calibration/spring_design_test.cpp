@@ -129,7 +129,7 @@ TEST(SpringDesign, SaysTheNearestWhereNoSpringsGiveIt) {
   const auto design = design_springs(request);
   ASSERT_FALSE(design);
   EXPECT_EQ(design.error().kind, ErrorKind::not_usable);
-  EXPECT_THAT(design.error().line(), HasSubstr("the nearest has kxx"));
+  EXPECT_THAT(design.error().line(), HasSubstr("kxx"));
   request = request_for(kPublished[0]);
   request.equilibrium = {0.39 + 0.3, 0.0};  // outside the frame: nothing pulls further out
   EXPECT_EQ(design_springs(request).error().kind, ErrorKind::not_usable);
@@ -143,13 +143,13 @@ TEST(SpringDesign, RefusesWhatCannotBeAsked) {
     EXPECT_FALSE(design);
     return design ? std::string() : design.error().line();
   };
-  EXPECT_THAT(line([](auto& r) { r.K(0, 1) = 1.0; }), HasSubstr("not symmetric"));
-  EXPECT_THAT(line([](auto& r) { r.K << 1, 2, 2, 1; }), HasSubstr("-1"));
+  EXPECT_THAT(line([](auto& r) { r.K(0, 1) = 1.0; }), HasSubstr("symmetr"));
+  EXPECT_THAT(line([](auto& r) { r.K << 1, 2, 2, 1; }), AllOf(HasSubstr("-1 "), HasSubstr("3 N/m")));
   EXPECT_THAT(line([](auto& r) { r.stiffness = {5, 5}; }), HasSubstr("5 N/m"));
-  EXPECT_THAT(line([](auto& r) { r.rest_length = {0.1, 0.05}; }), HasSubstr("100 to 50 mm"));
+  EXPECT_THAT(line([](auto& r) { r.rest_length = {0.1, 0.05}; }), AllOf(HasSubstr("100"), HasSubstr("50 mm")));
   EXPECT_THAT(line([](auto& r) { r.eyes.resize(2); }), HasSubstr("2 screw eyes"));
   EXPECT_THAT(line([](auto& r) { r.holes.resize(2); }), HasSubstr("2 holes"));
-  EXPECT_THAT(line([](auto& r) { r.travel = 0; }), HasSubstr("travel of 0 mm"));
+  EXPECT_THAT(line([](auto& r) { r.travel = 0; }), AllOf(HasSubstr("travel"), HasSubstr(" 0 mm")));
   EXPECT_THAT(line([](auto& r) { r.payload = -1.0; }), HasSubstr("-1 kg"));
 }
 

@@ -31,14 +31,14 @@ TEST(FrequencyResponse, IsByTheFirstMethodThatTheDataAllow) {
   const auto robust = frequency_response(several);
   ASSERT_TRUE(robust.has_value());
   EXPECT_EQ(robust->method, FrequencyResponseMethod::robust);
-  EXPECT_THAT(robust->method_rule, HasSubstr("repeats itself every 2 s; 2 realisations"));
+  EXPECT_THAT(robust->method_rule, AllOf(HasSubstr(" 2 s"), HasSubstr("2 realisations")));
   const auto fast = frequency_response({several.data(), 1});
   EXPECT_EQ(fast->method, FrequencyResponseMethod::fast);
   const Vector u = white_noise(4000, 3);
   const auto any = trial_of(u, u, kStep);
   const auto local = frequency_response({&any, 1});
   EXPECT_EQ(local->method, FrequencyResponseMethod::local_polynomial);
-  EXPECT_THAT(local->method_rule, HasSubstr("does not repeat itself"));
+  EXPECT_THAT(local->method_rule, HasSubstr("input"));
   Matrix r(4000, 2);
   r.col(0) = periodic_signal(odd_lines(39), 200, 4000, 5);
   r.col(1) = periodic_signal(odd_lines(39), 200, 4000, 6);
@@ -46,7 +46,7 @@ TEST(FrequencyResponse, IsByTheFirstMethodThatTheDataAllow) {
   const auto welch = frequency_response({&one, 1});
   ASSERT_TRUE(welch.has_value()) << welch.error().line();
   EXPECT_EQ(welch->method, FrequencyResponseMethod::welch);
-  EXPECT_THAT(welch->method_rule, HasSubstr("cannot tell 2 inputs apart"));
+  EXPECT_THAT(welch->method_rule, HasSubstr("2 inputs"));
 }
 
 TEST(FrequencyResponse, IsByTheMethodThatIsAskedForOrRefused) {
@@ -58,13 +58,13 @@ TEST(FrequencyResponse, IsByTheMethodThatIsAskedForOrRefused) {
   }
   const auto robust = frequency_response({several.data(), 1}, {.method = FrequencyResponseMethod::robust});
   ASSERT_FALSE(robust.has_value());
-  EXPECT_THAT(robust.error().line(), HasSubstr("needs several realisations"));
+  EXPECT_THAT(robust.error().line(), HasSubstr("realisation"));
   // Lines 10 Hz apart: around each there is no other that would tell the response from a transient.
   const Vector u = periodic_signal(odd_lines(9), 20, 1000, 4);
   const auto far_apart = trial_of(u, 2.0 * u + 0.1 * white_noise(1000, 8), kStep, u);
   const auto local = frequency_response({&far_apart, 1}, {.method = FrequencyResponseMethod::local_polynomial});
   ASSERT_FALSE(local.has_value());
-  EXPECT_THAT(local.error().line(), HasSubstr("let --method be welch"));
+  EXPECT_THAT(local.error().line(), AllOf(HasSubstr("--method"), HasSubstr("welch")));
 }
 
 TEST(FrequencyResponse, WarnsOfWhatItsUserMustKnow) {

@@ -312,7 +312,7 @@ TEST(PeriodicResponse, RefusesWhatHasNoPeriod) {
   const auto trial = trial_of(u, u, kStep);
   const auto found = periodic_response({&trial, 1});
   ASSERT_FALSE(found.has_value());
-  EXPECT_NE(found.error().line().find("does not repeat"), std::string::npos);
+  EXPECT_NE(found.error().line().find("--period"), std::string::npos);
   EXPECT_FALSE(periodic_response({&trial, 1}, {.period_s = 0.005}).has_value()) << "no whole number of samples";
   EXPECT_FALSE(periodic_response({&trial, 1}, {.period_s = 0.05}).has_value()) << "fewer than 8 samples";
   EXPECT_FALSE(periodic_response({&trial, 1}, {.period_s = 30.0}).has_value()) << "fewer than two periods";

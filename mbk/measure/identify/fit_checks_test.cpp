@@ -253,7 +253,7 @@ TEST(Warnings, APoorFitInSampleIsNamedThoughHeldOutDataHideIt) {
   id.fit.vaf.setConstant(73.0);
   const Identification poor = judged(id);
   EXPECT_THAT(codes(poor), ElementsAre("fit-poor"));
-  EXPECT_NE(poor.warnings.front().message.find("66.0 % of the force in one axis that made them"), std::string::npos);
+  EXPECT_NE(poor.warnings.front().message.find("66.0 %"), std::string::npos);
 }
 
 TEST(Warnings, AModelWorseThanTheMeanIsUnusable) {

@@ -355,7 +355,7 @@ TEST(RobotConsistency, PutsBodiesWhereTheDescriptionHasNone) {
     expect_possible(*found);
     EXPECT_LT(largest(found->consistent->vaf_lost_in_sample), kMostLost);
     EXPECT_EQ(
-        std::ranges::count_if(found->notes, [](const auto& note) { return note.find("no body") != std::string::npos; }),
+        std::ranges::count_if(found->notes, [](const auto& note) { return note.find("body") != std::string::npos; }),
         replaced);
     // As heavy as its torques, though nobody said a mass.
     for (const ConsistentBody& one : found->consistent->bodies) {

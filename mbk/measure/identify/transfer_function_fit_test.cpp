@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <regex>
+#include <string>
 
 #include "mbk/base/dsp/derivative_filter.h"
 #include "mbk/base/numeric/random.h"
@@ -227,15 +229,15 @@ TEST(TransferFunctionFit, OfAnUnstableSystemInALoopSaysToIdentifyTheLoop) {
       ASSERT_FALSE(found.has_value());
       EXPECT_EQ(found.error().kind, ErrorKind::not_usable);
       const std::string& remedy = found.error().remedy;
-      EXPECT_EQ(remedy.find("if a loop holds a system that is unstable"), 0U) << found.error().line();
-      EXPECT_LT(remedy.find("--output INPUT"), remedy.find("fewer poles")) << remedy;
+      EXPECT_LT(remedy.find("--output INPUT"), remedy.find("--start-pole")) << remedy;
     }
     options.method = TransferFunctionMethod::closed_loop;
     const auto found = identify_transfer_function({pair}, {}, options);
-    const std::string line = found.error().line(), words = "grows by e in ";
-    ASSERT_NE(line.find(words), std::string::npos) << line;
+    const std::string message = found.error().message;
+    std::smatch seconds;  // in which its motion grows by e
+    ASSERT_TRUE(std::regex_search(message, seconds, std::regex(R"(([\d.]+) s\b)"))) << message;
     const double root = 0.5 * (std::sqrt(std::max(b * b + 4.0 * a, 0.0)) - b);
-    EXPECT_NEAR(std::stod(line.substr(line.find(words) + words.size())), 1.0 / root, 0.1 / root);
+    EXPECT_NEAR(std::stod(seconds[1].str()), 1.0 / root, 0.1 / root);
     pair.input = pair.reference;
     const auto loop = identify_transfer_function({pair}, {}, two_poles());
     ASSERT_TRUE(loop.has_value()) << loop.error().line();
@@ -282,7 +284,8 @@ TEST(TransferFunctionFit, FindsADelayOfWholeSamplesInDiscreteTime) {
   const auto between = identify_transfer_function({oscillator(4, 0.05, 1)}, {}, options);
   ASSERT_FALSE(between.has_value());
   EXPECT_EQ(between.error().kind, ErrorKind::usage);
-  EXPECT_NE(between.error().remedy.find("0.04 or 0.05"), std::string::npos) << between.error().remedy;
+  for (const char* const delay : {"0.04 ", "0.05 "})
+    EXPECT_NE(between.error().remedy.find(delay), std::string::npos) << between.error().remedy;
 }
 
 TEST(TransferFunctionFit, ChoosesTheTrueOrderInDiscreteTime) {

@@ -82,7 +82,7 @@ TEST(ExcitedBand, OfEightSamplesIsFoundAndOfSevenRefused) {
   EXPECT_TRUE(excited_band(motion, {Cut{0, 8, {}}}, kRate));
   const auto refused = excited_band(motion, {Cut{0, 50, {}}, Cut{50, 57, {}}}, kRate);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "7 samples are too few for a spectrum");
+  EXPECT_NE(refused.error().message.find("7 samples"), std::string::npos) << refused.error().message;
 }
 
 TEST(ExcitedBand, OfNoMotionIsZero) {

@@ -1,6 +1,6 @@
 #include "mbk/measure/preprocess/jittered_clock.h"
 
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
@@ -61,8 +61,7 @@ TEST(OnEvenClock, BringsBackTheMotionInEitherCase) {
     const auto even = on_even_clock(recording, facts_of(recording));
     ASSERT_TRUE(even);
     EXPECT_EQ(even->warning.code, WarningCode::clock_jitter);
-    EXPECT_THAT(even->warning.message,
-                testing::HasSubstr(at_stamps ? "sampled at the recorded times" : "as if sampled evenly"));
+    EXPECT_EQ(even->warning.message.find(" Hz") != std::string::npos, at_stamps) << even->warning.message;
     const Vector& x = even->recording.channels[0].values;
     // a tenth of an interval is 9 µm rms at these speeds, and would be seen
     const Vector truth = 0.02 * (2.0 * std::numbers::pi * even->recording.time.array()).sin();
@@ -74,7 +73,7 @@ TEST(OnEvenClock, TakesRecordedTimeForTrueWhereTheMotionShowsNothing) {
   const Recording recording = moving(0.1, false, 1e-7);
   const auto even = on_even_clock(recording, facts_of(recording));
   ASSERT_TRUE(even);
-  EXPECT_THAT(even->warning.message, testing::HasSubstr("cannot be seen"));
+  EXPECT_NE(even->warning.message.find(" Hz"), std::string::npos) << even->warning.message;
 }
 
 TEST(JittersOnly, IsNotSaidOfAGapOrOfASteadyClock) {

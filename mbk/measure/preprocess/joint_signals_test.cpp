@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -50,10 +51,10 @@ Vector sine(Index samples, double rate, double hz, double amplitude, double offs
   return values;
 }
 
-void expect_refused(const Result<JointSignals>& signals, const char* says) {
+void expect_refused(const Result<JointSignals>& signals, std::initializer_list<const char*> facts) {
   ASSERT_FALSE(signals);
   EXPECT_EQ(signals.error().kind, ErrorKind::data);
-  EXPECT_THAT(signals.error().line(), HasSubstr(says));
+  for (const char* const fact : facts) EXPECT_THAT(signals.error().line(), HasSubstr(fact));
 }
 
 const robot::PlanarMechanism kPlanar{{}};
@@ -62,14 +63,14 @@ TEST(SelectJointSignals, NamesAChannelThatIsMissingAndThoseThatAreThere) {
   Recording recording = swing();
   channel(recording, "torque_2").name = "current_2";
   expect_refused(select_joint_signals(recording, kPlanar, false),
-                 "channel 'torque_2' is missing; there are joint_1, joint_2, torque_1, current_2");
-  expect_refused(select_joint_signals(swing(), kPlanar, true), "'acceleration_x' is missing");
+                 {"'torque_2'", "joint_1, joint_2, torque_1, current_2"});
+  expect_refused(select_joint_signals(swing(), kPlanar, true), {"'acceleration_x'"});
 }
 
 TEST(SelectJointSignals, RefusesAUnitOfAnotherKindAndTakesNone) {
   Recording recording = swing();
   channel(recording, "joint_2").unit = "m";
-  expect_refused(select_joint_signals(recording, kPlanar, false), "'joint_2' is in m, but this joint needs rad");
+  expect_refused(select_joint_signals(recording, kPlanar, false), {"'joint_2'", "rad"});
   channel(recording, "joint_2").unit = "";
   EXPECT_TRUE(select_joint_signals(recording, kPlanar, false));
 }
@@ -113,9 +114,9 @@ TEST(SelectJointSignals, TakesJointsByName) {
 
 TEST(SelectJointSignals, RefusesNamesThatAreNotTheRobotsWithBothLists) {
   expect_refused(select_joint_signals(swing_of({"elbow", "joint_1"}, {"elbow", "joint_1"}), *chain(), false),
-                 "no joint 'joint_2'; its joints are 'elbow', 'joint_1', those of the robot 'joint_1', 'joint_2'");
+                 {"'elbow', 'joint_1'", "'joint_1', 'joint_2'"});
   expect_refused(select_joint_signals(swing_of({"joint_1", "joint_1"}, {"", ""}), *chain(), false),
-                 "more than one joint 'joint_1'");
+                 {"'joint_1', 'joint_1'"});
 }
 
 TEST(SelectJointSignals, TakesWhatHasNoNamesByNumber) {
@@ -129,15 +130,14 @@ TEST(SelectJointSignals, TakesWhatHasNoNamesByNumber) {
 
 TEST(SelectJointSignals, RefusesTorquesWithoutNamesBesideJointsInAnotherOrder) {
   expect_refused(select_joint_signals(swing_of({"joint_2", "joint_1"}, {"", ""}), *chain(), false),
-                 "only the channels joint_1… say to which joints they belong");
+                 {"joint_1", "'joint_1', 'joint_2'"});
 }
 
 TEST(SelectJointSignals, RefusesMoreNamedJointsThanARobotWithoutNamesHas) {
   Recording recording = swing_of({"elbow", "shoulder"}, {"elbow", "shoulder"});
   recording.channels.push_back({"joint_3", "", "joint", recording.channels[0].values});
   recording.channels.back().origin.joint = "wrist";
-  expect_refused(select_joint_signals(recording, kPlanar, false),
-                 "the recording has the joints 'elbow', 'shoulder', 'wrist', and the robot 2 without names");
+  expect_refused(select_joint_signals(recording, kPlanar, false), {"'elbow', 'shoulder', 'wrist'"});
 }
 
 TEST(SelectJointSignals, LeavesOutReferencesThatCountOtherwise) {
@@ -155,8 +155,7 @@ TEST(SelectJointSignals, ANamedJointHasTheUnitThatTheRobotSays) {
   Recording recording = swing_of({"joint_1", "joint_2"}, {"joint_1", "joint_2"});
   EXPECT_TRUE(select_joint_signals(recording, *chain("PR"), false));
   recording.channels[0].unit = "rad";
-  expect_refused(select_joint_signals(recording, *chain("PR"), false),
-                 "'joint_1' is in rad, but this joint ('joint_1') needs m");
+  expect_refused(select_joint_signals(recording, *chain("PR"), false), {"'joint_1'", "rad", ":m"});
 }
 
 /// Checked over all of it.
@@ -175,7 +174,8 @@ TEST(CheckJointSignals, NamesTheTimeAtWhichAJointIsBeyondItsLimits) {
   const auto refused = checked(recording);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::data);
-  EXPECT_THAT(refused.error().line(), HasSubstr("at sample 1235 (1.234000 s): θ₁ is 91.6"));
+  EXPECT_THAT(refused.error().line(),
+              AllOf(HasSubstr("sample 1235"), HasSubstr("1.234"), HasSubstr("θ₁"), HasSubstr("91.6")));
   EXPECT_THAT(refused.error().line(), HasSubstr("--channels"));
 }
 
@@ -187,7 +187,7 @@ TEST(CheckJointSignals, AcceptsAndNotesWhatIsBeyondALimitByTheNoiseOfAnEncoder) 
   std::vector<std::string> notes;
   const auto accepted = checked(recording, &notes);
   ASSERT_TRUE(accepted) << accepted.error().line();
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("at sample 1235 (1.234000 s): 2 samples are beyond a limit")));
+  EXPECT_THAT(notes, ElementsAre(AllOf(HasSubstr("sample 1235"), HasSubstr("1.234"), HasSubstr("2 samples"))));
   channel(recording, "joint_1").values[1234] = range.high + 0.011;
   EXPECT_FALSE(checked(recording));
   // Both angles, each within its limits, may not close the links on each other either.
@@ -206,13 +206,13 @@ TEST(CheckJointSignals, LooksOnlyAtWhatCounts) {
   channel(recording, "torque_1").values[99] = std::nan("");
   EXPECT_TRUE(checked(recording));
   channel(recording, "torque_1").values[100] = std::nan("");
-  EXPECT_THAT(checked(recording).error().line(), HasSubstr("'torque_1' is not a number at sample 101 (0.100000 s)"));
+  EXPECT_THAT(checked(recording).error().line(), AllOf(HasSubstr("'torque_1'"), HasSubstr("sample 101")));
 }
 
 TEST(CheckJointSignals, TakesATorqueOfZeroForOneThatWasNotRecorded) {
   Recording recording = swing();
   channel(recording, "torque_2").values.setZero();
-  EXPECT_THAT(checked(recording).error().line(), HasSubstr("'torque_2' is zero throughout"));
+  EXPECT_THAT(checked(recording).error().line(), AllOf(HasSubstr("'torque_2'"), HasSubstr("zero")));
 }
 
 TEST(StandingJoints, AreThoseThatFlickerByTheStepsOfTheirEncoder) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "mbk/base/dsp/savitzky_golay.h"
 #include "mbk/measure/preprocess/test_recordings.h"
@@ -80,7 +81,7 @@ TEST(PrepareDynamics, LeavesOutTheTorqueOfAJointThatFrictionHolds) {
   const PreparedDynamics held = prepared({}), loose = prepared({.coulomb = false});
   EXPECT_TRUE(held.torque.col(1).isZero(0.0) && held.regressors[1].isZero(0.0));
   EXPECT_FALSE(held.torque.col(0).isZero(0.0) || held.regressors[0].isZero(0.0));
-  EXPECT_EQ(held.notes.back(), "joint 2 stands still, held by friction: its torque does not count");
+  EXPECT_NE(held.notes.back().find("joint 2"), std::string::npos) << held.notes.back();
   EXPECT_FALSE(loose.torque.col(1).isZero(0.0) || loose.regressors[1].isZero(0.0));
   EXPECT_TRUE(loose.notes.empty());
 }

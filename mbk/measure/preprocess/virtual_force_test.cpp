@@ -140,7 +140,7 @@ TEST(VirtualForce, MayTakeTheAccelerationFromTheSensor) {
   EXPECT_GT(largest_error(computed(recording, model, options).value()), 0.5);
   EXPECT_LT(largest_error(computed(recording, model).value()), kSmoothing);
   recording.channels.resize(4);
-  EXPECT_THAT(computed(recording, model, options).error().line(), HasSubstr("'acceleration_x' is missing"));
+  EXPECT_THAT(computed(recording, model, options).error().line(), HasSubstr("'acceleration_x'"));
 }
 
 TEST(VirtualForce, HasTheSensitivityOfRecomputations) {
@@ -198,7 +198,7 @@ TEST(VirtualForce, TakesThePlaceOfTheSensorsAndKeepsThem) {
   EXPECT_EQ(made.recording.channels.size(), recording.channels.size() + 2);  // the hand's place was not recorded
   const Vector q = motion_of_joints().position.row(77).transpose();
   EXPECT_NEAR(made.recording.find("hand_y")->values[77], model.mechanism->hand_position(q)[1], 1e-12);
-  EXPECT_THAT(made.recording.notes, Contains(HasSubstr("the force is not measured")));
+  EXPECT_THAT(made.recording.notes, Contains(HasSubstr("virtual sensor")));
 }
 
 TEST(VirtualForce, OfTheObserverIsLateAndWithoutStandardErrors) {
@@ -217,7 +217,7 @@ TEST(VirtualForce, OfTheObserverIsLateAndWithoutStandardErrors) {
 
 TEST(VirtualForce, RefusesTorquesThatMustBeInAnotherUnit) {
   const robot::DynamicModel model = planar();
-  for (const auto& [factor, says] : {std::pair(1e3, "probably not in N·m"), std::pair(1e-3, "in another unit")}) {
+  for (const auto& [factor, says] : {std::pair(1e3, "force"), std::pair(1e-3, "parameters")}) {
     Recording recording = recorded(model);
     for (const char* const name : {"torque_1", "torque_2"}) testing_support::values_of(recording, name) *= factor;
     const auto refused = computed(recording, model);
@@ -232,7 +232,7 @@ TEST(VirtualForce, RefusesWhatIsTooShort) {
   Recording recording = recorded(model);
   recording.time = Vector(recording.time.head(99));
   for (Channel& channel : recording.channels) channel.values = Vector(channel.values.head(99));
-  EXPECT_EQ(computed(recording, model).error().message, "99 samples cannot show a force");
+  EXPECT_THAT(computed(recording, model).error().message, HasSubstr("99 samples"));
 }
 
 TEST(VirtualForce, OfOneJointThatTurnsIsATorque) {

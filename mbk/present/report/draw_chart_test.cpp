@@ -97,7 +97,7 @@ TEST(ChartText, HasTitleUnitsLegendReferencesAndNotes) {
   c.notes.emplace_back("Twenty seeds.");
   const std::string text = chart_text(c);
   for (const char* words : {"Stiffness", "found [N/m]", "made [N/m]", "o  k_xx", "⠒⠒⠒⠒  theory", "expected (200 N/m)",
-                            "made = 150 N/m", "diagonal: identity line", "Twenty seeds."}) {
+                            "made = 150 N/m", "diagonal", "Twenty seeds."}) {
     EXPECT_THAT(text, HasSubstr(words));
   }
 }
@@ -235,7 +235,8 @@ TEST(ChartSvg, SaysInWordsWhatItShows) {
   c.horizontal.push_back({200.0, "expected"});
   const std::string svg = chart_svg(c);
   EXPECT_THAT(svg, HasSubstr("<title id=\"title\">Stiffness</title>"));
-  EXPECT_THAT(svg, HasSubstr("found [N/m] over made [N/m]. k_xx: 3 points. Lines across: expected (200 N/m)."));
+  EXPECT_THAT(svg, AllOf(HasSubstr("found [N/m]"), HasSubstr("made [N/m]"), HasSubstr("3 points"),
+                         HasSubstr("expected (200 N/m)")));
   EXPECT_THAT(svg, HasSubstr("aria-labelledby=\"title description\""));
 }
 

@@ -29,22 +29,25 @@ TEST(SpringsText, NamesNoDirectionWhereTheStiffnessHasNone) {
   SpringField one = field();
   EXPECT_THAT(spring_field_text(one), HasSubstr("174.3°"));
   one.K = 300.0 * Eigen::Matrix2d::Identity();
-  EXPECT_THAT(spring_field_text(one), HasSubstr("300.000 N/m in every direction"));
+  EXPECT_THAT(spring_field_text(one), AllOf(HasSubstr("300.000 N/m"), Not(HasSubstr("°"))));
 }
 
 TEST(SpringsText, SaysWhereASpringGoesSlackWithinTheCircle) {
   SpringField one = field();
-  EXPECT_THAT(spring_field_text(one), HasSubstr("4.0 mm longer than at rest"));
+  EXPECT_THAT(spring_field_text(one), HasSubstr(" 4.0 mm"));
   one.linearisation.smallest_extension = -0.003;
-  EXPECT_THAT(spring_field_text(one), HasSubstr("3.0 mm short of its rest length"));
+  const std::string slack = spring_field_text(one);
+  EXPECT_THAT(slack, HasSubstr(" 3.0 mm"));
+  one.linearisation.smallest_extension = 0.003;
+  EXPECT_NE(spring_field_text(one), slack);
 }
 
 TEST(SpringsText, SaysWhereTheGridEndsAtItsBorder) {
   SpringField one = field();
   one.grid = GridField{0.001, {0.391, -0.01}, 0.2, one.K, false};
-  EXPECT_THAT(spring_field_text(one), HasSubstr("is 1 mm off"));
+  EXPECT_THAT(spring_field_text(one), testing::ContainsRegex(" 1 mm.* 1 mm"));
   one.grid->at_border = true;
-  EXPECT_THAT(spring_field_text(one), HasSubstr("edge of the grid"));
+  EXPECT_THAT(spring_field_text(one), HasSubstr("edge"));
 }
 
 TEST(SpringsText, ConstantsShowHooksOnlyWhereTheyAreSeen) {
@@ -55,7 +58,7 @@ TEST(SpringsText, ConstantsShowHooksOnlyWhereTheyAreSeen) {
   constant.rule = "everything";
   EXPECT_THAT(spring_constants_text({constant}), Not(HasSubstr("hooks")));
   constant.hooks = HookFit{120.0, 0.1, 0.1, 0.001, 0.0001, 0.7, 0.01};
-  EXPECT_THAT(spring_constants_text({constant}), HasSubstr("5.0 % softer"));
+  EXPECT_THAT(spring_constants_text({constant}), HasSubstr(" 5.0 %"));
   EXPECT_THAT(spring_constants_text({constant}), HasSubstr("120.000 ± 0.098"));
 }
 

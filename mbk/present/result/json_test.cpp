@@ -289,8 +289,8 @@ TEST(FromJson, RefusesMatricesOfTheWrongShapeByName) {
     json[Json::json_pointer(pointer)] = value;
     return json.dump();
   };
-  EXPECT_EQ(identifications_from_json(broken("/model/B", Json::array({1, 2}))).error().message,
-            "'B' is not a 2×2 matrix");
+  EXPECT_THAT(identifications_from_json(broken("/model/B", Json::array({1, 2}))).error().message,
+              AllOf(HasSubstr("'B'"), HasSubstr("2×2")));
   for (const char* pointer : {"/model/M", "/model/K", "/standard_error/M", "/covariance/matrix", "/model/M/0",
                               "/model/M/1/1", "/model/x0", "/fit/VAF", "/fit", "/warnings", "/warnings/0",
                               "/warnings/0/code", "/inputs/0", "/inputs/0/file", "/method", "/usable", "/units"}) {

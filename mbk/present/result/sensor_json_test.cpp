@@ -59,24 +59,24 @@ TEST(SensorJson, LeavesOutWhatWasNotFitted) {
 
 TEST(SensorJson, NamesWhatIsWrong) {
   const auto error = [](const std::string& text) { return sensor_calibration_from_json(text).error().line(); };
-  EXPECT_THAT(error("{"), HasSubstr("not JSON, at byte"));
-  EXPECT_THAT(error("{\"schema\": \"mbk.result/1\"}"), HasSubstr("not a calibration of schema mbk.sensor/1"));
-  EXPECT_THAT(error("[]"), HasSubstr("not a calibration"));
-  EXPECT_THAT(error("[1e999]"), HasSubstr("a number is beyond"));
+  EXPECT_THAT(error("{"), HasSubstr("JSON"));
+  EXPECT_THAT(error("{\"schema\": \"mbk.result/1\"}"), HasSubstr("mbk.sensor/1"));
+  EXPECT_THAT(error("[]"), HasSubstr("calibration"));
+  EXPECT_THAT(error("[1e999]"), HasSubstr("number"));
   json document = schemas::parsed(to_json(calibration()));
   const auto with = [&](const char* name, const json& value) {
     json changed = document;
     changed[name] = value;
     return error(changed.dump());
   };
-  EXPECT_THAT(with("slope", {{1, 2}}), HasSubstr("'slope' is not a 2×2 matrix"));
-  EXPECT_THAT(with("slope", {{1, 2}, {2, 4}}), HasSubstr("that can be inverted"));
+  EXPECT_THAT(with("slope", {{1, 2}}), AllOf(HasSubstr("'slope'"), HasSubstr("2×2")));
+  EXPECT_THAT(with("slope", {{1, 2}, {2, 4}}), HasSubstr("'slope'"));
   EXPECT_THAT(with("slope", {{nullptr, 2}, {2, 4}}), HasSubstr("'slope'"));
   EXPECT_THAT(with("axes", json::array()), HasSubstr("'axes'"));
   EXPECT_THAT(with("axes", {1, 2}), HasSubstr("'axes'"));
-  EXPECT_THAT(with("lever_arm", -1), HasSubstr("'lever_arm' is not above 0"));
+  EXPECT_THAT(with("lever_arm", -1), HasSubstr("'lever_arm'"));
   document["axes"][0].erase("zero_voltage");
-  EXPECT_THAT(error(document.dump()), HasSubstr("'zero_voltage' is not a number"));
+  EXPECT_THAT(error(document.dump()), HasSubstr("'zero_voltage'"));
 }
 
 TEST(SensorJson, AWarningOfEachKindIsOneThatTheSchemaKnows) {

@@ -1,5 +1,6 @@
 #include "mbk/simulate/laboratory/closed_loop.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,8 +124,8 @@ TEST(ClosedLoop, RefusesWhatIsNoRobot) {
   EXPECT_FALSE(ClosedLoop<2>::create(options, kHome, load));
   options = {};
   options.handle_mass = -0.1;
-  EXPECT_EQ(ClosedLoop<2>::create(options, kHome, load).error().message,
-            "handle mass -0.1 kg is below zero or not finite");
+  EXPECT_THAT(ClosedLoop<2>::create(options, kHome, load).error().message,
+              AllOf(testing::HasSubstr("handle"), testing::HasSubstr("-0.1 kg")));
 }
 
 participant::OneAxisJoint joint(double viscosity = 0.8) {
@@ -229,11 +230,11 @@ TEST(ClosedLoopOfOneAxis, RefusesWhatIsNoMachine) {
   const AxisVector<1> home(0.0);
   ClosedLoop<1>::Options options;
   options.robot.inertia.mass = 0.0;
-  EXPECT_EQ(ClosedLoop<1>::create(options, home, load).error().message, "inertia 0 of the machine is not above zero");
+  EXPECT_THAT(ClosedLoop<1>::create(options, home, load).error().message, testing::HasSubstr("inertia"));
   EXPECT_FALSE(ClosedLoop<1>::create(machine(-0.1), home, load));
   EXPECT_FALSE(ClosedLoop<1>::create(machine(0.1, 0), home, load));
   const AxisVector<1> nowhere(std::numeric_limits<double>::infinity());
-  EXPECT_EQ(ClosedLoop<1>::create(machine(0.1), nowhere, load).error().message, "the machine's position is not finite");
+  EXPECT_THAT(ClosedLoop<1>::create(machine(0.1), nowhere, load).error().message, testing::HasSubstr("position"));
 }
 
 }  // namespace closed_loop_test

@@ -1,5 +1,6 @@
 #include "mbk/simulate/laboratory/load_cell.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -100,12 +101,12 @@ TEST(LoadCell, OneNoiseLeavesTheOthersAsTheyWere) {
 TEST(LoadCell, RefusesNegativeNoise) {
   LoadCellOptions<2> options;
   options.white_noise = -0.1;
-  EXPECT_EQ(LoadCell<2>::create(options, kTick, 1).error().message,
-            "white noise of the load cell -0.1 N is below zero or not finite");
+  EXPECT_THAT(LoadCell<2>::create(options, kTick, 1).error().message,
+              AllOf(testing::HasSubstr("noise"), testing::HasSubstr("-0.1 N")));
   options = {};
   options.coloured_bandwidth = Hertz(0.0);
-  EXPECT_EQ(LoadCell<2>::create(options, kTick, 1).error().message,
-            "bandwidth of the load cell's coloured noise 0 Hz is not above zero");
+  EXPECT_THAT(LoadCell<2>::create(options, kTick, 1).error().message,
+              AllOf(testing::HasSubstr("bandwidth"), testing::HasSubstr(" 0 Hz")));
   options = {};
   options.gain(1, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(LoadCell<2>::create(options, kTick, 1));

@@ -1,5 +1,6 @@
 #include "mbk/simulate/laboratory/prescribed_motion.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -171,13 +172,14 @@ TEST(PrescribedMotion, RefusesWhatHasNoMeaning) {
   EXPECT_FALSE(record_prescribed_motion(options(Protocol::free), kRate));
   PrescribedMotionOptions o = options(Protocol::sinusoidal);
   o.home = Vector::Zero(1);
-  EXPECT_EQ(record_prescribed_motion(o, kRate).error().message, "home must have 2 finite entries");
+  EXPECT_THAT(record_prescribed_motion(o, kRate).error().message, testing::HasSubstr("home"));
   o = options(Protocol::sinusoidal);
   o.limb.x0[1] = NAN;
   EXPECT_FALSE(record_prescribed_motion(o, kRate));
   o = options(Protocol::sinusoidal);
   o.sensors.force_noise = -0.1;
-  EXPECT_EQ(record_prescribed_motion(o, kRate).error().message, "force noise -0.1 is below 0");
+  EXPECT_THAT(record_prescribed_motion(o, kRate).error().message,
+              AllOf(testing::HasSubstr("noise"), testing::HasSubstr("-0.1")));
 }
 
 }  // namespace prescribed_motion_test

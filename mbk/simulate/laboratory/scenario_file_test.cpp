@@ -87,7 +87,7 @@ TEST(ScenarioFile, TheSizeOfAPerturbationSaysWhatIsCommanded) {
   };
   EXPECT_EQ(quantity("amplitude_N = 3"), perturbation::Quantity::force);
   EXPECT_EQ(quantity("amplitude_mm = 3"), perturbation::Quantity::position);
-  EXPECT_NE(refusal(with("peak_deg = 1\npeak_mm = 2\n")).find("given twice"), std::string::npos);
+  EXPECT_NE(refusal(with("peak_deg = 1\npeak_mm = 2\n")).find("peak_mm"), std::string::npos);
 }
 
 TEST(ScenarioFile, TrialsChangeWhatTheySay) {
@@ -469,19 +469,20 @@ std::string one_axis(const std::string& perturbation, const std::string& control
 }
 
 TEST(ScenarioFile, EachMachineHasItsUnits) {
-  EXPECT_NE(refusal(with("peak_Nm = 2\n", "kind = \"force\"")).find("use peak_deg or peak_mm or peak_N"),
-            std::string::npos);
+  for (const char* const key : {"peak_Nm", "peak_deg", "peak_mm"})
+    EXPECT_NE(refusal(with("peak_Nm = 2\n", "kind = \"force\"")).find(key), std::string::npos) << key;
   for (const char* key : {"amplitude_mm", "amplitude_N"}) {
     const std::string said = refusal(one_axis("kind = \"pulses\"\n" + std::string(key) + " = 2"));
     EXPECT_NE(said.find(key), std::string::npos) << said;
-    EXPECT_NE(said.find("use amplitude_deg or amplitude_Nm"), std::string::npos) << said;
+    EXPECT_NE(said.find("amplitude_deg"), std::string::npos) << said;
+    EXPECT_NE(said.find("amplitude_Nm"), std::string::npos) << said;
   }
   // Millimetres and newtons are what the fallbacks of pulses and sequences are in
   for (const char* kind : {"kind = \"pulses\"", "kind = \"random_binary\""}) {
     EXPECT_NE(refusal(one_axis(kind)).find("amplitude_deg"), std::string::npos);
   }
-  EXPECT_NE(refusal(with("limits.peak_mm = 5\n")).find("use peak_deg"), std::string::npos);
-  EXPECT_NE(refusal(with("limits.speed_N_per_s = 5\n")).find("use speed_deg_per_s"), std::string::npos);
+  EXPECT_NE(refusal(with("limits.peak_mm = 5\n")).find("peak_deg"), std::string::npos);
+  EXPECT_NE(refusal(with("limits.speed_N_per_s = 5\n")).find("speed_deg_per_s"), std::string::npos);
   const auto torque = read(one_axis("kind = \"multisine\"\npeak_Nm = 3\nlimits.peak_Nm = 4", "kind = \"force\""));
   const auto schedule = perturbation::make_schedule(torque.front().perturbation, 1);
   EXPECT_EQ(perturbation::unit(schedule->quantity(), schedule->space()), "N·m");
@@ -536,16 +537,16 @@ TEST(ScenarioFile, MistakesNameFileLineKeyValueAndWhatIsAllowed) {
       {with("", ""), {"control", "kind"}},
       {"[control]\nkind = \"force\"\n", {"perturbation", "kind"}},
       {with("[rig]\nmass_kg = 1\nstiffness_N_per_m = [[1, 0], [0, 1]]\n[participant]\nkind = \"arm\"\n"),
-       {"a participant and a rig cannot both hold the handle"}},
+       {"rig", "participant"}},
       {with("[rig]\nmass_kg = 1\nstiffness_N_per_m = [[1, 0], [0, 1]]\n"
             "[[rig.spring]]\nstiffness_N_per_m = 100\nrest_length_mm = 90\nanchor_mm = [1, 2]\n"),
-       {"rig.stiffness_N_per_m", "the springs decide it"}},
+       {"rig.stiffness_N_per_m", "spring"}},
       {with("[participant]\nkind = \"arm\"\nnumber = 7\n"), {"participant.number", "7", "6"}},
-      {with("harmonics = [1, 2.5]\n"), {"perturbation.harmonics", "2.5", "whole number"}},
+      {with("harmonics = [1, 2.5]\n"), {"perturbation.harmonics", "2.5"}},
       {with("", "kind = \"position\"", "kind = \"pulses\"\namplitude_deg = 1"), {"amplitude_deg", "amplitude_mm"}},
       {with("[trial]\nname = \"a\"\n"), {"trial"}},
       {"[control\n", {"mine.toml", "line 1"}},
-      {with("peak_deg = \"two\"\n"), {"line 5", "perturbation.peak_deg", "a text where a number is expected"}},
+      {with("peak_deg = \"two\"\n"), {"line 5", "perturbation.peak_deg", "text", "number"}},
       {with("[recording]\nseed = 1.5\n"), {"line 6", "recording.seed"}},
       {with("[robot]\nhome_mm = [1, 2, 3]\n"), {"line 6", "robot.home_mm"}},
       {with("[sensors.clock]\njitter_ms = 2\n"), {"line 6", "'jitter_ms'", "'jitter_us'"}},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "mbk/experiment/control/laws.h"
 #include "mbk/simulate/laboratory/closed_loop.h"
@@ -75,8 +76,8 @@ TEST(SpringRig, RefusesSpringsThatHoldNothing) {
   for (Spring& spring : slack) spring.rest_length = 1.0;
   EXPECT_FALSE(SpringRig::create(slack, 0.8, Matrix2d::Zero(), 0.0, kRest));
   EXPECT_FALSE(SpringRig::create({}, 0.8, Matrix2d::Zero(), 0.0, kRest));
-  EXPECT_EQ(SpringRig::create(springs(), -1.0, Matrix2d::Zero(), 0.0, kRest).error().message,
-            "mass -1 kg is below zero");
+  const std::string refused = SpringRig::create(springs(), -1.0, Matrix2d::Zero(), 0.0, kRest).error().message;
+  EXPECT_NE(refused.find("-1 kg"), std::string::npos) << refused;
 }
 
 }  // namespace

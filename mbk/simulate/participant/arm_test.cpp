@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "mbk/base/numeric/dense.h"
 #include "tests/support/allocations.h"
@@ -109,7 +110,7 @@ TEST(Participants, HaveThePublishedImpedanceAndAnInertiaNearIt) {
       EXPECT_GT(numeric::symmetric_eigenvalues(I)[0], 1e-3) << number << ", elbow " << away << " off";
     }
   }
-  EXPECT_EQ(participant_options(7).error().message, "participant 7 is not one of the six, 1 to 6");
+  EXPECT_NE(participant_options(7).error().message.find("participant 7"), std::string::npos);
 }
 
 }  // namespace arm_test

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace mbk::participant {
@@ -146,8 +147,8 @@ TEST(IntermittentController, ZeroGainsMeanNoWill) {
 TEST(IntermittentController, RefusesARampLongerThanItsInterval) {
   IntermittentController::Options options;
   options.ramp = 0.3;
-  EXPECT_EQ(IntermittentController::create(options, kTick, 1).error().message,
-            "a correction takes 0.3 s, longer than the 0.28 s between decisions");
+  const std::string refused = IntermittentController::create(options, kTick, 1).error().message;
+  for (const char* const time : {"0.3 s", "0.28 s"}) EXPECT_NE(refused.find(time), std::string::npos) << refused;
   options = {};
   options.delay = -0.1;
   EXPECT_FALSE(IntermittentController::create(options, kTick, 1));

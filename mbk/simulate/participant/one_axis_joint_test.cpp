@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace mbk::participant {
 namespace one_axis_joint_test {
@@ -78,7 +79,7 @@ TEST(OneAxisJoint, ReflexResistsTheStretchThatCausedIt) {
 TEST(OneAxisJoint, RefusesWhatIsNoJoint) {
   OneAxisJoint::Options options = calm();
   options.inertia = 0.0;
-  EXPECT_EQ(OneAxisJoint::create(options, kTick).error().message, "inertia of the joint 0 kg·m² is not above zero");
+  EXPECT_NE(OneAxisJoint::create(options, kTick).error().message.find(" 0 kg·m²"), std::string::npos);
   options = calm();
   options.reflex.delay = -0.01;
   EXPECT_FALSE(OneAxisJoint::create(options, kTick));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace mbk::participant {
@@ -95,7 +96,7 @@ TEST(ToneRobot, NeverPushesHarderThanItsMotors) {
 TEST(ToneRobot, RefusesWhatIsNoDevice) {
   ToneRobot::Options options;
   options.release_force = 0.0;
-  EXPECT_EQ(ToneRobot::create(options).error().message, "release force 0 N is not above zero");
+  EXPECT_NE(ToneRobot::create(options).error().message.find(" 0 N"), std::string::npos);
   options = {};
   options.largest_force = -1.0;
   EXPECT_FALSE(ToneRobot::create(options));

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <string>
 
 #include "mbk/base/numeric/dense.h"
 
@@ -78,7 +79,7 @@ TEST(ChainInertia, RefusesWhatIsNoInertiaInPosturesNearby) {
   const Matrix2d bent = (Matrix2d() << 0.3518, 0.13, 0.13, 0.0649).finished();
   const auto refused = ChainInertia::from_matrix(bent, 1.2886);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("not positive definite"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("inertia"), std::string::npos);
   EXPECT_FALSE(ChainInertia::from_matrix(JointParameters{}.inertia, 1.5708));
   EXPECT_FALSE(ChainInertia::from_matrix((Matrix2d() << 0.36, 0.1, 0.2, 0.072).finished(), 1.2886));
 }
@@ -169,8 +170,9 @@ TEST(TwoLinkArm, CocontractionScalesStiffnessAndDampingOnly) {
 TEST(TwoLinkArm, RefusesWhatIsNoArm) {
   TwoLinkArm::Options options;
   options.equilibrium = {0.30, 0.10};
-  EXPECT_EQ(TwoLinkArm::create(options).error().message,
-            "the hand at (0.3, 0.1) m is 0.67 m from the shoulder, out of reach of links of 0.31 and 0.34 m");
+  const std::string refused = TwoLinkArm::create(options).error().message;
+  for (const char* const length : {"0.67 m", "0.31", "0.34 m"})
+    EXPECT_NE(refused.find(length), std::string::npos) << refused;
   options = {};
   options.geometry.forearm = 0.0;
   EXPECT_FALSE(TwoLinkArm::create(options));

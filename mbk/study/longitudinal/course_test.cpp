@@ -148,7 +148,7 @@ TEST(Courses, ManyPeopleOfWhomFewCameAgainAreTooFew) {
   }
   const auto all = courses_of(columns);
   ASSERT_EQ(all.size(), 1U);
-  EXPECT_EQ(all[0].why_unknown, "only 4 people have two sessions or more, and 5 are needed");
+  EXPECT_NE(all[0].why_unknown.find("4 people"), std::string::npos) << all[0].why_unknown;
   EXPECT_EQ(all[0].courses[0].changes.at(0).verdict, ChangeVerdict::unknown);
   EXPECT_TRUE(all[0].courses[19].changes.empty());
 }

@@ -290,30 +290,25 @@ TEST_P(ACheck, FindsAChangeByHand) {
 INSTANTIATE_TEST_SUITE_P(
     Of, ACheck,
     testing::Values(
-        Change{"Participant", "UPDATE recording SET participant = 9 WHERE number = 1", "recording 1 is not what"},
-        Change{"Condition", "UPDATE recording SET condition = 'stiff' WHERE number = 1", "recording 1 is not what"},
-        Change{"Exclusion", "UPDATE recording SET excluded_why = NULL", "without a line in the log"},
-        Change{"Reason", "UPDATE recording SET excluded_why = 'tired' WHERE number = 2", "without a line in the log"},
-        Change{"Recording", "PRAGMA foreign_keys = ON; DELETE FROM recording WHERE number = 1", "recording 1, which"},
-        Change{"Result", "PRAGMA foreign_keys = ON; DELETE FROM result WHERE recording = 1", "is missing"},
-        Change{"Usable", "UPDATE result SET usable = 0 WHERE recording = 1", "not what the log says was measured"},
-        Change{"Document", "UPDATE document SET text = replace(text, '1.5', '1.6')",
-               "not what the log says was measured"},
-        Change{"Number", "UPDATE packed SET numbers = zeroblob(length(numbers))", "are not those of its result"},
-        Change{"NumberCutOff", "UPDATE packed SET numbers = substr(numbers, 1, 16)", "are not those of its result"},
-        Change{"MissingNumbers", "DELETE FROM packed", "are not those of its result"},
-        Change{"NameOfNumber", "UPDATE layout SET names = replace(names, '\"K\"', '\"k\"')",
-               "are not those of its result"},
-        Change{"Options", "UPDATE analysis SET options = '{\"--cutoff\":[\"5\"]}'",
-               "not what the log says was measured"},
-        Change{"Defaults", "UPDATE fact SET value = '[]' WHERE name = 'options'", "default options"},
+        Change{"Participant", "UPDATE recording SET participant = 9 WHERE number = 1", "recording 1"},
+        Change{"Condition", "UPDATE recording SET condition = 'stiff' WHERE number = 1", "recording 1"},
+        Change{"Exclusion", "UPDATE recording SET excluded_why = NULL", "recording 2"},
+        Change{"Reason", "UPDATE recording SET excluded_why = 'tired' WHERE number = 2", "recording 2"},
+        Change{"Recording", "PRAGMA foreign_keys = ON; DELETE FROM recording WHERE number = 1", "recording 1"},
+        Change{"Result", "PRAGMA foreign_keys = ON; DELETE FROM result WHERE recording = 1", "recording 1"},
+        Change{"Usable", "UPDATE result SET usable = 0 WHERE recording = 1", "recording 1"},
+        Change{"Document", "UPDATE document SET text = replace(text, '1.5', '1.6')", "recording 1"},
+        Change{"Number", "UPDATE packed SET numbers = zeroblob(length(numbers))", "numbers"},
+        Change{"NumberCutOff", "UPDATE packed SET numbers = substr(numbers, 1, 16)", "numbers"},
+        Change{"MissingNumbers", "DELETE FROM packed", "numbers"},
+        Change{"NameOfNumber", "UPDATE layout SET names = replace(names, '\"K\"', '\"k\"')", "numbers"},
+        Change{"Options", "UPDATE analysis SET options = '{\"--cutoff\":[\"5\"]}'", "recording 1"},
+        Change{"Defaults", "UPDATE fact SET value = '[]' WHERE name = 'options'", "options"},
         Change{"LogLine", "DROP TRIGGER log_is_never_changed; UPDATE log SET role = 'monitor' WHERE number = 2",
-               "line 2 of the log"},
-        Change{"LogTime", "DROP TRIGGER log_is_never_changed; UPDATE log SET time = '2020' WHERE number = 1",
-               "line 1 of the log"},
-        Change{"LogLineTakenOut", "DROP TRIGGER log_is_never_shortened; DELETE FROM log WHERE number = 3",
-               "line 3 of the log is missing"},
-        Change{"LogEnd", "DROP TRIGGER log_is_never_shortened; DELETE FROM log WHERE number = 6", "without a line"}),
+               "line 2"},
+        Change{"LogTime", "DROP TRIGGER log_is_never_changed; UPDATE log SET time = '2020' WHERE number = 1", "line 1"},
+        Change{"LogLineTakenOut", "DROP TRIGGER log_is_never_shortened; DELETE FROM log WHERE number = 3", "line 3"},
+        Change{"LogEnd", "DROP TRIGGER log_is_never_shortened; DELETE FROM log WHERE number = 6", "recording 2"}),
     [](const auto& change) { return change.param.name; });
 
 TEST(TheLog, RefusesToBeChanged) {
@@ -404,11 +399,11 @@ TEST(ADatabase, OfANewerVersionOrAnotherProgramIsRefused) {
   const TestFolder folder;
   std::ignore = new_study(folder / "study");
   change_by_hand(folder / "study", "PRAGMA user_version = 99");
-  EXPECT_THAT(Store::open(folder / "study").error().message, HasSubstr("newer mbk"));
+  EXPECT_THAT(Store::open(folder / "study").error().message, HasSubstr("99"));
   change_by_hand(folder / "study", "PRAGMA application_id = 5");
-  EXPECT_THAT(Store::open(folder / "study").error().message, HasSubstr("another program"));
+  EXPECT_THAT(Store::open(folder / "study").error().message, HasSubstr("program"));
   std::ofstream(folder / "study" / "study.sqlite", std::ios::trunc) << std::string(5000, 'x');
-  EXPECT_THAT(Store::open(folder / "study").error().message, HasSubstr("damaged"));
+  EXPECT_THAT(Store::open(folder / "study").error().message, HasSubstr("database"));
 }
 
 /// What `work` gives in a process of its own: its exit code.
