@@ -34,11 +34,11 @@ double taken_since(std::chrono::steady_clock::time_point begin) {
 }
 
 Measured measured_cost(const JobRequest& request) {
-  constexpr std::size_t kUnits = 3;
+  constexpr std::size_t kMeasured = 3;
   constexpr double kLongest = 10.0;  // [s]
   const auto begin = std::chrono::steady_clock::now();
   double weight = 0.0;
-  const std::size_t count = std::min(kUnits, request.keys.size());
+  const std::size_t count = std::min(kMeasured, request.keys.size());
   for (std::size_t k = 0; k < count && taken_since(begin) < kLongest; ++k) {
     const std::size_t unit = count == 1 ? 0 : k * (request.keys.size() - 1) / (count - 1);
     // What fails here fails in its chunk, too, and is told there.

@@ -173,6 +173,7 @@ namespace {
 using drivers::BridgeReport;
 using drivers::RuleFinding;
 using drivers::RuleVerdict;
+using Verdict = Finding::Verdict;
 
 constexpr std::size_t kColumns = 80;
 
@@ -199,7 +200,6 @@ std::string paragraph(const std::string& head, const std::string& text) {
 }
 
 std::string findings_text(const std::vector<Finding>& findings) {
-  using Verdict = Finding::Verdict;
   std::string text;
   for (const Finding& one : findings) {
     const char* word = one.verdict == Verdict::fine ? "fine" : one.verdict == Verdict::doubtful ? "look" : "WRONG";

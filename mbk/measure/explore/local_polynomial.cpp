@@ -16,8 +16,8 @@
 namespace mbk::explore {
 namespace {
 
-constexpr Index kOrder = 2;
-constexpr Index kTerms = kOrder + 1;
+constexpr Index kPolynomialOrder = 2;
+constexpr Index kTerms = kPolynomialOrder + 1;
 constexpr Index kMinFreedom = 8;     ///< of the residual: its variance is known to about a third
 constexpr double kRounding = 1e-9;   ///< of the strongest line: a window without one more than that is not excited
 constexpr double kMostChance = 1.0;  ///< power that noise alone would seem to explain, of its own

@@ -22,7 +22,7 @@ constexpr double kIntrinsicMemory = 0.04;  ///< [s]: no reflex is as fast (Kearn
 constexpr double kEarliest = 0.04, kLatest = 0.2, kLongest = 0.99;  ///< lags of a reflex [s]
 constexpr Index kFolds = 8;
 constexpr Index kRowsPerCoefficient = 10;
-constexpr double kChance = 0.001;  ///< of a linear limb to be credited with a reflex
+constexpr double kChanceOfReflex = 0.001;  ///< of a linear limb to be credited with a reflex
 /// Of the error that stretch in the opposite direction leaves, a reflex predicts a tenth more. Limbs of two links
 /// without one: at most 0.04 (20 trials), since their geometry is not quite even; real ankles: 0.23 to 0.57.
 constexpr double kOneSided = 0.1;
@@ -244,7 +244,7 @@ class Cascade {
       return gain.mean() > 2.0 * std::sqrt(numeric::variance(gain) / static_cast<double>(gain.size()));
     };
     const double none = none_.mean(), one = one_way_.mean(), both = both_ways_.mean();
-    const bool rectified_helps = better(one_way_, none_) && one < both && result_.p_value < kChance;
+    const bool rectified_helps = better(one_way_, none_) && one < both && result_.p_value < kChanceOfReflex;
     const bool one_sided = better(one_way_, to_and_fro_) && one < (1.0 - kOneSided) * to_and_fro_.mean();
     if (rectified_helps && one_sided) {
       result_.found = DelayedResponse::reflex;

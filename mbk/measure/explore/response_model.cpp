@@ -12,7 +12,7 @@ namespace {
 
 /// Of a limb that is M, B and K to be called something else. Far below the few per cent at which that is meant to
 /// happen: directions that the motion hardly excites see a noise that no short autoregression knows exactly.
-constexpr double kChance = 1e-5;
+constexpr double kChanceOfMisfit = 1e-5;
 
 Vector deviations(const Matrix& covariance) {
   return covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -57,7 +57,7 @@ ResponseModel fit_response_model(const Matrix& D, const LaggedFit& fit, Index n)
         std::min(model.p_value,
                  static_cast<double>(n) * numeric::f_probability_above(statistic, model.numerator, model.denominator));
   }
-  model.enough = model.p_value >= kChance;
+  model.enough = model.p_value >= kChanceOfMisfit;
   const auto narrow = [](const Matrix& value, const Matrix& half) {
     return (half.diagonal().array() < value.diagonal().array().abs()).all();
   };

@@ -20,7 +20,7 @@ constexpr double kRowsPerBand = 4.0;  ///< rate over the band: half power at 1.6
 constexpr Index kEnds = 6;            ///< rows at each end of a trial that the low-pass made of what it added there
 constexpr Index kRowsPerCoefficient = 20;
 constexpr Index kPoints = 41;
-constexpr double kChance = 1e-4;
+constexpr double kChanceOfChange = 1e-4;
 constexpr double kChange = 0.1;  ///< of M, B or K: that which `mbk measure` warns of
 
 /// Mean of the samples around one; NaN where one of them does not count or there are none.
@@ -216,11 +216,11 @@ Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseV
     found.p_value = std::min(1.0, chance_of(fit, functions, p, model.varying));
     set_courses(constants, fit, spline_values(model.basis, places), model.varying, found);
     const double change = std::max({found.M.change, found.B.change, found.K.change});
-    found.changes = found.p_value < kChance && change > kChange;
+    found.changes = found.p_value < kChanceOfChange && change > kChange;
     if (!found.changes) {
-      found.why = found.p_value < kChance ? fmt::format("they change by {:.0f} % at most, less than {:.0f} %",
-                                                        100.0 * change, 100.0 * kChange)
-                                          : "the change that BIC prefers is not significant";
+      found.why = found.p_value < kChanceOfChange ? fmt::format("they change by {:.0f} % at most, less than {:.0f} %",
+                                                                100.0 * change, 100.0 * kChange)
+                                                  : "the change that BIC prefers is not significant";
     }
   }
   if (found.changes) {
