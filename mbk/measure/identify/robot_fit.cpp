@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
@@ -19,8 +20,6 @@
 
 namespace mbk::identify {
 namespace {
-
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 /// The rows that judge: recordings that are there for it, or else what was held out of the others.
 StackedDynamics judging_rows(const std::vector<PreparedDynamics>& trials,
@@ -258,7 +257,7 @@ void RobotFitter::describe(RobotIdentification& found) const {
   const std::vector<robot::Coefficient> names = model_.coefficients();
   found.coefficients.clear();
   for (Index k = 0; k < p_; ++k) {
-    found.coefficients.push_back({names[static_cast<std::size_t>(k)], theta_[k], kUndefined, false, is_fixed(k), ""});
+    found.coefficients.push_back({names[static_cast<std::size_t>(k)], theta_[k], kNaN, false, is_fixed(k), ""});
   }
   found.model.covariance = Matrix::Zero(p_, p_);
   const auto kept = static_cast<Index>(kept_.size());

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "mbk/base/core/nan.h"
 #include "mbk/base/dsp/autoregression.h"
 #include "mbk/base/dsp/difference_equation.h"
 #include "mbk/base/dsp/spectrum.h"
@@ -22,8 +23,6 @@
 
 namespace mbk::identify {
 namespace {
-
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 /// As the samples of an even clock are that many samples later; before the record its first value.
 Vector whole_samples_later(const Vector& signal, Index samples) {
@@ -340,7 +339,7 @@ Result<Fit> Identifier::sharpened(Index poles, Index zeros, double delay) {
 
 OrderChoice Identifier::criteria(const Fit& fit, Index poles, Index zeros) const {
   OrderChoice choice{.poles = poles, .zeros = zeros, .usable = fit.converged, .fit = fit.fit};
-  choice.yic = choice.aic = choice.bic = kUndefined;
+  choice.yic = choice.aic = choice.bic = kNaN;
   if (!std::isfinite(fit.variance) || fit.denominator.size() == 0) return choice;
   Vector theta(fit.denominator.size() + fit.numerator.size());
   theta << fit.denominator, fit.numerator;
