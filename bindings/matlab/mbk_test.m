@@ -122,13 +122,13 @@ check_alike(numbers_of(from_arrays.model), numbers_of(same.model), 'from arrays'
 from_options = mbk.identify(log_file, 'mode', 'reference', 'sg_window', 151, 'ignore_range', {'stiffness', 'motion'});
 expected = program(['identify --json --mode reference --sg-window=151 --ignore-range stiffness,motion ' log_file]);
 check_alike(numbers_of(from_options), numbers_in(expected), 'options');
-check_error(@() mbk.measure(log_file, 'sg_window', 100), 'mbk:usage', 'odd', 'an even window');
+check_error(@() mbk.measure(log_file, 'sg_window', 100), 'mbk:usage', '100', 'an even window');
 check_error(@() mbk.measure(log_file, 'cutof', 5), 'mbk:usage', 'cutoff', 'an unknown option');
 check_error(@() mbk.measure('none.mat'), 'mbk:data', 'none.mat', 'no such file');
 check_error(@() mbk.measure(recording.time, x(1:10, :), F), 'mbk:usage', '10 x 2', 'a short array');
 check_error(@() mbk.measure(struct('time', recording.time, 'x', {{1}})), 'mbk:usage', 'cell', 'no numbers');
-check_error(@() mbk.measure(struct('time', [], 'x', [], 'F', [])), 'mbk:data', 'empty', 'no samples');
-check_error(@() mbk.measure(recording.time, 1i * x, F), 'mbk:usage', 'real', 'complex numbers');
+check_error(@() mbk.measure(struct('time', [], 'x', [], 'F', [])), 'mbk:data', '''time''', 'no samples');
+check_error(@() mbk.measure(recording.time, 1i * x, F), 'mbk:usage', 'numbers', 'complex numbers');
 
 % Other classes and units are converted, and no number is lost on the way.
 whole = struct('time', recording.time, 'x', single(1000 * recording.hand_x), 'F', recording.force_x);
@@ -159,7 +159,7 @@ data.OutputData = {x, x};
 check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'getexp', 'several experiments');
 data.OutputData = x;
 data.Domain = 'Frequency';
-check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'frequency domain', 'frequencies');
+check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'frequency', 'frequencies');
 data.Domain = 'Time';
 data.TimeUnit = 'years';
 check_error(@() mbk.identify(data, 'axes', 1), 'mbk:usage', 'years', 'a unit of time');
@@ -196,9 +196,9 @@ for step = {0, -1e-3, NaN, Inf, [1e-3 1e-3], '1 ms'}
 end
 short.Ts = 1e-3;
 short.u = force(1:end - 1);
-check_error(@() mbk.identify(short, 'axes', 1), 'mbk:data', 'equal lengths', 'fewer inputs than outputs');
+check_error(@() mbk.identify(short, 'axes', 1), 'mbk:data', 'samples', 'fewer inputs than outputs');
 short.u = 1i * force;
-check_error(@() mbk.identify(short, 'axes', 1), 'mbk:usage', 'real', 'complex inputs');
+check_error(@() mbk.identify(short, 'axes', 1), 'mbk:usage', 'numbers', 'complex inputs');
 bad = force;
 bad(100) = NaN;
 short.u = bad;
@@ -261,7 +261,7 @@ left = measured - shown(handles(1), orange) - residual;  % of numbers that a rep
 check(max(abs(left)) < 0.01 * std(residual) && std(residual) < 0.2 * std(measured), 'the fit');
 keep_picture('fit');
 close();
-check_error(@() mbk.plot(facts), 'mbk:usage', 'no plot', 'no plot of facts');
+check_error(@() mbk.plot(facts), 'mbk:usage', 'plot', 'no plot of facts');
 check_error(@() mbk.plot_energy(facts), 'mbk:usage', 'passivity', 'no energy of facts');
 
 % Ctrl-C ends a call that would go on for hours, with an error.

@@ -86,17 +86,17 @@ class Bounded(Case):
         plain = gzipped(self.folder / "zeros.gz", b"", 3 * GIGABYTE)
         self.bounded("info", plain, says="gzip")
         bomb = gzipped(self.folder / "bomb.xdfz", XDF, 3 * GIGABYTE)
-        self.assertLess(self.peak("info", bomb, says="gzip file unpacks to more than"), MEGABYTES)
+        self.assertLess(self.peak("info", bomb, says=("gzip", " MB")), MEGABYTES)
         # What the trailer says is not believed.
         lying = bytearray(bomb.read_bytes())
         lying[-4:] = struct.pack("<I", 1000)
         bomb.write_bytes(lying)
-        self.assertLess(self.peak("info", bomb, says="gzip file unpacks to more than"), MEGABYTES)
+        self.assertLess(self.peak("info", bomb, says=("gzip", " MB")), MEGABYTES)
 
     def test_npz_of_three_gigabytes(self):
         for names, each in ((["x"], 3 * GIGABYTE), ([f"x{k}" for k in range(12)], GIGABYTE // 4)):
             bomb = npz(self.folder / f"{len(names)}.npz", names, each)
-            self.assertLess(self.peak("info", bomb, says="a recording of this length has at most"), MEGABYTES)
+            self.assertLess(self.peak("info", bomb, says=" MB"), MEGABYTES)
 
     def test_an_entry_of_a_kinarm_exam_of_two_and_a_half_gigabytes(self):
         exam = self.folder / "exam.kinarm"
@@ -105,7 +105,7 @@ class Bounded(Case):
             with archive.open("raw/01_01_01/Right_HandX.kinematics", "w", force_zip64=True) as file:
                 for _ in range(5 * GIGABYTE // 2 >> 24):
                     file.write(bytes(1 << 24))
-        self.assertLess(self.peak("info", exam, says="a recording of this length has at most"), MEGABYTES)
+        self.assertLess(self.peak("info", exam, says=" MB"), MEGABYTES)
 
     def test_xdf_of_fifty_thousand_headers(self):
         same = self.file("same.xdf", XDF + b"".join(xdf_header(1) for _ in range(50_000)))
@@ -114,7 +114,7 @@ class Bounded(Case):
         each = self.file("each.xdf", XDF + b"".join(xdf_header(k + 1) for k in range(50_000)) + b"".join(
             xdf_chunk(3, struct.pack("<I", k + 1) + sample) for k in range(50_000)))
         self.bounded("info", each, code=FINE)
-        _, err = self.bounded("measure", each, says="no channel is recognised")
+        _, err = self.bounded("measure", each, says="channel")
         self.assertLess(len(err), 5000, "an error names some of them, not all")
 
     def test_urdf_of_two_hundred_thousand_attributes(self):
@@ -123,7 +123,7 @@ class Bounded(Case):
         for urdf in (f'<robot name="r" {many}><link name="a"/></robot>',
                      f'<robot name="r"><link name="a"/><link name="b" {many}/></robot>'):
             self.file("robot.urdf", urdf)
-            self.bounded("robot", "describe", "robot.toml", says="more than 1000 attributes")
+            self.bounded("robot", "describe", "robot.toml", says="1000 attributes")
         honest = ('<robot name="r"><!-- ' + many + ' --><link name="a"/><link name="b">' + BODY + '</link><joint name="j" type="revolute">'
                   '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
                   '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>')

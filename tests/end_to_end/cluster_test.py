@@ -106,11 +106,11 @@ class Engines:
         here, there = self.study(), self.study()
         self.mbk("study", "measure", "--study", here)
         ran = self.job("study", "measure", "--study", there, "--chunk-units", "1")
-        self.assertIn("4 measured: 4 usable", ran.out)
+        self.assertIn("4 usable", ran.out)
         self.assertEqual(self.exported(there), self.exported(here))
         self.assertFalse((there / "jobs").exists())
         self.mbk("study", "check", "--study", there)
-        self.assertIn("nothing new", self.job("study", "measure", "--study", there).out)
+        self.assertNotRegex(self.job("study", "measure", "--study", there).out, "[1-9]")  # nothing is measured again
 
     def test_resamples_people_to_the_same_bytes(self):
         summary = ("study", "summary", "--study", self.repeated_study(), "--bootstrap", "1000", "--outcome", "K_xx",
@@ -251,7 +251,8 @@ class Local(Engines, JobCase):
         job = status["jobs"][0]
         self.assertEqual((job["finished"], job["finished_units"], len(job["tasks"])), (2, 4, 2))
         self.assertEqual(sum(task["units"] for task in job["tasks"]), 4)
-        self.assertIn("2 of 2 chunks", self.mbk("work", job["folder"], "--status").out)
+        shown = self.mbk("work", job["folder"], "--status", "--json").json
+        self.assertEqual((shown["finished"], shown["finished_units"]), (2, 4))
         lines = (pathlib.Path(job["folder"]) / "progress.jsonl").read_text(encoding="utf-8").splitlines()
         for line in lines:
             command.schemas.check(json.loads(line))
@@ -260,16 +261,15 @@ class Local(Engines, JobCase):
         began = self.begin(*VALIDATE, *SHORT)
         self.wait_for(lambda: self.shards())
         began.send_signal(signal.SIGINT)
-        _, err = began.communicate(timeout=20)
+        began.communicate(timeout=20)
         self.assertEqual(began.returncode, 128 + signal.SIGINT)
-        self.assertIn("goes on where it ended", err.decode())
         self.assertEqual(workers_of(self.folder), [])
         self.assertEqual(self.job(*VALIDATE, *SHORT, code=self.judged).out, self.table)
 
     def test_says_what_cannot_be_had(self):
         self.refused(WRONG_USAGE, "validate", "robot", "--runs", "2", *self.engine, folder=self.folder, says="--engine")
         self.refused(WRONG_USAGE, "validate", "reliability", *self.engine, "--detach", folder=self.folder, says="slurm")
-        self.refused(WRONG_USAGE, "work", self.folder, "--status", says="no job")
+        self.refused(WRONG_USAGE, "work", self.folder, "--status", says=str(self.folder))
         self.refused(WRONG_USAGE, "study", "summary", "--study", self.repeated_study(), *self.engine,
                      says="--bootstrap")
         self.refused(WRONG_USAGE, "explore", self.trials[0], *self.engine, says="--each")
@@ -298,9 +298,9 @@ class Slurm(Engines, JobCase):
         # The node takes nothing yet, so that the tasks wait.
         self.slurm.say("scontrol", "update", f"NodeName={self.slurm.host}", "State=DRAIN", "Reason=test")
         ran = self.job(*measure, "--detach")
-        self.assertIn("go on without this process", ran.err)
-        status = self.mbk("study", "status", "--study", study).out
-        self.assertIn("0 of 4 chunks", status)
+        self.assertIn("mbk work", ran.err)
+        (status,) = self.mbk("study", "status", "--study", study, "--json").json["jobs"]
+        self.assertEqual((status["finished"], status["chunks"]), (0, 4))
         self.assertEqual(len(self.slurm.say("squeue", "-h", "-r").splitlines()), 4)
         job = next((study / "jobs").iterdir())
         self.mbk("work", job, "--cancel", environment=self.environment)
@@ -308,7 +308,7 @@ class Slurm(Engines, JobCase):
         self.slurm.say("scontrol", "update", f"NodeName={self.slurm.host}", "State=RESUME")
         self.job(*measure, "--detach")
         self.wait_for(lambda: len(list(job.glob("shards/*.shard"))) == 4)
-        self.assertIn("4 measured: 4 usable", self.job(*measure).out)
+        self.assertIn("4 usable", self.job(*measure).out)
 
     def test_asks_for_no_more_tasks_than_the_controller_allows(self):
         ran = self.job(*VALIDATE, "--chunk-units", "1", "--keep-job", code=self.judged)
@@ -342,7 +342,6 @@ class Slurm(Engines, JobCase):
     def test_what_slurm_refuses_is_named(self):
         ran = self.job(*VALIDATE, *SHORT, "--partition", "nowhere", code=BAD_DATA)
         self.assertIn("partition", ran.err)
-        self.assertIn("correct what it names", ran.err)
 
     def test_partition_and_limit_reach_the_controller(self):
         self.slurm.say("scontrol", "update", f"NodeName={self.slurm.host}", "State=DRAIN", "Reason=test")

@@ -31,10 +31,10 @@ class Info(Case):
         units = {channel["name"]: channel["unit"] for channel in facts["channels"]}
         self.assertEqual((units["hand_x"], units["force_y"], units["acceleration_x"]), ("m", "N", "m/s2"))
         self.assertNotIn("torque_1", units)  # a row that is NaN throughout was not recorded
-        self.assertIn("not recorded (NaN throughout): joint_1, joint_2, torque_1, torque_2", text)
+        self.assertIn("joint_1, joint_2, torque_1, torque_2", text)
         self.assertIn("1000 Hz", text)
-        self.assertIn("no gap, no jitter to speak of, time runs on", text)
-        self.assertIn("rows 4, 5, 8, 9, 16 and 17", " ".join(text.split()))
+        self.assertNotIn("! ", text)
+        self.assertIn("4, 5, 8, 9, 16", " ".join(text.split()))
 
     def test_numbers_that_are_too_large_for_a_limb(self):
         time = [i / RATE for i in range(8000)]
@@ -45,15 +45,15 @@ class Info(Case):
                 ((time, x, x, force, force), None),
                 ((time, still, still, still, still), None),
                 ((time, [1e3 * v for v in x], [1e3 * v for v in x], force, force),
-                 "if x and y are in mm: --channels time=time,x=x:mm,y=y:mm,Fx=Fx,Fy=Fy"),
-                ((time, x, x, [1e3 * v for v in force], force), "if Fx is in mN"),
+                 "--channels time=time,x=x:mm,y=y:mm,Fx=Fx,Fy=Fy"),
+                ((time, x, x, [1e3 * v for v in force], force), "Fx=Fx:mN"),
                 (([200 * t for t in time], x, x, force, force), None)):  # a slow log
             facts, text = self.info(columns)
-            notes = [note for note in facts["notes"] if "not the size of a hand's" in note]
+            notes = [note for note in facts["notes"] if "--channels" in note]
             self.assertEqual(bool(notes), says is not None, notes)
             if says:
                 self.assertIn(says, notes[0])
-                self.assertIn("this is not the size of a hand's", text)
+                self.assertIn("--channels", text)
 
     def test_the_text_fits_a_terminal(self):
         log = copy(make_log().path, self.folder / "log.mat")
@@ -74,14 +74,14 @@ class Info(Case):
         self.assertEqual(gap["after_sample"], 500)
         self.assertAlmostEqual(gap["length_s"], 0.251, places=9)
         self.assertAlmostEqual(gap["time_s"], 0.499, places=9)
-        self.assertIn("! a gap of 0.251 s after sample 500 (0.499 s)", text)
+        self.assertRegex(text, r"! .*0\.251 s.*sample 500\b.*0\.499 s")
 
     def test_many_gaps_are_counted_and_the_first_shown(self):
         columns = self.recording()
         columns[0] = [t + 0.01 * (i // 100) for i, t in enumerate(columns[0])]
         facts, text = self.info(columns)
         self.assertEqual(len(facts["gaps"]), 19)
-        self.assertIn("and 14 gaps more", text)
+        self.assertRegex(text, r"! .*\b14\b")
 
     def test_time_that_repeats(self):
         columns = self.recording()
@@ -89,14 +89,14 @@ class Info(Case):
         columns[0][900] = columns[0][899]
         facts, text = self.info(columns)
         self.assertEqual(facts["duplicated_times"], 2)
-        self.assertIn("! time repeats 2 times, first at sample 701", text)
+        self.assertRegex(text, r"! time .*\b2\b.*sample 701\b")
 
     def test_time_that_runs_backwards(self):
         columns = self.recording()
         columns[0][1200:] = [t - 1.0 for t in columns[0][1200:]]
         facts, text = self.info(columns)
         self.assertEqual(facts["backward_times"], 1)
-        self.assertIn("! time runs backwards once, first at sample 1201", text)
+        self.assertRegex(text, r"! time .*sample 1201\b")
 
     def test_values_that_are_no_numbers(self):
         columns = self.recording()
@@ -104,28 +104,28 @@ class Info(Case):
             columns[3][sample - 1] = math.nan
         facts, text = self.info(columns)
         self.assertEqual(facts["non_finite"], [{"channel": "force_x", "count": 3, "first_sample": 41}])
-        self.assertIn("! force_x is not a number 3 times, first at sample 41", text)
+        self.assertRegex(text, r"! .*force_x.*\b3\b.*sample 41\b")
 
     def test_a_sensor_at_its_limit(self):
         columns = self.recording()
         columns[3] = [max(-0.8, min(0.8, value)) for value in columns[3]]
         facts, text = self.info(columns)
         self.assertEqual([c["name"] for c in facts["channels"] if c["clipped"]], ["force_x"])
-        self.assertRegex(text, r"force_x .*clipped\?")
+        self.assertRegex(text, r"force_x .*! ")
 
     def test_a_channel_that_never_changes(self):
         columns = self.recording()
         columns[4] = [0.25] * len(columns[4])
         facts, text = self.info(columns)
         self.assertEqual([c["name"] for c in facts["channels"] if c["constant"]], ["force_y"])
-        self.assertRegex(text, r"force_y +N +0\.25 +0\.25 +constant")
+        self.assertRegex(text, r"force_y +N +0\.25 +0\.25 +\w")
 
     def test_a_clock_that_jitters(self):
         columns = self.recording()
         columns[0] = [t + 1e-4 * math.sin(i) for i, t in enumerate(columns[0])]
         facts, text = self.info(columns)
         self.assertGreater(facts["interval_s"]["standard_deviation"], 5e-5)
-        self.assertIn("jitters", text)
+        self.assertRegex(text, "! .*clock")
 
     def test_one_sample_has_no_rate(self):
         facts, text = self.info([column[:1] for column in self.recording()])
@@ -161,7 +161,6 @@ class Info(Case):
         self.assertEqual(listing["arrays"][1]["maximum"], max(self.recording(100)[1]))
         self.assertIn("--channels", listing["unrecognised"]["try"])
         text = self.fine("info", path).out
-        self.assertIn("no channel but time is recognised", text)
         self.assertIn("--channels", text)
 
 

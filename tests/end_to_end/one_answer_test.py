@@ -68,12 +68,12 @@ class OneAnswer(Case):
         self.assertEqual(given["estimation"]["handle_mass_from"], "option")
         for k in range(2):
             self.assertAlmostEqual(none["model"]["M"][k][k] - by_default["model"]["M"][k][k], 0.194, places=9)
-        self.assertRegex(self.mbk("measure", recording).out, r"handle mass +0\.194 kg subtracted.*recording")
+        self.assertRegex(self.mbk("measure", recording).out, r"handle mass +0\.194 kg")
         published = self.model(recording, "--mode", "reference")
         self.assertEqual(published["estimation"]["handle_mass_kg"], 0)
         asked = self.model(recording, "--mode", "reference", "--handle-mass", 0.194)
         self.assertAlmostEqual(published["model"]["M"][0][0] - asked["model"]["M"][0][0], 0.194, places=9)
-        self.assertRegex(self.mbk("measure", "--mode", "reference", recording).out, r"handle mass +none subtracted")
+        self.assertRegex(self.mbk("measure", "--mode", "reference", recording).out, r"handle mass +none")
 
     def test_a_mass_that_is_none_is_refused_unless_another_is_given(self):
         recording, _ = self.performed(POSITION)
@@ -91,7 +91,7 @@ class OneAnswer(Case):
         gaps = self.without(recording, lambda k: k % 450 in (7, 8, 9, 10))  # of 5 ms, 42 and more
         bridged = self.model(gaps)
         (warning,) = [w for w in bridged["warnings"] if w["code"] == "resampled"]
-        self.assertRegex(warning["message"], r"1000 Hz.*\d\d gaps.*the longest of 0\.005 s")
+        self.assertRegex(warning["message"], r"1000 Hz.*\d\d gaps.*0\.005 s")
         for name in "MBK":
             for k in range(2):
                 self.assertLess(abs(bridged["model"][name][k][k] - whole["model"][name][k][k]),

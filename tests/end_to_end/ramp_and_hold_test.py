@@ -54,7 +54,7 @@ class RampAndHold(Case):
         self.assertIn(code, [warning["code"] for warning in found["warnings"]])
         text = self.mbk("explore", log, *options, code=NOT_USABLE).out
         self.assert_lines_fit(text)
-        self.assertIn("not usable", text)
+        self.assertIn(code, text)
         return found
 
     def test_the_stiffness_comes_back_with_its_intervals(self):
@@ -79,8 +79,7 @@ class RampAndHold(Case):
         self.assertGreater(stiffness["ellipse"]["interval95"]["area"][1], 3.1416 * (42 * 125 - 28 * 28))
         text = self.fine("explore", log).out
         self.assert_lines_fit(text)
-        for words in ("ramps and holds", "40 in 8 directions, of 6 mm", "to 300 ms after the onset", "stiffness K",
-                      "ellipse", "antisymm", "linearity"):
+        for words in ("40", "8 directions", "6 mm", "300 ms", "stiffness K", "ellipse", "antisymm", "linearity"):
             self.assertIn(words, text)
 
     def test_a_window_may_be_chosen_and_one_in_which_the_hand_moves_is_not_usable(self):
@@ -89,8 +88,9 @@ class RampAndHold(Case):
         self.assertEqual(part["plateau_s"], [0.25, 0.35])
         early = self.not_usable("missing-dynamics", "--plateau-from", "30", "--plateau-to", "90")
         self.assertGreater(abs(early["ramp_and_hold"]["stiffness"]["K"][1][1] - 125), 30)
-        self.refused(WRONG_USAGE, "explore", log, "--plateau-from", "300", "--plateau-to", "200", says="no window")
-        self.refused(BAD_DATA, "explore", log, "--plateau-to", "900", says="hold longer")
+        self.refused(WRONG_USAGE, "explore", log, "--plateau-from", "300", "--plateau-to", "200",
+                     says=("300 ms", "200 ms"))
+        self.refused(BAD_DATA, "explore", log, "--plateau-to", "900", says="--plateau-to")
 
     def test_a_control_that_is_too_soft_is_not_usable(self):
         self.not_usable("closed-loop-bias", gain=3, damping=1, hold=1.0)
@@ -101,12 +101,12 @@ class RampAndHold(Case):
     def test_too_few_directions_give_no_stiffness(self):
         found = self.fine("explore", self.recorded(directions=2), "--json").json
         self.assertNotIn("ramp_and_hold", found)
-        self.refused(BAD_DATA, "explore", self.recorded(directions=2), "--plateau-to", "300", says="along every axis")
+        self.refused(BAD_DATA, "explore", self.recorded(directions=2), "--plateau-to", "300", says="axis")
 
     def test_ramps_that_leave_no_plateau_before_a_reaction_give_none(self):
         found = self.fine("explore", self.recorded(ramp=0.3, repetitions=2), "--json").json
         self.assertNotIn("ramp_and_hold", found)
-        self.assertIn("ramp faster", " ".join(found["notes"]))
+        self.assertIn("--plateau-to", " ".join(found["notes"]))
 
     def test_several_recordings_are_pooled(self):
         one, two = self.recorded(), self.recorded(seed=2)

@@ -112,9 +112,9 @@ class Reaching(Case):
         self.refused(WRONG_USAGE, "simulate", self.scenario(control="force", gains=""), "--out", out, says="quantity")
         self.refused(WRONG_USAGE, "run", self.scenario(speed=300), "--dry-run", says="safety.speed_mm_per_s")
         text = self.scenario().read_text().replace("trigger_mm = 125", "trigger_mm = 300")
-        self.refused(WRONG_USAGE, "simulate", self.file("late.toml", text), "--out", out, says="not before the target")
+        self.refused(WRONG_USAGE, "simulate", self.file("late.toml", text), "--out", out, says="trigger")
         arm = self.scenario(limb="arm", numbers="")
-        self.refused(WRONG_USAGE, "simulate", arm, "--out", out, says="from the shoulder")
+        self.refused(WRONG_USAGE, "simulate", arm, "--out", out, says="shoulder")
         text = self.scenario().read_text().replace('kind = "servo_displacement"', 'kind = "ramp_and_hold"')
         self.refused(BAD_DATA, "simulate", self.file("ramps.toml", text), "--out", out, says="reach")
 

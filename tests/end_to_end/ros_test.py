@@ -47,7 +47,7 @@ class Ros(Case):
             self.assertIn(words, ran.out)
         self.refused(BAD_DATA, "measure", path, says=("'/ft' (1000 Hz)", "'/pose' (1000 Hz)", "--clock"))
         ran = self.mbk("info", "--clock", "/pose", path)
-        self.assertIn("put on the clock of '/pose'", ran.out)
+        self.assertRegex(ran.out, "clock .*'/pose'")
 
     def test_what_was_measured_is_what_the_log_says(self):
         log = make_log("sinusoidal", "--seed", "3")
@@ -59,9 +59,8 @@ class Ros(Case):
 
     def test_a_force_in_the_frame_of_the_tool_is_not_taken_as_one_in_that_of_the_base(self):
         path = self.two_topics(make_log("sinusoidal", "--seed", "3"), turned=True, frame="tool0")
-        self.refused(BAD_DATA, "measure", path, says=("'force_x' and 'force_y' is missing", "frame 'tool0'",
-                                                      "'/pose' in frame 'base_link'"))
-        self.assertIn("'/ft' is not taken as force_x and force_y", " ".join(self.mbk("info", path).out.split()))
+        self.refused(BAD_DATA, "measure", path, says=("'force_x'", "'force_y'", "'tool0'", "'base_link'"))
+        self.assertRegex(" ".join(self.mbk("info", path).out.split()), "note: .*'/ft'.* force_x")
         # Their axes are parallel, says the user.
         self.mbk("measure", "--clock", "/pose", "--channels", SENSOR_OPPOSITE, path)
 
@@ -73,7 +72,7 @@ class Ros(Case):
         file.close()
         flat = " ".join(self.mbk("info", path).out.split())
         self.assertIn("samples 45, 0.044 s", flat)
-        self.assertIn("5 of 50 messages of '/ft' are left out", flat)
+        self.assertRegex(flat, "5 of 50 messages .*'/ft'")
 
     def model(self, *arguments):
         return self.mbk("measure", "--json", *arguments).json["model"]
@@ -86,7 +85,8 @@ class Ros(Case):
                 file.add(topic, nanoseconds(k / 1000), ros_file.wrench(nanoseconds(k / 1000), k, -k))
         file.close()
         ran = self.mbk("info", path)
-        self.assertIn("'/left.wrench.force.x' and '/right.wrench.force.x' both are force_x", ran.out)
+        for name in ("'/left.wrench.force.x'", "'/right.wrench.force.x'"):
+            self.assertIn(name, ran.out)
         ran = self.mbk("info", "--channels", "Fx=/right.wrench.force.x,Fy=/right.wrench.force.y", path)
         self.assertIn("force_x", ran.out)
 
@@ -98,8 +98,8 @@ class Ros(Case):
         file.close()
         said = self.mbk("info", path).out
         flat = " ".join(said.split())
-        for words in ("2023-11-14T22:13:20.000000000Z", "in its frame 'tool0'", "header.stamp",
-                      "turn it with --channels Fx=-/ft.wrench.force.x,Fy=-/ft.wrench.force.y"):
+        for words in ("2023-11-14T22:13:20.000000000Z", "'tool0'", "header.stamp",
+                      "--channels Fx=-/ft.wrench.force.x,Fy=-/ft.wrench.force.y"):
             self.assertIn(words, flat)
 
     def test_a_bag_of_ros1(self):

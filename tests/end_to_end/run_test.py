@@ -117,8 +117,8 @@ class Running(Case):
         experiment = self.experiment()
         (self.folder / "nowhere.h5").symlink_to(self.folder / "gone" / "there.h5")
         (self.folder / "round.h5").symlink_to("round.h5")
-        for name, says in (("p07", "does not say a format"), ("p07.xlsx", "not a format"), (247 * "a" + ".h5", "too long"),
-                           ("nowhere.h5", "there already"), ("round.h5", "symbolic links"), ("gone/p07.h5", "No such")):
+        for name, says in (("p07", "format"), ("p07.xlsx", "format"), (247 * "a" + ".h5", "name"),
+                           ("nowhere.h5", "nowhere.h5"), ("round.h5", "symbolic links"), ("gone/p07.h5", "No such")):
             for more in ((), ("--dry-run",)):
                 ran = run("run", experiment, "--fast", "--quiet", "--out", self.target(name), *more)
                 self.assertIn(ran.code, (WRONG_USAGE, BAD_DATA), ran)
@@ -144,10 +144,10 @@ class Running(Case):
             self.target().write_text("mine")
         code, out, err = self.in_mid_trial(take_the_name, signals=[signal.SIGINT])
         self.assertEqual(code, SAFETY_STOP, err)
-        self.assertIn("safety stop: the operator stopped it", out)
-        self.assertIn("motors: confirmed off", out)
+        self.assertRegex(out, "safety stop: .*operator")
+        self.assertNotIn("NOT CONFIRMED OFF", out + err)
         self.assertIn("trial.h5.journal", out)
-        self.assertIn("there already", err)
+        self.assertIn("trial.h5", err)
         self.assertEqual(self.target().read_text(), "mine")
         self.fine("recover", self.target("trial.h5.journal"), "--out", self.target("other.h5"))
         self.assertIn("safety stop", self.metadata(self.target("other.h5"))["ended"])
@@ -163,10 +163,10 @@ class Running(Case):
 
     def test_a_journal_that_is_being_recorded_is_left_alone(self):
         def recover(process):
-            ran = self.refused(WRONG_USAGE, "recover", self.target("trial.h5.journal"), says="is being recorded by process")
+            ran = self.refused(WRONG_USAGE, "recover", self.target("trial.h5.journal"), says="process")
             self.assertIn(str(process.pid), ran.err)
             self.refused(WRONG_USAGE, "run", self.experiment(), "--fast", "--quiet", "--out", self.target(),
-                         says="is being recorded by process")
+                         says=f"process {process.pid}")
         code, out, err = self.in_mid_trial(recover, duration=3)
         self.assertEqual(code, FINE, err)
         self.assertIn("completed", out)
@@ -179,7 +179,7 @@ class Running(Case):
         ran = run("run", self.experiment(), "--no-measure", "--quiet", "--out", self.target(),
                   environment={"LD_PRELOAD": shim, "MBK_SLEEPLESS": "1"})
         self.assertEqual(ran.code, FINE, ran)
-        self.assertIn("the clock woke the loop too early", ran.out)
+        self.assertRegex(ran.out, "! .*clock")
         samples = self.mbk("info", self.target(), "--json").json["samples"]
         self.assertGreaterEqual(time.monotonic() - began, 0.99e-3 * samples)  # no faster than time
 

@@ -82,17 +82,17 @@ class ServoDisplacement(Case):
         self.assertNotIn("frequency_response", found)
         text = self.fine("explore", log).out
         self.assert_lines_fit(text)
-        for words in ("30 undisturbed and 40 displaced in 8 directions, by 8 mm", "140 ms to 200 ms", "stiffness K",
-                      "own past", "for comparison", "ellipse"):
+        for words in ("30 undisturbed", "40 displaced", "8 directions", "8 mm", "140 ms", "200 ms",
+                      "stiffness K", "ellipse"):
             self.assertIn(words, text)
 
     def test_another_event_and_window_may_be_named(self):
         log = self.recorded("start", trigger="go")
         self.assertNotIn("servo_displacement", self.mbk("explore", log, "--json", code=NOT_USABLE).json)
-        self.refused(BAD_DATA, "explore", log, "--only", "servo-displacement", says="no event 'trigger'")
+        self.refused(BAD_DATA, "explore", log, "--only", "servo-displacement", says="'trigger'")
         part = self.fine("explore", log, "--json", "--trigger", "go", "--plateau-from", "150").json["servo_displacement"]
         self.assertEqual((part["trigger"], part["window_s"]), ("go", [0.15, 0.2]))
-        self.refused(WRONG_USAGE, "explore", log, "--trigger", "go", "--plateau-to", "900", says="no window")
+        self.refused(WRONG_USAGE, "explore", log, "--trigger", "go", "--plateau-to", "900", says="900 ms")
 
     def test_recordings_of_one_reach_each_are_pooled(self):
         first = self.recorded("first", undisturbed=20, displaced=0)
@@ -102,8 +102,8 @@ class ServoDisplacement(Case):
 
     def test_what_cannot_be_told_is_not_told(self):
         self.refused(BAD_DATA, "explore", self.recorded("few", undisturbed=5), says="undisturbed")
-        self.refused(BAD_DATA, "explore", self.recorded("none", displaced=0), says="no reach was displaced")
-        self.refused(BAD_DATA, "explore", self.recorded("line", directions=2), says="one line")
+        self.refused(BAD_DATA, "explore", self.recorded("none", displaced=0), says="reach")
+        self.refused(BAD_DATA, "explore", self.recorded("line", directions=2), says="line")
 
     def test_a_force_that_is_lost_in_noise_is_not_usable(self):
         found = self.mbk("explore", self.recorded("noisy", noise=6.0, displaced=16), "--json", code=NOT_USABLE).json

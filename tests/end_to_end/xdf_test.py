@@ -82,21 +82,19 @@ class Xdf(Case):
         for line in ("Arm.angle", "Cell.torque", "Cell.raw_time"):
             self.assertIn(line, ran.out)
         notes = " ".join(self.fine("info", "--json", path).json["notes"])
-        self.assertIn("stream 'Arm' (Force): 20000 samples of 1 channel, nominal rate 1000 Hz, effective 1000 Hz", notes)
-        self.assertIn("'Cell': time stamps were put on the recorder's clock: +37.24", notes)
-        self.assertIn("drift -20 µs/s", notes)
-        self.assertIn("'Arm': time stamps were evened out, which moved them by 0.201 ms at most", notes)
-        self.assertIn("the texts of 'Task' are 4 events", notes)
+        for facts in (r"'Arm' \(Force\): 20000 samples .*\b1 channel\b.*1000 Hz.*1000 Hz", r"'Cell': .*clock.*\+37\.24",
+                      "-20 µs/s", r"'Arm': .*0\.201 ms", "'Task' .*4 events"):
+            self.assertRegex(notes, facts)
 
     def test_streams_of_two_clocks_are_measured_on_the_one_that_is_named(self):
         path = self.file("arm.xdf", two_streams())
-        self.bad_data(path, *CHANNELS, command="measure", says=("'Arm' (1000 Hz), 'Cell' (500 Hz)", "--clock 'Arm'"))
+        self.bad_data(path, *CHANNELS, command="measure", says=("'Arm' (1000 Hz)", "'Cell' (500 Hz)", "--clock 'Arm'"))
         result = run("measure", "--json", *CHANNELS, "--clock", "Arm", path).json
         self.assert_relative(result["model"]["K"], [[STIFFNESS]], 0.01)
         self.assert_relative(result["model"]["B"], [[DAMPING]], 0.02)
         self.assert_relative(result["model"]["M"], [[INERTIA]], 0.02)
         info = self.fine("info", "--json", *CHANNELS, "--clock", "Arm", path).json
-        self.assertIn("put on the clock of 'Arm'", " ".join(info["notes"]))
+        self.assertRegex(" ".join(info["notes"]), "clock .*'Arm'")
         written = run("convert", *CHANNELS, "--clock", "Arm", path, self.folder / "arm.h5")
         self.assertEqual(written.code, 0)
         self.assertIn("2 channels, 4 events", written.out)
@@ -108,7 +106,7 @@ class Xdf(Case):
             self.assert_relative(result["model"]["K"], [[STIFFNESS]], 0.01)
             self.assert_relative(result["model"]["B"], [[DAMPING]], 0.02)
             self.assert_relative(result["model"]["M"], [[INERTIA]], 0.02)
-            self.assertIn("'Cell': the sender's clock was set by", run("measure", *CHANNELS, "--clock", "Arm", path).out)
+            self.assertRegex(run("measure", *CHANNELS, "--clock", "Arm", path).out, r"'Cell': .*clock.*\d m?s\b")
 
     def test_samples_out_of_order_are_sorted(self):
         ordered, swapped = self.file("ordered.xdf", two_streams()), self.file("swapped.xdf", two_streams(swapped=(7,)))
@@ -119,7 +117,7 @@ class Xdf(Case):
                            if not line.startswith("#")])
             (self.folder / "x.csv").unlink()
         self.assertEqual(*tables)
-        self.assertIn("2000 of 20000 samples were put in the order of their time stamps",
+        self.assertIn("2000 of 20000 samples",
                       " ".join(self.fine("info", "--json", swapped).json["notes"]))
 
     def test_raw_stamps_can_be_taken_instead(self):
@@ -130,7 +128,7 @@ class Xdf(Case):
         self.assertLess(even["interval_s"]["standard_deviation"], 1e-9)
         self.assertGreater(raw["interval_s"]["standard_deviation"], 1e-5)
         self.refused(2, "info", "--axes", "1", "--channels", "time=Arm.raw_time,x=Arm.angle,F=Cell.torque", "--clock",
-                     "Arm", path, says="time is named")
+                     "Arm", path, says="time")
 
     def test_packed_files_are_the_same(self):
         bare = self.file("arm.xdf", two_streams(seconds=3))
@@ -139,13 +137,13 @@ class Xdf(Case):
         self.assertEqual(listings[0]["arrays"], listings[1]["arrays"])
         self.assertEqual(listings[0]["notes"], listings[1]["notes"])
         self.bad_data(self.file("text.gz", gzip.compress(b"t,x\n0,1\n")), command="info", says=("gunzip",))
-        self.bad_data(self.file("cut.xdfz", packed.read_bytes()[:-9]), command="info", says=("ends early",))
+        self.bad_data(self.file("cut.xdfz", packed.read_bytes()[:-9]), command="info", says="gzip")
 
     def test_behind_damage_the_file_is_read_on(self):
         whole = bytearray(two_streams())
         whole[200_000:200_400] = b"\xff" * 400
         notes = " ".join(self.fine("info", "--json", self.file("damaged.xdf", bytes(whole))).json["notes"])
-        self.assertIn("bytes were lost, up to the next boundary", notes)
+        self.assertRegex(notes, r"\d bytes\b.*boundary")
         for cut in (3, 4, 40, 70):
             self.bad_data(self.file("cut.xdf", bytes(whole[:cut])), command="info")
 
@@ -156,8 +154,8 @@ class Outside(Case):
         listing = self.fine("info", "--json", path).json
         self.assertEqual(listing["arrays"][0]["rows"], 27815)
         notes = " ".join(listing["notes"])
-        self.assertIn("the sender's clock was reset once", notes)
-        self.assertIn("the texts of 'MyMarkerStream' are 175 events", notes)
+        self.assertIn("clock was reset", notes)
+        self.assertRegex(notes, "'MyMarkerStream' .*175 events")
 
 
 if __name__ == "__main__":

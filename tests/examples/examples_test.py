@@ -80,14 +80,14 @@ class SimulateAndMeasure(Step):
     step = "02_simulate_and_measure"
 
     def test_it_is_participant_4_who_was_measured(self):
-        self.assertIn("truth_M                  [[1.419, -1.025], [-1.025, 1.885]]", self.said)
+        self.assertRegex(self.said, r"truth_M +" + re.escape("[[1.419, -1.025], [-1.025, 1.885]]"))
         pooled = self.result("pooled.json")
         self.assert_near(pooled["model"]["M"], [[1.419, -1.025], [-1.025, 1.885]], 0.08)
         self.assert_near(pooled["model"]["K"], [[36.6, -43.3], [-43.3, 151.6]], 8)
         self.assertEqual(len(pooled["inputs"]), 2)
 
     def test_facts_come_before_anything_moves(self):
-        self.assertLess(self.said.index("crest factor"), self.said.index("the limb absorbed"))
+        self.assertLess(self.said.index("crest factor"), self.said.index("absorbed"))
 
 
 class Passivity(Step):
@@ -115,8 +115,8 @@ class ClosedLoop(Step):
         true_k_yy = float(re.search(r"truth_K .*, ([\d.]+)\]\]", self.said).group(1))
         self.assertLess(least["model"]["K"][1][1], 0.7 * true_k_yy)
         self.assertAlmostEqual(instrumental["model"]["K"][1][1], true_k_yy, delta=0.2 * true_k_yy)
-        self.assertIn("method ls: computed but not usable, exit code 4", self.said)
-        self.assertNotIn("method iv: computed but not usable", self.said)
+        self.assertRegex(self.said, "method ls: .*exit code 4")
+        self.assertNotIn("method iv: ", self.said)
 
 
 class TransferFunction(Step):
@@ -165,16 +165,16 @@ class Teleoperation(Step):
         self.assertAlmostEqual(high, middle + root, places=6)
         self.assertLess(interval("this_hand.json")[0], low - 20)
         self.assertGreater(interval("this_hand.json")[1], high + 100)
-        self.assertIn("92.76 to 431.2", self.said)
-        self.assertIn("with that operator for", self.said)
+        for fact in ("92.76", "431.2", "operator"):
+            self.assertIn(fact, self.said)
 
 
 class Session(Step):
     step = "08_session"
 
     def test_it_is_planned_recorded_and_measured(self):
-        self.assertRegex(self.said, r"in all +25\.0 s")
-        self.assertRegex(self.said, r"force of the motors at the handle +[\d.]+ N +of +20")
+        self.assertRegex(self.said, r"\b25\.0 s")
+        self.assertRegex(self.said, r"force .*handle +[\d.]+ N +of +20")
         self.assertRegex(self.said, r"ended +completed")
         self.assertIn("0 dropped", self.said)
         self.assertFalse(list(self.out.glob("*.journal")))
@@ -198,7 +198,7 @@ class YourOwnRobot(Step):
             self.assertLess(rms, 0.05)
 
     def test_the_urdf_is_described(self):
-        self.assertIn("identifies 13 of 28 coefficients", (self.out / "described.txt").read_text())
+        self.assertIn("13 of 28 coefficients", (self.out / "described.txt").read_text())
 
 
 class UseTheLibrary(unittest.TestCase):
@@ -226,7 +226,7 @@ class UseTheLibrary(unittest.TestCase):
 
     def test_judge_a_model_decides_both_ways(self):
         said = self.program("judge_a_model")
-        self.assertIn("active below 0.16 Hz", said)
+        self.assertIn("0.16 Hz", said)
         self.assertIn("the model: not passive", said)
         self.assertIn("its symmetric part: passive", said)
         # λ_min(B_s) of the printed matrix, by hand: 8.16 − √(2.4² + 2.14²)

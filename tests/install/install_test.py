@@ -96,7 +96,7 @@ class Installed(unittest.TestCase):
 
     def test_modules_are_components(self):
         self.found("0.1 REQUIRED COMPONENTS measurement recording")
-        self.assertIn("no module nonsense", self.found("0.1 REQUIRED COMPONENTS nonsense", code=1))
+        self.assertIn("nonsense", self.found("0.1 REQUIRED COMPONENTS nonsense", code=1))
 
     def test_no_path_of_the_tree_stands_in_what_is_installed(self):
         paths = [str(SOURCE), str(pathlib.Path(program("BUILD")).resolve()), str(self.prefix)]
