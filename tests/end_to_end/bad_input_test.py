@@ -204,7 +204,7 @@ class Content(BadInput):
         for name, says, trouble in (("repeats", "time", time[:8000] + time[7999:-1]),
                                     ("runs backwards", "time", time[:8000] + [t - 5.0 for t in time[8000:]]),
                                     ("has a gap", "0.501 s", time[:8000] + [t + 0.5 for t in time[8000:]])):
-            with self.subTest(says):
+            with self.subTest(name):
                 self.columns[0] = trouble
                 for mode in ("default", "reference"):
                     window = ["--from", "1", "--to", "9", "--mode", mode]

@@ -300,7 +300,7 @@ class Slurm(Engines, JobCase):
         ran = self.job(*measure, "--detach")
         self.assertIn("mbk work", ran.err)
         (status,) = self.mbk("study", "status", "--study", study, "--json").json["jobs"]
-        self.assertEqual((status["finished"], len(status["tasks"])), (0, 4))
+        self.assertEqual((status["finished"], status["chunks"]), (0, 4))
         self.assertEqual(len(self.slurm.say("squeue", "-h", "-r").splitlines()), 4)
         job = next((study / "jobs").iterdir())
         self.mbk("work", job, "--cancel", environment=self.environment)

@@ -98,8 +98,8 @@ MISTAKES = (
     Mistake("Fx flipped", "axes-mismatched", flipped("Fx"), says=("sign", "Fx")),
     Mistake("Fy flipped", "axes-mismatched", flipped("Fy"), says=("sign", "Fy")),
     Mistake("both forces flipped", "force-sign-reversed", flipped("Fx", "Fy"), says=("sign", "Fx", "Fy")),
-    Mistake("x flipped", "axes-mismatched", flipped("x"), says=("sign", "x=-")),
-    Mistake("y flipped", "axes-mismatched", flipped("y"), says=("sign", "y=-")),
+    Mistake("x flipped", "axes-mismatched", flipped("x"), says=("sign", "x=hand_x")),
+    Mistake("y flipped", "axes-mismatched", flipped("y"), says=("sign", "y=hand_y")),
     Mistake("Fx and Fy exchanged", "axes-mismatched", exchanged("Fx", "Fy"), says=("Fx", "Fy")),
     Mistake("x and y exchanged", "axes-mismatched", exchanged("x", "y"), says=("x=", "y=")),
     Mistake("forces turned by 90°", "axes-mismatched", after(exchanged("Fx", "Fy"), flipped("Fx")),
@@ -135,7 +135,7 @@ MISTAKES = (
     # one axis
     Mistake("deg as rad", "implausible-scale", scaled("x", by=57.29577951308232), says=(":deg",), axes=1),
     Mistake("N·mm as N·m", "implausible-scale", scaled("F", by=1e3), says=("mm",), axes=1),
-    Mistake("torque flipped", "force-sign-reversed", flipped("F"), says=("sign", "F=-"), axes=1),
+    Mistake("torque flipped", "force-sign-reversed", flipped("F"), says=("sign", "F=reaction"), axes=1),
     Mistake("angle as torque", "same-column", read_from(F="position"), says=("F",), axes=1, cured=False, unnamed=True),
 )
 

@@ -185,7 +185,7 @@ class Refusals(Case):
             SHORT.replace('"linear"', '"liner"'): ["participant.kind", "'liner'", "linear"],
             SHORT.replace("peak_deg = 2", "peak_Nm = 2"): ["line 8", "perturbation.peak_Nm", "peak_deg"],
             SHORT.replace("peak_deg = 2", 'peak_deg = "2"'): ["line 8", "perturbation.peak_deg", "number"],
-            SHORT.replace("peak_deg = 2", "peak_deg = 2\npeak_mm = 2"): ["line 9", "peak_mm", "peak_deg"],
+            SHORT.replace("peak_deg = 2", "peak_deg = 2\npeak_mm = 2"): ["line 9", "peak_mm", "unit"],
             SHORT + "[rig]\nmass_kg = 1\nstiffness_N_per_m = [[1, 0], [0, 1]]\n": ["participant", "rig"],
             SHORT.replace('kind = "linear"', ""): ["line 10", "'kind'"],
             SHORT.replace("[perturbation]", "[disturbance]"): ["bad.toml", "perturbation", "kind"],

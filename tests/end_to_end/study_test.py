@@ -401,8 +401,8 @@ class DataSets(StudyCase):
 
         self.assertEqual(facts(other), facts(self.study))
         self.assertEqual(numbers(other), numbers(self.study))
-        again = self.mbk("study", "import", data_set, "--study", other)
-        self.assertEqual(len(self.listed()["recordings"]), 4)
+        self.mbk("study", "import", data_set, "--study", other)
+        self.assertEqual(len(self.mbk("study", "list", "--json", "--study", other).json["recordings"]), 4)
 
     def test_of_nothing_are_not_made(self):
         self.refused(WRONG_USAGE, "study", "export", "--bids", self.folder / "none", "--study", self.study)

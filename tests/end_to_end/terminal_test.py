@@ -145,7 +145,7 @@ class Studies(Case):
         self.assert_lines_fit(text)
 
     def test_all_of_them_have_no_common_document(self):
-        self.refused(WRONG_USAGE, "validate", "all", "--json", says="--json")
+        self.refused(WRONG_USAGE, "validate", "all", "--json", says="mbk validate")
 
 
 class NamesOfFiles(Case):
