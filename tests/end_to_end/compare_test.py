@@ -70,6 +70,7 @@ class Width(Case):
 
     def test_a_result_that_is_not_usable_shows_no_width(self):
         ran = self.mbk("compare", self.stored(), self.stored("wrong.json", usable=False), code=NOT_USABLE)
+        self.assertIn("second result is not usable", ran.out)
         self.assertNotIn("stiffness", ran.out)
 
     def test_what_cannot_be_compared_is_refused(self):

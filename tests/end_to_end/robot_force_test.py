@@ -132,7 +132,7 @@ class Force(Case):
         for command in (("robot", "force", rig(), "--out", out),
                         ("measure", rig(), "--force-source", "virtual")):
             self.refused(NOT_USABLE, *command, "--robot", bad,
-                         says=["turned.json", "inertia-not-positive"])
+                         says=["turned.json", "not usable", "inertia-not-positive", "identify the robot again"])
         self.assertFalse(out.exists())
 
     def test_without_a_robot_it_is_the_published_one(self):

@@ -52,8 +52,8 @@ class Mean(Case):
         self.assertIn("not usable", omitted["why"])
         self.assertEqual(len(ran.json["results"]), 3)
         text = " ".join(run("measure", "--quiet", *logs(1, 2), bad).out.split())
-        self.assertIn("2 of 3 trials", text)
-        self.assertIn(f"{bad}: ", text)
+        self.assertIn("mean of 2 of 3 trials", text)
+        self.assertIn(f"{bad}: not usable", text)
 
     def test_the_same_file_counts_once_and_is_named(self):
         first, second = logs(1, 2)

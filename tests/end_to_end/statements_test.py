@@ -6,6 +6,11 @@ import re
 
 from command import Case, main, run
 
+# What must not be said of a person, whatever was measured.
+PROMISES = ("beyond reasonable doubt", "made unstable by", "always stable", "counts on a passive limb",
+            "by the energy:", "by the model:", "is the limb passive")
+SAID = {"passive": "absorbed", "active": "delivered"}
+
 
 def words_of(text):
     return " ".join(text.split())
@@ -29,8 +34,10 @@ class Statements(Case):
         self.assertEqual(trial["verdict"], expected)
         said = trial["statement"]
         if trial["verdict"] == "undecided":
+            self.assertIn("does not decide", said)
             return
-        self.assertRegex(said, r"\d J\b")
+        self.assertNotIn("does not decide", said)
+        self.assertRegex(said, f"^in this trial the (hand|limb) {SAID[trial['verdict']]} ")
         self.assertLessEqual(low, trial["absorbed_J"])
         self.assertLessEqual(trial["absorbed_J"], high)
 
@@ -41,6 +48,7 @@ class Statements(Case):
         said = prediction["statement"]
         if not result["usable"] or not models:
             self.assertEqual((verdict, *parts), ("none", "none", "none"))
+            self.assertIn("no prediction", said)
             self.assertNotIn("min_index", passivity)
             self.assertNotIn("eop", passivity)
             return
@@ -48,16 +56,18 @@ class Statements(Case):
             return self.assertFalse(models[0]["usable"])
         if not models[0]["fits"] or passivity["band_hz"] is None:
             self.assertEqual(verdict, "undecided")
+            self.assertIn("nothing is predicted", said)
         known = [part for part in parts if part != "none"]
         if verdict == "passive":
             self.assertEqual(set(known), {"passive"})
-            self.assertRegex(said, r"\d Hz")
+            self.assertIn("absorbs energy", said)
+            self.assertNotIn("generate", said)
             self.assertGreater(passivity["min_index"], 0)
             for condition in models[0]["conditions"]:
                 self.assertGreater(condition["lower"], 0)
         elif verdict == "active":
             self.assertIn("active", known)
-            self.assertRegex(said, r"\d Hz")
+            self.assertIn("can generate energy", said)
         else:
             self.assertNotIn("active", known)
             self.assertIn("undecided", known)
@@ -84,10 +94,18 @@ class Statements(Case):
             with self.subTest(command):
                 prediction = passivity["prediction"]
                 self.assertEqual(text.count(words_of(f"{prediction['verdict']}: {prediction['statement']}")), 1)
-                self.assertIn("machine", text)  # of whose stability nothing is promised
+                self.assertEqual(text.count("Neither is a promise that a machine is stable with this person."), 1)
+                for promise in PROMISES:
+                    self.assertNotIn(promise, text.lower())
                 if "trial" in passivity:
                     trial = passivity["trial"]
                     self.assertEqual(text.count(words_of(f"{trial['verdict']}: {trial['statement']}")), 1)
+                    self.assertNotIn("no statement on the trial", text)
+                else:
+                    self.assertIn("no statement on the trial", text)
+                if passivity["trial"]["verdict"] == "passive":
+                    self.assertNotIn("delivered", text.split("passivity, what the model predicts")[0]
+                                     .replace("it delivered energy at", ""))
         if "trial" in passivity:
             self.check_trial(passivity["trial"])
             self.assertEqual(passivity["energy"]["verdict"], passivity["trial"]["verdict"])
@@ -96,6 +114,14 @@ class Statements(Case):
         if name.startswith("relaxed"):
             self.assertEqual(passivity["trial"]["verdict"], "passive")
             self.assertNotEqual(passivity["prediction"]["verdict"], "active")
+
+    def test_the_page_promises_nothing(self):
+        recording = self.recording("relaxed_sinusoidal")
+        report = self.folder / "page.html"
+        run("measure", recording, "--quiet", "--report", report)
+        page = report.read_text().lower()
+        for promise in PROMISES[:4]:
+            self.assertNotIn(promise, page)
 
 
 def test_of(name):

@@ -108,7 +108,7 @@ class Summary(Case):
         self.mbk("measure", "--quiet", *logs(1, 2), bad, "--summary", out, code=NOT_USABLE)
         text = out.read_text(encoding="utf-8")
         for words in (r"\toprule", r"\midrule", r"\bottomrule", "$M_{xx}$", r"[N$\cdot$s/m]", r"bad\_trial.csv",
-                      r"95\,\%"):
+                      "not usable", "Mean of 2", r"95\,\%"):
             self.assertIn(words, text)
         self.assertEqual(text.count("{"), text.count("}"))
         rows = [line for line in text.splitlines() if line.endswith(r"\\") and "multicolumn" not in line]

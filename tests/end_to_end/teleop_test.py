@@ -128,11 +128,11 @@ class Teleop(Case):
         poor["passivity"]["models"][0]["fits"] = False
         bare["passivity"]["band_hz"] = None
         for name, document, says in (
-                ("flag", {**good, "usable": False}, "usable"), ("none", none, "usable"),
-                ("first", {**good, "schema": "mbk.result/1", "usable": False}, "usable"),
-                ("poor", poor, "force"), ("band", bare, "frequencies"),
-                ("warned", {**good, "warnings": [{"code": "fit-poor"}]}, "force"),
-                ("former word", {**good, "warnings": [{"code": "held-back-fit-poor"}]}, "force")):
+                ("flag", {**good, "usable": False}, "not usable"), ("none", none, "not usable"),
+                ("first", {**good, "schema": "mbk.result/1", "usable": False}, "not usable"),
+                ("poor", poor, "too little of the force"), ("band", bare, "at no two frequencies"),
+                ("warned", {**good, "warnings": [{"code": "fit-poor"}]}, "too little of the force"),
+                ("former word", {**good, "warnings": [{"code": "held-back-fit-poor"}]}, "too little of the force")):
             with self.subTest(name):
                 self.refused(NOT_USABLE, "teleop", self.design(), "--operator",
                              self.file(f"{name}.json", json.dumps(document)), says=[f"{name}.json", says])
@@ -142,7 +142,7 @@ class Teleop(Case):
         self.fine("simulate", "rigid_underdamped_2N", "--out", recording, "--quiet")
         self.assertFalse(run("measure", recording, "--json", "--quiet").json["usable"])
         run("measure", recording, "--json", "--quiet", "--out", measured)
-        self.refused(NOT_USABLE, "teleop", self.design(), "--operator", measured, says=str(measured))
+        self.refused(NOT_USABLE, "teleop", self.design(), "--operator", measured, says=[str(measured), "not usable"])
 
     def test_a_measured_operator_is_taken_with_its_antisymmetric_part(self):
         measured = self.folder / "measured.json"

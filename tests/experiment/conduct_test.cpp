@@ -241,7 +241,7 @@ TEST_F(Conducted, WithoutAResetNoTrialFollowsAStop) {
   script_.answer = [](Session&, const Performed&) { return Next::go_on; };
   const Conclusion conclusion = conduct(planned(trials()), session_, script_);
   ASSERT_TRUE(conclusion.failure);
-  EXPECT_THAT(conclusion.failure->line(), HasSubstr("gate"));
+  EXPECT_THAT(conclusion.failure->line(), HasSubstr("the gate is tripped"));
   EXPECT_FALSE(fs::exists(folder_ / "p07_second.h5"));
 }
 
@@ -267,7 +267,7 @@ TEST_F(Conducted, NoTrialFollowsOneWhoseTicksWereLost) {
   const Conclusion conclusion = conduct(planned(trials()), session_, script_, {});
   ASSERT_TRUE(conclusion.failure);
   EXPECT_EQ(conclusion.failure->kind, ErrorKind::data);
-  EXPECT_THAT(conclusion.failure->line(), HasSubstr("ticks"));
+  EXPECT_THAT(conclusion.failure->line(), HasSubstr("ticks were lost"));
   EXPECT_THAT(script_.told, ElementsAre("begin first", "at rest", "motors", "recorded", "not measured"));
 }
 

@@ -406,7 +406,7 @@ class Session(Task):
     def said_loss(self, ran, fault):
         if self.speechless(fault) and ran.code != FINE:
             return True
-        return re.search(r"\bticks\b|dropped|messages|journal|space", ran.err + ran.out) is not None
+        return re.search(r"not written|dropped|lost|missing|cannot be made|no space", ran.err + ran.out) is not None
 
 
 class Recover(Task):
@@ -453,7 +453,7 @@ class Study(Measured):
         ran = run(["study", "check", "--study", "s", "--json", "--quick"], folder)
         problems = json.loads(ran.out)["problems"] if ran.out else []
         # A clock that fails gives a line of the log another time, and the check reports that, as it should.
-        clock_alone = problems and all(re.match(r"line \d+ .*\b\d+ s\b", one) for one in problems)
+        clock_alone = problems and all(re.match(r"line \d+ of the log is of ", one) for one in problems)
         if ran.code != FINE and not clock_alone:
             return [], f"check: exit {ran.code}: {' '.join((ran.out + ran.err).split())[-300:]}"
         left = [path for path in (folder / "s").rglob("*.part*")]

@@ -411,7 +411,7 @@ TEST_F(Driven, EachMissingPartOfAConfirmationIsNamed) {
     settle();
     EXPECT_EQ(gate_.motors().state, MotorsOff::State::missing);
     EXPECT_EQ(gate_.motors().why, one.why) << sentence(gate_.motors());
-    EXPECT_NE(sentence(gate_.motors()).find("stop button"), std::string::npos);
+    EXPECT_NE(sentence(gate_.motors()).find("NOT CONFIRMED OFF"), std::string::npos);
   }
 }
 

@@ -187,7 +187,7 @@ void check_rows(const Journal& journal, const std::vector<Tick>& written) {
   }
   if (!journal.damage.lost.empty()) {
     EXPECT_EQ(recording->metadata.at("ticks_lost"), std::to_string(journal.damage.ticks_lost()));
-    EXPECT_NE(recording->metadata.at("ended").find("ticks"), std::string::npos);
+    EXPECT_NE(recording->metadata.at("ended").find("ticks were lost"), std::string::npos);
   }
 }
 

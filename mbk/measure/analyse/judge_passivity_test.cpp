@@ -213,19 +213,16 @@ TEST(Trial, IsSaidByTheEnergyAloneWhateverTheModel) {
     const auto absorbed = trial_passivity(id, energy_of(1.16, 1.03, 1.29));
     ASSERT_TRUE(absorbed);
     EXPECT_EQ(absorbed->energy.verdict, Verdict::passive);
-    EXPECT_THAT(absorbed->statement,
-                AllOf(HasSubstr("hand"), HasSubstr(" 1.16 J"), HasSubstr("1.03"), HasSubstr("1.29 J")));
+    EXPECT_EQ(absorbed->statement, "in this trial the hand absorbed 1.16 J (95 %: 1.03 to 1.29 J)");
     const auto delivered = trial_passivity(id, energy_of(-0.5, -0.7, -0.3));
     EXPECT_EQ(delivered->energy.verdict, Verdict::active);
-    EXPECT_THAT(delivered->statement,
-                AllOf(HasSubstr("hand"), HasSubstr(" 0.5 J"), HasSubstr("0.3"), HasSubstr("0.7 J")));
-    EXPECT_NE(delivered->statement, trial_passivity(id, energy_of(0.5, 0.3, 0.7))->statement);
+    EXPECT_EQ(delivered->statement, "in this trial the hand delivered 0.5 J (95 %: 0.3 to 0.7 J)");
     const auto open = trial_passivity(id, energy_of(0.1, -0.2, 0.4));
     EXPECT_EQ(open->energy.verdict, Verdict::undecided);
-    EXPECT_THAT(open->statement, HasSubstr("-0.2"));
+    EXPECT_THAT(open->statement, HasSubstr("does not decide"));
   }
   id.axes = 1;
-  EXPECT_THAT(trial_passivity(id, energy_of(1.0, 0.9, 1.1))->statement, HasSubstr("limb"));
+  EXPECT_THAT(trial_passivity(id, energy_of(1.0, 0.9, 1.1))->statement, HasSubstr("the limb absorbed"));
 }
 
 // A force of the other sign turns what was absorbed into what was delivered.
@@ -243,7 +240,7 @@ TEST(Trial, NamesTheLinesAtWhichEnergyWasDelivered) {
                                      {{Hertz(0.1), 50.0, -0.1, {-0.2, -0.05}},
                                       {Hertz(0.4), 50.0, 0.5, {0.4, 0.6}},
                                       {Hertz(0.7), 50.0, -0.1, {-0.3, 0.1}}});
-  EXPECT_THAT(trial->statement, HasSubstr("0.1 Hz"));
+  EXPECT_THAT(trial->statement, HasSubstr("delivered energy at 0.1 Hz"));
 }
 
 PassivityPrediction predicted(const Identification& id, bool usable = true) {
@@ -256,18 +253,19 @@ TEST(Prediction, IsThatOfTheModelForStraightAndForCircularMotion) {
   EXPECT_EQ(passive.symmetric, Verdict::passive);
   EXPECT_EQ(passive.antisymmetric, Verdict::passive);
   EXPECT_FALSE(passive.extrapolated);
-  EXPECT_THAT(passive.statement,
-              AllOf(HasSubstr("0.3"), HasSubstr("3 Hz"), HasSubstr("straight"), HasSubstr("circular")));
+  EXPECT_THAT(passive.statement, HasSubstr("from 0.3 to 3 Hz"));
+  EXPECT_THAT(passive.statement, HasSubstr("straight and in circular motion"));
   const PassivityPrediction active = predicted(arm(40.0));
   EXPECT_EQ(active.verdict, Verdict::active);
   EXPECT_EQ(active.symmetric, Verdict::passive);
   EXPECT_EQ(active.antisymmetric, Verdict::active);
-  EXPECT_THAT(active.statement, AllOf(HasSubstr("circular"), HasSubstr("0.85 Hz"), HasSubstr("straight")));
+  EXPECT_THAT(active.statement,
+              HasSubstr("can generate energy in circular motion, below 0.85 Hz; it absorbs energy in straight motion"));
   Identification unsure = arm();
   unsure.covariance(8, 8) = 1e4;
   const PassivityPrediction undecided = predicted(unsure);
   EXPECT_EQ(undecided.verdict, Verdict::undecided);
-  EXPECT_THAT(undecided.statement, AllOf(HasSubstr("eigenvalue"), HasSubstr("N/m")));
+  EXPECT_THAT(undecided.statement, HasSubstr("smallest eigenvalue of K"));
 }
 
 TEST(Prediction, IsNoneWhereTheResultOrTheModelIsNotUsable) {
@@ -276,7 +274,7 @@ TEST(Prediction, IsNoneWhereTheResultOrTheModelIsNotUsable) {
   id.usable = false;
   const PassivityPrediction none = predicted(id);
   EXPECT_FALSE(none.verdict || none.symmetric || none.antisymmetric);
-  EXPECT_FALSE(none.statement.empty());
+  EXPECT_THAT(none.statement, HasSubstr("not usable"));
   EXPECT_FALSE(predict_passivity({}, true, kBand).verdict);
 }
 
@@ -329,7 +327,7 @@ TEST(Prediction, SaysWhereItIsExtrapolated) {
   for (const auto& [low, high] : {std::pair{0.2, 2.0}, {0.5, 4.0}, {0.1, 10.0}}) {
     const PassivityPrediction beyond = asked(low, high);
     EXPECT_TRUE(beyond.extrapolated);
-    EXPECT_THAT(beyond.statement, AllOf(HasSubstr("0.3"), HasSubstr("3 Hz")));
+    EXPECT_THAT(beyond.statement, HasSubstr("extrapolated beyond"));
   }
   EXPECT_TRUE(asked_band(Hertz(0.5), Hertz(2.0), std::nullopt).extrapolated);
 }
@@ -392,7 +390,7 @@ TEST(PassivityBand, IsWhereTheMotionExplainsTheForceWithoutAReference) {
   const PassivityBand unknown = coherent_band({trial}).value();
   EXPECT_NEAR(unknown.low.value, 1.5, 0.5);
   EXPECT_EQ(unknown.high.value, 5.0);
-  EXPECT_THAT(unknown.rule, HasSubstr("reference"));
+  EXPECT_THAT(unknown.rule, HasSubstr("no reference"));
 }
 
 TEST(PassivityBand, IsNoneWhereOneLineOfMotionIsAllThatThereIs) {

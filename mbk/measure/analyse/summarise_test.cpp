@@ -52,7 +52,7 @@ TEST(Summarise, LeavesOutWhatIsNotUsableAndWhatIsThereTwice) {
   EXPECT_DOUBLE_EQ(summary.mean.K(0, 0), 110.0);
   ASSERT_EQ(summary.omitted.size(), 2u);
   EXPECT_EQ(summary.omitted[0].file, "bad.csv");
-  EXPECT_FALSE(summary.omitted[0].why.empty());
+  EXPECT_EQ(summary.omitted[0].why, "not usable");
   EXPECT_EQ(summary.omitted[1].file, "twin.csv");
   EXPECT_NE(summary.omitted[1].why.find("a.csv"), std::string::npos) << summary.omitted[1].why;
   EXPECT_FALSE(summarise({from_file("a.csv", "1"), bad}));
