@@ -69,6 +69,16 @@ TEST(ValueBytes, EveryMemberComesBackToTheBit) {
   EXPECT_EQ(to_bytes(after), bytes);
 }
 
+TEST(ValueBytes, AMatrixHasAsManyNumbersAsItsSizeSays) {
+  const Matrix empty(0, 2);
+  Matrix after(1, 1);
+  ASSERT_TRUE(from_bytes(to_bytes(empty), after));
+  EXPECT_EQ(after.rows(), 0);
+  EXPECT_EQ(after.cols(), 2);
+  EXPECT_FALSE(from_bytes(to_bytes(std::vector<double>{0, 1, 5}), after)) << "a number that belongs nowhere";
+  EXPECT_FALSE(from_bytes(to_bytes(std::vector<double>{2, 2, 1, 2, 3}), after)) << "a number is missing";
+}
+
 TEST(ValueBytes, EveryCutIsSeenAndAsksForNoMemory) {
   const std::string bytes = to_bytes(an_outer());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
