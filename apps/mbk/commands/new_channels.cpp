@@ -111,7 +111,7 @@ Action add_new_channels(Command group) {
       "  echo time=1:ms,x=2:mm,F=5 | mbk new channels log.csv --out channels.txt\n\n"
       "What is asked and drawn goes to standard error, the option alone to standard output. The map is printed only\n"
       "after the file was read with it.");
-  command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat")
+  command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
       .required();
   command.add_option("--rate", arguments->rate_hz, "sample rate, where the file holds no time")
       .type_name("HZ")
