@@ -116,12 +116,12 @@ Result<void> coriolis_sign(Workbench& /*bench*/, Draft& exhibit) {
   const robot::Geometry geometry;
   constexpr double kPayload = 1.5;  // [kg]
   const Matrix2d J = robot::jacobian(geometry, kTheta);
-  const Matrix2d wanted = inertia.matrix(kTheta) + kPayload * J.transpose() * J;
+  const Matrix2d requested = inertia.matrix(kTheta) + kPayload * J.transpose() * J;
   const Matrix2d got = inertia.with_payload(geometry, kPayload).matrix(kTheta);
   ReproducedTable payload =
       computed_table("erratum-9 payload", "entry", {{"I + m JᵀJ", "kg·m²", 6}, {"I with the changed α", "kg·m²", 6}});
   for (const auto& [name, row, column] : {std::tuple{"I₁₁", 0, 0}, {"I₁₂", 0, 1}, {"I₂₂", 1, 1}}) {
-    payload.rows.push_back({name, {cell(wanted(row, column)), cell(got(row, column))}});
+    payload.rows.push_back({name, {cell(requested(row, column)), cell(got(row, column))}});
   }
   exhibit.tables = {std::move(table), std::move(payload)};
   exhibit.charts = {power_chart(inertia)};

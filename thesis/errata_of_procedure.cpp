@@ -191,8 +191,8 @@ Recording exact_recording(const impedance::Model& model, Index samples, const At
     const perturbation::Jet<Eigen::Vector2d> jet = at(recording.time[i]);
     const Eigen::Vector2d force =
         -(model.M * jet.second + model.B * jet.first + model.K * (jet.value - Eigen::Vector2d(model.x0)));
-    const Eigen::Vector2d wanted = reference(recording.time[i]);
-    values.row(i) << jet.value.transpose(), force.transpose(), wanted.transpose();
+    const Eigen::Vector2d requested = reference(recording.time[i]);
+    values.row(i) << jet.value.transpose(), force.transpose(), requested.transpose();
   }
   const std::array<const char*, 6> names = {"hand_x", "hand_y", "force_x", "force_y", "reference_x", "reference_y"};
   for (Index k = 0; k < 6; ++k) {

@@ -33,7 +33,7 @@ teleop::TwoPort resistive(teleop::Form form, const std::array<Rational, 4>& entr
 }
 
 /// Condition 3 as printed on a grid of the axis: the least of each.
-teleop::ConditionValues least_on_a_grid(const teleop::TwoPort& two_port) {
+teleop::ConditionValues min_on_a_grid(const teleop::TwoPort& two_port) {
   teleop::ConditionValues least{kInfinity, kInfinity, kInfinity};
   for (int i = 0; i <= 200; ++i) {
     const Eigen::MatrixXcd z = two_port.matrix(RadPerSec(1e-3 * std::pow(1e6, i / 200.0)));
@@ -118,7 +118,7 @@ Result<void> unnamed_poles(Workbench& /*bench*/, Draft& exhibit) {
   for (const auto& [name, network] : {std::pair{"[[−s, 0], [0, 1]]", &mass},
                                       {"[[5, 1/(s − 1)], [0.1, 5]]", &right},
                                       {"[[1, 2], [2, 1]]/s", &spring}}) {
-    const teleop::ConditionValues least = least_on_a_grid(*network);
+    const teleop::ConditionValues least = min_on_a_grid(*network);
     const AbsoluteStability stability = teleop::llewellyn(*network);
     table.rows.push_back({name,
                           {cell(least.r11), cell(least.r22), cell(least.third), words(yes(stability.holds())),

@@ -276,10 +276,10 @@ TEST(WithdrawnErrata, FourPolesAndThreeZerosFollowAnImpedance) {
 TEST(WithdrawnErrata, RelativeDiscrepancyIsLargestForKxx) {
   const Exhibit exhibit = erratum_made("withdrawn-errata");
   const ReproducedTable& rows = table(exhibit, "withdrawn-errata 19");
-  constexpr std::size_t kLeast = 0, kLargest = 1, kRelative = 3;
+  constexpr std::size_t kMin = 0, kLargest = 1, kRelative = 3;
   for (const std::size_t other : {1u, 2u}) EXPECT_GT(number(rows, 0, kRelative), number(rows, other, kRelative));
-  for (const std::size_t row : {0u, 1u, 2u}) EXPECT_GT(number(rows, row, kLeast), 0.0);
-  EXPECT_LT(number(rows, 3, kLeast), 0.0) << "k_s crosses zero";
+  for (const std::size_t row : {0u, 1u, 2u}) EXPECT_GT(number(rows, row, kMin), 0.0);
+  EXPECT_LT(number(rows, 3, kMin), 0.0) << "k_s crosses zero";
   EXPECT_GT(number(rows, 3, kLargest), 0.0) << "k_s crosses zero";
 }
 

@@ -307,7 +307,7 @@ Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call&
     const auto reader = MBK_TRY(open_recordings(reading, sensor));
     std::vector<std::shared_ptr<const recording::InMemory>> recordings;
     for (int k = 0; k < reader.count(); ++k) {
-      stop_where_unwanted();
+      stop_if_cancelled();
       auto one = MBK_TRY(reader.read(k));
       recordings.push_back(std::make_shared<const recording::InMemory>(recording::InMemory::of(std::move(one))));
     }

@@ -256,18 +256,18 @@ std::optional<mbk::app::CallOption> option_of(std::string name, const py::handle
 class Interruption {
  public:
   bool operator()() {
-    if (wanted_ || others_are_ending()) return true;
+    if (requested_ || others_are_ending()) return true;
     if (std::this_thread::get_id() != caller_ || Clock::now() - last_ < kPause) return false;
     last_ = Clock::now();
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) keep();
-    return wanted_;
+    return requested_;
   }
   /// The exception that Python has now ends the call.   Holds the GIL.
   void keep() {
     const std::scoped_lock lock(mutex_);
     if (!error_) error_.emplace();
-    wanted_ = true;
+    requested_ = true;
   }
   void rethrow() {
     if (error_) throw std::move(*error_);
@@ -280,7 +280,7 @@ class Interruption {
   const std::thread::id caller_ = std::this_thread::get_id();
   Clock::time_point last_ = Clock::now();
   std::mutex mutex_;
-  std::atomic<bool> wanted_ = false;
+  std::atomic<bool> requested_ = false;
   std::optional<py::error_already_set> error_;
 };
 

@@ -133,7 +133,7 @@ double chunk_length(double total_s, int tasks, const ChunkLengths& lengths) {
   const double length_s = std::clamp(even_s, lengths.shortest_s, kLongest);
   if (tasks == 0) return length_s;
   const double rounds = std::max(std::ceil(total_s / (length_s * tasks)), 1.0);
-  return std::max(total_s / (rounds * tasks), lengths.least_s);
+  return std::max(total_s / (rounds * tasks), lengths.min_s);
 }
 
 std::vector<std::int64_t> cut_into_chunks(std::span<const double> costs, double target_s, std::int64_t max_chunks) {

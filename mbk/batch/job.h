@@ -35,7 +35,7 @@ struct Chunk {
 /// What it takes until it is worth while to begin a task.
 struct ChunkLengths {
   double shortest_s = 2.0;  ///< below it a task's beginning shows in the whole
-  double least_s = 0.2;     ///< below it no other task is begun, even if there is one with nothing to do
+  double min_s = 0.2;       ///< below it no other task is begun, even if there is one with nothing to do
 };
 
 /// How much work a chunk holds [s]: a sixteenth of what each task does, so that uneven costs even out, but neither less

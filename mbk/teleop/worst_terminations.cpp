@@ -88,9 +88,9 @@ class TerminationSearch {
     const auto seen_at = [&](double where) { return driving_point(z_at(where), first, impedance(second, where)); };
     const Complex slope = (seen_at(omega * (1 + kStep)) - seen_at(omega * (1 - kStep))) / (2.0 * kStep * omega);
     constexpr double kSlowest = 50.0, kDominates = 4.0;
-    const double wanted = std::max(kDominates * std::abs(slope), kSlowest * -seen.real() / omega);
+    const double requested = std::max(kDominates * std::abs(slope), kSlowest * -seen.real() / omega);
     // m ω − k/ω cancels Im seen; m + k/ω² = wanted, or what one of them alone has
-    const double cancels = -seen.imag() / omega, total = std::max(wanted, std::abs(cancels));
+    const double cancels = -seen.imag() / omega, total = std::max(requested, std::abs(cancels));
     Termination closing{0.5 * (total + cancels), 0.0, 0.5 * (total - cancels) * omega * omega};
 
     WorstTerminations found;

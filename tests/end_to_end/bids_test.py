@@ -67,8 +67,8 @@ class Written(DataSet):
         self.convert(source, "sub-07_task-reach")
         self.mbk("convert", self.set, self.folder / "back.csv", "--quiet")
         back = (self.folder / "back.csv").read_text(encoding="utf-8").splitlines()
-        wanted = [line for line in RECORDING.replace("# age: 92", "# age: 89+").splitlines() if "Erika" not in line]
-        self.assertEqual(back[1:], wanted[1:])
+        expected = [line for line in RECORDING.replace("# age: 92", "# age: 89+").splitlines() if "Erika" not in line]
+        self.assertEqual(back[1:], expected[1:])
         self.validate()
 
     def test_what_stands_where(self):

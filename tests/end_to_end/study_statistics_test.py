@@ -110,7 +110,7 @@ class APlan(command.Case):
         text = self.mbk("study", "plan", "--sd-people", "60", "--sd-trials", "25", "--mdc", "60").out
         self.assertIn("*", text)
 
-    def test_needs_to_know_what_is_wanted_and_of_what(self):
+    def test_needs_a_quantity_and_its_source(self):
         for arguments in (("--sd-people", "60", "--sd-trials", "25"), ("--sd-people", "60", "--mdc", "5"),
                           ("--sd-people", "60", "--sd-trials", "25", "--difference", "0"),
                           ("--difference", "5", "--study", self.folder)):

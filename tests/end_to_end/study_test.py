@@ -363,9 +363,9 @@ class Importing(StudyCase):
         unnamed = self.file("unnamed.csv", "\n".join([",".join(f"c{k}" for k in range(1, names.count(",") + 2)), rows]))
         self.do("add", unnamed, "--participant", 1, code=BAD_DATA)
         columns = [name.rpartition("_")[0] for name in names.split(",")]
-        wanted = {"time": "time", "hand_x": "x", "hand_y": "y", "force_x": "Fx", "force_y": "Fy", "reference_x": "xr",
+        expected = {"time": "time", "hand_x": "x", "hand_y": "y", "force_x": "Fx", "force_y": "Fy", "reference_x": "xr",
                   "reference_y": "yr"}
-        channels = ",".join(f"{wanted[name]}={columns.index(name) + 1}" for name in wanted)
+        channels = ",".join(f"{expected[name]}={columns.index(name) + 1}" for name in expected)
         self.do("defaults", "--channels", channels)
         self.do("add", unnamed, "--participant", 1)
         self.assertIn("1 usable", self.do("measure").out)

@@ -111,7 +111,7 @@ static int sticky;
 static int trace = -1;
 static atomic_flag tracing = ATOMIC_FLAG_INIT;
 static uint64_t* stacks;
-static const uint64_t kMostStacks = 1 << 23;
+static const uint64_t kMaxStacks = 1 << 23;
 static __thread int in_shim __attribute__((tls_model("initial-exec")));
 
 // The one place whose system calls pass the filter.
@@ -321,7 +321,7 @@ __attribute__((constructor)) static void begin(void) {
     trace = open(word, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
     if (trace < 0) _exit(98);
   }
-  if ((word = getenv("MBK_FAULT_STACKS")) != NULL) stacks = map_file(word, kMostStacks * sizeof *stacks);
+  if ((word = getenv("MBK_FAULT_STACKS")) != NULL) stacks = map_file(word, kMaxStacks * sizeof *stacks);
   install_filter();
   counts = shared;
 }
@@ -351,7 +351,7 @@ static int no_memory(void) {
     struct walk walk = {1, 0};
     _Unwind_Backtrace(add_frame, &walk);
     const uint64_t at = atomic_load(&counts->calls[MEMORY]);
-    if (at < kMostStacks) stacks[at] = walk.sum;
+    if (at < kMaxStacks) stacks[at] = walk.sum;
     in_shim = 0;
   }
   if (!fails(MEMORY)) return 0;

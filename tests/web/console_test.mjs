@@ -82,7 +82,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await page.getByRole("button", { name: "Begin: relaxed" }).focus();
   await page.keyboard.press("Enter");
   await banner("Running");
-  const words = (text) => page.waitForFunction((wanted) => document.querySelector(".robot")?.textContent === wanted, text, { timeout: 60_000 });
+  const words = (text) => page.waitForFunction((expected) => document.querySelector(".robot")?.textContent === expected, text, { timeout: 60_000 });
   await words("The motors are commanded on."); // and nothing of how they were before
   await page.getByLabel("Note for the recording").fill("talked to the nurse");
   await click("Add the note");

@@ -50,7 +50,7 @@ Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) 
   robot::DriveTerms& drive = model.drive;
   const std::vector<robot::Coefficient> before = model.coefficients();
   const Vector values = model.parameters;
-  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.requested = false;
   for (std::size_t begin = 0; list != "none" && begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string word = list.substr(begin, end - begin);
@@ -60,7 +60,7 @@ Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) 
       return bad_usage(fmt::format("--terms: there is no term {}", quoted(word)),
                        "take of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
     }
-    drive.*term->wanted = true;
+    drive.*term->requested = true;
   }
   if (drive.cable) drive.offset = true;  // k (q − q₀) has a constant
   const std::vector<robot::Coefficient> after = model.coefficients();

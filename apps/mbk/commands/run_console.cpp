@@ -15,10 +15,10 @@ namespace mbk::app {
 
 void add_console_options(Command command, ConsoleArguments& arguments) {
   command.add_flag_callback(
-      "--console", [&arguments] { arguments.wanted = true; },
+      "--console", [&arguments] { arguments.requested = true; },
       "serve a page to watch and stop it, on this machine only; the default at a terminal");
   command.add_flag_callback(
-      "--no-console", [&arguments] { arguments.wanted = false; }, "no such page");
+      "--no-console", [&arguments] { arguments.requested = false; }, "no such page");
   command.add_option("--port", arguments.port, "of the console, instead of any that is free")
       .type_name("N")
       .check(whole_number(0, 65535));
@@ -36,17 +36,17 @@ std::string time_text(const realtime::CycleRecord& record) {
 Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const session::Experiment& experiment,
                                     session::LoopFlags& flags) {
   RunConsole run;
-  if (arguments.wait && arguments.wanted == false) {
+  if (arguments.wait && arguments.requested == false) {
     return bad_usage("--wait waits for the console, which --no-console omits", "omit one of the two");
   }
-  if (!arguments.texts.empty() && arguments.wanted == false) {
+  if (!arguments.texts.empty() && arguments.requested == false) {
     return bad_usage("--texts are those of the console, which --no-console omits", "omit one of the two");
   }
   std::vector<std::string> names;
   for (const session::Plan& plan : experiment.plans) names.push_back(plan.trial.name);
   const auto texts = MBK_TRY(console::find_texts(arguments.texts.empty() ? "en" : arguments.texts, names));
   const bool terminal = isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1 && console::operator_page();
-  if (!arguments.wanted.value_or(arguments.wait || terminal)) return run;
+  if (!arguments.requested.value_or(arguments.wait || terminal)) return run;
   MBK_TRY(console::operator_page());
   run.console_ = MBK_TRY(console::Console::open(arguments.port, experiment.plans, flags,
                                                 [](const std::string& line) { say("mbk: console: {}\n", line); }));

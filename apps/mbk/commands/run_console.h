@@ -12,10 +12,10 @@
 namespace mbk::app {
 
 struct ConsoleArguments {
-  std::optional<bool> wanted;  ///< absent: at a terminal
-  std::uint16_t port = 0;      ///< 0: any that is free
-  bool wait = false;           ///< the page starts each trial
-  std::string texts;           ///< of the participant's page: ready ones, or a file; empty: "en"
+  std::optional<bool> requested;  ///< absent: at a terminal
+  std::uint16_t port = 0;         ///< 0: any that is free
+  bool wait = false;              ///< the page starts each trial
+  std::string texts;              ///< of the participant's page: ready ones, or a file; empty: "en"
 };
 
 void add_console_options(Command command, ConsoleArguments& arguments);

@@ -62,7 +62,7 @@ Result<statistics::Pilot> measured_pilot(const PlanArguments& arguments) {
 int run_plan(const PlanArguments& arguments) {
   statistics::PlanGoal goal = arguments.goal;
   goal.pairing = arguments.paired ? reliability::Pairing::paired : reliability::Pairing::unpaired;
-  if (arguments.conditions.size() == 2 && goal.most_sessions > 1) {
+  if (arguments.conditions.size() == 2 && goal.max_sessions > 1) {
     return report_error({ErrorKind::usage, "how people differ in the change does not average out over sessions",
                          "plan one session where two conditions are compared", ""});
   }
@@ -115,10 +115,10 @@ Action add_study_plan(Command group) {
   command.add_option("--people", arguments->goal.people, "that there will be, in each group; says their power")
       .type_name("N")
       .check(whole_number(2, 1000000));
-  command.add_option("--sessions", arguments->goal.most_sessions, "plans up to so many (1)")
+  command.add_option("--sessions", arguments->goal.max_sessions, "plans up to so many (1)")
       .type_name("N")
       .check(whole_number(1, 100));
-  command.add_option("--trials", arguments->goal.most_trials, "in each session, plans up to so many (10)")
+  command.add_option("--trials", arguments->goal.max_trials, "in each session, plans up to so many (10)")
       .type_name("N")
       .check(whole_number(1, 1000));
   command.add_option("--draws", arguments->draws, "pilots drawn for the intervals (400)")

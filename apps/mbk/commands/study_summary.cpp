@@ -44,14 +44,14 @@ Result<statistics::PeopleGroup> group_of(const std::string& text) {
     from.remove_prefix(static_cast<std::size_t>(end - from.data()));
     return true;
   };
-  constexpr std::int64_t kMost = 1'000'000;
+  constexpr std::int64_t kMax = 1'000'000;
   while (true) {
     std::int64_t first = 0, last = 0;
     if (!number(rest, first)) return wrong();
     last = first;
     if (rest.starts_with('-')) {
       rest.remove_prefix(1);
-      if (!number(rest, last) || last < first || last - first > kMost) return wrong();
+      if (!number(rest, last) || last < first || last - first > kMax) return wrong();
     }
     for (std::int64_t one = first; one <= last; ++one) group.participants.push_back(one);
     if (rest.empty()) return group;

@@ -275,12 +275,12 @@ Result<void> with_validation_units(const nlohmann::json& specification, const ba
   options.runs = specification.at("runs");
   options.seed = specification.at("seed");
   options.threads = 1;
-  const int wanted = specification.at("stage");
+  const int requested = specification.at("stage");
   int stage = 0;
   std::optional<Result<void>> used;
   options.elsewhere = [&](int /*count*/,
                           const std::function<Result<std::string>(int)>& work) -> Result<std::vector<std::string>> {
-    if (stage < wanted) {  // is done, and stands beside this one
+    if (stage < requested) {  // is done, and stands beside this one
       const auto earlier = batch::JobFolder::open(stage_folder(folder.folder().parent_path(), stage++));
       return earlier ? batch::results_of(*earlier) : tl::unexpected(earlier.error());
     }

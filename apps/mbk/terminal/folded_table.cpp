@@ -13,7 +13,7 @@ namespace mbk::app {
 namespace folded {
 
 constexpr std::size_t kGap = 2;             // blanks between columns
-constexpr std::size_t kFewest = 3;          // columns of a table
+constexpr std::size_t kMin = 3;             // columns of a table
 constexpr std::size_t kShort = 7;           // width of what stands in each part
 constexpr std::size_t kNarrowestText = 20;  // of what is broken between words
 
@@ -96,7 +96,7 @@ Grid grid_of(std::span<const std::string_view> lines) {
 /// How many lines from the first are one table: as long as none of them closes a gap between columns.
 std::size_t lines_of_table(std::span<const std::string_view> lines) {
   std::vector<bool> taken;
-  std::size_t count = 0, columns = kFewest;
+  std::size_t count = 0, columns = kMin;
   for (; count < lines.size() && !blank(lines[count]) && !is_drawing(lines[count]); ++count) {
     take_places(characters_of(lines[count]), taken);
     const std::size_t now = columns_of(taken).size();

@@ -520,9 +520,9 @@ void Section::reject(std::string_view key, std::string message, std::string reme
   if (!reading_->problem) reading_->problem = error(key, std::move(message), std::move(remedy));
 }
 
-void Section::wrong_type(std::string_view key, const Node& node, std::string_view wanted,
+void Section::wrong_type(std::string_view key, const Node& node, std::string_view requested,
                          std::string_view place) const {
-  reject(key, fmt::format("{}{} where {} is expected", place, kind_of(node), wanted));
+  reject(key, fmt::format("{}{} where {} is expected", place, kind_of(node), requested));
 }
 
 }  // namespace mbk::config

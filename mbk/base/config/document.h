@@ -210,7 +210,8 @@ class Section {
                                               std::string_view place) const;
   [[nodiscard]] std::optional<std::vector<double>> checked_list(std::string_view key, const Node& node, Range allowed,
                                                                 std::size_t count, std::string_view place) const;
-  void wrong_type(std::string_view key, const Node& node, std::string_view wanted, std::string_view place = "") const;
+  void wrong_type(std::string_view key, const Node& node, std::string_view requested,
+                  std::string_view place = "") const;
   [[nodiscard]] Error error_at(std::string_view key, int line, std::string message, std::string remedy) const;
   [[nodiscard]] std::string full_name(std::string_view key) const;
 

@@ -41,7 +41,7 @@ class Requester {
 };
 
 /// Between two steps of long work.   @throws  Stopped where it is no longer wanted
-inline void stop_where_unwanted() {
+inline void stop_if_cancelled() {
   if (Requester* const requester = Requester::current(); requester != nullptr && requester->stopped()) throw Stopped();
 }
 

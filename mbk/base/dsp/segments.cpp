@@ -284,7 +284,7 @@ Matrix power_of(Matrix base, Index exponent) {
   return power;
 }
 
-double* values(std::vector<Abreast>& rows) {
+double* values(std::vector<SampleBlock>& rows) {
   return rows.front().values.data();
 }
 
@@ -298,8 +298,8 @@ Segments::Segments(const std::vector<const Vector*>& signals, Index overlap) {
   const Index samples = signals.front()->size();
   length_ = (samples + kSegments - 1) / kSegments;
   count_ = length_ + 1 + overlap;
-  rows_ = std::make_unique_for_overwrite<Abreast[]>(signals.size() * static_cast<std::size_t>(count_));
-  Abreast* row = rows_.get();
+  rows_ = std::make_unique_for_overwrite<SampleBlock[]>(signals.size() * static_cast<std::size_t>(count_));
+  SampleBlock* row = rows_.get();
   for (const Vector* const signal : signals) {
     const Index full = std::max<Index>(0, samples - (kSegments - 1) * length_);  // rows that all segments have
     const double* from = signal->data();
@@ -328,7 +328,7 @@ Matrix states_at_starts(const HeldStep& system, const Segments& signals, Index i
   constexpr Index kAtOnce = 32;
   const Index n = system.transition.rows(), length = signals.length(), chunks = length / kAtOnce;
   const auto advance = loops().advance;
-  std::vector<Abreast> x(static_cast<std::size_t>(n)), next = x;
+  std::vector<SampleBlock> x(static_cast<std::size_t>(n)), next = x;
   const Matrix over_chunk = power_of(system.transition, kAtOnce);
   const std::vector<double> chunk = over_several(system, over_chunk, kAtOnce);
   const std::vector<double> one = over_several(system, system.transition, 1);
@@ -395,8 +395,8 @@ void SegmentFilter::run(const double* input, Index count, Rows states) {
 namespace {
 
 /// n×16, where it is held row by row.
-std::vector<Abreast> rows_of(const Matrix& states) {
-  std::vector<Abreast> rows(static_cast<std::size_t>(states.rows()));
+std::vector<SampleBlock> rows_of(const Matrix& states) {
+  std::vector<SampleBlock> rows(static_cast<std::size_t>(states.rows()));
   Eigen::Map<Matrix>(values(rows), kSegments, states.rows()) = states.transpose();
   return rows;
 }

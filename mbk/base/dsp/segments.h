@@ -16,7 +16,7 @@ namespace mbk::dsp {
 inline constexpr Index kSegments = 16;
 
 /// One sample of each segment.
-struct alignas(64) Abreast {
+struct alignas(64) SampleBlock {
   std::array<double, kSegments> values;
 };
 
@@ -53,7 +53,7 @@ class Segments {
   }
 
   Index length_ = 0, count_ = 0;  // count: of rows
-  std::unique_ptr<Abreast[]> rows_;
+  std::unique_ptr<SampleBlock[]> rows_;
 };
 
 /// States at the beginning of each segment, at rest before the first sample: as many rows as there are states.
@@ -79,7 +79,7 @@ class SegmentFilter {
 
  private:
   std::vector<double> coefficients_;  // each row of Φ, then its Γ₀ and Γ₁
-  std::vector<Abreast> state_;        // and the last input
+  std::vector<SampleBlock> state_;    // and the last input
   Index n_;
   bool begun_ = false;
 };
@@ -99,7 +99,7 @@ class StridedFilter {
 
  private:
   std::vector<double> coefficients_;  // [Φ⁸, what each of 9 samples adds], row by row
-  std::vector<Abreast> state_;
+  std::vector<SampleBlock> state_;
   Index n_, inputs_;
 };
 

@@ -46,7 +46,7 @@ Matrix one_after_the_other(const Vector& a, double step, const Vector& u, const 
 double difference(SegmentFilter filter, const Segments& signals, const Matrix& expected) {
   constexpr Index kSteps = 7;
   const Index n = expected.rows();
-  std::vector<Abreast> table(static_cast<std::size_t>(n * kSteps));
+  std::vector<SampleBlock> table(static_cast<std::size_t>(n * kSteps));
   const Rows rows{table.data()->values.data(), kSteps * kSegments};
   double most = 0.0;
   for (Index begin = 0; begin < signals.length(); begin += kSteps) {
@@ -119,7 +119,7 @@ TEST(Segments, HoldEachSampleAndZeroAfterTheLast) {
 /// Largest difference of the states at every eighth sample to `expected`, three strides at a time.
 double difference(StridedFilter filter, const double* input, Index strides, Index length, const Matrix& expected) {
   constexpr Index kAtOnce = 3, kColumns = (kAtOnce + 1) * kSegments;
-  std::vector<Abreast> table(static_cast<std::size_t>(expected.rows() * (kAtOnce + 1)));
+  std::vector<SampleBlock> table(static_cast<std::size_t>(expected.rows() * (kAtOnce + 1)));
   const Rows rows{table.data()->values.data(), kColumns};
   double most = 0.0;
   for (Index k = 0; k < strides; k += kAtOnce) {

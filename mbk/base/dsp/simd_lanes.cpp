@@ -79,9 +79,9 @@ MBK_X86_64_V3 void separate_v3(const double* from, Index width, Index count, dou
 
 // ---- Savitzky–Golay by running sums ----
 
-/// The four values at `row`, or beside them the four of the stretch that runs at the same time, `apart` doubles on.
+/// The four values at `row`, or beside them the four of the segment that runs at the same time, `apart` doubles on.
 template <class Lanes>
-[[gnu::always_inline]] inline typename Lanes::V abreast(const double* row, Index apart) {
+[[gnu::always_inline]] inline typename Lanes::V block_row(const double* row, Index apart) {
   if constexpr (Lanes::kWidth == Eight::kWidth) {
     return __builtin_shufflevector(Vector4(four(row)), Vector4(four(row + apart)), 0, 1, 2, 3, 4, 5, 6, 7);
   } else {
@@ -104,7 +104,7 @@ struct Pieces {
   }
 }
 
-/// At most `half` rows of one stretch, or of two side by side, which lie `half` rows apart.
+/// At most `half` rows of one segment, or of two side by side, which lie `half` rows apart.
 template <class Lanes, std::size_t Sums, std::size_t Derivatives>
 [[gnu::always_inline]] inline void smooth_body(const RunningSums& f, const double* row, Index count,
                                                const Pieces& pieces, double* to, Index width) {
@@ -119,7 +119,7 @@ template <class Lanes, std::size_t Sums, std::size_t Derivatives>
   V sum[Sums] = {};
   const double* weight = f.binomial.data();
   for (Index j = 0; j < window; ++j, weight += Sums) {
-    const V x = abreast<Lanes>(row + 4 * j, apart);
+    const V x = block_row<Lanes>(row + 4 * j, apart);
     for (std::size_t k = 0; k < Sums; ++k) sum[k] += weight[k] * x;
   }
   for (Index i = 0;; row += 4, to += width) {
@@ -132,7 +132,7 @@ template <class Lanes, std::size_t Sums, std::size_t Derivatives>
     put(results, pieces, to);
     if constexpr (kWidth > kLanes) put(results + kLanes, pieces, to + width * f.half);
     if (++i == count) return;
-    const V old = abreast<Lanes>(row, apart), young = abreast<Lanes>(row + 4 * window, apart);
+    const V old = block_row<Lanes>(row, apart), young = block_row<Lanes>(row + 4 * window, apart);
     sum[0] += young - old;
     for (std::size_t k = 1; k < Sums; ++k) sum[k] += enter[k] * young - leave[k] * old - sum[k - 1];
   }
@@ -167,12 +167,12 @@ template <class Lanes, std::size_t Derivatives>
     Index j = 0;
     for (; j + kAtOnce <= window; j += kAtOnce) {
       for (Index a = 0; a < kAtOnce; ++a) {
-        const V x = abreast<Lanes>(rows + 4 * (j + a), 4 * step);
+        const V x = block_row<Lanes>(rows + 4 * (j + a), 4 * step);
         for (std::size_t d = 0; d < Derivatives; ++d) sum[d][a] += weights[static_cast<Index>(d) * window + j + a] * x;
       }
     }
     for (; j < window; ++j) {
-      const V x = abreast<Lanes>(rows + 4 * j, 4 * step);
+      const V x = block_row<Lanes>(rows + 4 * j, 4 * step);
       for (std::size_t d = 0; d < Derivatives; ++d) sum[d][0] += weights[static_cast<Index>(d) * window + j] * x;
     }
     for (std::size_t d = 0; d < Derivatives; ++d) {
@@ -397,11 +397,11 @@ void smooth(const RunningSums& f, const double* rows, Index count, std::span<con
   for (std::size_t k = 0; k < picks.size(); k += 2) {
     pairs = pairs && picks[k] % 2 == 0 && picks[k + 1] == picks[k] + 1;
   }
-  const auto run = [&](std::size_t kind, std::size_t abreast, Index first, Index length) {
+  const auto run = [&](std::size_t kind, std::size_t block_row, Index first, Index length) {
     std::array<std::size_t, kLanes * kMaxDerivatives> from{};
     Pieces pieces{from.data(), 0, pairs};
     for (std::size_t k = 0; k < picks.size(); k += pairs ? 2 : 1) {
-      from[pieces.count++] = abreast * (picks[k] / kLanes * kLanes) + picks[k] % kLanes;
+      from[pieces.count++] = block_row * (picks[k] / kLanes * kLanes) + picks[k] % kLanes;
     }
     kSmooth[kind][order][derivative](f, rows + 4 * first, length, pieces, to + width * first, width);
   };

@@ -32,8 +32,8 @@ Index fast_length_above(Index n) {
 }
 
 Index segment_length(Hertz sample_rate, Hertz resolution, Index longest) {
-  const auto wanted = static_cast<Index>(std::min(sample_rate.value / resolution.value, 1e9));
-  return 2 * fast_length_below(std::min(std::max<Index>(wanted, 8), longest) / 2);
+  const auto requested = static_cast<Index>(std::min(sample_rate.value / resolution.value, 1e9));
+  return 2 * fast_length_below(std::min(std::max<Index>(requested, 8), longest) / 2);
 }
 
 Vector hann_window(Index length) {

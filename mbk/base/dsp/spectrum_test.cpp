@@ -49,9 +49,9 @@ TEST(Spectrum, ASegmentIsEvenAndItsTransformFastHoweverLongTheRecording) {
       const Index length = segment_length(Hertz(1000.0), resolution, longest);
       ASSERT_EQ(length % 2, 0) << longest;  // 3⁹ − 1 = 2·13·757 is not what 3⁹ becomes
       ASSERT_EQ(fast_length_below(length), length) << longest;
-      const Index wanted = std::min(longest, std::max<Index>(8, static_cast<Index>(1000.0 / resolution.value)));
-      ASSERT_LE(length, wanted) << longest;
-      ASSERT_GT(fast_length_above(length + 1), wanted) << longest;
+      const Index requested = std::min(longest, std::max<Index>(8, static_cast<Index>(1000.0 / resolution.value)));
+      ASSERT_LE(length, requested) << longest;
+      ASSERT_GT(fast_length_above(length + 1), requested) << longest;
     }
   }
 }

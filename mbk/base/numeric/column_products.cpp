@@ -28,7 +28,7 @@ template <class Lanes>
 template <class Lanes, Index Left, Index Right, bool Triangle = false>
 [[gnu::always_inline]] inline void dot_tile(const double* const* a, const double* const* b, Index rows, double* to,
                                             Index stride) {
-  const auto wanted = [](Index i, Index j) { return !Triangle || i <= j; };
+  const auto requested = [](Index i, Index j) { return !Triangle || i <= j; };
   typename Lanes::V sum[Right][Left] = {};  // in registers, for loops of known length over them are unrolled
   Index t = 0;
   for (; t + Lanes::kWidth <= rows; t += Lanes::kWidth) {
@@ -46,13 +46,13 @@ template <class Lanes, Index Left, Index Right, bool Triangle = false>
         keep_in_register<Lanes>(right);
       }
       for (Index i = 0; i < Left; ++i) {
-        if (wanted(i, j)) sum[j][i] += left[i] * right;
+        if (requested(i, j)) sum[j][i] += left[i] * right;
       }
     }
   }
   for (Index j = 0; j < Right; ++j) {
     for (Index i = 0; i < Left; ++i) {
-      if (!wanted(i, j)) continue;
+      if (!requested(i, j)) continue;
       double rest = added_up<Lanes>(sum[j][i]);
       for (Index r = t; r < rows; ++r) rest += a[i][r] * b[j][r];
       to[i + stride * j] += rest;

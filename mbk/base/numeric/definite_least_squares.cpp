@@ -251,7 +251,7 @@ DefiniteSolution DefiniteSolver::solution() const {
 }
 
 Result<DefiniteSolution> DefiniteSolver::solve() {
-  constexpr int kMostSteps = 500;
+  constexpr int kMaxSteps = 500;
   constexpr double kCentred = 0.01, kSettled = 1e-3, kFollows = 0.8;
   MBK_TRY(prepare());
   const double last = program_.gap / static_cast<double>(std::max<Index>(order_, 1));
@@ -262,7 +262,7 @@ Result<DefiniteSolution> DefiniteSolver::solve() {
   double decade = 0.0;  // the objective when the weight was ten times the last
   int steps = 0;
   bool done = false;
-  for (; steps < kMostSteps && !done; ++steps) {
+  for (; steps < kMaxSteps && !done; ++steps) {
     if (!step()) break;
     done = program_.enough && objective(x_) < *program_.enough;
     const double now = complementarity();

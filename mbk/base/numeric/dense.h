@@ -126,7 +126,7 @@ class ComplexPivotedQr {
  public:
   explicit ComplexPivotedQr(const Eigen::MatrixXcd& A);
   /// Of R's diagonal, the least absolute value.
-  [[nodiscard]] double least_pivot() const;
+  [[nodiscard]] double min_pivot() const;
   [[nodiscard]] Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right) const;
   /// P R⁻¹, whose product with its adjoint is (A* A)⁻¹, for an A of full column rank.
   [[nodiscard]] Eigen::MatrixXcd inverse_root() const;

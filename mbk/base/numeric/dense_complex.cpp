@@ -73,7 +73,7 @@ Eigen::VectorXcd HermitianPivotedCholesky::solve(const Eigen::VectorXcd& right) 
 
 ComplexPivotedQr::ComplexPivotedQr(const Eigen::MatrixXcd& A) : factor_(A) {}
 
-double ComplexPivotedQr::least_pivot() const {
+double ComplexPivotedQr::min_pivot() const {
   return factor_.matrixR().diagonal().cwiseAbs().minCoeff();
 }
 

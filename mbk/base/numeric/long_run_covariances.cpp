@@ -162,14 +162,14 @@ Matrix long_run_covariance(Index k, const std::vector<RowRange>& ranges, Index l
   Matrix scores(rows, k);
   const Vector one = Vector::Ones(rows);
   RowRange there;
-  const auto products_of = [&](const RowRange& wanted) {
-    const bool goes_on = there.begin <= wanted.begin && wanted.begin < there.end;
-    const Index kept = goes_on ? there.end - wanted.begin : 0;
-    if (kept > 0) scores.topRows(kept) = scores.middleRows(wanted.begin - there.begin, kept).eval();
-    if (wanted.size() > kept) {
-      scores.middleRows(kept, wanted.size() - kept) = scores_of({wanted.begin + kept, wanted.end});
+  const auto products_of = [&](const RowRange& requested) {
+    const bool goes_on = there.begin <= requested.begin && requested.begin < there.end;
+    const Index kept = goes_on ? there.end - requested.begin : 0;
+    if (kept > 0) scores.topRows(kept) = scores.middleRows(requested.begin - there.begin, kept).eval();
+    if (requested.size() > kept) {
+      scores.middleRows(kept, requested.size() - kept) = scores_of({requested.begin + kept, requested.end});
     }
-    there = wanted;
+    there = requested;
     ScoreProducts products;
     for (Index j = 0; j < k; ++j) {
       products.left.push_back(scores.col(j).data());

@@ -21,7 +21,7 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
   std::exception_ptr thrown;
   const auto take_all_turns = [&] {
     for (int i = next++; i < count; i = next++) {
-      stop_where_unwanted();
+      stop_if_cancelled();
       const Result<void> outcome = work(i);
       const std::lock_guard lock(mutex);
       if (!outcome) {
@@ -45,9 +45,9 @@ Result<void> parallel_for(int count, unsigned threads, const std::function<Resul
     }
   };
   {
-    const unsigned wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+    const unsigned requested = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> workers;
-    for (unsigned k = 1; k < std::min(wanted, static_cast<unsigned>(std::max(count, 0))); ++k) {
+    for (unsigned k = 1; k < std::min(requested, static_cast<unsigned>(std::max(count, 0))); ++k) {
       try {
         workers.emplace_back(take_turns);
       } catch (const std::system_error&) {

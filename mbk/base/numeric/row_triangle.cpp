@@ -14,8 +14,8 @@ namespace {
 struct alignas(64) Lines {
   std::array<double, 16> values;
 };
-constexpr Index kLines = 16;   // rows come in multiples
-constexpr Index kAbreast = 4;  // columns that are taken with one reading of the reflection
+constexpr Index kLines = 16;       // rows come in multiples
+constexpr Index kColumnBlock = 4;  // columns that are taken with one reading of the reflection
 
 /// Dot products with `Count` columns, and what a multiple of v adds to them.
 template <class Lanes, int Count>
@@ -64,8 +64,8 @@ template <class Lanes>
     const double v0 = diagonal - reflected, scale = 1.0 / (reflected * v0);
     diagonal = reflected;
     Index j = k + 1;
-    for (; j + kAbreast <= size; j += kAbreast) {
-      reflect<Lanes, kAbreast>(v0, v, scale, rows, block + j * rows, R + k + size * j, size);
+    for (; j + kColumnBlock <= size; j += kColumnBlock) {
+      reflect<Lanes, kColumnBlock>(v0, v, scale, rows, block + j * rows, R + k + size * j, size);
     }
     for (; j < size; ++j) reflect<Lanes, 1>(v0, v, scale, rows, block + j * rows, R + k + size * j, size);
   }

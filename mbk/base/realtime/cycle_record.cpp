@@ -21,11 +21,11 @@ void CycleRecord::add(std::int64_t nanoseconds) noexcept {
 
 double CycleRecord::quantile(double share) const {
   if (count_ == 0) return 0.0;
-  const double wanted = std::clamp(share, 0.0, 1.0) * static_cast<double>(count_);
+  const double requested = std::clamp(share, 0.0, 1.0) * static_cast<double>(count_);
   double below = 0.0;
   for (int bin = 0; bin < static_cast<int>(bins_.size()); ++bin) {
     below += static_cast<double>(bins_[static_cast<std::size_t>(bin)]);
-    if (below >= wanted) return std::min(edge(bin + 1), static_cast<double>(worst_));
+    if (below >= requested) return std::min(edge(bin + 1), static_cast<double>(worst_));
   }
   return static_cast<double>(worst_);
 }

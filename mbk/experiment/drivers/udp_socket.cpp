@@ -36,11 +36,11 @@ std::string UdpAddress::text() const {
 }
 
 Result<UdpAddress> UdpAddress::find(const std::string& name, std::uint16_t port) {
-  addrinfo wanted{};
-  wanted.ai_family = AF_INET;
-  wanted.ai_socktype = SOCK_DGRAM;
+  addrinfo requested{};
+  requested.ai_family = AF_INET;
+  requested.ai_socktype = SOCK_DGRAM;
   addrinfo* found = nullptr;
-  if (const int error = getaddrinfo(name.c_str(), nullptr, &wanted, &found); error != 0) {
+  if (const int error = getaddrinfo(name.c_str(), nullptr, &requested, &found); error != 0) {
     return bad_data(fmt::format("the address '{}' is not known: {}", name, gai_strerror(error)),
                     "write it as four numbers, as 192.168.7.2");
   }

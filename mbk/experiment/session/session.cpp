@@ -324,9 +324,9 @@ Result<void> annotate(const fs::path& file, const std::vector<std::string>& note
   return change_metadata(file, [&](auto& metadata) { add_notes(notes, metadata); });
 }
 
-Result<void> set_metadata(const fs::path& file, const std::map<std::string, std::string>& wanted) {
+Result<void> set_metadata(const fs::path& file, const std::map<std::string, std::string>& requested) {
   return change_metadata(file, [&](auto& metadata) {
-    for (const auto& [key, text] : wanted) {
+    for (const auto& [key, text] : requested) {
       metadata.erase(key);
       if (!text.empty()) metadata[key] = one_line(text);
     }

@@ -38,7 +38,7 @@ tl::unexpected<Error> too_large(std::uint64_t limit) {
 class GrowingBytes {
  public:
   GrowingBytes(std::uint64_t expected, std::uint64_t limit)
-      : buffer_(static_cast<std::size_t>(std::clamp<std::uint64_t>(expected, kLeast, limit))), limit_(limit) {}
+      : buffer_(static_cast<std::size_t>(std::clamp<std::uint64_t>(expected, kMin, limit))), limit_(limit) {}
 
   [[nodiscard]] std::span<std::byte> room() const { return {buffer_.data.get() + used_, buffer_.size - used_}; }
   void add(std::size_t count) { used_ += count; }
@@ -59,7 +59,7 @@ class GrowingBytes {
   [[nodiscard]] std::size_t size() const { return used_; }
 
  private:
-  static constexpr std::uint64_t kLeast = 4096;
+  static constexpr std::uint64_t kMin = 4096;
   Buffer buffer_;
   std::size_t used_ = 0;
   std::uint64_t limit_;
@@ -102,9 +102,9 @@ Result<Buffer> gunzip(std::span<const std::byte> file) {
     if (bytes.room().empty()) {
       MBK_TRY(bytes.grow());
     }
-    constexpr std::size_t kMost = std::numeric_limits<uInt>::max();
-    const auto in = static_cast<uInt>(std::min(left, kMost)),
-               out = static_cast<uInt>(std::min(bytes.room().size(), kMost));
+    constexpr std::size_t kMax = std::numeric_limits<uInt>::max();
+    const auto in = static_cast<uInt>(std::min(left, kMax)),
+               out = static_cast<uInt>(std::min(bytes.room().size(), kMax));
     stream.avail_in = in;
     stream.next_out = reinterpret_cast<Bytef*>(bytes.room().data());
     stream.avail_out = out;

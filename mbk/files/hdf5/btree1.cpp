@@ -5,7 +5,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr int kMostLevels = 32;  ///< every level holds at least two entries more
+constexpr int kMaxLevels = 32;  ///< every level holds at least two entries more
 
 struct Walk {
   File& file;
@@ -22,7 +22,7 @@ struct Walk {
     const bool known = head.is("TREE") && head.byte() == static_cast<std::uint8_t>(kind);
     const int level = head.byte();
     const std::uint64_t entries = head.word();
-    if (!known || level > kMostLevels || (expected_level >= 0 && level != expected_level)) return broken();
+    if (!known || level > kMaxLevels || (expected_level >= 0 && level != expected_level)) return broken();
     const auto block =
         MBK_TRY(file.block(address + prefix_size, entries * (key_size + file.sizes.address), "a B-tree node"));
     Cursor in = file.cursor(block);

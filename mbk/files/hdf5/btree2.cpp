@@ -9,7 +9,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr std::size_t kMostDepth = 32;                   ///< levels
+constexpr std::size_t kMaxDepth = 32;                    ///< levels
 constexpr std::size_t kPrefix = 4 + 1 + 1;               ///< [bytes] before the records of a node
 constexpr std::size_t kFrame = kPrefix + kChecksumSize;  ///< [bytes] of a node that are no records
 
@@ -38,7 +38,7 @@ class Walk2 {
     in.skip(2);  // when nodes are split and merged
     const std::uint64_t root = in.address();
     const std::uint64_t records = in.word();
-    if (!known || depth > kMostDepth || record_size_ == 0 || !find_levels(depth)) {
+    if (!known || depth > kMaxDepth || record_size_ == 0 || !find_levels(depth)) {
       return damaged(fmt::format("the B-tree at byte {} is broken", address));
     }
     if (root == kUndefined) return {};  // nothing was put into it

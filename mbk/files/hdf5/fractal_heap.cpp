@@ -165,14 +165,14 @@ Result<Bytes> FractalHeap::huge(File& file, Cursor id) const {
     const std::uint64_t address = id.address();
     return file.block(address, id.length(), "a large object of a fractal heap");
   }
-  const std::uint64_t wanted = id.number(std::min(id_size_ - 1, sizes.length));
+  const std::uint64_t requested = id.number(std::min(id_size_ - 1, sizes.length));
   std::uint64_t address = kUndefined;
   std::uint64_t length = 0;
   MBK_TRY(for_each_record(file, huge_tree_, [&](BTree2 kind, Cursor record) -> Result<void> {
     const std::uint64_t at = record.address();
     const std::uint64_t size = record.length();
     if (kind != BTree2::huge_objects) return broken();
-    if (record.length() == wanted && record.ok()) address = at, length = size;
+    if (record.length() == requested && record.ok()) address = at, length = size;
     return {};
   }));
   return file.block(address, length, "a large object of a fractal heap");

@@ -15,7 +15,7 @@
 namespace mbk::hdf5 {
 namespace {
 
-constexpr int kMostHops = 16;  ///< soft links that lead to soft links
+constexpr int kMaxHops = 16;  ///< soft links that lead to soft links
 
 /// Walks the links of a file, builds the tree in place, and then says where its references lead. What is damaged is
 /// left with the reason in its place, and the rest is read; only a budget that is used up ends the walk.
@@ -124,13 +124,13 @@ class Tree {
   /// @param from  address of the group that the path begins in
   std::uint64_t follow(std::string_view path, std::uint64_t from, int hops) {
     std::uint64_t at = path.starts_with('/') ? root_address_ : from;
-    while (!path.empty() && at != kUndefined && hops <= kMostHops) {
+    while (!path.empty() && at != kUndefined && hops <= kMaxHops) {
       const std::size_t end = std::min(path.find('/'), path.size());
       const std::string_view name = path.substr(0, end);
       path.remove_prefix(std::min(end + 1, path.size()));
       if (!name.empty() && name != ".") at = step(name, at, hops);
     }
-    return hops <= kMostHops ? at : kUndefined;
+    return hops <= kMaxHops ? at : kUndefined;
   }
 
   /// The same for one name in a group.

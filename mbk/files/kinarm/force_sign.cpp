@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kLargestMass = 5.0;      ///< [kg] of a robot at the hand
 constexpr double kLargestFriction = 3.0;  ///< [N·s/m]
-constexpr double kLeastForce = 0.05;      ///< [N] rms; less is noise of the sensor
+constexpr double kMinForce = 0.05;        ///< [N] rms; less is noise of the sensor
 constexpr double kClear = 0.5;            ///< unexplained with the better sign, at most so much of that with the other
 constexpr double kExplains = 0.5;         ///< share that the better sign may leave unexplained
-constexpr double kMostBlocks = 0.75;      ///< share of blocks that must agree
+constexpr double kMaxBlocks = 0.75;       ///< share of blocks that must agree
 constexpr Index kBlocksOfTrial = 10;
 
 Vector without_mean(const Vector& values, const std::vector<Index>& kept) {
@@ -60,7 +60,7 @@ void ForceSignTest::add(const ForceEvidence& evidence) {
                        {without_mean(evidence.sensor_y, kept), without_mean(evidence.commanded_y, kept),
                         without_mean(evidence.velocity_y, kept), without_mean(evidence.acceleration_y, kept)}};
   const double energy = axes[0].sensor.squaredNorm() + axes[1].sensor.squaredNorm();
-  if (!(energy > kLeastForce * kLeastForce * static_cast<double>(samples))) return;
+  if (!(energy > kMinForce * kMinForce * static_cast<double>(samples))) return;
   ++trials_;
   for (Index block = 0; block < kBlocksOfTrial; ++block) {
     const Index begin = block * samples / kBlocksOfTrial;
@@ -141,7 +141,7 @@ ForceSign ForceSignTest::result() const {
   }
   found.blocks_for = counted > 0 ? static_cast<double>(agree) / counted : 0.0;
   const bool clear =
-      left[better] <= kClear * left[other] && found.unexplained[better] <= kExplains && found.blocks_for >= kMostBlocks;
+      left[better] <= kClear * left[other] && found.unexplained[better] <= kExplains && found.blocks_for >= kMaxBlocks;
   if (clear) found.verdict = better == 0 ? ForceSign::Verdict::as_stored : ForceSign::Verdict::turned;
   return found;
 }

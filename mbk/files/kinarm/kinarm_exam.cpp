@@ -45,7 +45,7 @@ struct Trial {
 };
 
 /// Whether a signal of that name is taken.
-using Wanted = bool (*)(std::string_view);
+using ArrayFilter = bool (*)(std::string_view);
 
 bool everything(std::string_view /*name*/) {
   return true;
@@ -234,13 +234,13 @@ struct KinarmExam::Open {
 
   void name(Trial& trial, std::set<std::string>& taken) {
     const Part& first = trial.parts.front();
-    const std::string wanted = first.number ? number_text(*first.number) : printable(first.label);
-    trial.name.name = wanted;
+    const std::string filter = first.number ? number_text(*first.number) : printable(first.label);
+    trial.name.name = filter;
     for (int copy = 2; !taken.insert(trial.name.name).second; ++copy) {
-      trial.name.name = fmt::format("{}#{}", wanted, copy);
+      trial.name.name = fmt::format("{}#{}", filter, copy);
     }
-    if (trial.name.name != wanted) {
-      trial.notes.push_back(fmt::format("TRIAL:TRIAL_NUM {} repeats; this one is called {}", wanted, trial.name.name));
+    if (trial.name.name != filter) {
+      trial.notes.push_back(fmt::format("TRIAL:TRIAL_NUM {} repeats; this one is called {}", filter, trial.name.name));
     }
     double frames = 0.0, seconds = 0.0;
     std::int64_t events = 0;
@@ -276,13 +276,13 @@ struct KinarmExam::Open {
 
   // ---- a trial ----
 
-  [[nodiscard]] Result<ExamTrial> load(const Trial& trial, Wanted wanted) const {
+  [[nodiscard]] Result<ExamTrial> load(const Trial& trial, ArrayFilter filter) const {
     std::uint64_t size = 0;
     for (const Part& part : trial.parts) size += part.size;
     MBK_TRY(check_memory(3 * size));
     std::vector<ExamTrial> parts;
     for (const Part& part : trial.parts) {
-      auto one = c3d ? load_c3d(part, wanted) : load_folder(part, wanted);
+      auto one = c3d ? load_c3d(part, filter) : load_folder(part, filter);
       if (!one) return tl::unexpected(one.error().in(fmt::format("{}{}", kRaw, part.label)));
       parts.push_back(std::move(*one));
     }
@@ -294,7 +294,7 @@ struct KinarmExam::Open {
     return whole;
   }
 
-  [[nodiscard]] Result<ExamTrial> load_folder(const Part& part, Wanted wanted) const {
+  [[nodiscard]] Result<ExamTrial> load_folder(const Part& part, ArrayFilter filter) const {
     ExamTrial trial;
     auto header = MBK_TRY(header_of(part));
     auto parameters = MBK_TRY(parameters_of(part));
@@ -311,20 +311,20 @@ struct KinarmExam::Open {
       return bad_data("it says that it holds 0 frames", "nothing was recorded, or it is damaged");
     for (const std::string& member : part.members) {
       const std::string_view file = std::string_view(member).substr(member.rfind('/') + 1);
-      if (auto ok = load_member(member, file, wanted, header, trial); !ok) {
+      if (auto ok = load_member(member, file, filter, header, trial); !ok) {
         return tl::unexpected(ok.error().in(printable(std::string(file))));
       }
     }
-    if (wanted == everything) compare_with_header(header, trial);
+    if (filter == everything) compare_with_header(header, trial);
     return trial;
   }
 
-  [[nodiscard]] Result<void> load_member(const std::string& member, std::string_view file, Wanted wanted,
+  [[nodiscard]] Result<void> load_member(const std::string& member, std::string_view file, ArrayFilter filter,
                                          const KinarmHeader& header, ExamTrial& trial) const {
     const bool signal = file.ends_with(kSignal), position = file.ends_with(kPosition);
-    const bool all = wanted == everything;
+    const bool all = filter == everything;
     const bool events = all && file == "examevents.bin", video = all && file == "videoack.bin";
-    if ((signal || position) && !wanted(file.substr(0, file.rfind('.')))) return {};
+    if ((signal || position) && !filter(file.substr(0, file.rfind('.')))) return {};
     if (!signal && !position && !events && !video) return {};
     const auto bytes = MBK_TRY(read(member));
     if (signal) {
@@ -388,7 +388,7 @@ struct KinarmExam::Open {
     }
   }
 
-  [[nodiscard]] Result<ExamTrial> load_c3d(const Part& part, Wanted wanted) const {
+  [[nodiscard]] Result<ExamTrial> load_c3d(const Part& part, ArrayFilter filter) const {
     const auto bytes = MBK_TRY(read(part.members.front()));
     if (!looks_like_c3d(bytes.bytes())) return bad_data("is no C3D file");
     const auto parameters = MBK_TRY(decode_c3d_parameters(bytes.bytes()));
@@ -400,7 +400,7 @@ struct KinarmExam::Open {
     trial.events = std::move(contents.events);
     trial.notes = std::move(contents.notes);
     for (Array& array : contents.arrays) {
-      const bool needed = wanted == everything || wanted(array.name) || array.name.find("_Hand") != std::string::npos;
+      const bool needed = filter == everything || filter(array.name) || array.name.find("_Hand") != std::string::npos;
       if (!needed || array.obstacle) continue;  // the notes say so
       ExamSignal& signal = trial.signals.emplace_back();
       signal.name = std::move(array.name);

@@ -173,9 +173,9 @@ const Array* find(const Contents& contents, std::string_view name) {
   }
   if (contents.table) return nullptr;
   const auto dotted = [](const Array& array) { return with_dots(array.name); };
-  const std::string wanted = with_dots(name);
-  if (std::ranges::count(contents.arrays, wanted, dotted) != 1) return nullptr;
-  return &*std::ranges::find(contents.arrays, wanted, dotted);
+  const std::string requested = with_dots(name);
+  if (std::ranges::count(contents.arrays, requested, dotted) != 1) return nullptr;
+  return &*std::ranges::find(contents.arrays, requested, dotted);
 }
 
 /// The last part of a variable's name: "force" of "trial.force" and of "trial/force".
@@ -296,15 +296,15 @@ class Assembler {
   /// The logs matrix, or nullptr where there is none.
   Result<const Array*> find_logs() const {
     if (contents_.table) return nullptr;
-    const std::string wanted = options_.variable.empty() ? "logs" : options_.variable;
-    MBK_TRY(refuse_damaged_source("--variable", wanted));
-    const Array* named = find(contents_, wanted);
+    const std::string requested = options_.variable.empty() ? "logs" : options_.variable;
+    MBK_TRY(refuse_damaged_source("--variable", requested));
+    const Array* named = find(contents_, requested);
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
       return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
     }
     if (named != nullptr && named->is_block()) {  // one such matrix for each trial, of which slices are signals
       if (options_.variable.empty()) return nullptr;
-      return bad_data(fmt::format("--variable {} is {}", wanted, shape(*named)),
+      return bad_data(fmt::format("--variable {} is {}", requested, shape(*named)),
                       fmt::format("name slices, as in --channels \"x={},Fx={}\"", example_slice(*named, 2),
                                   example_slice(*named, 10)));
     }
@@ -908,8 +908,8 @@ class Assembler {
 
   [[nodiscard]] bool within_variable(const Array& array) const {
     const std::string name = with_dots(array.name);
-    const std::string wanted = with_dots(options_.variable);
-    return wanted.empty() || name == wanted || name.starts_with(wanted + ".");
+    const std::string requested = with_dots(options_.variable);
+    return requested.empty() || name == requested || name.starts_with(requested + ".");
   }
   [[nodiscard]] bool names_structure() const {
     return std::ranges::any_of(contents_.arrays, [&](const Array& array) { return within_variable(array); });

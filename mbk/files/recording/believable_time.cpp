@@ -102,8 +102,8 @@ bool are_coarse_stamps(const Vector& time, double rate_hz) {
 }  // namespace
 
 bool is_believable(double rate_hz, Index samples) {
-  constexpr Index kFewest = 20;
-  if (samples < kFewest) return true;
+  constexpr Index kMin = 20;
+  if (samples < kMin) return true;
   const double duration_s = static_cast<double>(samples - 1) / rate_hz;
   constexpr double kSlowest = 3.0, kFastest = 2.05e4, kLongest = 12.0 * 3600.0;  // [Hz, Hz, s]
   if (rate_hz <= kSlowest || rate_hz > kFastest || duration_s >= kLongest) return false;

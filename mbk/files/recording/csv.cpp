@@ -118,8 +118,8 @@ class Table {
     make_room(text);
 
     const auto among_rows = [this](const CsvLine& comment) {
-      constexpr std::size_t kMost = 12;
-      if (unread_.size() >= kMost) return;
+      constexpr std::size_t kMax = 12;
+      if (unread_.size() >= kMax) return;
       if (auto note = unread_statement(comment)) unread_.push_back(std::move(*note));
     };
     while (line) {
@@ -170,7 +170,7 @@ class Table {
 
   Result<void> find_columns(const CsvLine& first) {
     std::vector<std::string>& names = head_.names;
-    const auto cells = quoted_cells(first.text, head_.separator, kMostCells);
+    const auto cells = quoted_cells(first.text, head_.separator, kMaxCells);
     columns_ = cells.size();
     const bool ends_empty =
         columns_ > 1 && without_quotes(cells.back()).empty() && (first.terminated || names.size() + 1 == columns_);

@@ -59,12 +59,12 @@ Parted part(const CsvLine& line, char separator) {
     parted.cells.push_back(kind);
     parted.numbers += kind == Cell::number ? 1 : 0;
     parted.texts += kind == Cell::text ? 1 : 0;
-    return parted.cells.size() < kMostCells;
+    return parted.cells.size() < kMaxCells;
   };
   if (line.text.find('"') == line.text.npos) {
     for_each_cell(line.text, separator, take);
   } else {
-    for (const std::string_view cell : quoted_cells(line.text, separator, kMostCells)) take(cell);
+    for (const std::string_view cell : quoted_cells(line.text, separator, kMaxCells)) take(cell);
   }
   return parted;
 }
@@ -137,7 +137,7 @@ Reading best_reading(const std::vector<CsvLine>& lines) {
 
 std::vector<std::string> texts_of(std::string_view line, char separator) {
   std::vector<std::string> texts;
-  for (const std::string_view cell : quoted_cells(line, separator, kMostCells)) {
+  for (const std::string_view cell : quoted_cells(line, separator, kMaxCells)) {
     std::string& text = texts.emplace_back(without_quotes(cell));
     for (auto at = text.find("\"\""); at != text.npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
   }
@@ -411,7 +411,7 @@ class HeadFinder {
       for_each_cell(line.line->text, ',', [&](std::string_view cell) {
         cell = mbk::trimmed(cell, " \t");
         leading_zero = leading_zero || (k % 2 == 1 && cell.size() > 1 && cell.front() == '0');
-        return ++k < kMostCells;
+        return ++k < kMaxCells;
       });
     }
     if (!leading_zero) return {};

@@ -109,7 +109,7 @@ class CsvLines {
   std::size_t begin_ = 0, number_ = 0;
 };
 
-inline constexpr std::size_t kMaxCsvColumns = 10'000, kMostCells = kMaxCsvColumns + 2;  ///< cells that are looked at
+inline constexpr std::size_t kMaxCsvColumns = 10'000, kMaxCells = kMaxCsvColumns + 2;  ///< cells that are looked at
 inline constexpr char kBlanks = ' ';  ///< the separator of cells between which stand any blanks and tabs
 
 /// Calls use(cell) for each cell until it returns false. Quotes mean nothing.

@@ -119,11 +119,11 @@ Result<Recording> InMemory::read(const ReadOptions& options) const {
 const InMemory::Signal* InMemory::find(std::string_view name) const {
   const auto named = std::ranges::find(signals_, name, &Signal::name);
   if (named != signals_.end()) return &*named;
-  const auto wanted = kinds_called(name);
+  const auto requested = kinds_called(name);
   const auto same = std::ranges::find_if(signals_, [&](const Signal& signal) {
     const auto kinds = kinds_called(signal.name);
     return std::ranges::any_of(kinds,
-                               [&](const auto* kind) { return std::ranges::find(wanted, kind) != wanted.end(); });
+                               [&](const auto* kind) { return std::ranges::find(requested, kind) != requested.end(); });
   });
   return same == signals_.end() ? nullptr : &*same;
 }

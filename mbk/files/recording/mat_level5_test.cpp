@@ -225,8 +225,8 @@ TEST(DecodeMatLevel5, TellsFieldsOfOneNameApart) {
 
 TEST(DecodeMatLevel5, TakesUnsignedDimensions) {
   std::string variable = double5("z", kValues);
-  const std::string wanted = raw(std::uint32_t{5}) + raw(std::uint32_t{8});  // int32, 8 bytes
-  const std::size_t at = variable.find(wanted);
+  const std::string requested = raw(std::uint32_t{5}) + raw(std::uint32_t{8});  // int32, 8 bytes
+  const std::size_t at = variable.find(requested);
   ASSERT_NE(at, variable.npos);
   variable.replace(at, 4, raw(std::uint32_t{6}));
   const auto contents = decode(header5() + variable);

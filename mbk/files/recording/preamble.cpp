@@ -172,7 +172,7 @@ bool is_rate_unit(std::string_view unit) {
 }
 
 std::optional<double> rate_of(std::string_view key, std::string_view value) {
-  constexpr double kLeast = 1e-2, kMost = 1e7;
+  constexpr double kMin = 1e-2, kMax = 1e7;
   const auto said = quantity(value);
   if (!said) return std::nullopt;
   const std::string_view unit = said->unit.empty() ? in_brackets(key) : said->unit;
@@ -188,7 +188,7 @@ std::optional<double> rate_of(std::string_view key, std::string_view value) {
     if (known != nullptr && known->dimension == Dimension::time) rate = 1.0 / known->to_si(said->value);
     if (unit.empty() && said->value <= kSurelySeconds) rate = 1.0 / said->value;
   }
-  return rate && *rate >= kLeast && *rate <= kMost ? rate : std::nullopt;
+  return rate && *rate >= kMin && *rate <= kMax ? rate : std::nullopt;
 }
 
 /// The units of "mm", "mm N", "(mm, N)"; none where a word of it is no unit.

@@ -189,7 +189,7 @@ double nearest_beside(const Run& run) {
 /// The value of at least a tenth of the runs that comes 20 times as often as any other, told from up to 511 of them.
 std::optional<double> most_frequent(const Runs& all) {
   constexpr std::size_t kLooked = 511;
-  constexpr Index kFewest = 20, kTimes = 20, kPart = 10;
+  constexpr Index kMin = 20, kTimes = 20, kPart = 10;
   const std::size_t every = (all.runs.size() / kLooked) | 1U;  // odd: values may alternate
   std::vector<double> some;
   for (std::size_t k = 0; k < all.runs.size() && some.size() < kLooked; k += every) some.push_back(all.runs[k].value);
@@ -204,14 +204,14 @@ std::optional<double> most_frequent(const Runs& all) {
     most = std::max(most, count);
     from = to;
   }
-  const bool found = most >= kFewest && kPart * most >= std::ssize(some) && most >= kTimes * second;
+  const bool found = most >= kMin && kPart * most >= std::ssize(some) && most >= kTimes * second;
   return found ? std::optional(value) : std::nullopt;
 }
 
 /// The value to which the channel leaps from far, to go on behind it where it was before, or that is most frequent.
 std::optional<Lost> lost_at_one_value(const Runs& all) {
-  constexpr Index kFewest = 5;
-  constexpr double kMost = 0.6, kFar = 6.0;
+  constexpr Index kMin = 5;
+  constexpr double kMax = 0.6, kFar = 6.0;
   const double usual = numeric::median(sizes_of(all));
   const auto leaps = [&](std::size_t k) {
     const Run& run = all.runs[k];
@@ -227,7 +227,7 @@ std::optional<Lost> lost_at_one_value(const Runs& all) {
     return lost;
   };
   const Common leapt = most_common(all, leaps);
-  if (leapt.runs >= kFewest && static_cast<double>(leapt.runs) >= kMost * static_cast<double>(leapt.of)) {
+  if (leapt.runs >= kMin && static_cast<double>(leapt.runs) >= kMax * static_cast<double>(leapt.of)) {
     return take(leapt.value, leaps);
   }
   const auto frequent = most_frequent(all);
@@ -383,9 +383,9 @@ class Repeats {
   }
   /// At the value to which the channel returns again and again.
   [[nodiscard]] bool rests(const Run& run) const {
-    constexpr Index kFewest = 5;
+    constexpr Index kMin = 5;
     constexpr double kOften = 0.3;
-    return rest_.runs >= kFewest && static_cast<double>(rest_.runs) > kOften * static_cast<double>(rest_.of) &&
+    return rest_.runs >= kMin && static_cast<double>(rest_.runs) > kOften * static_cast<double>(rest_.of) &&
            run.value == rest_.value;
   }
 
@@ -506,7 +506,7 @@ class Repeats {
   }
 
   [[nodiscard]] std::optional<Stale> frozen() const {
-    constexpr Index kShortest = 8, kShortestInNoise = 16, kFewest = 2, kAlike = 3;
+    constexpr Index kShortest = 8, kShortestInNoise = 16, kMin = 2, kAlike = 3;
     constexpr double kMinShare = 0.005, kOften = 0.3, kNoise = 0.58;
     std::vector<std::size_t> stops;
     Index catching_up = 0;
@@ -520,7 +520,7 @@ class Repeats {
       catching_up += stop.catches_up ? 1 : 0;
     }
     const auto found = std::ssize(stops);
-    if (found < kFewest || (!noisy && 2 * catching_up < found)) return std::nullopt;
+    if (found < kMin || (!noisy && 2 * catching_up < found)) return std::nullopt;
     const auto is_stop = [&](std::size_t k) { return std::ranges::binary_search(stops, k); };
     const Common common = most_common(all_, is_stop);
     if (common.runs > 1 && static_cast<double>(common.runs) > kOften * static_cast<double>(found)) return std::nullopt;

@@ -7,7 +7,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr Index kNumbersAtOnce = 1 << 18;  ///< numbers, about: they stay in a cache until they are written
-constexpr Index kFewest = 64;              ///< rows
+constexpr Index kMin = 64;                 ///< rows
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void TableColumns::begin_block() {
     return;
   }
   const auto columns = static_cast<Index>(numbers_.size());
-  block_.resize(std::max(kNumbersAtOnce / columns, kFewest), columns);
+  block_.resize(std::max(kNumbersAtOnce / columns, kMin), columns);
   begin_ = rows_;
   end_ = std::min(room, begin_ + block_.rows());
   for (Index c = 0; c < columns; ++c) places_[static_cast<std::size_t>(c)] = block_.col(c).data();

@@ -81,7 +81,7 @@ struct Run {
   double span = 0.0, step = 0.0;  ///< `step`: the smallest above zero
 };
 Run run_of(const Array& array) {
-  constexpr double kMostGaps = 10.0;  // a column that jumps more than it runs is a duration or a counter of something
+  constexpr double kMaxGaps = 10.0;  // a column that jumps more than it runs is a duration or a counter of something
   const Index size = size_of(array);
   const double* const values = array.values.data();
   double smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
@@ -92,7 +92,7 @@ Run run_of(const Array& array) {
     largest = std::max(largest, step);
   }
   const double span = size > 1 ? values[size - 1] - values[0] : 0.0;
-  const bool runs = size > 2 && largest < std::max(0.5 * span, kMostGaps * span / static_cast<double>(size));
+  const bool runs = size > 2 && largest < std::max(0.5 * span, kMaxGaps * span / static_cast<double>(size));
   return runs && std::isfinite(span) ? Run{span, smallest} : Run{};
 }
 

@@ -24,11 +24,11 @@ class Names {
   explicit Names(std::vector<std::string>& said) : said_(said) {}
 
   /// @param wanted  a name that can be written    @param from  what it stands for, in the words of the file
-  std::string take(std::string wanted, const std::string& from) {
-    std::string name = wanted;
+  std::string take(std::string requested, const std::string& from) {
+    std::string name = requested;
     for (int k = 2; !taken_.insert(name).second; ++k) {
       const std::string number = fmt::format("_{}", k);
-      name = wanted.substr(0, kLongestMatlabName - number.size()) + number;
+      name = requested.substr(0, kLongestMatlabName - number.size()) + number;
     }
     if (name != from) said_.push_back(fmt::format("'{}' is called '{}' there", from, name));
     return name;

@@ -16,9 +16,9 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMostFields = 10000;  ///< of all types of a definition together
-constexpr std::size_t kDeepestType = 32;    ///< types within types
-constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();  ///< larger ones count as this one
+constexpr std::size_t kMaxFields = 10000;  ///< of all types of a definition together
+constexpr std::size_t kDeepestType = 32;   ///< types within types
+constexpr std::uint64_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();  ///< larger ones count as this one
 
 struct Word {
   std::string_view name;
@@ -132,21 +132,21 @@ class Parser {
     if (!fields) return tl::unexpected(fields.error());
     MessageType& type = definition_.messages[index];
     type.fields = std::move(*fields);
-    for (const MessageField& field : type.fields) type.least_bytes += least_of(field);
+    for (const MessageField& field : type.fields) type.min_bytes += min_bytes_of(field);
     // A structure of ROS 2 without members has one that nobody named.
     if (definition_.dialect == Dialect::ros2 && type.fields.empty()) {
       type.fields.push_back({"structure_needs_at_least_one_member", FieldType::uint8});
-      type.least_bytes = 1;
+      type.min_bytes = 1;
     }
-    type.least_bytes = std::min(type.least_bytes, kMostBytes);
+    type.min_bytes = std::min(type.min_bytes, kMaxBytes);
     known_[full] = static_cast<int>(index);
     return static_cast<int>(index);
   }
 
-  [[nodiscard]] std::uint64_t least_of(const MessageField& field) const {
+  [[nodiscard]] std::uint64_t min_bytes_of(const MessageField& field) const {
     if (field.count == MessageField::Count::counted) return 4;
-    const std::uint64_t one = least_bytes(definition_, field);
-    return one > 0 && field.elements > kMostBytes / one ? kMostBytes : one * field.elements;
+    const std::uint64_t one = min_bytes(definition_, field);
+    return one > 0 && field.elements > kMaxBytes / one ? kMaxBytes : one * field.elements;
   }
 
   Result<std::vector<MessageField>> parse_fields(std::string_view text, const std::string& package) {
@@ -158,7 +158,7 @@ class Parser {
       if (line.empty()) continue;
       auto field = MBK_TRY(parse_field(line, package));
       if (!field) continue;
-      if (++fields_ > kMostFields) return bad_data(fmt::format("there are more than {} fields", kMostFields));
+      if (++fields_ > kMaxFields) return bad_data(fmt::format("there are more than {} fields", kMaxFields));
       fields.push_back(std::move(*field));
     }
     return fields;
@@ -239,7 +239,7 @@ std::size_t number_size(FieldType type) {
   }
 }
 
-std::uint64_t least_bytes(const MessageDefinition& definition, const MessageField& field) {
+std::uint64_t min_bytes(const MessageDefinition& definition, const MessageField& field) {
   switch (field.type) {
     case FieldType::text:
     case FieldType::wide_text:
@@ -248,7 +248,7 @@ std::uint64_t least_bytes(const MessageDefinition& definition, const MessageFiel
     case FieldType::duration:
       return 8;
     case FieldType::message:
-      return definition.messages[static_cast<std::size_t>(field.message)].least_bytes;
+      return definition.messages[static_cast<std::size_t>(field.message)].min_bytes;
     default:
       return number_size(field.type);
   }

@@ -47,7 +47,7 @@ struct MessageField {
 struct MessageType {
   std::string name;  ///< "geometry_msgs/Vector3", without the "msg/" of ROS 2
   std::vector<MessageField> fields;
-  std::uint64_t least_bytes = 0;  ///< that a message of it takes, whatever it holds; no padding is counted
+  std::uint64_t min_bytes = 0;  ///< that a message of it takes, whatever it holds; no padding is counted
 };
 
 /// A type of message with all that are within it.
@@ -61,7 +61,7 @@ struct MessageDefinition {
 [[nodiscard]] std::size_t number_size(FieldType type);
 
 /// [bytes] of an element at least.
-[[nodiscard]] std::uint64_t least_bytes(const MessageDefinition& definition, const MessageField& field);
+[[nodiscard]] std::uint64_t min_bytes(const MessageDefinition& definition, const MessageField& field);
 
 /// "geometry_msgs/msg/Vector3" → "geometry_msgs/Vector3".
 [[nodiscard]] std::string plain_type(std::string_view type);

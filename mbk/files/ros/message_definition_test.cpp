@@ -40,7 +40,7 @@ TEST(MessageDefinition, ReadsFieldsConstantsDefaultsAndBounds) {
   EXPECT_EQ(fields[6].type, FieldType::uint8);
   EXPECT_EQ(fields[7].type, FieldType::uint8);
   EXPECT_EQ(fields[8].type, FieldType::duration);
-  EXPECT_EQ(definition->messages.front().least_bytes, 1U + 4 + 4 + 4 + 3 + 4 + 1 + 1 + 8);
+  EXPECT_EQ(definition->messages.front().min_bytes, 1U + 4 + 4 + 4 + 3 + 4 + 1 + 1 + 8);
 }
 
 TEST(MessageDefinition, FindsTypesOfTheSamePackageAndOfOthers) {
@@ -48,7 +48,7 @@ TEST(MessageDefinition, FindsTypesOfTheSamePackageAndOfOthers) {
   ASSERT_TRUE(definition) << definition.error().line();
   EXPECT_EQ(definition->messages.front().name, "geometry_msgs/WrenchStamped");
   EXPECT_EQ(definition->messages.front().fields[1].type, FieldType::message);
-  EXPECT_EQ(definition->messages.front().least_bytes, 8U + 4 + 48);
+  EXPECT_EQ(definition->messages.front().min_bytes, 8U + 4 + 48);
 }
 
 TEST(MessageDefinition, TheWordsOfRos1MeanWhatTheyMeanThere) {
@@ -78,8 +78,8 @@ TEST(MessageDefinition, AnEmptyStructureOfRos2HasOneByte) {
   const auto two = parse_definition("std_msgs/msg/Empty", "", Dialect::ros2);
   const auto one = parse_definition("std_msgs/Empty", "", Dialect::ros1);
   ASSERT_TRUE(two && one);
-  EXPECT_EQ(two->messages.front().least_bytes, 1U);
-  EXPECT_EQ(one->messages.front().least_bytes, 0U);
+  EXPECT_EQ(two->messages.front().min_bytes, 1U);
+  EXPECT_EQ(one->messages.front().min_bytes, 0U);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace mbk::recording {
 /// Longest array whose elements each become an array of the recording; those of single bytes.
 inline constexpr std::uint64_t kLongestArray = 128, kLongestBytes = 16;
 /// The most numbers of one message that are kept.
-inline constexpr std::size_t kMostColumns = 1000;
+inline constexpr std::size_t kMaxColumns = 1000;
 
 /// [ns]
 inline constexpr std::int64_t kSecond = 1'000'000'000;
@@ -49,7 +49,7 @@ class MessageStream {
   std::vector<NumberColumn> columns;
   std::vector<std::int64_t> log_times;  ///< [ns]
   std::vector<std::int64_t> stamps;     ///< [ns] of header.stamp, 0 where nobody set it; empty: messages have none
-  std::set<std::string> frames;         ///< header.frame_id, at most kMostFrames
+  std::set<std::string> frames;         ///< header.frame_id, at most kMaxFrames
   std::vector<std::string> joints;      ///< of a JointState, in the order of its first message
   bool joints_repeat = false;           ///< a JointState names a joint twice; `joints` then is empty
   std::set<std::string> bulky;          ///< arrays that are too long to be kept
@@ -58,7 +58,7 @@ class MessageStream {
   std::set<std::string> only_text;      ///< texts that begin as numbers do and are none
   bool rounded = false;                 ///< whole numbers above 2⁵³ were
 
-  static constexpr std::size_t kMostFrames = 4;
+  static constexpr std::size_t kMaxFrames = 4;
 
  protected:
   MessageStream() = default;

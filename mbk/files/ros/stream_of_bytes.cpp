@@ -93,7 +93,7 @@ class Skipping {
 
   /// Whether so many elements can be in what is left.
   [[nodiscard]] bool can_hold(const MessageField& field, std::uint64_t count) const {
-    const std::uint64_t least = least_bytes(definition_, field);
+    const std::uint64_t least = min_bytes(definition_, field);
     return least == 0 || count <= cursor_.left() / least;
   }
 
@@ -105,7 +105,7 @@ class Skipping {
       cursor_.leave_out(count * size);
       return;
     }
-    if (least_bytes(definition_, field) == 0) return;  // nothing is in it, however many there are
+    if (min_bytes(definition_, field) == 0) return;  // nothing is in it, however many there are
     for (std::uint64_t k = 0; k < count && !cursor_.failed(); ++k) element(field);
   }
 
@@ -143,7 +143,7 @@ class StreamOfBytes : public MessageStream {
   }
 
   bool add(std::span<const std::byte> message, std::int64_t log_time) override {
-    if (definition_->messages.front().least_bytes > message.size()) return false;
+    if (definition_->messages.front().min_bytes > message.size()) return false;
     if (by_joint_ && !order_joints(message)) return false;
     Cursor cursor(message, definition_->dialect);
     cursor_ = &cursor;
@@ -174,7 +174,7 @@ class StreamOfBytes : public MessageStream {
   }
 
   int new_column(std::string path, int element, std::string array) {
-    if (columns.size() >= kMostColumns) {
+    if (columns.size() >= kMaxColumns) {
       bulky.insert(array.empty() ? path : array);
       return -1;
     }
@@ -207,14 +207,14 @@ class StreamOfBytes : public MessageStream {
     const std::uint64_t count = skipping.count_of(field);
     if (!skipping.can_hold(field, count)) cursor_->leave_out(cursor_->left() + 1);
     if (cursor_->failed()) return;
-    const bool full = columns.size() >= kMostColumns || nodes_ > 10 * kMostColumns;
+    const bool full = columns.size() >= kMaxColumns || nodes_ > 10 * kMaxColumns;
     const bool texts = field.type == FieldType::text || field.type == FieldType::wide_text;
     if (!node.known) {
       node.known = true;
       node.length = count;
       const bool bulk = full || count > (number_size(field.type) == 1 ? kLongestBytes : kLongestArray);
       if (bulk && !texts) bulky.insert(printable(path));
-      node.aside = bulk || texts || least_bytes(*definition_, field) == 0;
+      node.aside = bulk || texts || min_bytes(*definition_, field) == 0;
       if (!node.aside) make_children(node, static_cast<std::size_t>(count));
       node.path = path;
     } else if (!node.aside && count != node.length) {
@@ -279,7 +279,7 @@ class StreamOfBytes : public MessageStream {
         return keep(node, static_cast<double>(cursor_->time(true)) / static_cast<double>(kSecond), path, element,
                     array);
       case FieldType::message:
-        if (least_bytes(*definition_, field) > 0) take_message(node, field.message, path);
+        if (min_bytes(*definition_, field) > 0) take_message(node, field.message, path);
         return;
     }
   }
@@ -310,7 +310,7 @@ class StreamOfBytes : public MessageStream {
 
   void take_text(Node& node, std::string_view text, const std::string& path) {
     if (first_) node.aside = path == "header.frame_id";
-    if (!node.aside || frames.size() >= kMostFrames || cursor_->failed()) return;
+    if (!node.aside || frames.size() >= kMaxFrames || cursor_->failed()) return;
     if (frames.empty() || *frames.rbegin() != text) frames.insert(printable(std::string(text)));
   }
 

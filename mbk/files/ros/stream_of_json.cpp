@@ -88,7 +88,7 @@ class StreamOfJson : public MessageStream {
     const auto header = object.find("header");
     if (header == object.end() || !header->is_object()) return;
     if (const auto frame = header->find("frame_id"); frame != header->end() && frame->is_string()) {
-      if (frames.size() < kMostFrames) frames.insert(printable(frame->get<std::string>()));
+      if (frames.size() < kMaxFrames) frames.insert(printable(frame->get<std::string>()));
     }
     const auto stamp = header->find("stamp");
     if (stamp == header->end() || !stamp->is_object()) return;
@@ -103,8 +103,8 @@ class StreamOfJson : public MessageStream {
       return std::nullopt;
     };
     const auto seconds = part({"sec", "secs"}), nanoseconds = part({"nanosec", "nsec", "nsecs"});
-    constexpr std::int64_t kMostSeconds = std::numeric_limits<std::uint32_t>::max();
-    if (!seconds || !nanoseconds || std::abs(*seconds) > kMostSeconds || std::abs(*nanoseconds) > 4 * kSecond) return;
+    constexpr std::int64_t kMaxSeconds = std::numeric_limits<std::uint32_t>::max();
+    if (!seconds || !nanoseconds || std::abs(*seconds) > kMaxSeconds || std::abs(*nanoseconds) > 4 * kSecond) return;
     stamps.back() = *seconds * kSecond + *nanoseconds;
   }
 
@@ -128,9 +128,9 @@ class StreamOfJson : public MessageStream {
     if (number) {
       constexpr double kExact = 9007199254740992.0;  // 2⁵³
       rounded = rounded || (std::abs(*number) > kExact && value.find_first_of(".eEiI") == value.npos);
-      if (from_text.size() < kMostColumns) from_text.insert(name);
+      if (from_text.size() < kMaxColumns) from_text.insert(name);
       keep(Json(*number), path, element, array);
-    } else if (begins_as_a_number(value) && only_text.size() < kMostColumns) {
+    } else if (begins_as_a_number(value) && only_text.size() < kMaxColumns) {
       only_text.insert(name);
     }
   }
@@ -138,7 +138,7 @@ class StreamOfJson : public MessageStream {
   void take_array(const Json& value, const std::string& path, int depth) {
     const std::string name = printable(path);
     if (!log_times.empty() && !lengths_.contains(path)) {
-      if (changing.size() < kMostColumns) changing.insert(name);
+      if (changing.size() < kMaxColumns) changing.insert(name);
       return;
     }
     const auto [known, fresh] = lengths_.try_emplace(path, value.size());
@@ -176,8 +176,8 @@ class StreamOfJson : public MessageStream {
     }
     if (value.is_null()) return;
     std::set<std::string>& why = log_times.empty() ? bulky : changing;
-    if (!log_times.empty() || columns.size() >= kMostColumns) {
-      if (why.size() < kMostColumns) why.insert(printable(array.empty() ? path : array));
+    if (!log_times.empty() || columns.size() >= kMaxColumns) {
+      if (why.size() < kMaxColumns) why.insert(printable(array.empty() ? path : array));
       return;
     }
     by_path_.emplace(path, columns.size());

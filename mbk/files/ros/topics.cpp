@@ -16,13 +16,13 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMostTopics = 4096, kMostArrays = 20000, kMostSets = 16, kMostListed = 12;
+constexpr std::size_t kMaxTopics = 4096, kMaxArrays = 20000, kMaxSets = 16, kMaxListed = 12;
 constexpr std::int64_t kLatest = std::int64_t{1} << 62;
 constexpr std::int64_t kFirstDate = 631152000 * kSecond;  ///< 1990: clocks that count from elsewhere are before it
 constexpr std::int64_t kLongLag = 60 * kSecond;
 
 std::string listed(std::vector<std::string> names) {
-  const std::size_t more = names.size() > kMostListed ? names.size() - kMostListed : 0;
+  const std::size_t more = names.size() > kMaxListed ? names.size() - kMaxListed : 0;
   names.resize(names.size() - more);
   return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
@@ -175,7 +175,7 @@ const VectorMeaning* vector_of(std::string_view type) {
 }  // namespace
 
 void Topics::add(std::uint32_t channel, const TopicDescription& description) {
-  if (channels_.contains(channel) || topics_.size() >= kMostTopics) return;
+  if (channels_.contains(channel) || topics_.size() >= kMaxTopics) return;
   const auto same = [&](const Topic& topic) {
     const TopicDescription& other = topic.description;
     return other.topic == description.topic && other.type == description.type &&
@@ -232,7 +232,7 @@ Topics::Stream* Topics::stream_of(Topic& topic, std::span<const std::byte> messa
   }
   const auto known = std::ranges::find(topic.streams, key, &Stream::key);
   if (known != topic.streams.end()) return &*known;
-  if (topic.streams.size() >= kMostSets) return nullptr;
+  if (topic.streams.size() >= kMaxSets) return nullptr;
   std::string name = topic.name;
   if (!topic.streams.empty()) name += fmt::format("/{}", topic.streams.size() + 1);
   topic.streams.push_back({std::move(name), std::move(key),
@@ -262,8 +262,8 @@ Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std:
       stream->alternates |= !stream->channels.insert(channel).second && stream->channel != channel;
       stream->channel = channel;
     } else {
-      topic.unread = stream == nullptr && topic.streams.size() >= kMostSets
-                         ? fmt::format("its messages hold more than {} different sets of joints", kMostSets)
+      topic.unread = stream == nullptr && topic.streams.size() >= kMaxSets
+                         ? fmt::format("its messages hold more than {} different sets of joints", kMaxSets)
                          : fmt::format("message {} is not what the definition says", topic.count);
       topic.streams.clear();
     }
@@ -277,7 +277,7 @@ Result<void> Topics::count(std::size_t numbers) {
     MBK_TRY(check_memory(2 * kOften * sizeof(double)));
   }
   numbers_ += numbers;
-  if (numbers_ <= most_numbers_) return {};
+  if (numbers_ <= max_numbers_) return {};
   return bad_data(fmt::format("it claims {} numbers, more than a file of its size can hold", numbers_),
                   std::string(kCopyAgain));
 }
@@ -360,7 +360,7 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
     note(
         fmt::format("left out, as arrays of more than {} numbers or {} bytes are, and more than {} numbers of one "
                     "message: {}",
-                    kLongestArray, kLongestBytes, kMostColumns, list(messages.bulky)));
+                    kLongestArray, kLongestBytes, kMaxColumns, list(messages.bulky)));
   }
   if (!messages.changing.empty()) {
     note(fmt::format("left out, as not every message has them, or not as many of them: {}", list(messages.changing)));
@@ -459,8 +459,8 @@ Contents Topics::contents(std::string format, bool exact_times) {
     for (const Stream& stream : topic.streams) {
       of_topic += static_cast<std::size_t>(std::ranges::count(stream.messages->columns, true, &NumberColumn::kept));
     }
-    if (arrays + of_topic > kMostArrays) {
-      topic.unread = fmt::format("the file has more than {} numbers in its messages", kMostArrays);
+    if (arrays + of_topic > kMaxArrays) {
+      topic.unread = fmt::format("the file has more than {} numbers in its messages", kMaxArrays);
       topic.streams.clear();
       continue;
     }

@@ -32,7 +32,7 @@ struct TopicDescription {
 class Topics {
  public:
   /// @param file_size  [bytes], which bounds how many numbers are believed
-  explicit Topics(std::uint64_t file_size) : most_numbers_(largest_claim(file_size) / (2 * sizeof(double))) {}
+  explicit Topics(std::uint64_t file_size) : max_numbers_(largest_claim(file_size) / (2 * sizeof(double))) {}
 
   /// A channel, by the number that the file has for it; one that is known already stays as it is.
   void add(std::uint32_t channel, const TopicDescription& description);
@@ -81,7 +81,7 @@ class Topics {
   std::vector<Topic> topics_;
   std::map<std::uint32_t, std::size_t> channels_;  ///< → topics_
   std::vector<Event> events_;
-  std::uint64_t most_numbers_, numbers_ = 0;  ///< that are kept
+  std::uint64_t max_numbers_, numbers_ = 0;  ///< that are kept
 };
 
 }  // namespace mbk::recording

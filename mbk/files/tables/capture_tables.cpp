@@ -108,7 +108,7 @@ class ViconDecoder {
   static void name_columns(const std::vector<std::string>& axes, const std::vector<std::string>& groups,
                            Section& section) {
     std::string group;
-    for (std::size_t c = 0; c < std::min(axes.size(), kMostTextColumns); ++c) {
+    for (std::size_t c = 0; c < std::min(axes.size(), kMaxTextColumns); ++c) {
       if (c < groups.size() && !groups[c].empty()) group = groups[c];
       const std::string axis = axis_of(axes[c]);
       section.names.push_back(c < 2 || axis.empty() ? std::string() : group.empty() ? axis : group + "." + axis);
@@ -232,7 +232,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
     header.push_back(labels_of(line->text, separator));
     if (in_lower_case(header.back().front()) == "frame" || header.size() > 16) break;
   }
-  if (header.empty() || in_lower_case(header.back().front()) != "frame" || header.back().size() > kMostTextColumns) {
+  if (header.empty() || in_lower_case(header.back().front()) != "frame" || header.back().size() > kMaxTextColumns) {
     return bad_data("no row of axes, Frame, Time (Seconds), X, Y, Z, stands in its header",
                     "export it again from Motive with its header");
   }
@@ -345,7 +345,7 @@ Result<Contents> decode_qualisys(std::span<const std::byte> file) {
     const std::size_t cells = filled_cells_of(line->text, '\t').size();
     before = cells >= 3 * markers.size() ? cells - 3 * markers.size() : 0;
   }
-  if (*before > 2 || markers.size() > kMostTextColumns) {
+  if (*before > 2 || markers.size() > kMaxTextColumns) {
     return bad_data(fmt::format("its rows hold {} numbers more than its {} markers need", *before, markers.size()),
                     std::string(kWriteAgain), line_place(line->number));
   }

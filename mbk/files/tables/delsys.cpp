@@ -77,7 +77,7 @@ class DelsysDecoder {
     }
     if (!line) return bad_data("no row of names stands in its header", std::string(kWriteAgain));
     while (!labels_.empty() && labels_.back().empty()) labels_.pop_back();
-    if (labels_.size() > kMostTextColumns) {
+    if (labels_.size() > kMaxTextColumns) {
       return bad_data(fmt::format("its header names {} columns", labels_.size()), "export fewer of them");
     }
     return {};

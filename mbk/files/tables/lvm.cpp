@@ -227,7 +227,7 @@ class Reader {
     } else if (labels_.empty()) {
       labels_.resize(filled_cells_of(line->text, style_.separator).size());
     }
-    if (labels_.size() < 2 || labels_.size() > kMostTextColumns) {
+    if (labels_.size() < 2 || labels_.size() > kMaxTextColumns) {
       return bad_data(fmt::format("its segment names {} columns", labels_.size()), std::string(kWriteAgain),
                       line ? line_place(line->number) : "");
     }

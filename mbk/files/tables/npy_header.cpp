@@ -11,7 +11,7 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::size_t kMostFields = 10'000;
+constexpr std::size_t kMaxFields = 10'000;
 
 /// A Python literal of those that stand in such headers.
 struct Literal {
@@ -53,7 +53,7 @@ class Parser {
   // NOLINTNEXTLINE(misc-no-recursion): as deep as kDeepest
   std::optional<Literal> literal(int depth) {
     skip_blanks();
-    if (depth > kDeepest || text_.empty() || ++count_ > 20 * kMostFields) return std::nullopt;
+    if (depth > kDeepest || text_.empty() || ++count_ > 20 * kMaxFields) return std::nullopt;
     if (take("True")) return Literal{Literal::logical, "", 1, {}};
     if (take("False")) return Literal{Literal::logical, "", 0, {}};
     if (take("None")) return Literal{};
@@ -136,7 +136,7 @@ std::optional<std::size_t> add_fields(const Literal& type, const std::string& pr
                                       std::vector<NpyField>& fields) {
   if (type.kind == Literal::text) {
     auto field = simple_field(type.words);
-    if (!field || fields.size() >= kMostFields) return std::nullopt;
+    if (!field || fields.size() >= kMaxFields) return std::nullopt;
     field->name = prefix;
     field->offset = offset;
     const std::size_t size = field->size;

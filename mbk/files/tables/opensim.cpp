@@ -47,7 +47,7 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
   for (const std::string_view cell : filled_cells_of(labels_line->text, separator)) {
     labels.push_back(printable(std::string(mbk::trimmed(cell, " \t"))));
   }
-  if (labels.empty() || labels.size() > kMostTextColumns || general_number(labels.front())) {
+  if (labels.empty() || labels.size() > kMaxTextColumns || general_number(labels.front())) {
     return bad_data("the line behind 'endheader' holds no labels", std::string(kWriteAgain),
                     line_place(labels_line->number));
   }
@@ -174,7 +174,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
                     line_place(names->number));
   }
   const std::size_t columns = 2 + 3 * markers.size();
-  if (markers.empty() || columns > kMostTextColumns) {
+  if (markers.empty() || columns > kMaxTextColumns) {
     return bad_data(fmt::format("it names {} markers", markers.size()), std::string(kWriteAgain),
                     line_place(names->number));
   }

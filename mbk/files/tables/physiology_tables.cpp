@@ -101,7 +101,7 @@ std::optional<std::size_t> channel_count(std::string_view line) {
   const auto parts = words(mbk::trimmed(line, "\""));
   if (parts.size() != 2 || !parts.back().starts_with("channel")) return std::nullopt;
   const auto count = positive_number(parts.front());
-  if (!count || *count > static_cast<double>(kMostTextColumns) || *count != std::trunc(*count)) return std::nullopt;
+  if (!count || *count > static_cast<double>(kMaxTextColumns) || *count != std::trunc(*count)) return std::nullopt;
   return static_cast<std::size_t>(*count);
 }
 
@@ -286,7 +286,7 @@ class LabChart {
     if (rest.starts_with(separator_)) rest.remove_prefix(1);
     auto cells = labels_of(rest, separator_);
     while (!cells.empty() && cells.back().empty()) cells.pop_back();
-    if (cells.size() > kMostTextColumns) {
+    if (cells.size() > kMaxTextColumns) {
       return bad_data("it has too many columns", std::string(kWriteAgain), line_place(line.number));
     }
     if (key == "Interval") {

@@ -16,7 +16,7 @@ namespace mbk::recording {
 
 // What the readers of tables of text share that are not CSV.
 
-inline constexpr std::size_t kMostTextColumns = 10'000;
+inline constexpr std::size_t kMaxTextColumns = 10'000;
 inline constexpr std::string_view kWriteAgain = "write it again with the program that made it";
 
 /// Without blanks around it.

@@ -129,9 +129,9 @@ double largest_mean(const Vector& values, Index count) {
 
 /// The samples at which stamps jump and stay off. See `dejitter`.
 std::vector<Index> lasting_jumps(const Vector& time, double nominal_hz) {
-  constexpr Index kFewest = 20;  ///< samples on each side
+  constexpr Index kMin = 20;  ///< samples on each side
   const Index count = time.size();
-  if (count < 2 * kFewest + 1) return {};
+  if (count < 2 * kMin + 1) return {};
   const Vector intervals = differences(time);
   const double usual = median_of(intervals), far = kManySamples * std::abs(usual);
   if ((intervals.array() - usual).abs().maxCoeff() <= far) return {};
@@ -139,18 +139,18 @@ std::vector<Index> lasting_jumps(const Vector& time, double nominal_hz) {
   Vector sums(count + 1);  // of the distances from an even grid
   sums[0] = 0.0;
   for (Index k = 0; k < count; ++k) sums[k + 1] = sums[k] + (time[k] - time[0] - usual * static_cast<double>(k));
-  Vector changes(count - 2 * kFewest);
-  for (Index k = kFewest; k < count - kFewest; ++k) {
+  Vector changes(count - 2 * kMin);
+  for (Index k = kMin; k < count - kMin; ++k) {
     const Index before = std::min(beside, k), behind = std::min(beside, count - k);
     // What the median interval is off the mean one grows with the distance of the two groups.
-    changes[k - kFewest] = (sums[k + behind] - sums[k]) / static_cast<double>(behind) -
-                           (sums[k] - sums[k - before]) / static_cast<double>(before);
+    changes[k - kMin] = (sums[k + behind] - sums[k]) / static_cast<double>(behind) -
+                        (sums[k] - sums[k - before]) / static_cast<double>(before);
   }
   const double middle = median_of(changes), noise = robust_deviation(changes);
   std::vector<Index> found;
-  for (Index k = kFewest; k < count - kFewest; ++k) {
+  for (Index k = kMin; k < count - kMin; ++k) {
     const Index least = std::min({beside, k, count - k});  // fewer are less certain
-    const double by = intervals[k - 1] - usual, change = changes[k - kFewest] - middle;
+    const double by = intervals[k - 1] - usual, change = changes[k - kMin] - middle;
     const bool stays = change * by > 0.0 && std::abs(change) >= std::abs(by) / 2.0 &&
                        std::abs(change) > 6.0 * noise * static_cast<double>(beside) / static_cast<double>(least);
     if (std::abs(by) > far && stays) found.push_back(k);

@@ -58,8 +58,8 @@ std::optional<double> linear_share(const PreparedTrial& trial, Index axis) {
   constexpr Index kShortest = 8;
   if (longest < kShortest) return std::nullopt;
   const auto spectra = dsp::cross_spectra(pieces, rate, dsp::segment_length(rate, Hertz(1.0 / kSegment), longest));
-  constexpr double kFewest = 5.0;  // segments for each input
-  if (!spectra || spectra->independent_segments < kFewest * static_cast<double>(n)) return std::nullopt;
+  constexpr double kMin = 5.0;  // segments for each input
+  if (!spectra || spectra->independent_segments < kMin * static_cast<double>(n)) return std::nullopt;
   const Vector coherence = dsp::multiple_coherence(*spectra, n).col(0);
   double explained = 0.0, all = 0.0;
   for (Index k = 0; k < spectra->frequency.size(); ++k) {

@@ -212,10 +212,10 @@ std::vector<int> directions(const Data& data, Index axis) {
 }
 
 /// The rows of a group that came in one direction.
-std::vector<Index> rows_of(const Group& group, const std::vector<int>& direction, int wanted) {
+std::vector<Index> rows_of(const Group& group, const std::vector<int>& direction, int requested) {
   std::vector<Index> rows;
   for (const Index i : group.rows) {
-    if (direction[static_cast<std::size_t>(i)] == wanted) rows.push_back(i);
+    if (direction[static_cast<std::size_t>(i)] == requested) rows.push_back(i);
   }
   return rows;
 }

@@ -27,10 +27,10 @@ std::string periods_said(const FrequencyResponseEstimate& found) {
 Result<FrequencyResponseEstimate> frequency_response(std::span<const ExplorationTrial> trials,
                                                      const FrequencyResponseOptions& options) {
   using enum FrequencyResponseMethod;
-  const auto wanted = [&](FrequencyResponseMethod method) { return !options.method || *options.method == method; };
+  const auto requested = [&](FrequencyResponseMethod method) { return !options.method || *options.method == method; };
   const std::string given = options.method ? "as asked; " : "";
   std::string refused;
-  if (wanted(robust) || wanted(fast)) {
+  if (requested(robust) || requested(fast)) {
     if (!options.method && by_pulses(trials)) {
       refused = "pulses do not repeat themselves; ";
     } else {
@@ -48,7 +48,7 @@ Result<FrequencyResponseEstimate> frequency_response(std::span<const Exploration
       refused = found.error().message + "; ";
     }
   }
-  if (wanted(local_polynomial)) {
+  if (requested(local_polynomial)) {
     auto found = local_polynomial_response(trials, {1.0 / options.segment_s, options.max_frequency_hz});
     if (found) found->method_rule = given + refused + "any perturbation will do";
     if (found || options.method || found.error().kind == ErrorKind::usage) return found;

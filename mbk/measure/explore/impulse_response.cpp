@@ -45,7 +45,7 @@ struct Choice {
 
 /// @param moments  of lags −longest … longest
 Choice best_rank(const std::vector<Moments>& moments, Index n, Index memory, Index longest,
-                 std::optional<Index> wanted) {
+                 std::optional<Index> requested) {
   std::vector<Index> columns;
   for (Index axis = 0; axis < n; ++axis) {
     for (Index lag = -memory; lag <= memory; ++lag) columns.push_back(axis * (2 * longest + 1) + longest + lag);
@@ -56,7 +56,7 @@ Choice best_rank(const std::vector<Moments>& moments, Index n, Index memory, Ind
   const Matrix errors = cross_validated_errors(in_directions(kept, principal_directions_of_products(products)), 0);
   Index best = 0;
   errors.colwise().mean().minCoeff(&best);
-  if (wanted) best = std::min(*wanted, errors.cols() - 1);
+  if (requested) best = std::min(*requested, errors.cols() - 1);
   return {memory, best, errors.col(best)};
 }
 

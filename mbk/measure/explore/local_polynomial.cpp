@@ -18,10 +18,10 @@ namespace {
 
 constexpr Index kPolynomialOrder = 2;
 constexpr Index kTerms = kPolynomialOrder + 1;
-constexpr Index kMinFreedom = 8;     ///< of the residual: its variance is known to about a third
-constexpr double kRounding = 1e-9;   ///< of the strongest line: a window without one more than that is not excited
-constexpr double kMostChance = 1.0;  ///< power that noise alone would seem to explain, of its own
-constexpr double kTold = 1e-4;       ///< least pivot of the regressors, of columns of length 1
+constexpr Index kMinFreedom = 8;    ///< of the residual: its variance is known to about a third
+constexpr double kRounding = 1e-9;  ///< of the strongest line: a window without one more than that is not excited
+constexpr double kMaxChance = 1.0;  ///< power that noise alone would seem to explain, of its own
+constexpr double kTold = 1e-4;      ///< least pivot of the regressors, of columns of length 1
 
 /// Spectra of the signals of a trial: rows are outputs, inputs and, behind them, the reference; column k is line k.
 Eigen::MatrixXcd record_spectra(const ExplorationTrial& trial, Index samples, Index lines, bool with_reference) {
@@ -82,7 +82,7 @@ LocalFit local_fit(const std::vector<Eigen::MatrixXcd>& spectra, const Vector& s
   if (!(length.minCoeff() > 0.0) || (length.head(inputs).array() <= kRounding * strongest.array()).any()) return fit;
   K = K * length.cwiseInverse().asDiagonal();
   const numeric::ComplexPivotedQr qr(K);
-  if (!(qr.least_pivot() > kTold)) return fit;
+  if (!(qr.min_pivot() > kTold)) return fit;
   const Eigen::MatrixXcd theta = qr.solve(Z);
   const Eigen::MatrixXcd V = Z - K * theta;
   const Eigen::MatrixXcd scaled = length.head(inputs).cwiseInverse().asDiagonal() * theta.topRows(inputs);
@@ -150,7 +150,7 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
       driving += lines_of_X * lines_of_X.adjoint() / static_cast<double>(count * width);
     }
     const double chance = fit.input_part.cwiseProduct(driving).sum().real();
-    if (!(chance < kMostChance)) continue;  // few lines of the window are excited: told by their leakage alone
+    if (!(chance < kMaxChance)) continue;  // few lines of the window are excited: told by their leakage alone
     Eigen::MatrixXcd G = fit.response, residual = fit.residual, part = fit.input_part;
     if (by_reference) {
       const Eigen::MatrixXcd inverse = numeric::complex_inverse(fit.response.bottomRows(inputs));

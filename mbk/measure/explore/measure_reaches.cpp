@@ -12,7 +12,7 @@ namespace mbk::explore {
 namespace reaches {
 
 constexpr double kDisplaced = 0.1;  ///< of the largest displacement
-constexpr std::size_t kFewest = 8;  ///< undisturbed reaches that ReachPrediction takes
+constexpr std::size_t kMin = 8;     ///< undisturbed reaches that ReachPrediction takes
 constexpr double kSameRate = 1e-6;  ///< relative: clocks are read from time stamps
 
 struct Reach {
@@ -92,9 +92,9 @@ Result<Reaches> reaches_of(std::span<const ExplorationTrial> trials, const std::
                     "the reference is the displacement that was commanded relative to the predicted way: "
                     "--channels xr=…,yr=…");
   }
-  if (found.undisturbed.size() < kFewest) {
+  if (found.undisturbed.size() < kMin) {
     return bad_data(fmt::format("{} of {} reaches are undisturbed, and {} are needed to predict the others",
-                                found.undisturbed.size(), all.size(), kFewest),
+                                found.undisturbed.size(), all.size(), kMin),
                     "add recordings of undisturbed reaches; the reference is the displacement alone, zero where there "
                     "is none, and not the way of the hand");
   }

@@ -249,11 +249,11 @@ void raise(std::vector<Line>& lines, Index k, Line to) {
 
 /// Lines that a commanded signal holds: it is exact, so that the others are empty but for rounding.
 void add_commanded(const Vector& power, std::vector<Line>& lines) {
-  constexpr double kLeast = 2e-4;  // of the greatest power: bent axes make lines of 1 % of the amplitude of theirs
+  constexpr double kMin = 2e-4;  // of the greatest power: bent axes make lines of 1 % of the amplitude of theirs
   constexpr double kRounding = 1e-8;
   for (Index k = 0; k < power.size(); ++k) {
     if (!(power[k] > kRounding * power.maxCoeff())) continue;
-    raise(lines, k, power[k] > kLeast * power.maxCoeff() ? Line::excited : Line::weak);
+    raise(lines, k, power[k] > kMin * power.maxCoeff() ? Line::excited : Line::weak);
   }
 }
 
@@ -265,7 +265,7 @@ void add_commanded(const Vector& power, std::vector<Line>& lines) {
 /// above their noise are weak.
 /// @param noise  of the power, at each line
 void add_measured(const Vector& power, const Vector& noise, std::vector<Line>& found) {
-  constexpr double kBelow = 1e-3, kAbove = 1e-2, kFarAbove = 1e-3, kEven = 0.05, kLeast = 0.05, kClear = 30.0,
+  constexpr double kBelow = 1e-3, kAbove = 1e-2, kFarAbove = 1e-3, kEven = 0.05, kMin = 0.05, kClear = 30.0,
                    kStep = 0.3;
   constexpr Index kNeighbours = 8;
   double even = 0.0;
@@ -297,7 +297,7 @@ void add_measured(const Vector& power, const Vector& noise, std::vector<Line>& f
     for (std::size_t l = first; l < std::min(band.size(), i + kNeighbours + 1); ++l) near.push_back(power[band[l]]);
     const auto high = near.begin() + static_cast<std::ptrdiff_t>(9 * near.size() / 10);
     std::ranges::nth_element(near, high);
-    if (power[band[i]] > kLeast * kLeast * *high) raise(found, band[i], Line::excited);
+    if (power[band[i]] > kMin * kMin * *high) raise(found, band[i], Line::excited);
   }
 }
 

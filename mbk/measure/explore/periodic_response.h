@@ -28,7 +28,7 @@ struct PeriodicOptions {
 /// distortion at empty odd lines added where there are such (the fast method).
 /// At empty lines between the excited ones the output has its even and odd distortion, once G U is subtracted that the
 /// input carries there, with G between lines by straight lines.
-/// A realisation is a stretch of the reference that repeats itself, of any of the trials; those that are the same but
+/// A realisation is a segment of the reference that repeats itself, of any of the trials; those that are the same but
 /// for a shift in time are one. The first period of each is left out where it differs from the others (F test, 0.1 %).
 /// @param trials  of the same signals and sample time
 /// @fails  data: no period is found, or fewer than two fit; fewer realisations than inputs; no line at which the

@@ -41,7 +41,7 @@ class Search {
       if (!usable_) return;
       const Matrix lower = triangle.upper().transpose();
       weights_.push_back(lower.triangularView<Eigen::Lower>().solve(directions.transpose()));
-      wanted_.push_back(lower.triangularView<Eigen::Lower>().solve(coefficients.col(j)));
+      requested_.push_back(lower.triangularView<Eigen::Lower>().solve(coefficients.col(j)));
     }
   }
   [[nodiscard]] bool usable() const { return usable_; }
@@ -74,14 +74,14 @@ class Search {
   /// The best gains for a shape.
   [[nodiscard]] Point at(const Shape& shape) const {
     const Vector g = response(shape);
-    Point point{shape, Vector(wanted_.size()), {}};
+    Point point{shape, Vector(requested_.size()), {}};
     std::vector<Vector> parts;
     Index rows = 0;
-    for (std::size_t j = 0; j < wanted_.size(); ++j) {
+    for (std::size_t j = 0; j < requested_.size(); ++j) {
       const Vector made = weights_[j] * g;
-      const double gain = made.squaredNorm() > 0.0 ? made.dot(wanted_[j]) / made.squaredNorm() : 0.0;
+      const double gain = made.squaredNorm() > 0.0 ? made.dot(requested_[j]) / made.squaredNorm() : 0.0;
       point.gain[static_cast<Index>(j)] = gain;
-      parts.emplace_back(wanted_[j] - gain * made);
+      parts.emplace_back(requested_[j] - gain * made);
       rows += made.size();
     }
     point.rest.resize(rows);
@@ -133,15 +133,15 @@ class Search {
 
   /// Covariance of [G; ln ω; ln ζ; d].
   [[nodiscard]] Matrix covariance(const Point& point) const {
-    const auto n = static_cast<Index>(wanted_.size());
+    const auto n = static_cast<Index>(requested_.size());
     Matrix J = Matrix::Zero(point.rest.size(), n + 3);
     const auto rest_with = [&](const Shape& shape, const Vector& gain) {
       const Vector g = response(shape);
       Vector rest(point.rest.size());
       Index row = 0;
-      for (std::size_t j = 0; j < wanted_.size(); ++j) {
-        rest.segment(row, wanted_[j].size()) = wanted_[j] - gain[static_cast<Index>(j)] * (weights_[j] * g);
-        row += wanted_[j].size();
+      for (std::size_t j = 0; j < requested_.size(); ++j) {
+        rest.segment(row, requested_[j].size()) = requested_[j] - gain[static_cast<Index>(j)] * (weights_[j] * g);
+        row += requested_[j].size();
       }
       return rest;
     };
@@ -162,8 +162,8 @@ class Search {
   double T_;
   Index first_, lags_;
   bool usable_ = true;
-  std::vector<Matrix> weights_;  ///< r×lags
-  std::vector<Vector> wanted_;   ///< r
+  std::vector<Matrix> weights_;    ///< r×lags
+  std::vector<Vector> requested_;  ///< r
 };
 
 }  // namespace

@@ -57,9 +57,9 @@ std::optional<double> lack_of_fit(const Matrix& residuals, const std::vector<int
 
 /// (tr Ω)²/tr Ω² with Ω = (I − H) D (I − H), D = diag(a_ik²/(1 − h_i)), H_ij = a_jᵀ d_i.
 double bell_mccaffrey(const Matrix& a, const Matrix& d, Index k) {
-  constexpr Index kMost = 1000;  // above, all but the share of each displacement is negligible
+  constexpr Index kMax = 1000;  // above, all but the share of each displacement is negligible
   const Index n = a.rows();
-  if (n > kMost) return std::pow(a.col(k).squaredNorm(), 2) / a.col(k).cwiseAbs2().squaredNorm();
+  if (n > kMax) return std::pow(a.col(k).squaredNorm(), 2) / a.col(k).cwiseAbs2().squaredNorm();
   Vector weight(n);
   for (Index i = 0; i < n; ++i) weight[i] = a(i, k) * a(i, k) / (1.0 - a.row(i).dot(d.row(i)));
   double squared = 0.0;

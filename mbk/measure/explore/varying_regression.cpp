@@ -16,9 +16,9 @@ constexpr Index kEven[] = {2, 3, 4, 6, 8, 12, 16, 24};  ///< intervals at equal 
 constexpr Index kRowsPerCoefficient = 5;
 constexpr Index kMaxOrder = 25;
 constexpr int kMoves = 24;
-constexpr std::size_t kMostBefore = 11;  ///< knots from which moving them begins
-constexpr double kMostOfOneCell = 0.5;   ///< of what a function's rows tell, in any direction
-constexpr double kLeastTold = 0.03;      ///< of what all rows tell, in the direction of which a function's tell least
+constexpr std::size_t kMaxFirstKnots = 11;  ///< knots from which moving them begins
+constexpr double kMaxCellShare = 0.5;       ///< of what a function's rows tell, in any direction
+constexpr double kMinInformation = 0.03;  ///< of what all rows tell, in the direction of which a function's tell least
 
 /// Whitened products of all columns φ_j(s) z_k on the finest basis, of one output.
 struct Products {
@@ -209,7 +209,7 @@ class Excitation {
         of_cells.push_back(std::move(here));
       }
       const double share = T.row(j).dot(share_);
-      if (!(numeric::symmetric_eigenvalues(own).minCoeff() >= kLeastTold * share)) return false;
+      if (!(numeric::symmetric_eigenvalues(own).minCoeff() >= kMinInformation * share)) return false;
       if (T.rows() > 1 && pulses_ && rests_on_one_cell(own, of_cells)) return false;
     }
     return true;
@@ -224,7 +224,7 @@ class Excitation {
     return std::ranges::any_of(of_cells, [&](const Matrix& here) {
       const Matrix half = upper.transpose().triangularView<Eigen::Lower>().solve(here);
       const Matrix part = upper.transpose().triangularView<Eigen::Lower>().solve(half.transpose());
-      return numeric::symmetric_eigenvalues(part).maxCoeff() > kMostOfOneCell;
+      return numeric::symmetric_eigenvalues(part).maxCoeff() > kMaxCellShare;
     });
   }
 
@@ -260,7 +260,7 @@ class Chooser {
       const std::vector<double> found = bic(basis, 0, all);
       for (std::size_t k = 0; k < varying.size(); ++k) {
         take({basis, varying[k]}, found[k], chosen);
-        if (basis.knots.size() <= kMostBefore) take({basis, varying[k]}, found[k], few);
+        if (basis.knots.size() <= kMaxFirstKnots) take({basis, varying[k]}, found[k], few);
       }
       chosen.bic_last = std::min(chosen.bic_last, found.back());
     }

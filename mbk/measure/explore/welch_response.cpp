@@ -61,8 +61,8 @@ Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTria
   const bool by_reference = all_have_reference(trials);
   std::vector<Matrix> pieces;
   for (const ExplorationTrial& trial : trials) pieces.push_back(side_by_side(trial, by_reference));
-  const auto wanted = static_cast<Index>(std::llround(options.segment_s / first.sample_time));
-  const Index segment = wanted - wanted % 2;
+  const auto requested = static_cast<Index>(std::llround(options.segment_s / first.sample_time));
+  const Index segment = requested - requested % 2;
   const auto spectra = MBK_TRY(dsp::cross_spectra(pieces, Hertz(1.0 / first.sample_time), segment));
   const double n = spectra.independent_segments, dof = n - static_cast<double>(inputs);
   if (!(dof >= 1.0)) {

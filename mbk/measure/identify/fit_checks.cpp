@@ -34,11 +34,11 @@ class Checker {
 
   void check_excitation() {
     const Excitation& excitation = id_.excitation;
-    const Index wanted = 3 * axes() + 1;
-    if (excitation.rank < wanted) {
+    const Index requested = 3 * axes() + 1;
+    if (excitation.rank < requested) {
       warn(WarningCode::poorly_conditioned,
            fmt::format("position, velocity and acceleration cannot be distinguished (rank {} of {})", excitation.rank,
-                       wanted),
+                       requested),
            "perturb at several frequencies and in both directions");
       id_.usable = false;
     } else if (excitation.condition > kLargestCondition) {

@@ -299,15 +299,15 @@ Result<void> Fitter::find(Method method) {
 
 const Matrix& Fitter::long_run(Method method) {
   constexpr auto kLs = Method::least_squares, kIv = Method::instrumental_variables;
-  Matrix& wanted = omegas_[static_cast<std::size_t>(method)];
-  if (wanted.size() > 0) return wanted;
+  Matrix& requested = omegas_[static_cast<std::size_t>(method)];
+  if (requested.size() > 0) return requested;
   const auto &ls = estimates_[0], &iv = estimates_[1];
   if (!ls || !iv || !is_full(*ls) || !is_full(*iv)) {
     const Estimate& one = *estimates_[static_cast<std::size_t>(method)];
     (void)residuals(method);
-    wanted = numeric::long_run_covariance(one.bread.rows(), ranges_, lags_,
-                                          [&](const RowRange& range) { return scores(method, one, range); });
-    return wanted;
+    requested = numeric::long_run_covariance(one.bread.rows(), ranges_, lags_,
+                                             [&](const RowRange& range) { return scores(method, one, range); });
+    return requested;
   }
   const Index k = iv->bread.rows();
   for (const Method one : {kLs, kIv}) (void)residuals(one);
@@ -327,7 +327,7 @@ const Matrix& Fitter::long_run(Method method) {
   }
   omegas_[static_cast<std::size_t>(kIv)] = omega_of_both_.topLeftCorner(k, k);
   omegas_[static_cast<std::size_t>(kLs)] = omega_of_both_.bottomRightCorner(k, k);
-  return wanted;
+  return requested;
 }
 
 /// Of the rows, the first of so many holds all that the filters of every trial leave.
@@ -343,8 +343,8 @@ Index Fitter::rows_by_cutoff() const {
 }
 
 const Vector& Fitter::coherent_fraction(Method method) {
-  Vector& wanted = coherent_[static_cast<std::size_t>(method)];
-  if (wanted.size() > 0) return wanted;
+  Vector& requested = coherent_[static_cast<std::size_t>(method)];
+  if (requested.size() > 0) return requested;
   std::vector<std::size_t> full;
   for (std::size_t at = 0; at < estimates_.size(); ++at) {
     if (estimates_[at] && is_full(*estimates_[at])) full.push_back(at);
@@ -354,7 +354,7 @@ const Vector& Fitter::coherent_fraction(Method method) {
   for (const std::size_t k : full) all.emplace_back(residuals(static_cast<Method>(k)));
   const Vector fractions = coherent_residual_fraction(r_, *instruments_, all, ranges_, rows_by_cutoff());
   for (std::size_t k = 0; k < full.size(); ++k) coherent_[full[k]] = fractions.segment(static_cast<Index>(k) * n, n);
-  return wanted;
+  return requested;
 }
 
 Result<Identification> Fitter::identify(Method method) {

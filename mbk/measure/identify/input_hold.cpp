@@ -64,9 +64,9 @@ bool is_held(const Vector& input) {
   const double deviation = std::sqrt((input.array() - input.mean()).square().mean());
   if (!(deviation > 0.0)) return false;
   if (switches(input, change, deviation)) return true;
-  constexpr double kMost = 0.9;
+  constexpr double kMax = 0.9;
   const Jumps jumps = jumps_between_rests(change);
-  return jumps.share >= kMost && (jumps.rms >= kAsLarge * deviation || have_a_clock(jumps));
+  return jumps.share >= kMax && (jumps.rms >= kAsLarge * deviation || have_a_clock(jumps));
 }
 
 }  // namespace

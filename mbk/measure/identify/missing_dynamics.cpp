@@ -21,8 +21,8 @@ constexpr double kRowsPerBand = 2.6;         ///< rate of the rows over the top 
 constexpr double kBack = 1.4, kAhead = 0.5;  ///< what of the reference explains the motion of one instant [s]
 constexpr Index kRowsPerLag = 5;
 constexpr double kRidge = 1e-9;
-constexpr double kMostLeverage = 0.9;
-constexpr Index kMostOrder = 25;    ///< of the autoregression
+constexpr double kMaxLeverage = 0.9;
+constexpr Index kMaxOrder = 25;     ///< of the autoregression
 constexpr double kExplained = 0.5;  ///< share of the motion that the reference must explain to stand for it
 constexpr double kShareOfForce =
     0.002;                           ///< that matters where no reference is known: noise in a loop explains half of it
@@ -186,8 +186,8 @@ class Tester {
   [[nodiscard]] Matrix reference_around() const {
     const double dt = static_cast<double>(step_) * r_.sample_time;
     const Index most = std::max<Index>(2, rows() / (2 * kRowsPerLag * n_));
-    const Index wanted = std::llround((kBack + kAhead) / dt) + 1;
-    const Index lags = std::min(most, wanted),
+    const Index requested = std::llround((kBack + kAhead) / dt) + 1;
+    const Index lags = std::min(most, requested),
                 ahead = std::llround(kAhead / (kBack + kAhead) * static_cast<double>(lags));
     Matrix around = Matrix::Zero(rows(), lags * n_);
     const auto reference = r_.perturbation();
@@ -292,7 +292,7 @@ class Tester {
       pieces.push_back(residual.segment(piece.begin, piece.size()));
       shortest = std::min(shortest, piece.size());
     }
-    return dsp::autoregression(pieces, std::min(kMostOrder, shortest / 3));
+    return dsp::autoregression(pieces, std::min(kMaxOrder, shortest / 3));
   }
 
   /// @param last  columns at the end that are tested
@@ -325,7 +325,7 @@ class Tester {
     const Matrix bread = numeric::inverse(numeric::products_of(Rw, Aw));
     // Each residual over 1 − its leverage: few rows carry the damping of a quick pulse, and a fit draws near them.
     const Vector leverage = (Aw * bread).cwiseProduct(Rw).rowwise().sum();
-    const Vector residual = (yw - Aw * b).array() / (1.0 - leverage.array().min(kMostLeverage));
+    const Vector residual = (yw - Aw * b).array() / (1.0 - leverage.array().min(kMaxLeverage));
     const Vector b0 = solved(Aw.leftCols(base), Rw.leftCols(base), yw);
     Rw.array().colwise() *= residual.array();  // the scores
     const Matrix V = bread * numeric::gram_of({Rw}) * bread.transpose();

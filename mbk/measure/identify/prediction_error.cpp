@@ -336,9 +336,9 @@ Vector Fitter::coefficients(const Model& at, Parts parts) const {
 /// Whether the slowest motion dies away at all over the record, as far as rounding can tell. At the edge of the stable
 /// models it is the offset once more; steps mean nothing there.
 bool Fitter::is_apart_from_the_edge(const Vector& f) const {
-  constexpr double kLeast = 1e-6;
+  constexpr double kMin = 1e-6;
   const double slowest = numeric::polynomial_roots(monic(f).reverse()).cwiseAbs().maxCoeff();
-  return (1.0 - slowest) * static_cast<double>(samples_) > kLeast;
+  return (1.0 - slowest) * static_cast<double>(samples_) > kMin;
 }
 
 /// Levenberg (1944) & Marquardt (1963), until a full step of Gauss & Newton would hardly move a coefficient, and then
@@ -719,10 +719,10 @@ std::vector<Model> Fitter::noise_models(const Model& at) const {
 /// All coefficients at once, with the noise model of least BIC that settles inside the stable ones. One zero of D at
 /// z = 1, where the offset took all there was, is no model, and another order does without.
 void Fitter::add_noise(Search& search) const {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMax = 6;
   Search best;
   const std::vector<Model> models = noise_models(search.at);
-  for (std::size_t k = 0; k < std::min(kMost, models.size()) && !best.start.converged; ++k) {
+  for (std::size_t k = 0; k < std::min(kMax, models.size()) && !best.start.converged; ++k) {
     Search one{search.start, models[k], search.squares};
     descend(one, kAll, options_.max_iterations, kRefinements);
     if (k == 0 || is_better(one, best)) best = std::move(one);

@@ -190,7 +190,7 @@ void expect_possible(const RobotIdentification& found) {
   for (const ConsistentBody& body : found.consistent->bodies) EXPECT_GT(body.smallest_eigenvalue, 0.0) << body.link;
 }
 
-constexpr double kMostLost = 0.5;  // [points of VAF]
+constexpr double kMaxLoss = 0.5;  // [points of VAF]
 
 TEST(RobotConsistency, OfTwentyRandomChainsKeepsEveryBodyPossibleAndTheTorqueExplained) {
   int pressed = 0;
@@ -205,9 +205,9 @@ TEST(RobotConsistency, OfTwentyRandomChainsKeepsEveryBodyPossibleAndTheTorqueExp
       const ConsistentRobot& consistent = *found->consistent;
       ASSERT_EQ(consistent.bodies.size(), static_cast<std::size_t>(axes));
       expect_possible(*found);
-      EXPECT_LT(largest(consistent.vaf_lost_in_sample), kMostLost);
+      EXPECT_LT(largest(consistent.vaf_lost_in_sample), kMaxLoss);
       // The six seconds that are held out judge to within a point or two where the noise is a third of the torque.
-      EXPECT_LT(largest(consistent.vaf_lost), noise < 0.2 ? kMostLost : 4.0 * kMostLost);
+      EXPECT_LT(largest(consistent.vaf_lost), noise < 0.2 ? kMaxLoss : 4.0 * kMaxLoss);
       EXPECT_THAT(codes(*found), Not(Contains(WarningCode::consistent_fit_poor)));
       EXPECT_THAT(codes(*found), Not(Contains(WarningCode::inertia_not_positive)));
       EXPECT_LT(consistent.newton_steps, 100);
@@ -295,7 +295,7 @@ TEST(RobotConsistency, DoesNotBlameTheRobotForWhatNoiseDoes) {
     ASSERT_TRUE(found);
     expect_possible(*found);
     EXPECT_THAT(codes(*found), Not(Contains(WarningCode::consistent_fit_poor))) << seed;
-    if (largest(found->consistent->vaf_lost_in_sample) <= kMostLost) continue;
+    if (largest(found->consistent->vaf_lost_in_sample) <= kMaxLoss) continue;
     ++lost;
     EXPECT_THAT(found->notes, Contains(HasSubstr("chance"))) << seed;
   }
@@ -311,7 +311,7 @@ TEST(RobotConsistency, KeepsWhatIsFixed) {
   ASSERT_TRUE(found);
   expect_possible(*found);
   for (const Index k : fixed) EXPECT_EQ(found->model.parameters[k], truth.parameters[k]) << k;
-  EXPECT_LT(largest(found->consistent->vaf_lost_in_sample), kMostLost);
+  EXPECT_LT(largest(found->consistent->vaf_lost_in_sample), kMaxLoss);
 }
 
 TEST(RobotConsistency, FindsARobotWhereThatOfTheDescriptionContradictsWhatIsFixed) {
@@ -353,7 +353,7 @@ TEST(RobotConsistency, PutsBodiesWhereTheDescriptionHasNone) {
     const auto found = fitted(trial(truth, model, motion_of(3, 1), 0.03, 1), model);
     ASSERT_TRUE(found);
     expect_possible(*found);
-    EXPECT_LT(largest(found->consistent->vaf_lost_in_sample), kMostLost);
+    EXPECT_LT(largest(found->consistent->vaf_lost_in_sample), kMaxLoss);
     EXPECT_EQ(
         std::ranges::count_if(found->notes, [](const auto& note) { return note.find("body") != std::string::npos; }),
         replaced);

@@ -409,7 +409,7 @@ Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
 
 /// Where no robot that can exist does nearly as well as the free fit, and noise does not explain that.
 void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
-  constexpr double kMostLost = 0.5;  // [points of VAF]
+  constexpr double kMaxLoss = 0.5;  // [points of VAF]
   const ConsistentRobot& consistent = *found.consistent;
   std::size_t worst = 0;
   double most = -std::numeric_limits<double>::infinity();
@@ -419,9 +419,9 @@ void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
     most = lost;
     worst = joint;
   }
-  if (!(most > kMostLost)) return;
-  constexpr double kMostByChance = 5.0;  // a wrong sign leaves a residual that looks like large noise
-  if (!(consistent.loss > loss_by_chance) && most < kMostByChance) {
+  if (!(most > kMaxLoss)) return;
+  constexpr double kMaxByChance = 5.0;  // a wrong sign leaves a residual that looks like large noise
+  if (!(consistent.loss > loss_by_chance) && most < kMaxByChance) {
     found.notes.push_back(
         fmt::format("a robot that can exist explains {:.3g} points less of the torque of joint {} than the free fit: "
                     "with this much "

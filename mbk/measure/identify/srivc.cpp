@@ -146,7 +146,7 @@ class Table {
 
  private:
   Index stride_;
-  std::vector<dsp::Abreast> values_;
+  std::vector<dsp::SampleBlock> values_;
 };
 
 /// Columns of a block: samples that follow each other, or those of all segments at one step after another.
@@ -420,7 +420,7 @@ class Fitter {
 template <class Filter>
 void Fitter::fill(Filters<Filter>& filters, const Inputs& from, Index count, Index columns, const Iterate& at,
                   const Layout& layout, const Vector* free_weights, dsp::Rows now) const {
-  static const std::vector<dsp::Abreast> kNone(kSteps);
+  static const std::vector<dsp::SampleBlock> kNone(kSteps);
   const double* const none = kNone.data()->values.data();
   /// sᵏ/A, k = 0 … q − 1, of which the n-th is the signal itself less the others, and −sB/A behind them. Where q is
   /// less than n, rows that follow are written, too, and only then get what belongs there.

@@ -595,11 +595,11 @@ void Identifier::warn() {
     outside += fmt::format("{}{:.4g} Hz", outside.empty() ? "" : ", ", pole.frequency);
     highest = std::max(highest, pole.frequency);
   }
-  constexpr double kMost = 0.98;
+  constexpr double kMax = 0.98;
   const Hertz rate(1.0 / found_.sample_time);
   const bool held_out_excites_them =
       !held_out_.empty() && !outside.empty() &&
-      power_below(spectrum_of(held_out_, &SignalPair::input, rate), rate, kMost).value > highest;
+      power_below(spectrum_of(held_out_, &SignalPair::input, rate), rate, kMax).value > highest;
   if (!outside.empty()) {
     warnings.push_back({WarningCode::pole_outside_band,
                         fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 98 % of the input's power is: they "

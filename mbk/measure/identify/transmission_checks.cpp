@@ -111,8 +111,8 @@ class TransmissionTester {
   [[nodiscard]] JointRows rows(Index joint) const;
   [[nodiscard]] std::optional<Index> column(const char* name, Index joint) const {
     const auto& all = found_.coefficients;
-    const auto wanted = fmt::format("{}_{}", name, joint + 1);
-    const auto at = std::ranges::find(all, wanted, [](const auto& one) { return one.coefficient.name; });
+    const auto requested = fmt::format("{}_{}", name, joint + 1);
+    const auto at = std::ranges::find(all, requested, [](const auto& one) { return one.coefficient.name; });
     if (at == all.end()) return {};
     return at - all.begin();
   }
@@ -330,8 +330,8 @@ TransmissionTest TransmissionTester::test(Index joint) const {
                   false};
   made.elastic_by_torque = tested(columns.col(2), residual, rows.ranges, lags_).errors[0];
   Index best = 3;
-  constexpr int kFewest = 10;
-  if (rows.reversals >= kFewest) {
+  constexpr int kMin = 10;
+  if (rows.reversals >= kMin) {
     double most = -1.0;
     for (Index k = 3; k < columns.cols(); ++k) {
       const Tested gap = tested(columns.col(k), residual, rows.ranges, lags_);

@@ -111,7 +111,7 @@ Result<ExplorationTrial> explored_trial(const Recording& recording, const Explor
   return trial;
 }
 
-bool wanted(const ExploreOptions& options, ExplorationPart part) {
+bool requested(const ExploreOptions& options, ExplorationPart part) {
   return !options.only || *options.only == part;
 }
 
@@ -119,16 +119,16 @@ bool wanted(const ExploreOptions& options, ExplorationPart part) {
 /// @fails  as course_variable
 Result<void> add_responses_in_time(std::span<const ExplorationTrial> trials, const ExploreOptions& options,
                                    Exploration& found) {
-  const bool response_wanted = wanted(options, ExplorationPart::impulse_response);
-  const bool cascade_wanted = wanted(options, ExplorationPart::reflex);
-  const bool course_wanted = wanted(options, ExplorationPart::time_course);
-  if (!response_wanted && !cascade_wanted && !course_wanted) return {};
+  const bool response_requested = requested(options, ExplorationPart::impulse_response);
+  const bool cascade_requested = requested(options, ExplorationPart::reflex);
+  const bool course_requested = requested(options, ExplorationPart::time_course);
+  if (!response_requested && !cascade_requested && !course_requested) return {};
   const auto signals = explore::limb_signals(trials);
   if (!signals) {
     found.notes.push_back("no impulse response: " + signals.error().line());
     return {};
   }
-  if (course_wanted) {
+  if (course_requested) {
     const auto variable = MBK_TRY(course_variable(trials, !options.schedule.empty(), options.align));
     if (auto course = explore::time_course(*signals, variable, moved_up_to(trials))) {
       found.time_course = std::move(*course);
@@ -136,14 +136,14 @@ Result<void> add_responses_in_time(std::span<const ExplorationTrial> trials, con
       found.notes.push_back("no change over time: " + course.error().line());
     }
   }
-  if (response_wanted) {
+  if (response_requested) {
     if (auto response = explore::impulse_response(*signals, options.impulse_response)) {
       found.impulse_response = std::move(*response);
     } else {
       found.notes.push_back("no impulse response: " + response.error().line());
     }
   }
-  if (!cascade_wanted) return {};
+  if (!cascade_requested) return {};
   if (auto cascade = explore::parallel_cascade(*signals)) {
     found.parallel_cascade = std::move(*cascade);
   } else {
@@ -274,13 +274,13 @@ Result<Exploration> explore(std::span<const Recording> recordings, const Explore
     auto after_onset = MBK_TRY(explore::after_onset(trials, *options.after_onset_s));
     found.after_onset = std::move(after_onset);
   }
-  if (wanted(options, ExplorationPart::frequency_response)) {
+  if (requested(options, ExplorationPart::frequency_response)) {
     auto response = MBK_TRY(explore::frequency_response(trials, options.frequency_response));
     for (Warning& warning : explore::warnings_of(response)) found.warnings.push_back(std::move(warning));
     found.frequency_response = std::move(response);
   }
   MBK_TRY(add_responses_in_time(trials, options, found));
-  if (wanted(options, ExplorationPart::ramp_and_hold)) {
+  if (requested(options, ExplorationPart::ramp_and_hold)) {
     MBK_TRY(add_plateaus(recordings, trials, options, found));
   }
   return found;

@@ -15,7 +15,7 @@
 namespace mbk::measurement {
 namespace {
 
-constexpr int kMostSteps = 20;
+constexpr int kMaxSteps = 20;
 constexpr double kStays = 1e-6;        ///< [s]
 constexpr double kLongestDelay = 0.2;  ///< [s]
 constexpr double kSmallestVaf = 95.0;  ///< [%]
@@ -106,7 +106,7 @@ Result<MeasuredDelay> find_sensor_delay(const Recording& recording, double mass,
   found.stated_mass = mass;
   found.sources = recording.sources;
   bool stays = false;
-  for (int step = 0; step < kMostSteps && !stays; ++step) {
+  for (int step = 0; step < kMaxSteps && !stays; ++step) {
     const auto rows = MBK_TRY(rows_with(recording, found.delay, how));
     const Index axes = rows.Z.cols() - 2;
     const auto fit = MBK_TRY(numeric::fit_least_squares(rows.Z, rows.Y));

@@ -190,21 +190,21 @@ Result<void> Preparer::decimate() {
 
 /// One of how many samples is kept.
 Result<Index> Preparer::every(const SignalPair& pair) const {
-  const auto& wanted = options_.sample_rate_hz;
+  const auto& requested = options_.sample_rate_hz;
   const bool discrete = is_discrete(options_.fit.method);
-  if (wanted ? *wanted == 0.0 : !discrete) return 1;
+  if (requested ? *requested == 0.0 : !discrete) return 1;
   if (!pair.step) {
-    if (!wanted) return 1;  // the fit says what is wrong
+    if (!requested) return 1;  // the fit says what is wrong
     return bad_usage("an uneven clock has no rate to leave samples out of", "put it right by --resample");
   }
   const double rate = 1.0 / *pair.step;
   constexpr double kRounding = 1e-6;
-  if (!wanted && rate_of_model_ > kMaxDiscreteRate) {
+  if (!requested && rate_of_model_ > kMaxDiscreteRate) {
     return std::max<Index>(1, static_cast<Index>(std::floor(rate / rate_of_model_.value)));
   }
-  if (!wanted) return static_cast<Index>(std::ceil(rate / kMaxDiscreteRate.value * (1.0 - kRounding)));
-  if (*wanted <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *wanted));
-  return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *wanted),
+  if (!requested) return static_cast<Index>(std::ceil(rate / kMaxDiscreteRate.value * (1.0 - kRounding)));
+  if (*requested <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *requested));
+  return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *requested),
                    "choose a lower --sample-rate, or --resample");
 }
 

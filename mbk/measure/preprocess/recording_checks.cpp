@@ -42,7 +42,7 @@ std::string why_missing(const Recording& recording, std::string_view channel) {
 }
 
 Result<void> check_length(Index samples, const Inspection& inspection) {
-  if (samples < kFewestSamples) {
+  if (samples < kMinSamples) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
   if (!std::isfinite(inspection.duration)) {

@@ -23,7 +23,7 @@ namespace mbk::preprocess {
 [[nodiscard]] std::string why_missing(const Recording& recording, std::string_view channel);
 
 /// About three for each parameter of one axis.
-inline constexpr Index kFewestSamples = 20;
+inline constexpr Index kMinSamples = 20;
 
 /// Samples enough, on a clock that rises.
 [[nodiscard]] Result<void> check_length(Index samples, const Inspection& inspection);

@@ -61,7 +61,7 @@ int depth(std::string_view xml) {
 }
 
 /// Attributes of the element that has most, at least: the parser looks through all before it for each.
-int most_attributes(std::string_view xml) {
+int max_attributes(std::string_view xml) {
   int most = 0;
   for (std::size_t at = xml.find('<'); at != std::string_view::npos; at = xml.find('<', at + 1)) {
     if (xml.substr(at).starts_with("<!--")) {
@@ -138,12 +138,12 @@ void take_apart(const urdf::ModelInterface& model) {
 }
 
 Result<Model> parse(std::string_view urdf) {
-  constexpr int kDeepest = 1000;         // a URDF stands 4 deep
-  constexpr int kMostAttributes = 1000;  // its elements have up to six
+  constexpr int kDeepest = 1000;        // a URDF stands 4 deep
+  constexpr int kMaxAttributes = 1000;  // its elements have up to six
   constexpr const char* kRemedy = "check it, as by 'check_urdf FILE'";
   if (depth(urdf) > kDeepest) return bad_data("no URDF: elements stand too deep in one another", kRemedy);
-  if (most_attributes(urdf) > kMostAttributes) {
-    return bad_data(fmt::format("no URDF: an element has more than {} attributes", kMostAttributes), kRemedy);
+  if (max_attributes(urdf) > kMaxAttributes) {
+    return bad_data(fmt::format("no URDF: an element has more than {} attributes", kMaxAttributes), kRemedy);
   }
   if (urdf.find("</robot") == std::string_view::npos) return bad_data("no URDF: there is no </robot>", kRemedy);
   const Overheard overheard;

@@ -9,7 +9,7 @@ namespace mbk::robot {
 /// A term of the drives and the word for it on the command line and in files.
 struct DriveTermName {
   const char* word;
-  bool DriveTerms::*wanted;
+  bool DriveTerms::*requested;
 };
 
 /// In the order in which they stand for each joint.

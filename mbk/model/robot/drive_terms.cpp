@@ -10,8 +10,8 @@ std::vector<Coefficient> DriveTerms::coefficients(const Mechanism& mechanism) co
   std::vector<Coefficient> all;
   for (int joint = 0; joint < mechanism.joints(); ++joint) {
     const bool slides = mechanism.slides(joint);
-    const auto add = [&](bool wanted, const char* name, const char* turning, const char* sliding) {
-      if (wanted) all.push_back({fmt::format("{}_{}", name, joint + 1), slides ? sliding : turning});
+    const auto add = [&](bool requested, const char* name, const char* turning, const char* sliding) {
+      if (requested) all.push_back({fmt::format("{}_{}", name, joint + 1), slides ? sliding : turning});
     };
     add(motor_inertia, "motor_inertia", "kg·m²", "kg");
     add(viscous, "viscous", "N·m·s/rad", "N·s/m");
@@ -46,7 +46,7 @@ std::vector<PhysicalCondition> DriveTerms::physical_conditions(const Mechanism& 
 
 int DriveTerms::per_joint() const {
   int count = 0;
-  for (const bool wanted : {motor_inertia, viscous, coulomb, stribeck, cable, offset}) count += wanted ? 1 : 0;
+  for (const bool requested : {motor_inertia, viscous, coulomb, stribeck, cable, offset}) count += requested ? 1 : 0;
   return count;
 }
 

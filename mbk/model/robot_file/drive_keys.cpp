@@ -19,17 +19,17 @@ const std::vector<DriveTerm>& drive_terms() {
   return kAll;
 }
 
-DriveValues::DriveValues(const DriveTerms& wanted, int joints)
-    : terms(wanted),
-      values(Vector::Zero(joints * wanted.per_joint())),
+DriveValues::DriveValues(const DriveTerms& requested, int joints)
+    : terms(requested),
+      values(Vector::Zero(joints * requested.per_joint())),
       stated(static_cast<std::size_t>(values.size()), false) {}
 
 void DriveValues::set(bool DriveTerms::*term, int joint, double value) {
   if (!(terms.*term)) return;
   Index at = joint * terms.per_joint();
   for (const DriveTerm& one : drive_terms()) {
-    if (one.wanted == term) break;
-    at += terms.*one.wanted ? 1 : 0;
+    if (one.requested == term) break;
+    at += terms.*one.requested ? 1 : 0;
   }
   values[at] = value;
   stated[static_cast<std::size_t>(at)] = true;
@@ -39,15 +39,16 @@ DriveTerms read_terms(const config::Section& drive) {
   DriveTerms terms;
   if (!drive.has("terms")) return terms;
   using Part = bool DriveTerms::*;
-  const std::vector<Part> wanted = drive.choices<Part>("terms",
-                                                       {{"motor_inertia", &DriveTerms::motor_inertia},
-                                                        {"viscous", &DriveTerms::viscous},
-                                                        {"coulomb", &DriveTerms::coulomb},
-                                                        {"stribeck", &DriveTerms::stribeck},
-                                                        {"cable", &DriveTerms::cable},
-                                                        {"offset", &DriveTerms::offset}},
-                                                       {});
-  for (const DriveTerm& one : drive_terms()) terms.*one.wanted = std::ranges::find(wanted, one.wanted) != wanted.end();
+  const std::vector<Part> requested = drive.choices<Part>("terms",
+                                                          {{"motor_inertia", &DriveTerms::motor_inertia},
+                                                           {"viscous", &DriveTerms::viscous},
+                                                           {"coulomb", &DriveTerms::coulomb},
+                                                           {"stribeck", &DriveTerms::stribeck},
+                                                           {"cable", &DriveTerms::cable},
+                                                           {"offset", &DriveTerms::offset}},
+                                                          {});
+  for (const DriveTerm& one : drive_terms())
+    terms.*one.requested = std::ranges::find(requested, one.requested) != requested.end();
   return terms;
 }
 
@@ -71,16 +72,16 @@ void read_values(const config::Section& drive, const robot::Mechanism& mechanism
         if (mechanism.slides(joint) == sliding) joints.push_back(joint);
       }
       if (joints.empty() || !drive.has(key)) continue;
-      if (!(into.terms.*term.wanted)) {
+      if (!(into.terms.*term.requested)) {
         drive.reject(key, fmt::format("\"{}\" is not among the terms of the drives", term.word),
                      fmt::format("add it to terms in [drive], or take {} out", key));
         continue;
       }
-      const bool resists = term.wanted == &DriveTerms::motor_inertia || term.wanted == &DriveTerms::viscous ||
-                           term.wanted == &DriveTerms::coulomb;
+      const bool resists = term.requested == &DriveTerms::motor_inertia || term.requested == &DriveTerms::viscous ||
+                           term.requested == &DriveTerms::coulomb;
       const std::vector<double> values = drive.numbers(key, std::vector<double>(joints.size()),
                                                        resists ? config::at_least(0) : config::any(), joints.size());
-      for (std::size_t k = 0; k < joints.size(); ++k) into.set(term.wanted, joints[k], values[k]);
+      for (std::size_t k = 0; k < joints.size(); ++k) into.set(term.requested, joints[k], values[k]);
     }
   }
 }

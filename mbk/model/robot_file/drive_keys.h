@@ -11,7 +11,7 @@ namespace mbk::robot_file {
 /// A term of the drives, the word for it in `terms`, and the keys of its values.
 struct DriveTerm {
   const char* word;
-  bool robot::DriveTerms::*wanted;
+  bool robot::DriveTerms::*requested;
   const char* turning_key;  ///< one value for each joint that turns
   const char* sliding_key;  ///< one value for each joint that slides
 };
@@ -25,7 +25,7 @@ struct DriveValues {
   Vector values;             ///< ψ; 0 where it is not stated
   std::vector<bool> stated;  ///< for each of ψ
 
-  DriveValues(const robot::DriveTerms& wanted, int joints);
+  DriveValues(const robot::DriveTerms& requested, int joints);
 
   /// Nothing happens where the term is not wanted.
   void set(bool robot::DriveTerms::*term, int joint, double value);

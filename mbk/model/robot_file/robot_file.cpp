@@ -82,8 +82,8 @@ Bodies read_planar(const Section& s, DriveTerms& terms) {
   terms.smoothing = shared(s, "smoothing_rad_per_s", friction[0].smoothing, friction[1].smoothing);
   terms.stribeck_velocity =
       shared(s, "stribeck_velocity_rad_per_s", friction[0].stribeck_velocity, friction[1].stribeck_velocity);
-  const auto check_term = [&](const char* key, bool wanted, const char* word) {
-    if (!wanted && s.has(key)) {
+  const auto check_term = [&](const char* key, bool requested, const char* word) {
+    if (!requested && s.has(key)) {
       s.reject(key, fmt::format("\"{}\" is not among the terms of the drives", word), "add it to terms in [drive]");
     }
     return s.has(key);

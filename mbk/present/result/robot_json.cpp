@@ -24,7 +24,7 @@ void describe(Fields<DriveTerms>& fields) {
   fields.add_as("terms", {{"type", "array"}, {"items", {{"enum", std::move(words)}}}}, [](const DriveTerms& drive) {
     Json terms = Json::array();
     for (const DriveTermName& term : kDriveTermNames) {
-      if (drive.*term.wanted) terms.push_back(term.word);
+      if (drive.*term.requested) terms.push_back(term.word);
     }
     return terms;
   });
@@ -321,12 +321,12 @@ void describe(Fields<DescribedRobot>& fields) {
 
 robot::DriveTerms drive_from(const Json& json) {
   robot::DriveTerms drive;
-  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.wanted = false;
+  for (const robot::DriveTermName& term : robot::kDriveTermNames) drive.*term.requested = false;
   for (const Json& name : json.at("terms")) {
     bool known = false;
     for (const robot::DriveTermName& term : robot::kDriveTermNames) {
       if (name != term.word) continue;
-      drive.*term.wanted = known = true;
+      drive.*term.requested = known = true;
     }
     if (!known) throw Malformed{fmt::format("there is no term {}", name.dump())};
   }

@@ -216,7 +216,7 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
     result.energy_absorbed = state.energy.absorbed - 0.5 * experiment.robot.handle_mass * state.velocity.squaredNorm();
     loop.advance();
     if (i % 1000 == 0) {
-      stop_where_unwanted();
+      stop_if_cancelled();
       if (experiment.progress) experiment.progress(static_cast<double>(i) / static_cast<double>(samples));
     }
   }

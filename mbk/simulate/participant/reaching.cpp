@@ -11,7 +11,7 @@ namespace mbk::participant {
 namespace {
 
 /// Durations and lengths stay within it: a draw far out is no reach any more.
-constexpr double kLeast = 0.7, kMost = 1.3;
+constexpr double kMin = 0.7, kMax = 1.3;
 
 Result<void> check(const Reaching::Options& o) {
   if (auto ok = above_zero({{"interval of the reaches", o.interval, "s"},
@@ -34,7 +34,7 @@ Result<void> check(const Reaching::Options& o) {
   }
   if (!o.start.allFinite()) return bad_usage("the start of a reach is not finite");
   if (o.reaches < 0) return bad_usage(fmt::format("{} reaches", o.reaches));
-  const double longest = o.latest + kMost * o.duration + o.stay + o.way_back;
+  const double longest = o.latest + kMax * o.duration + o.stay + o.way_back;
   if (longest > o.interval) {
     return bad_usage(fmt::format("a reach of {:g} s with its way back may last {:g} s, longer than the interval of "
                                  "{:g} s",
@@ -53,7 +53,7 @@ Result<Reaching> Reaching::create(const Options& options, std::uint64_t seed, st
   MBK_TRY(check(options));
   Reaching made(options);
   numeric::Random random(seed, stream);
-  const auto about_one = [&](double spread) { return std::clamp(1.0 + spread * random.normal(), kLeast, kMost); };
+  const auto about_one = [&](double spread) { return std::clamp(1.0 + spread * random.normal(), kMin, kMax); };
   const Eigen::Vector2d along = options.reach.normalized(), across(-along.y(), along.x());
   for (int i = 0; i < options.reaches; ++i) {
     const double begin = options.first + i * options.interval + options.latest * random.uniform();

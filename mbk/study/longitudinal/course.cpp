@@ -14,7 +14,7 @@ namespace mbk::longitudinal {
 namespace {
 
 /// Among more people than that one alone changes little, and leaving each out in turn costs much.
-constexpr int kMostJudgedByOthers = 40;
+constexpr int kMaxComparedPeople = 40;
 
 using SessionValues = std::map<std::int64_t, std::vector<double>>;  ///< by session
 
@@ -195,7 +195,7 @@ std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns, const 
     one.why_unknown = error.why_unknown;
     for (const auto& [number, values] : values_of(columns, *column, one.condition, participant)) {
       Course course = course_of(number, values, one.axial, error);
-      const bool stands_out = one.repeated_participants <= kMostJudgedByOthers &&
+      const bool stands_out = one.repeated_participants <= kMaxComparedPeople &&
                               std::ranges::any_of(course.changes, [](const Change& change) {
                                 return std::abs(change.difference) > change.mdc;
                               });

@@ -69,7 +69,7 @@ void describe(Fields<OutcomeCourses>& fields) {
 namespace {
 
 /// Above so many values a page does not hold every result, since it would no longer open quickly.
-constexpr std::size_t kMostValues = 400'000;
+constexpr std::size_t kMaxValues = 400'000;
 
 /// The symmetric part of the mean matrix of a person's session under one condition.
 struct SessionMatrix {
@@ -177,7 +177,7 @@ std::optional<std::vector<std::size_t>> Page::rows() const {
   for (std::size_t k = 0; k < report.columns.trials.size(); ++k) {
     if (holds(report.columns.trials[k].participant)) rows.push_back(k);
   }
-  if (rows.size() * report.columns.outcomes.size() > kMostValues) return std::nullopt;
+  if (rows.size() * report.columns.outcomes.size() > kMaxValues) return std::nullopt;
   return rows;
 }
 

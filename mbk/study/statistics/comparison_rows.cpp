@@ -16,7 +16,7 @@ using reliability::Pairing;
 
 constexpr double kLevel = 0.05;
 /// Above so many people no single one decides, and looking at each costs their square.
-constexpr Index kMostLeftOut = 1'000;
+constexpr Index kMaxLeftOut = 1'000;
 
 /// Which level each trial belongs to; −1: none.
 struct Levels {
@@ -31,10 +31,10 @@ Error no_level(const std::string& what, const std::string& name, const std::vect
           list.empty() ? "" : "there are: " + list, ""};
 }
 
-Result<Levels> levels_by_name(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+Result<Levels> levels_by_name(const std::vector<std::string>& requested, const std::vector<std::string>& known,
                               const std::vector<int>& of_trial, const std::string& what) {
   Levels levels;
-  levels.names = wanted.empty() ? known : wanted;
+  levels.names = requested.empty() ? known : requested;
   std::vector<int> place(known.size(), -1);
   for (std::size_t k = 0; k < levels.names.size(); ++k) {
     const auto found = std::ranges::find(known, levels.names[k]);
@@ -51,13 +51,13 @@ Result<Levels> levels_by_name(const std::vector<std::string>& wanted, const std:
   return levels;
 }
 
-Result<Levels> by_condition(const store::OutcomeColumns& columns, const std::vector<std::string>& wanted) {
+Result<Levels> by_condition(const store::OutcomeColumns& columns, const std::vector<std::string>& requested) {
   std::vector<int> of_trial;
   for (const store::TrialRow& trial : columns.trials) of_trial.push_back(trial.condition);
-  return levels_by_name(wanted, columns.conditions, of_trial, "condition");
+  return levels_by_name(requested, columns.conditions, of_trial, "condition");
 }
 
-Result<Levels> by_session(const store::OutcomeColumns& columns, const std::vector<std::string>& wanted) {
+Result<Levels> by_session(const store::OutcomeColumns& columns, const std::vector<std::string>& requested) {
   std::map<std::int64_t, int> numbers;
   for (const store::TrialRow& trial : columns.trials) numbers.emplace(trial.session, 0);
   std::vector<std::string> known;
@@ -67,11 +67,11 @@ Result<Levels> by_session(const store::OutcomeColumns& columns, const std::vecto
   }
   std::vector<int> of_trial;
   for (const store::TrialRow& trial : columns.trials) of_trial.push_back(numbers[trial.session]);
-  return levels_by_name(wanted, known, of_trial, "session");
+  return levels_by_name(requested, known, of_trial, "session");
 }
 
 Result<Levels> by_group(const store::OutcomeColumns& columns, const std::vector<PeopleGroup>& groups,
-                        const std::vector<std::string>& wanted, std::vector<std::string>& notes) {
+                        const std::vector<std::string>& requested, std::vector<std::string>& notes) {
   if (groups.size() < 2) {
     return bad_usage("groups are compared, and there are not two",
                      "say who is in which, as in --group patients=1-10 --group controls=11,12,15-20");
@@ -106,7 +106,7 @@ Result<Levels> by_group(const store::OutcomeColumns& columns, const std::vector<
   if (!absent.empty()) {
     notes.push_back(fmt::format("in a group, but without usable results: participant {}", listed(absent)));
   }
-  return levels_by_name(wanted, known, of_trial, "group");
+  return levels_by_name(requested, known, of_trial, "group");
 }
 
 /// One person at one level: the mean of their results, and its squared standard error by those of the results.
@@ -217,7 +217,7 @@ Vector without(const Vector& values, Index at) {
 
 /// The person without whom p is largest.
 std::optional<Influence> influence_on_p(const Samples& samples) {
-  if (samples.first.size() + samples.second.size() > kMostLeftOut) return {};
+  if (samples.first.size() + samples.second.size() > kMaxLeftOut) return {};
   std::optional<Influence> most;
   const auto take = [&](std::int64_t participant, double p) {
     if (std::isfinite(p) && (!most || p > most->without)) most = {participant, p};

@@ -105,7 +105,7 @@ SessionMatrices session_matrices(const store::OutcomeColumns& columns, const Ele
 }
 
 /// Distances between people are as many as half of their square.
-constexpr int kMostPeople = 500;
+constexpr int kMaxPeople = 500;
 
 MatrixSpread spread_of(const SessionMatrices& matrices) {
   MatrixSpread spread;
@@ -113,7 +113,7 @@ MatrixSpread spread_of(const SessionMatrices& matrices) {
   spread.sessions = matrices.sessions;
   spread.left_out = matrices.left_out;
   std::vector<std::vector<Matrix>> people = matrices.of_people;
-  if (matrices.people > kMostPeople) people.resize(kMostPeople);
+  if (matrices.people > kMaxPeople) people.resize(kMaxPeople);
   const auto widths = reliability::width_spread(people);
   if (!widths) {
     spread.support = Support::no_variation;

@@ -13,9 +13,9 @@ namespace mbk::statistics {
 namespace {
 
 /// Above so many results weights cost much and change little.
-constexpr std::size_t kMostWeighted = 5'000;
+constexpr std::size_t kMaxWeighted = 5'000;
 /// Above so many people no single one decides, and looking at each costs their square.
-constexpr Index kMostLookedAt = 1'000;
+constexpr Index kMaxJudged = 1'000;
 
 /// Single trials of the session in which most people have two or more, the earliest of those.
 std::vector<Cell> trials_of_one_session(const OutcomeRows& rows, const std::vector<Cell>& cells,
@@ -55,7 +55,7 @@ std::vector<SessionAgreement> agreements(const Repeated& sessions) {
 /// The person without whom ICC(A,1) is farthest from that of all.
 std::optional<Influence> influence_on_icc(const Repeated& sessions) {
   const Index people = sessions.scores.rows();
-  if (sessions.support != Support::enough || people <= reliability::kMinPeople || people > kMostLookedAt) return {};
+  if (sessions.support != Support::enough || people <= reliability::kMinPeople || people > kMaxJudged) return {};
   const double all = sessions.test_retest.icc[1].value;
   std::optional<Influence> most;
   Matrix others(people - 1, sessions.scores.cols());
@@ -113,10 +113,10 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
   for (const Cell& cell : cells) counts.push_back(cell.count);
   result.typical_trials = static_cast<int>(numeric::upper_median(std::move(counts)));
   const bool known = all_known(rows.rows);
-  result.weighted = known && rows.rows.size() <= kMostWeighted;
+  result.weighted = known && rows.rows.size() <= kMaxWeighted;
   if (known && !result.weighted) {
     notes.push_back(
-        fmt::format("trials are not weighted by their standard errors: there are more than {}", kMostWeighted));
+        fmt::format("trials are not weighted by their standard errors: there are more than {}", kMaxWeighted));
   }
   reliability::Measurements m = measurements_of(rows, result.weighted);
   std::vector<int> trials = {1};

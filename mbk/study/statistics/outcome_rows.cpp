@@ -153,10 +153,9 @@ Vector as_vector(const std::vector<double>& values) {
 }
 
 std::string listed(const std::vector<std::int64_t>& numbers) {
-  constexpr std::size_t kMost = 5;
-  if (numbers.size() <= kMost) return fmt::format("{}", fmt::join(numbers, ", "));
-  return fmt::format("{} and {} more", fmt::join(numbers.begin(), numbers.begin() + kMost, ", "),
-                     numbers.size() - kMost);
+  constexpr std::size_t kMax = 5;
+  if (numbers.size() <= kMax) return fmt::format("{}", fmt::join(numbers, ", "));
+  return fmt::format("{} and {} more", fmt::join(numbers.begin(), numbers.begin() + kMax, ", "), numbers.size() - kMax);
 }
 
 }  // namespace mbk::statistics

@@ -152,9 +152,9 @@ Result<void> check_goal(const Pilot& pilot, const PlanGoal& goal) {
   if (!goal.difference && !goal.change) {
     return bad_usage("nothing is wanted of the study", "pass --difference or --mdc, in the unit of the outcome");
   }
-  for (const auto& wanted : {goal.difference, goal.change}) {
-    if (wanted && !(*wanted > 0.0 && std::isfinite(*wanted))) {
-      return bad_usage(fmt::format("{:g} is wanted", *wanted), "ask for more than 0");
+  for (const auto& requested : {goal.difference, goal.change}) {
+    if (requested && !(*requested > 0.0 && std::isfinite(*requested))) {
+      return bad_usage(fmt::format("{:g} is wanted", *requested), "ask for more than 0");
     }
   }
   if (pilot.warns_of(ReliabilityWarning::people_and_sessions) && (goal.change || goal.pairing == Pairing::paired)) {
@@ -277,10 +277,10 @@ Result<std::vector<StudyPlan>> study_plans(const Pilot& pilot, const PlanGoal& g
   std::vector<StudyPlan> plans;
   constexpr double kChange = reliability::kPublishedNormal95 * std::numbers::sqrt2;
   const bool change_known = !pilot.warns_of(ReliabilityWarning::people_and_sessions);
-  const int most_sessions = change_known ? goal.most_sessions : 1;
-  const int most_trials = pilot.warns_of(ReliabilityWarning::sessions_and_trials) ? 1 : goal.most_trials;
-  for (int sessions = 1; sessions <= most_sessions; ++sessions) {
-    for (int trials = 1; trials <= most_trials; ++trials) {
+  const int max_sessions = change_known ? goal.max_sessions : 1;
+  const int max_trials = pilot.warns_of(ReliabilityWarning::sessions_and_trials) ? 1 : goal.max_trials;
+  for (int sessions = 1; sessions <= max_sessions; ++sessions) {
+    for (int trials = 1; trials <= max_trials; ++trials) {
       StudyPlan plan{.sessions = sessions, .trials = trials};
       const auto error = [&](const VarianceComponents& variances) {
         return error_of_mean(variances, sessions, trials);

@@ -23,8 +23,8 @@ struct PlanGoal {
   reliability::Pairing pairing = reliability::Pairing::unpaired;
   double power = 0.8, level = 0.05;
   std::optional<int> people;  ///< how many there will be, in each group, or pairs; absent: as many as it takes
-  int most_sessions = 1, most_trials = 10;  ///< plans up to so many, trials in each session
-  int simulated_studies = 0;                ///< in which power is counted as well; 0: none
+  int max_sessions = 1, max_trials = 10;  ///< plans up to so many, trials in each session
+  int simulated_studies = 0;              ///< in which power is counted as well; 0: none
   std::uint64_t seed = 1;
 };
 
@@ -69,7 +69,7 @@ struct StudyPlan {
   std::optional<Planned> simulated_power;
 };
 
-/// Plans of 1 … most_sessions sessions and 1 … most_trials trials. A person's mean over k sessions of m trials errs by
+/// Plans of 1 … max_sessions sessions and 1 … max_trials trials. A person's mean over k sessions of m trials errs by
 ///   E = (σ_s² + σ_e²/m)/k;  MDC = 1.96 √2 √E;  V = σ_p² + E unpaired, V = 2E paired;  d = difference/√V
 /// and people follow from the t test of d (reliability/power.h). Intervals are by the parametric bootstrap: where a
 /// pilot like this gives V* for V, V lies between V²/V*(0.975) and V²/V*(0.025). Where the pilot does not separate

@@ -42,8 +42,8 @@ TEST(APlan, OfStatedVariancesIsThatOfTheTTest) {
   PlanGoal goal;
   goal.difference = 3.0;
   goal.change = 5.0;
-  goal.most_sessions = 2;
-  goal.most_trials = 4;
+  goal.max_sessions = 2;
+  goal.max_trials = 4;
   const auto plans = study_plans(stated(), goal);
   ASSERT_TRUE(plans) << plans.error().line();
   ASSERT_EQ(plans->size(), 8U);
@@ -63,7 +63,7 @@ TEST(APlan, HasThePowerThatSimulatedStudiesShow) {
     PlanGoal goal;
     goal.difference = 2.5;
     goal.pairing = pairing;
-    goal.most_trials = 2;
+    goal.max_trials = 2;
     goal.simulated_studies = 4000;
     const auto plans = study_plans(stated(), goal);
     ASSERT_TRUE(plans);
@@ -77,7 +77,7 @@ TEST(APlan, OfAPilotSaysHowSureItIs) {
   // Of 100 pilots, the interval of the people needed holds the true number nearly always.
   PlanGoal goal;
   goal.difference = 3.0;
-  goal.most_trials = 2;
+  goal.max_trials = 2;
   const double truth = study_plans(stated(), goal)->back().people.value;
   int held = 0;
   constexpr int kPilots = 100;
@@ -96,7 +96,7 @@ TEST(APlan, OfOneTrialASessionPromisesNothingOfMoreTrials) {
   PlanGoal goal;
   goal.difference = 3.0;
   goal.change = 4.0;
-  goal.most_sessions = 2;
+  goal.max_sessions = 2;
   for (const int more : {0, 1}) {  // sessions with a second trial
     auto columns = pilot_columns(10, 2, 2, 5);
     for (std::size_t k = 1; k < columns.trials.size(); k += 2) {
@@ -124,7 +124,7 @@ TEST(APlan, OfOneSessionPromisesNothingOfChanges) {
   ASSERT_TRUE(pilot) << pilot.error().line();
   PlanGoal goal;
   goal.difference = 3.0;
-  goal.most_sessions = 3;
+  goal.max_sessions = 3;
   const auto plans = study_plans(*pilot, goal);
   ASSERT_TRUE(plans) << plans.error().line();
   EXPECT_EQ(plans->size(), 10U) << "one session";

@@ -69,14 +69,14 @@ void note_duplicates(const store::OutcomeColumns& columns, std::vector<std::stri
     pairs.emplace_back(std::min(a, b), std::max(a, b));
   }
   std::ranges::sort(pairs);
-  constexpr std::size_t kMost = 5;
-  for (std::size_t k = 0; k < std::min(pairs.size(), kMost); ++k) {
+  constexpr std::size_t kMax = 5;
+  for (std::size_t k = 0; k < std::min(pairs.size(), kMax); ++k) {
     notes.push_back(
         fmt::format("recordings {} and {} have the same results: one trial that was added twice? 'mbk study exclude' "
                     "leaves one out",
                     pairs[k].first, pairs[k].second));
   }
-  if (pairs.size() > kMost) notes.push_back(fmt::format("{} more pairs have the same results", pairs.size() - kMost));
+  if (pairs.size() > kMax) notes.push_back(fmt::format("{} more pairs have the same results", pairs.size() - kMax));
 }
 
 }  // namespace

@@ -138,9 +138,9 @@ export class Plot {
         }
       }
     }
-    const end = (now: number, wanted: number): number => {
-      const fits = roundUp(wanted, ends);
-      return fits > now || roundUp(1.3 * wanted, ends) < now ? fits : now;
+    const end = (now: number, requested: number): number => {
+      const fits = roundUp(requested, ends);
+      return fits > now || roundUp(1.3 * requested, ends) < now ? fits : now;
     };
     const [from, to] = [-end(-this.low, -low), end(this.high, high)];
     if (from !== this.low || to !== this.high) this.whole = true;

@@ -73,8 +73,8 @@ const label = (p: Point): string => `${significant(p.f, 3)} Hz`;
 function marked(all: Point[], place: (p: Point) => [number, number]): Point[] {
   const apart = 70; // [px]
   const chosen: Point[] = [];
-  const wanted = all.filter((_, k) => k % Math.max(1, Math.floor(all.length / 40)) === 0);
-  for (const p of wanted) {
+  const shown = all.filter((_, k) => k % Math.max(1, Math.floor(all.length / 40)) === 0);
+  for (const p of shown) {
     const [x, y] = place(p);
     if (chosen.every((q) => Math.hypot(place(q)[0] - x, place(q)[1] - y) > apart && label(q) !== label(p))) chosen.push(p);
   }

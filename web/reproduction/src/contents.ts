@@ -75,11 +75,11 @@ export function contents(groups: Group[], articles: Map<string, HTMLElement>): C
   const nothing = document.getElementById("nothing");
 
   const matches = (exhibit: Exhibit): boolean => {
-    const wanted = lower(search.value).split(/\s+/).filter(Boolean);
+    const searched = lower(search.value).split(/\s+/).filter(Boolean);
     const from = provenancesOf(exhibit);
     return boxes.some(({ provenance, box }) => box.checked && from.has(provenance))
       && (agreement.value === "" || count(exhibit, agreement.value as Agreement) > 0)
-      && wanted.every((word) => words.get(exhibit.id)?.includes(word));
+      && searched.every((word) => words.get(exhibit.id)?.includes(word));
   };
   const apply = (): void => {
     let shown = 0;

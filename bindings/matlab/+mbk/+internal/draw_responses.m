@@ -43,10 +43,10 @@ function handles = draw_responses(document)
   end
 end
 
-function label_where(wanted, text)
+function label_where(shown, text)
 % Those in a row that have the same label as the first need none.
   set(gca, 'FontSize', 9);
-  if wanted
+  if shown
     mbk.internal.label('', text);
   end
 end
