@@ -23,8 +23,8 @@ MAKE_LOG = pathlib.Path(os.environ["MAKE_LOG"]).resolve()
 BEFORE = {
     "README.md": "mkdir -p build/demonstration && "
                  "mbk simulate relaxed_sinusoidal --quiet --out build/demonstration/demonstration.mat",
-    "docs/guide/measure.md": "mkdir -p build/trials && "
-                             "make_log --protocol sinusoidal --seed 4 --coloured-force-noise 0.3 --out build/trials/person.mat",
+    "docs/guide/first_measurement.md": "mkdir -p build/demonstration && mbk simulate relaxed_sinusoidal --quiet "
+                                       "--out build/demonstration/demonstration.mat",
     "docs/guide/simulate.md": "mkdir -p build/trials",
 }
 

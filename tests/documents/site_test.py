@@ -70,7 +70,7 @@ class Site(unittest.TestCase):
         self.assertIn("Network is unreachable", reached.stderr)
 
     def test_every_kind_of_page_is_there(self):
-        for name in ("index", "guide/measure", "theory/equations", "house", "decisions", "examples/01_measure",
+        for name in ("index", "guide/first_measurement", "theory/equations", "house", "decisions", "examples/01_measure",
                      "commands/mbk-measure", "commands/mbk-robot-force", "library", "changelog", "api/files", "search"):
             self.assertTrue((self.html / f"{name}.html").is_file(), name)
         self.assertEqual(len(list((self.html / "guide").glob("*.html"))),
