@@ -213,10 +213,10 @@ class Calibrate(Case):
 
 
 class Guide(Case):
-    """docs/guide/springs.md: what stands below each command is what it prints."""
+    """docs/guide/calibration.md shows what its commands print; a line of only an ellipsis stands for any lines."""
 
     def examples(self):
-        text = (pathlib.Path(__file__).parents[2] / "docs/guide/springs.md").read_text(encoding="utf-8")
+        text = (pathlib.Path(__file__).parents[2] / "docs/guide/calibration.md").read_text(encoding="utf-8")
         for block in re.findall(r"^```\n(\$ .*?)^```", text, re.S | re.M):
             for example in re.split(r"^\$ ", block, flags=re.M)[1:]:
                 lines, command = example.splitlines(), ""
