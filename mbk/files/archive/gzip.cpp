@@ -28,10 +28,10 @@ tl::unexpected<Error> gzip_damaged(std::string_view what) {
 }
 
 tl::unexpected<Error> too_large(std::uint64_t limit) {
-  return bad_data(fmt::format("the gzip file unpacks to more than {} MB, which a recording of this length cannot: "
-                              "nearly all of it would be alike",
-                              limit >> 20U),
-                  "unpack it with gunzip, and see what is in it");
+  return bad_data(
+      fmt::format("the gzip file unpacks to more than {} MB, which is implausible for a recording of this file size",
+                  limit >> 20U),
+      "unpack it with gunzip and check its contents");
 }
 
 /// Bytes that come piece by piece.
@@ -87,7 +87,7 @@ std::string gunzip_begin(std::span<const std::byte> file, std::size_t count) {
 }
 
 Result<Buffer> gunzip(std::span<const std::byte> file) {
-  if (!looks_like_gzip(file)) return gzip_damaged("it does not begin as one");
+  if (!looks_like_gzip(file)) return gzip_damaged("it has no gzip signature");
   z_stream stream{};
   if (inflateInit2(&stream, kGzip) != Z_OK) return bad_data("there is not enough memory to unpack the gzip file");
   const std::unique_ptr<z_stream, EndInflating> end(&stream);
@@ -113,15 +113,15 @@ Result<Buffer> gunzip(std::span<const std::byte> file) {
     left -= in - stream.avail_in;
     if (state == Z_STREAM_END) {
       if (left == 0) break;
-      if (inflateReset(&stream) != Z_OK) return gzip_damaged("it is not as gzip writes it");
+      if (inflateReset(&stream) != Z_OK) return gzip_damaged("it is not a valid gzip stream");
       continue;
     }
     if (state == Z_MEM_ERROR) return bad_data("there is not enough memory to unpack the gzip file");
     if (state != Z_OK && state != Z_BUF_ERROR)
       return gzip_damaged(stream.msg != nullptr ? stream.msg : "it is damaged");
-    if (left == 0 && stream.avail_out > 0) return gzip_damaged("it ends early");
+    if (left == 0 && stream.avail_out > 0) return gzip_damaged("it is truncated");
   }
-  if (bytes.size() == 0) return gzip_damaged("nothing is in it");
+  if (bytes.size() == 0) return gzip_damaged("it is empty");
   return bytes.take();
 }
 

@@ -82,7 +82,7 @@ bool ZipArchive::looks_like_zip(std::span<const std::byte> file) {
 Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
   Cursor place{file};
   const Handle opened = open_at(place);
-  if (!opened) return damaged("its directory is not there, as if it were cut short");
+  if (!opened) return damaged("its directory is missing; the file may be truncated");
   ZipArchive archive;
   archive.file_ = file;
   const std::uint64_t room = largest_unpacked(file.size());
@@ -101,13 +101,13 @@ Result<ZipArchive> ZipArchive::open(std::span<const std::byte> file) {
     const std::uint64_t size = about.uncompressed_size;
     if (size > room || total + size > room) {
       return damaged(fmt::format(
-          "{} says that it unpacks to {} bytes, which it cannot: a recording of this length has at most {} MB",
+          "the stated unpacked size of {}, {} bytes, is implausible: an archive of this size holds at most {} MB",
           in_quotes(name), size, room >> 20U));
     }
     total += size;
     if ((about.flag & kEncrypted) != 0) {
       return bad_data(fmt::format("{} in the zip archive is encrypted", in_quotes(name)),
-                      "unpack it with its password and pack it again without one");
+                      "unpack it with its password and pack it again without encryption");
     }
     places.push_back({archive.members_.size(), position.pos_in_zip_directory, position.num_of_file});
     archive.members_.push_back({std::move(name), size});
@@ -131,7 +131,7 @@ Result<Buffer> ZipArchive::read_begin(std::string_view name, std::uint64_t count
 
 Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool whole) const {
   const auto found = places_.find(name);
-  if (found == places_.end()) return damaged(fmt::format("it holds no {}", in_quotes(name)));
+  if (found == places_.end()) return damaged(fmt::format("it does not contain {}", in_quotes(name)));
   const Place& place = found->second;
   const std::uint64_t size = std::min(members_[place.member].size, count);
   MBK_TRY(check_memory(size));
@@ -139,20 +139,20 @@ Result<Buffer> ZipArchive::read(std::string_view name, std::uint64_t count, bool
   const Handle archive = open_at(at);
   const unz64_file_pos position{place.entry, place.of_number};
   if (!archive || unzGoToFilePos64(archive.get(), &position) != UNZ_OK || unzOpenCurrentFile(archive.get()) != UNZ_OK) {
-    return damaged(fmt::format("{} is damaged, or packed in a way that is not known", in_quotes(name)));
+    return damaged(fmt::format("{} is damaged or uses an unsupported compression method", in_quotes(name)));
   }
   Buffer bytes(size);
   std::size_t got = 0;
   while (got < bytes.size) {
     const auto want = static_cast<unsigned>(std::min<std::size_t>(bytes.size - got, std::size_t{1} << 30));
     const int n = unzReadCurrentFile(archive.get(), bytes.data.get() + got, want);
-    if (n <= 0) return damaged(fmt::format("{} {}", in_quotes(name), n < 0 ? "is damaged" : "ends early"));
+    if (n <= 0) return damaged(fmt::format("{} {}", in_quotes(name), n < 0 ? "is damaged" : "is truncated"));
     got += static_cast<std::size_t>(n);
   }
   if (!whole) return bytes;
   std::byte beyond;
   if (unzReadCurrentFile(archive.get(), &beyond, 1) != 0) {
-    return damaged(fmt::format("{} is longer than it says", in_quotes(name)));
+    return damaged(fmt::format("{} is longer than its stated size", in_quotes(name)));
   }
   if (unzCloseCurrentFile(archive.get()) != UNZ_OK) {
     return damaged(fmt::format("{} is damaged: its checksum is wrong", in_quotes(name)));

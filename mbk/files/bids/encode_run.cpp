@@ -22,9 +22,9 @@ using OrderedJson = nlohmann::ordered_json;
 constexpr double kOldestAge = 89.0;
 /// Metadata that stand in participants.tsv, and what they are there.
 constexpr auto kOfParticipants = std::to_array<std::pair<std::string_view, std::string_view>>(
-    {{"age", "age of the participant in years; 89+ from 89 on"},
+    {{"age", "age of the participant in years (89+ for 89 and above)"},
      {"sex", "sex of the participant"},
-     {"handedness", "hand that the participant prefers"}});
+     {"handedness", "dominant hand of the participant"}});
 
 bool is_figure(char c) {
   return c >= '0' && c <= '9';
@@ -103,9 +103,9 @@ Description describe(const Channel& channel) {
     one.description = "acceleration";
   }
   if (is("force_")) one.description = "force that the hand exerts on the robot";
-  if (is("reaction")) one.description = "what the limb exerts on the machine";
+  if (is("reaction")) one.description = "force or torque that the limb exerts on the machine";
   if (is("torque_")) one.description = "motor torque";
-  if (is("reference")) one.description = "reference of the perturbation";
+  if (is("reference")) one.description = "perturbation reference";
   if (is("voltage")) one.description = "voltage of the force sensor";
   if (one.description.empty()) one.description = std::string(kNotAvailable);
   return one;
@@ -180,16 +180,14 @@ class Encoder {
     }
     if (!existing_("README") && !existing_("README.md")) {
       add("README",
-          "Recordings of arms that a robot perturbs, to measure the mechanical impedance of the arm (inertia, damping\n"
-          "and stiffness), as data of the modality Motion.\n\n"
-          "Numbers in the files _motion.tsv are in SI units, with as many digits as give them back to the last bit.\n"
-          "What each column is stands in _channels.tsv. The channel of type LATENCY holds the time stamps of the\n"
-          "samples; forces and torques are of type MISC, since the standard knows none for them; angles are in rad.\n"
-          "Missing values are n/a.\n\n"
-          "In _channels.json, MbkMetadata holds what the recording says of itself; in _events.tsv, recorded_time is "
-          "the\n"
-          "time of an event on the clock of the recording.\n\n"
-          "'mbk info FOLDER' lists the recordings, 'mbk measure FOLDER --trial NAME' measures one of them.\n",
+          "Recordings of arms perturbed by a robot, made to measure the mechanical impedance of the arm (inertia, "
+          "damping\nand stiffness), stored in the BIDS modality Motion.\n\nNumbers in the files _motion.tsv are in SI "
+          "units and have enough digits to restore them exactly.\n_channels.tsv describes each column. The channel of "
+          "type LATENCY holds the time stamps of the\nsamples; forces and torques are of type MISC, because the "
+          "standard has no type for them; angles are in rad.\nMissing values are n/a.\n\nIn _channels.json, "
+          "MbkMetadata holds the metadata of the recording; in _events.tsv, recorded_time is the\ntime of an event on "
+          "the clock of the recording.\n\n'mbk info FOLDER' lists the recordings; 'mbk measure FOLDER --trial NAME' "
+          "measures one of them.\n",
           false);
     }
   }
@@ -203,7 +201,7 @@ class Encoder {
     TextLines lines(*table);
     const auto header = lines.next();
     if (!header || split(header->text, '\t').front() != columns.front()) {
-      return bad_data(fmt::format("its first column is not {}", columns.front()),
+      return bad_data(fmt::format("the first column is not {}", columns.front()),
                       "correct it, or choose another folder", path);
     }
     for (auto line = lines.next(); line; line = lines.next()) {
@@ -259,10 +257,10 @@ class Encoder {
       text += '\n';
     }
     add_json(events_path("_events.json"),
-             {{"trial_type", {{"Description", "what happened"}}},
-              {"value", {{"Description", "number that belongs to it, such as a direction"}}},
+             {{"trial_type", {{"Description", "description of the event"}}},
+              {"value", {{"Description", "value of the event, such as a direction"}}},
               {std::string(kRecordedTime),
-               {{"Description", "time on the clock of the recording, which its LATENCY channel has"}, {"Units", "s"}}}},
+               {{"Description", "time on the clock of the recording (see the LATENCY channel)"}, {"Units", "s"}}}},
              true);
     add(events_path("_events.tsv"), std::move(text), true);
   }
@@ -294,7 +292,7 @@ class Encoder {
     if (metadata.is_null()) metadata = OrderedJson::object();
     add_json(path("_channels.json"),
              {{"reference_frame", {{"Description", "frame in which the channel is given"}, {"Levels", levels}}},
-              {kMetadataKey, {{"Description", "what the recording says of itself"}, {"Levels", metadata}}}},
+              {kMetadataKey, {{"Description", "metadata of the recording"}, {"Levels", metadata}}}},
              true);
   }
 
@@ -326,7 +324,7 @@ class Encoder {
 
   [[nodiscard]] std::string condition() const {
     const auto entry = recording_.metadata.find("condition");
-    return entry == recording_.metadata.end() ? std::string("not said") : entry->second;
+    return entry == recording_.metadata.end() ? std::string("not stated") : entry->second;
   }
 
   void add_motion() {
@@ -357,9 +355,9 @@ std::vector<std::string> withheld_from_bids(const Recording& recording) {
   std::vector<std::string> withheld;
   for (const auto& [key, value] : recording.metadata) {
     if (is_withheld(key, value)) {
-      withheld.push_back(fmt::format("metadata '{}', which may tell who the participant is", key));
+      withheld.push_back(fmt::format("metadata '{}', which may identify the participant", key));
     } else if (in_lower_case(key) == "age" && age(value) != value) {
-      withheld.emplace_back("the age, which is 89+ where it is 89 or more");
+      withheld.emplace_back("the exact age, written as 89+ for 89 and above");
     }
   }
   return withheld;

@@ -78,7 +78,7 @@ class Run {
     channels_ = parse_tsv(texts_.channels);
     for (const std::string_view column : {"name", "type", "units"}) {
       if (channels_.has(column)) continue;
-      return bad_data(fmt::format("it has no column '{}'", column), "every channel needs name, type and units",
+      return bad_data(fmt::format("column '{}' is missing", column), "give each channel a name, a type and units",
                       std::string(kChannels.substr(1)));
     }
     const std::size_t count = channels_.rows.size();
@@ -129,8 +129,7 @@ class Run {
       const auto cells = split(line->text, '\t');
       const std::string where = fmt::format("{}, line {}", kMotion.substr(1), line->number);
       if (line->number == 1 && is_header(cells)) {
-        contents_.notes.emplace_back(
-            "its first line repeats the names of the channels, which the standard does not ask for");
+        contents_.notes.emplace_back("its first line repeats the channel names, which the standard does not require");
         continue;
       }
       if (!line->terminated && cells.size() < columns) {
@@ -140,20 +139,19 @@ class Run {
       }
       if (cells.size() != columns) {
         return bad_data(fmt::format("it has {} columns, {} describes {}", cells.size(), kChannels.substr(1), columns),
-                        "describe every column, in the order in which they stand", where);
+                        "describe every column, in file order", where);
       }
       for (std::size_t c = 0; c < columns; ++c) {
         const auto value = cells[c] == kNotAvailable ? std::numeric_limits<double>::quiet_NaN() : cell_number(cells[c]);
         if (!value) {
-          return bad_data(fmt::format("'{}' is not a number", shown(cells[c])), "write n/a where a value is missing",
+          return bad_data(fmt::format("'{}' is not a number", shown(cells[c])), "write n/a for a missing value",
                           fmt::format("{}, column {}", where, c + 1));
         }
         numbers[c][rows] = *value;
       }
       ++rows;
     }
-    if (rows == 0)
-      return bad_data("it holds no line of numbers", "nothing was recorded", std::string(kMotion.substr(1)));
+    if (rows == 0) return bad_data("it contains no samples", "nothing was recorded", std::string(kMotion.substr(1)));
     for (Vector& column : numbers) {
       column.conservativeResize(rows);
       contents_.arrays.emplace_back().values = SharedMatrix::of_column(std::move(column));
@@ -191,17 +189,17 @@ class Run {
       if (channels_.cell(c, "status") == "bad") bad.push_back(array.name);
     }
     if (!bad.empty()) {
-      contents_.notes.push_back(fmt::format("channels.tsv says of these that they are bad: {}", fmt::join(bad, ", ")));
+      contents_.notes.push_back(fmt::format("channels.tsv marks these channels as bad: {}", fmt::join(bad, ", ")));
     }
     if (timed) return {};
     if (rate == 0.0) {
-      return bad_data("it says no SamplingFrequency, and no channel is of type LATENCY",
-                      "write the sampling frequency into it", std::string(kSidecar.substr(1)));
+      return bad_data("SamplingFrequency is missing, and no channel is of type LATENCY", "add the sampling frequency",
+                      std::string(kSidecar.substr(1)));
     }
     for (Array& array : contents_.arrays) array.rate_hz = rate;
     if (effective && nominal && *effective != *nominal) {
       contents_.notes.push_back(
-          fmt::format("the rate is the effective one, {:.9g} Hz; nominal are {:.9g} Hz", *effective, *nominal));
+          fmt::format("the effective rate, {:.9g} Hz, is used; the nominal rate is {:.9g} Hz", *effective, *nominal));
     }
     return {};
   }
@@ -344,8 +342,8 @@ Result<BidsRecording> read_bids_run(const fs::path& motion) {
   const auto numbers = MBK_TRY(read_text(motion));
   const auto channel_files = files_for(motion, kChannels);
   if (channel_files.empty()) {
-    return bad_data(fmt::format("there is no {}{} beside it", stem_of(motion), kChannels),
-                    "it must say name, type and units of every column");
+    return bad_data(fmt::format("its file {}{} is missing", stem_of(motion), kChannels),
+                    "add it, with name, type and units of every column");
   }
   const auto channels = MBK_TRY(read_text(channel_files.back()));
   BidsTexts texts{numbers, channels, {}, "", "", ""};

@@ -9,7 +9,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr auto kEntities = std::to_array<std::string_view>({"sub", "ses", "task", "tracksys", "acq", "run"});
-constexpr std::string_view kExample = "as in sub-07_ses-2_task-reach_run-1";
+constexpr std::string_view kExample = "use the form sub-07_ses-2_task-reach_run-1";
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -50,19 +50,21 @@ Result<BidsName> parse_bids_name(std::string_view text) {
     const auto dash = part.find('-');
     const std::string_view entity = part.substr(0, std::min(dash, part.size()));
     if (dash == part.npos || std::ranges::find(kEntities, entity) == kEntities.end()) {
-      return bad_usage(fmt::format("'{}' in '{}' is not sub-, ses-, task-, tracksys-, acq- or run-", part, text),
-                       std::string(kExample));
+      return bad_usage(
+          fmt::format("'{}' in '{}' does not begin with sub-, ses-, task-, tracksys-, acq- or run-", part, text),
+          std::string(kExample));
     }
     const std::string_view label = part.substr(dash + 1);
     if (label.empty() || !std::ranges::all_of(label, is_label_letter)) {
-      return bad_usage(fmt::format("the label '{}' of {} is not of letters and digits only", label, entity),
-                       std::string(kExample));
+      return bad_usage(
+          fmt::format("the label '{}' of {} contains characters other than letters and digits", label, entity),
+          std::string(kExample));
     }
     if (entity == "run" && !std::ranges::all_of(label, is_digit)) {
-      return bad_usage(fmt::format("run '{}' is no number", label), std::string(kExample));
+      return bad_usage(fmt::format("run '{}' is not a number", label), std::string(kExample));
     }
     if (!given.label(entity).empty()) {
-      return bad_usage(fmt::format("{} is named twice in '{}'", entity, text), std::string(kExample));
+      return bad_usage(fmt::format("{} appears twice in '{}'", entity, text), std::string(kExample));
     }
     given.entities.emplace_back(entity, label);
     if (end == rest.size()) break;
@@ -75,7 +77,7 @@ Result<BidsName> parse_bids_name(std::string_view text) {
   }
   for (const std::string_view needed : {"sub", "task"}) {
     if (!name.label(needed).empty()) continue;
-    return bad_usage(fmt::format("'{}' does not say the {}", text, needed == "sub" ? "participant" : "task"),
+    return bad_usage(fmt::format("'{}' does not give the {}", text, needed == "sub" ? "participant" : "task"),
                      std::string(kExample));
   }
   return name;

@@ -53,14 +53,16 @@ class Decoder {
     }
     const std::uint64_t rest = room - layout_.frames * size;
     if (rest >= std::max<std::uint64_t>(kC3dBlock, size)) {
-      note(fmt::format("it has more bytes than its {} frames need, enough for {} more; they were ignored",
+      note(fmt::format("the data section is longer than its {} frames, by {} frames; the excess was ignored",
                        layout_.frames, rest / size));
     }
     return {};
   }
 
   void say_what_there_is() {
-    const auto rate = [](double hz) { return hz > 0.0 ? fmt::format("at {:.6g} Hz", hz) : std::string("of no rate"); };
+    const auto rate = [](double hz) {
+      return hz > 0.0 ? fmt::format("at {:.6g} Hz", hz) : std::string("without a rate");
+    };
     std::string text = fmt::format("frames: {}", layout_.frames);
     if (layout_.points > 0) text += fmt::format("; points: {} {}", layout_.points, rate(layout_.point_rate));
     if (layout_.channels > 0)
@@ -96,7 +98,7 @@ class Decoder {
       numbered.push_back(name);
     }
     if (missing > 0) {
-      note(fmt::format("{} of {} {} labels are missing; those are called {}_1, {}_2, … by their place", missing, count,
+      note(fmt::format("{} of {} {} labels are missing; these are named {}_1, {}_2, … by position", missing, count,
                        nameless, nameless, nameless));
     }
     if (!numbered.empty()) {
@@ -195,11 +197,11 @@ class Decoder {
       const double scale = (scaled ? scales[c] : 1.0) * general.value_or(1.0);
       std::optional<Error> obstacle;
       if (scale == 0.0 || !std::isfinite(scale)) {
-        obstacle =
-            Error{ErrorKind::data,
-                  fmt::format("'{}' has ANALOG:SCALE {} and ANALOG:GEN_SCALE {}, so its physical values are unknown",
-                              names[c], scaled ? scales[c] : 1.0, general.value_or(1.0)),
-                  std::string(kC3dWriteAgain)};
+        obstacle = Error{
+            ErrorKind::data,
+            fmt::format("'{}' has ANALOG:SCALE {} and ANALOG:GEN_SCALE {}, so it cannot be converted to physical units",
+                        names[c], scaled ? scales[c] : 1.0, general.value_or(1.0)),
+            std::string(kC3dWriteAgain)};
         unusable.push_back(names[c]);
       }
       if (!scaled) unscaled.push_back(names[c]);
@@ -221,8 +223,8 @@ class Decoder {
                          which.front()));
       }
     };
-    say(unscaled, "have no SCALE; theirs are the numbers of the converter, without unit");
-    say(unusable, "have a SCALE or GEN_SCALE of 0 or not a number; they cannot be used");
+    say(unscaled, "have no SCALE; their values are raw converter counts without unit");
+    say(unusable, "have a SCALE or GEN_SCALE that is 0 or not finite; they cannot be used");
     say(without_offset, "have no OFFSET; 0 is used");
     say(misread, fmt::format("are read as {} numbers because their values and OFFSET contradict ANALOG:FORMAT",
                              says_unsigned ? "signed" : "unsigned"));
@@ -266,14 +268,15 @@ struct Parameters {
 Result<Parameters> parameters_of(std::span<const std::byte> bytes) {
   const std::size_t begin = (std::to_integer<std::size_t>(bytes[0]) - 1) * kC3dBlock;
   if (bytes.size() < kC3dBlock || bytes.size() < begin + kParameterHeader) {
-    return bad_data(fmt::format("a C3D file of {} bytes ends before its parameters, which begin at block {}",
+    return bad_data(fmt::format("the C3D file has {} bytes and ends before its parameters, which begin at block {}",
                                 bytes.size(), std::to_integer<int>(bytes[0])),
                     std::string(kC3dRemedy));
   }
   const int processor = std::to_integer<int>(bytes[begin + 3]);
   if (processor < static_cast<int>(C3dProcessor::intel) || processor > static_cast<int>(C3dProcessor::sgi)) {
-    return bad_data(fmt::format("a C3D file of processor {}; 84 (Intel), 85 (DEC) and 86 (SGI) are known", processor),
-                    std::string(kC3dRemedy));
+    return bad_data(
+        fmt::format("the C3D processor type {} is unknown; 84 (Intel), 85 (DEC) and 86 (SGI) are supported", processor),
+        std::string(kC3dRemedy));
   }
   const C3dBytes file(bytes, C3dProcessor{static_cast<std::uint8_t>(processor)});
   // The count of blocks is one byte and often wrong; the data begin behind the parameters in any case.

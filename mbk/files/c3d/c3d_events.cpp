@@ -105,15 +105,15 @@ std::vector<Event> c3d_events(const C3dBytes& file, const C3dParameters& paramet
     }
   }
   if (in_header > kMaxInHeader) {
-    notes.push_back(fmt::format("the header speaks of {} events and has room for {}", in_header, kMaxInHeader));
+    notes.push_back(fmt::format("the header states {} events but has room for {}", in_header, kMaxInHeader));
   }
   if (no_time > 0) notes.push_back(fmt::format("{} events have no time and were ignored", no_time));
   if (minutes_ignored) {
     notes.emplace_back(
-        "the first row of EVENTS:TIMES was ignored: read as minutes, it leads beyond the end of the recording");
+        "the first row of EVENTS:TIMES was ignored: read as minutes, it lies beyond the end of the recording");
   }
   if (shifted) {
-    notes.push_back(fmt::format("the first frame is number {}; the times of events count from there", first_frame));
+    notes.push_back(fmt::format("the first frame has number {}; event times are relative to it", first_frame));
   }
   std::ranges::stable_sort(events, {}, &Event::time);
   return events;

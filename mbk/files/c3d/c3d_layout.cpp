@@ -52,7 +52,7 @@ struct Contradiction {
   std::string source = {};  ///< of the parameters' value
 
   [[nodiscard]] std::string text() const {
-    return fmt::format("the header says {} {}, the parameters {}{}", header, what, parameters, source);
+    return fmt::format("the header states {} {}, the parameters {}{}", header, what, parameters, source);
   }
 };
 
@@ -77,7 +77,7 @@ class Finder {
     auto layout = choose(by_parameters, by_header);
     if (!layout) return layout;
     if (layout->frames == 0) {
-      return bad_data("it says that it holds 0 frames", "nothing was recorded, or it is damaged");
+      return bad_data("the file states 0 frames", "nothing was recorded, or it is damaged");
     }
     set_scale(*layout);
     MBK_TRY(set_rates(*layout));
@@ -101,9 +101,9 @@ class Finder {
     const auto is_scale = [](double scale) { return std::isfinite(scale) && scale != 0.0; };
     const double own = header_scale();
     if (!is_scale(own) && !is_scale(said.value_or(0.0))) {
-      return bad_data(
-          fmt::format("POINT:SCALE is {}, so it is unknown whether numbers are integers or reals", said.value_or(own)),
-          std::string(kC3dRemedy));
+      return bad_data(fmt::format("POINT:SCALE is {}, so it is unknown whether the values are integers or reals",
+                                  said.value_or(own)),
+                      std::string(kC3dRemedy));
     }
     by_parameters.real = (is_scale(said.value_or(0.0)) ? *said : own) < 0.0;
     by_header.real = is_scale(own) ? own < 0.0 : by_parameters.real;
@@ -118,7 +118,7 @@ class Finder {
     const double channels = parameters_.number("ANALOG", "USED").value_or(std::floor(numbers / samples_in_header));
     if (std::max({points, channels, samples}) > kMaxInWord || channels != std::floor(channels) ||
         points != std::floor(points) || std::min(points, channels) < 0.0) {
-      return bad_data(fmt::format("{} points and {} analog channels of {} samples in a frame are not possible", points,
+      return bad_data(fmt::format("{} points and {} analog channels of {} samples per frame are not possible", points,
                                   channels, samples),
                       std::string(kC3dRemedy));
     }
@@ -128,8 +128,8 @@ class Finder {
       set_shape(by_header, header(2), channels, samples);
       if (confirmed && channels > 0.0 && samples != samples_in_header) {
         note(
-            fmt::format("the header says {} for the analog samples in a frame; {} is used, which agrees with "
-                        "ANALOG:USED, ANALOG:RATE and the {} analog numbers in a frame",
+            fmt::format("the header states {} analog samples per frame; {} is used, which agrees with ANALOG:USED, "
+                        "ANALOG:RATE and the {} analog values per frame",
                         samples_in_header, samples, numbers));
       }
     } else {
@@ -153,17 +153,17 @@ class Finder {
   void find_contradiction(const C3dLayout& by_parameters, const C3dLayout& by_header, bool only_samples) {
     const auto numbers = [](const C3dLayout& shape) { return static_cast<double>(shape.channels * shape.samples); };
     if (by_parameters.real != by_header.real) {
-      contradiction_ = {"for the point scale, whose sign tells reals from integers", header_scale(),
+      contradiction_ = {"as the point scale, whose sign distinguishes reals from integers,", header_scale(),
                         parameters_.number("POINT", "SCALE").value_or(0.0)};
     } else if (by_parameters.points != by_header.points) {
       contradiction_ = {"points", static_cast<double>(by_header.points), static_cast<double>(by_parameters.points)};
     } else if (by_parameters.samples != by_header.samples && only_samples) {
-      contradiction_ = {"analog samples in a frame", static_cast<double>(by_header.samples),
+      contradiction_ = {"analog samples per frame", static_cast<double>(by_header.samples),
                         static_cast<double>(by_parameters.samples),
                         fmt::format(" (ANALOG:RATE is {} Hz, POINT:RATE {} Hz)", rate("ANALOG"), rate("POINT"))};
     } else if (by_parameters.channels != by_header.channels || by_parameters.samples != by_header.samples ||
                header_ambiguous_) {
-      contradiction_ = {"analog numbers in a frame", header(3), numbers(by_parameters)};
+      contradiction_ = {"analog values per frame", header(3), numbers(by_parameters)};
     }
   }
 
@@ -178,7 +178,7 @@ class Finder {
                        (start.byte() < parameters_.begin() || start.byte() >= parameters_.end());
     }
     if (std::ranges::any_of(starts_, &Start::possible)) return {};
-    return bad_data(fmt::format("the data cannot start at block {} ({}): the parameters take bytes {} to {}",
+    return bad_data(fmt::format("the data cannot start at block {} ({}): the parameters occupy bytes {} to {}",
                                 starts_.front().block, starts_.front().by, parameters_.begin(), parameters_.end()),
                     std::string(kC3dRemedy));
   }
@@ -299,7 +299,7 @@ class Finder {
   }
 
   Result<C3dLayout> choose(const C3dLayout& by_parameters, const C3dLayout& by_header) {
-    if (by_parameters.frame_size() == 0) return bad_data("it holds neither points nor analog channels");
+    if (by_parameters.frame_size() == 0) return bad_data("the file contains neither points nor analog channels");
     auto [layout, pick] = complete(by_parameters);
     if (contradiction_) {
       const bool fits = pick.fit == Fit::exact;
@@ -311,9 +311,9 @@ class Finder {
       if (!fits) layout = second, pick = second_pick;
     }
     if (!parameters_.terminated() && pick.fit == Fit::within) {
-      return bad_data(fmt::format("the parameters do not end before block {}, at which the data start",
-                                  layout.data / kC3dBlock + 1),
-                      std::string(kC3dRemedy));
+      return bad_data(
+          fmt::format("the parameters extend beyond block {}, where the data start", layout.data / kC3dBlock + 1),
+          std::string(kC3dRemedy));
     }
     say_start(layout, pick);
     say_frames(layout, pick);
@@ -324,7 +324,7 @@ class Finder {
     if (starts_.size() < 2) return;
     const bool first = starts_[0].possible && starts_[0].byte() == layout.data;
     const Start &used = starts_[first ? 0 : 1], &other = starts_[first ? 1 : 0];
-    note(fmt::format("the data are read from block {} ({}{}); {} says block {}{}", used.block, used.by,
+    note(fmt::format("the data are read from block {} ({}{}); {} states block {}{}", used.block, used.by,
                      pick.fit == Fit::exact ? ", which fits the file size" : "", other.by, other.block,
                      other.possible ? "" : ", which cannot hold data"));
   }
@@ -334,7 +334,7 @@ class Finder {
     std::vector<std::string> others;
     for (const Count& count : counts_) {
       if (count.frames == frames || (count.full && frames >= kMaxInWord)) continue;
-      others.push_back(fmt::format("{} says {}", count.by, count.frames));
+      others.push_back(fmt::format("{} states {}", count.by, count.frames));
     }
     if (!others.empty()) {
       note(fmt::format("the number of frames is {} ({}{}); {}", frames, pick.by,
@@ -367,12 +367,13 @@ class Finder {
       const double third = layout.analog_rate / samples;
       if (same_rate(third, said) || same_rate(third, own)) {
         layout.point_rate = same_rate(third, said) ? said : own;
-        note(fmt::format("the header says {} Hz, POINT:RATE {} Hz; {} Hz is used, which agrees with ANALOG:RATE", own,
+        note(fmt::format("the header states {} Hz, POINT:RATE {} Hz; {} Hz is used, which agrees with ANALOG:RATE", own,
                          said, layout.point_rate));
       } else {
         layout.point_rate = layout.analog_rate = 0.0;
-        note(fmt::format("the header says {} Hz, POINT:RATE {} Hz; neither is used: pass the right rate with --rate",
-                         own, said));
+        note(
+            fmt::format("the header states {} Hz, POINT:RATE {} Hz; neither is used: pass the correct rate with --rate",
+                        own, said));
       }
     }
     if (layout.channels == 0 || layout.point_rate == 0.0) return {};

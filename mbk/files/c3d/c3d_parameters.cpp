@@ -59,15 +59,15 @@ double value_at(const C3dParameter& parameter, std::size_t i, bool unsigned_word
 Result<C3dParameter> parameter_at(const C3dBytes& file, std::size_t offset, std::string_view name) {
   const std::string where = fmt::format("parameter {}", name);
   const auto short_of = [&] {
-    return bad_data("the parameter section ends within it", std::string(kC3dRemedy), where);
+    return bad_data("it extends beyond the parameter section", std::string(kC3dRemedy), where);
   };
   if (!file.view.holds(offset, 2)) return short_of();
   const int type = file.view.at<std::int8_t>(offset);
   const std::size_t count = file.view.at<std::uint8_t>(offset + 1);
   if (!is_type(type)) return bad_data(fmt::format("unknown type {}", type), std::string(kC3dRemedy), where);
   if (count > kMaxDimensions) {
-    return bad_data(fmt::format("{} dimensions are more than {}", count, kMaxDimensions), std::string(kC3dRemedy),
-                    where);
+    return bad_data(fmt::format("it has {} dimensions; the maximum is {}", count, kMaxDimensions),
+                    std::string(kC3dRemedy), where);
   }
   if (!file.view.holds(offset + 2, count)) return short_of();
   C3dParameter parameter{C3dParameter::Type{static_cast<std::int8_t>(type)}, {}, file};
@@ -125,7 +125,7 @@ Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begi
     }
     parameters.end_ = std::min(content_end, end);
     if (distance == 0) break;
-    if (link + distance < content_end) return damaged("a record does not lead to the next one");
+    if (link + distance < content_end) return damaged("a record has an invalid link to the next");
     at = link + distance;
     parameters.terminated_ = false;
   }

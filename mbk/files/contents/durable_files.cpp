@@ -46,7 +46,7 @@ int sync_file(int descriptor) {
 
 tl::unexpected<Error> cannot(const char* what, const fs::path& file, int code) {
   const char* const remedy = code == ENOSPC || code == EDQUOT || code == EFBIG
-                                 ? "free space on the disk; nothing was changed by half"
+                                 ? "free space on the disk; no file was partially changed"
                              : code == ENOENT ? "check the name"
                              : code == EACCES ? "check its permissions"
                                               : "check the disk and the permissions of the folder";
@@ -57,7 +57,8 @@ Result<void> make_folder(const fs::path& folder) {
   if (::mkdir(folder.c_str(), 0700) != 0) {
     const int code = errno;
     std::error_code ignored;
-    if (code != EEXIST || !fs::is_directory(folder, ignored)) return cannot("the folder cannot be made", folder, code);
+    if (code != EEXIST || !fs::is_directory(folder, ignored))
+      return cannot("the folder cannot be created", folder, code);
     // Whoever made it may not have waited for the disk yet, or failed to.
   }
   return flush_folder(folder.has_parent_path() ? folder.parent_path() : fs::path("."));

@@ -42,7 +42,7 @@ Result<Opened> open_file(const std::filesystem::path& file) {
   // O_NONBLOCK: opening a pipe must not wait for its writer.
   Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (descriptor.number < 0) {
-    if (errno == ENOENT) return bad_data("there is no such file", "check the name and the folder");
+    if (errno == ENOENT) return bad_data("the file does not exist", "check the name and the folder");
     return bad_data(fmt::format("cannot be opened: {}", reason(errno)), "check its permissions");
   }
   struct stat status {};
@@ -51,7 +51,7 @@ Result<Opened> open_file(const std::filesystem::path& file) {
   if (!S_ISREG(status.st_mode)) return bad_data("is not a regular file", "copy the recording to a file first");
   if (status.st_size == 0) return bad_data("the file is empty", "nothing was recorded, or the copy failed");
   if (static_cast<std::uint64_t>(status.st_size) > kLargestFile) {
-    return bad_data(fmt::format("file size {} bytes is above the limit of {}", status.st_size, kLargestFile),
+    return bad_data(fmt::format("the file has {} bytes; the limit is {}", status.st_size, kLargestFile),
                     "split the recording into numbered parts");
   }
   return Opened{std::move(descriptor), static_cast<std::size_t>(status.st_size)};
@@ -64,7 +64,7 @@ Result<void> read_bytes(int descriptor, std::size_t from, void* to, std::size_t 
         ::pread(descriptor, static_cast<std::byte*>(to) + done, count - done, static_cast<off_t>(from + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
-    if (got == 0) return bad_data("the file became shorter while it was read", "wait until it is written completely");
+    if (got == 0) return bad_data("the file was truncated while it was being read", "wait until writing has finished");
     done += static_cast<std::size_t>(got);
   }
   return {};

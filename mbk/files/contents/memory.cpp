@@ -57,7 +57,7 @@ Result<void> check_memory(std::uint64_t bytes) {
   const std::uint64_t available = available_memory();
   if (bytes <= available) return {};
   const auto gigabytes = [](std::uint64_t n) { return static_cast<double>(n) / static_cast<double>(1u << 30u); };
-  return bad_data(fmt::format("{:.2f} GiB of memory are needed for it, and {:.2f} GiB are available", gigabytes(bytes),
+  return bad_data(fmt::format("it needs {:.2f} GiB of memory, but {:.2f} GiB are available", gigabytes(bytes),
                               gigabytes(available)),
                   "close other programs, or split the recording into numbered parts");
 }

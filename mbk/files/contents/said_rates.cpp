@@ -95,9 +95,9 @@ void give_rates(Contents& contents, std::vector<SaidRate> said) {
     auto& [rate, other, noted] = nearest->second;
     if (!other) array.rate_hz = rate.hz;
     if (std::exchange(noted, true)) continue;
-    contents.notes.push_back(other ? fmt::format("{} says a rate of {} Hz and {} one of {} Hz; neither was taken",
+    contents.notes.push_back(other ? fmt::format("{} states a rate of {} Hz and {} a rate of {} Hz; neither was used",
                                                  rate.source, rate.hz, other->source, other->hz)
-                                   : fmt::format("the sample rate{} is {} Hz, as {} says",
+                                   : fmt::format("the sample rate{} is {} Hz, from {}",
                                                  rate.scope.empty() ? "" : fmt::format(" of '{}'", rate.scope), rate.hz,
                                                  rate.source));
   }

@@ -102,9 +102,9 @@ Result<Filters> read_filters(Cursor in) {
     } else if (id == kLzf) {
       once = add(filters, Filters::Kind::lzf);
     } else {
-      filters.unread = id == kSzip ? "packed by szip" : fmt::format("packed by filter {}", id);
+      filters.unread = id == kSzip ? "compressed with szip" : fmt::format("compressed with filter {}", id);
     }
-    if (!once) filters.unread = fmt::format("packed by filter {} twice", id);
+    if (!once) filters.unread = fmt::format("compressed with filter {} twice", id);
   }
   return filters;
 }
@@ -116,7 +116,7 @@ Result<Bytes> Unpacker::unpack(Bytes stored, std::uint32_t skipped) {
     bytes = MBK_TRY(undo(filters_.steps[i], bytes));
   }
   if (bytes.size() != chunk_bytes_) {
-    return damaged(fmt::format("a chunk holds {} bytes where it should hold {}", bytes.size(), chunk_bytes_));
+    return damaged(fmt::format("a chunk contains {} bytes instead of {}", bytes.size(), chunk_bytes_));
   }
   return bytes;
 }
@@ -143,9 +143,9 @@ Result<Bytes> Unpacker::inflate(Bytes bytes) {
     case LIBDEFLATE_SUCCESS:
       return inflated.first(size);
     case LIBDEFLATE_INSUFFICIENT_SPACE:
-      return damaged("the compressed data of a chunk holds more than the chunk");
+      return damaged("the compressed data of a chunk expands beyond the chunk size");
     default:
-      return damaged("the compressed data of a chunk is damaged, or ends early");
+      return damaged("the compressed data of a chunk is damaged or truncated");
   }
 }
 
@@ -156,7 +156,8 @@ Result<Bytes> Unpacker::expand(Bytes bytes) {
                             ? 0
                             : lzf_decompress(bytes.data(), static_cast<unsigned>(bytes.size()), expanded.data(),
                                              static_cast<unsigned>(expanded.size()));
-  if (size == 0) return damaged("the compressed data of a chunk is damaged, ends early, or holds more than the chunk");
+  if (size == 0)
+    return damaged("the compressed data of a chunk is damaged, truncated, or expands beyond the chunk size");
   return expanded.first(size);
 }
 

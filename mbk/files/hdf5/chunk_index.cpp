@@ -128,7 +128,7 @@ class IndexReader {
     }
     std::uint64_t bytes = 0;
     if (!multiply(count, chunk_bytes_, bytes) || bytes > file_.bytes.size()) {
-      return damaged("its chunks are more than the file can hold");
+      return damaged("it claims more chunks than a file of this size can contain");
     }
     for (std::uint64_t i = 0; i < count; ++i) {
       MBK_TRY(use_({place_of(i), index_.address + i * chunk_bytes_, chunk_bytes_, 0}));

@@ -36,7 +36,7 @@ class ChunkReader {
   Result<void> measure() {
     const std::size_t rank = space_.shape.size();
     if (index_.chunk.size() != rank || index_.element_size != elements_.bytes_each()) {
-      return damaged("its chunks are not those of a dataset of its shape and type");
+      return damaged("its chunks do not match its shape and type");
     }
     chunk_bytes_ = index_.element_size;
     std::uint64_t total = 1;
@@ -46,7 +46,8 @@ class ChunkReader {
       fits = fits && multiply(total, along_[i], total) && multiply(chunk_bytes_, index_.chunk[i], chunk_bytes_);
     }
     // Every chunk has at least a byte in the file, or an entry in the index.
-    if (!fits || total > file_.bytes.size()) return damaged("its chunks are more than the file can hold");
+    if (!fits || total > file_.bytes.size())
+      return damaged("it claims more chunks than a file of this size can contain");
     MBK_TRY(file_.budget.borrow(chunk_bytes_));
     seen_.resize(static_cast<std::size_t>(total));
     return {};
@@ -58,9 +59,10 @@ class ChunkReader {
       if (chunk.place[i] >= along_[i]) return {};  // of a time when the dataset was larger
       number = number * along_[i] + chunk.place[i];
     }
-    if (seen_[static_cast<std::size_t>(number)]) return damaged("it has a chunk twice");
+    if (seen_[static_cast<std::size_t>(number)]) return damaged("a chunk occurs twice");
     seen_[static_cast<std::size_t>(number)] = true;
-    if (chunk_bytes_ / kMaxExpansion > chunk.size + kSlack) return damaged("a chunk claims more than it can hold");
+    if (chunk_bytes_ / kMaxExpansion > chunk.size + kSlack)
+      return damaged("a chunk claims more bytes than its chunk size allows");
     chunks_.push_back(chunk);
     return {};
   }

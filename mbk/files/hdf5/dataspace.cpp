@@ -30,7 +30,8 @@ Result<Dataspace> read_dataspace(Cursor in) {
   }
   if (!in.ok()) return damaged("its dataspace is broken");
   const auto too_many = [&] {
-    return damaged(fmt::format("dimensions {} are more than the file can hold", fmt::join(space.shape, "×")));
+    return damaged(
+        fmt::format("dimensions {} claim more data than a file of this size can contain", fmt::join(space.shape, "×")));
   };
   const bool empty = std::ranges::find(space.shape, std::uint64_t{0}) != space.shape.end();
   if (empty) space.count = 0;

@@ -63,7 +63,7 @@ std::optional<Stored> stored_integer(std::uint32_t size, bool is_signed) {
 Datatype fixed_point(const Header& header, Cursor& in) {
   const bool fills = in.word() == 0 && in.word() == 8 * header.size;  // no bits left unused
   return number(header, fills ? stored_integer(header.size, (header.bits & 8u) != 0) : std::nullopt,
-                "of integers of an unusual size");
+                "of integers with an unsupported layout");
 }
 
 /// An IEEE 754 layout: sign, exponent, mantissa with a leading 1 that is not stored.
@@ -73,7 +73,7 @@ struct FloatLayout {
 };
 
 Datatype floating_point(const Header& header, Cursor& in) {
-  constexpr std::string_view kUnusual = "of floating-point numbers that are not IEEE 754";
+  constexpr std::string_view kUnusual = "of floating-point numbers in a format other than IEEE 754";
   const unsigned offset = in.word();
   FloatLayout layout{header.size};
   layout.precision = in.word();
@@ -200,7 +200,7 @@ Result<Datatype> compound(const Header& header, Cursor& in, int depth) {
   for (unsigned i = 0; i < count; ++i) {
     auto one = MBK_TRY(member(header, in, depth));
     taken += one.type.size;
-    if (taken > header.size) return damaged("members of its datatype lie in each other");
+    if (taken > header.size) return damaged("members of its datatype overlap");
     for (const Member& other : type.members) {
       if (other.name == one.name) return damaged(fmt::format("its datatype has two members '{}'", one.name));
     }
@@ -215,7 +215,7 @@ Result<Datatype> compound(const Header& header, Cursor& in, int depth) {
 }
 
 Result<Datatype> reference(const Header& header, Cursor& in) {
-  Datatype type = unread(header, "of references to regions");
+  Datatype type = unread(header, "of region references");
   if ((header.bits & 0x0Fu) == 0) {
     type.kind = Datatype::Kind::reference;
     if (type.size != in.sizes().address) return damaged("its datatype is broken");
@@ -227,7 +227,7 @@ Result<Datatype> variable_length(const Header& header, Cursor& in, int depth) {
   constexpr unsigned kText = 1;
   const auto inner = any_type(in, depth + 1);  // of which only its end is of use
   if (!inner) return inner;
-  if ((header.bits & 0x0Fu) != kText) return unread(header, "of lists of varying length");
+  if ((header.bits & 0x0Fu) != kText) return unread(header, "of variable-length lists");
   if (header.size != 4 + in.sizes().address + 4) return damaged("its datatype is broken");
   return text(header, Datatype::Kind::long_text);
 }
@@ -263,7 +263,7 @@ Result<Datatype> type_of(const Header& header, Cursor& in, int depth) {
     case kOpaque:
       return passed_over(header, in, ((header.bits & 0xFFu) + 7) / 8 * 8, "of an opaque type");
     default:
-      if (depth > 0) return damaged(fmt::format("datatype class {} is not known", header.type_class));
+      if (depth > 0) return damaged(fmt::format("datatype class {} is unknown", header.type_class));
       return unread(header, fmt::format("of datatype class {}", header.type_class));
   }
 }

@@ -69,7 +69,7 @@ class Stream {
   static constexpr std::size_t kForChange = 64;  // bytes
 
   static void check(int code, int expected) {
-    if (code != expected) throw std::logic_error("zlib: the room for a packed piece is too small");
+    if (code != expected) throw std::logic_error("zlib: the output buffer is too small");
   }
 
   int level_ = kDeflateLevel;

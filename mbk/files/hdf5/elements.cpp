@@ -114,7 +114,7 @@ Result<void> Elements::allocate(std::uint64_t count) {
     }
     return {};
   }
-  if (!multiply(count, type_.values, count)) return damaged("it claims more than the file can hold");
+  if (!multiply(count, type_.values, count)) return damaged("it claims more data than a file of this size can contain");
   const bool are_texts = type_.kind == Kind::text || type_.kind == Kind::long_text;
   const bool may_leave_rests = type_.stored == Stored::int64 || type_.stored == Stored::uint64;
   const std::size_t number = sizeof(double) + (may_leave_rests ? sizeof(std::int16_t) : 0);
@@ -185,7 +185,7 @@ Result<std::string> Elements::long_text(Bytes element) {
   const std::uint64_t number = in.dword();
   if (length == 0 || collection == 0 || collection == kUndefined) return std::string();
   const auto object = MBK_TRY(heap_.object(file_, collection, number));
-  if (length > object.size()) return damaged("a text is longer than its place in the global heap");
+  if (length > object.size()) return damaged("a text is longer than its object in the global heap");
   return trimmed(object.first(static_cast<std::size_t>(length)), false);
 }
 

@@ -27,12 +27,13 @@ Budget::Budget(const ReadLimits& limits)
 
 Result<void> Budget::keep(std::uint64_t count, std::uint64_t each) {
   std::uint64_t bytes = 0;
-  if (!multiply(count, each, bytes) || bytes > memory_) return damaged("it claims more than the file can hold");
+  if (!multiply(count, each, bytes) || bytes > memory_)
+    return damaged("it claims more data than a file of this size can contain");
   if (bytes > available_) {
     spent_ = true;
     const auto gigabytes = [](std::uint64_t n) { return static_cast<double>(n) / static_cast<double>(1u << 30u); };
-    return bad_data(fmt::format("{:.2f} GiB of memory are needed for it, and {:.2f} GiB are available",
-                                gigabytes(bytes), gigabytes(available_)),
+    return bad_data(fmt::format("it needs {:.2f} GiB of memory, but {:.2f} GiB are available", gigabytes(bytes),
+                                gigabytes(available_)),
                     "close other programs, or split the recording into numbered parts");
   }
   memory_ -= bytes;
@@ -41,13 +42,13 @@ Result<void> Budget::keep(std::uint64_t count, std::uint64_t each) {
 }
 
 Result<void> Budget::borrow(std::uint64_t bytes) const {
-  if (bytes > limit_) return damaged("it claims more than the file can hold");
+  if (bytes > limit_) return damaged("it claims more data than a file of this size can contain");
   return {};
 }
 
 Result<void> Budget::work(std::uint64_t bytes) {
   spent_ = spent_ || bytes > work_;
-  if (spent_) return damaged("its structures point at each other without end");
+  if (spent_) return damaged("its structures contain a reference loop");
   work_ -= bytes;
   return {};
 }
@@ -55,7 +56,7 @@ Result<void> Budget::work(std::uint64_t bytes) {
 Result<void> Budget::object(std::uint64_t path_size) {
   if (objects_-- <= 0) {
     spent_ = true;
-    return bad_data(fmt::format("more than {} objects", max_objects_), "split the file");
+    return bad_data(fmt::format("it contains more than {} objects", max_objects_), "split the file");
   }
   return keep(1, kObjectMemory + 2 * path_size);
 }

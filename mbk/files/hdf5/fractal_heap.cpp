@@ -66,7 +66,8 @@ Result<FractalHeap> FractalHeap::open(File& file, std::uint64_t address) {
   const bool filtered = in.word() != 0;
   heap.has_checksums_ = (in.byte() & 2u) != 0;
   if (!known) return broken();
-  if (filtered) return bad_data("a fractal heap is packed by filters, which is not read", "write it without them");
+  if (filtered)
+    return bad_data("a fractal heap is compressed with filters, which is not supported", "write it without filters");
   if (!checksum_is_right(prefix.first(size))) return damaged("a fractal heap has a wrong checksum");
   heap.largest_ = in.dword();
   in.length();  // the next huge object

@@ -84,7 +84,7 @@ Result<Layout> chunked_since_1_10(Cursor& in, Layout layout) {
       break;
     default:
       layout.kind = Layout::Kind::unread;
-      layout.what = "chunked in a way that is not read";
+      layout.what = "stored with an unsupported chunk index";
       return layout;
   }
   chunks.address = in.address();
@@ -101,7 +101,7 @@ Result<Layout> read_layout(Cursor in) {
   const int kind = in.byte();
   Layout layout;
   if (version != 3 && version != 4) {
-    layout.what = fmt::format("in a layout of version {}, which is newer than this program", version);
+    layout.what = fmt::format("stored in layout version {}, which is not supported", version);
     return layout;
   }
   if (kind == kCompact) {
@@ -118,7 +118,7 @@ Result<Layout> read_layout(Cursor in) {
     layout.chunks.address = in.address();
     if (!read_chunk_shape(in, dimensions, 4, layout.chunks)) return broken_layout();
   } else if (kind == kVirtual) {
-    layout.what = "kept in other datasets";
+    layout.what = "stored in other datasets";
   } else {
     return broken_layout();
   }

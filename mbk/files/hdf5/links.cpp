@@ -54,7 +54,7 @@ class LinkReader {
       const std::uint64_t path_at = in.dword();
       Link link{text_at(names, name_at), soft ? Link::Kind::soft : Link::Kind::hard, target};
       if (soft) link.path = text_at(names, path_at);
-      if (outside_) return damaged("a name lies outside of its local heap");
+      if (outside_) return damaged("a name lies outside its local heap");
       MBK_TRY(add(std::move(link)));
     }
     return {};

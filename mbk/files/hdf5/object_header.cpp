@@ -32,7 +32,7 @@ class HeaderReader {
     while (!segments_.empty()) {
       const Segment next = segments_.front();
       segments_.pop_front();
-      if (!seen_.insert(next.address).second) return damaged("an object header continues in itself");
+      if (!seen_.insert(next.address).second) return damaged("an object header refers to itself as its continuation");
       const auto block =
           MBK_TRY(is_new ? file_.checked_block(next.address, next.size, "an object header's continuation")
                          : file_.block(next.address, next.size, "an object header's continuation"));
@@ -59,12 +59,12 @@ class HeaderReader {
     in.skip(4);
     const int version = in.byte();
     const unsigned flags = in.byte();
-    if (version != 2) return damaged(fmt::format("object header version {} is not known", version));
+    if (version != 2) return damaged(fmt::format("object header version {} is unknown", version));
     if ((flags & 0x20u) != 0) in.skip(16);  // times
     if ((flags & 0x10u) != 0) in.skip(4);   // limits of compact attributes
     ordered_ = (flags & 0x04u) != 0;
     const std::uint64_t size = in.number(std::size_t{1} << (flags & 3u));
-    if (!in.ok() || size > in.left()) return damaged("an object header reaches beyond the end");
+    if (!in.ok() || size > in.left()) return damaged("an object header extends beyond the end of the file");
     const std::size_t prefix = in.at();
     const auto block = MBK_TRY(file_.checked_block(address, prefix + size + kChecksumSize, "an object header"));
     Cursor messages = file_.cursor(block.subspan(prefix));
@@ -136,13 +136,13 @@ Result<Bytes> shared_body(File& file, MessageType type, Bytes body) {
   if (version == 1) in.skip(6);
   const bool in_heap = version == 3 && how == 1;
   if (version < 1 || version > 3 || in_heap) {
-    return bad_data("a message is shared in a way that is not read", "write the file without shared messages");
+    return bad_data("a message is shared in an unsupported way", "write the file without shared messages");
   }
   const std::uint64_t address = in.address();
   if (!in.ok()) return damaged("a shared message is broken");
   const auto header = MBK_TRY(read_object_header(file, address));
   const Message* const found = header.find(type);
-  if (found == nullptr || found->shared) return damaged("a shared message is not where it should be");
+  if (found == nullptr || found->shared) return damaged("a shared message is missing from its place");
   return found->body;
 }
 

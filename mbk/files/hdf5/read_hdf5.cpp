@@ -57,7 +57,7 @@ class Tree {
     for (const Link& link : **links) {
       const std::string inner = path + "/" + link.name;
       if (place.groups.contains(link.name) || place.datasets.contains(link.name)) {
-        place.damage = printable(fmt::format("'{}' is there twice", link.name));
+        place.damage = printable(fmt::format("'{}' occurs twice", link.name));
         continue;
       }
       MBK_TRY(object(address, link, inner, depth, place));
@@ -77,11 +77,11 @@ class Tree {
     if (link.kind == Link::Kind::external) {
       return leave(fmt::format("a link to '{}' in another file, '{}'", link.path, link.file));
     }
-    if (link.kind == Link::Kind::other) return leave("a link to elsewhere");
+    if (link.kind == Link::Kind::other) return leave("a user-defined link");
     const std::uint64_t address = link.kind == Link::Kind::soft ? follow(link.path, parent, 0) : link.address;
-    if (is_spent()) return tl::unexpected(damaged("its links lead on without end").value().in(path));
-    if (address == kUndefined) return leave(fmt::format("a link to '{}', where nothing is", link.path));
-    if (std::ranges::find(within_, address) != within_.end()) return leave("a link to a group that it stands in");
+    if (is_spent()) return tl::unexpected(damaged("its links form a loop").value().in(path));
+    if (address == kUndefined) return leave(fmt::format("a link to '{}', which does not exist", link.path));
+    if (std::ranges::find(within_, address) != within_.end()) return leave("a link to a group that contains it");
     const auto header = read_object_header(reading_.file, address);
     if (!header && is_spent()) return tl::unexpected(header.error().in(path));
     if (!header) return leave(header.error().message, true);

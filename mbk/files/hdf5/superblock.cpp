@@ -47,13 +47,13 @@ std::optional<std::size_t> find_superblock(Bytes file) {
 
 Result<Superblock> read_superblock(Bytes file) {
   const auto start = find_superblock(file);
-  if (!start) return bad_data("there is no HDF5 signature", "the file is not HDF5");
+  if (!start) return bad_data("the HDF5 signature is missing", "the file is not HDF5");
   Cursor in(file.subspan(*start));
   in.skip(kSignature.size());
   const int version = in.byte();
   if (version > 3) {
-    return bad_data(fmt::format("HDF5 superblock version {} is not known", version),
-                    "write it with libver='v110' or earlier");
+    return bad_data(fmt::format("HDF5 superblock version {} is unknown", version),
+                    "write the file with libver='v110' or earlier");
   }
   Superblock superblock;
   std::uint64_t base = 0;
@@ -82,10 +82,11 @@ Result<Superblock> read_superblock(Bytes file) {
   // A user block that was put before the file or taken away moves everything.
   const std::uint64_t size = end - base;
   if (size > file.size() - *start) {
-    return damaged(fmt::format("the file has {} of the {} bytes that it should have", file.size() - *start, size));
+    return damaged(fmt::format("the file has {} of its {} bytes", file.size() - *start, size));
   }
   if (open) {
-    return bad_data("the program that wrote it did not close it", "close it there, or mend it with h5clear -s");
+    return bad_data("the program that wrote it did not close it",
+                    "close it in that program, or repair it with h5clear -s");
   }
   superblock.contents = file.subspan(*start, static_cast<std::size_t>(size));
   return superblock;

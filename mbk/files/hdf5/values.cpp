@@ -57,7 +57,7 @@ Result<void> read_attribute(Reading& reading, Bytes message, Attributes& all) {
   const std::uint64_t type_size = in.word();
   const std::uint64_t space_size = in.word();
   if (version == 3) in.skip(1);  // character set of the name
-  if (version < 1 || version > 3) return damaged(fmt::format("an attribute of version {} is not known", version));
+  if (version < 1 || version > 3) return damaged(fmt::format("attribute version {} is unknown", version));
   const auto padded = [&](std::uint64_t size) { return version == 1 ? (size + 7) / 8 * 8 : size; };
   const std::string name = Cursor(in.take(padded(name_size))).text();
   Bytes type_bytes = in.take(padded(type_size));
@@ -77,7 +77,7 @@ Result<void> read_attribute(Reading& reading, Bytes message, Attributes& all) {
   if (!space) return here(space.error());
   if (auto ok = file.budget.keep(1, kAttributeMemory + name.size()); !ok) return here(ok.error());
   const auto [place, added] = all.try_emplace(name);
-  if (!added) return here(damaged("it is there twice").value());
+  if (!added) return here(damaged("it occurs twice").value());
   if (type->kind == Datatype::Kind::unread || type->kind == Datatype::Kind::compound) {
     leave(place->second, *space, type->what.empty() ? "of a compound type" : type->what);
     return {};
@@ -106,7 +106,7 @@ Result<void> read_dense_attributes(Reading& reading, Cursor in, Attributes& all)
     const bool shared = (record.byte() & kShared) != 0;
     if (kind != BTree2::attribute_names || !record.ok()) return damaged("its attributes are broken");
     if (shared)
-      return bad_data("its attributes are shared, which is not read", "write the file without shared messages");
+      return bad_data("its attributes are shared, which is not supported", "write the file without shared messages");
     const auto message = MBK_TRY(heap.object(file, id));
     return read_attribute(reading, message, all);
   });
@@ -148,12 +148,12 @@ std::string why_unread(const Description& dataset, const ObjectHeader& header) {
   using Kind = Layout::Kind;
   const Layout& layout = dataset.layout;
   if (dataset.type.kind == Datatype::Kind::unread) return dataset.type.what;
-  if (header.find(MessageType::external_files) != nullptr) return "kept in other files";
+  if (header.find(MessageType::external_files) != nullptr) return "stored in other files";
   if (layout.kind == Kind::unread) return layout.what;
   if (layout.kind == Kind::chunked && !dataset.filters.unread.empty()) return dataset.filters.unread;
   const bool nowhere = (layout.kind == Kind::contiguous && layout.address == kUndefined) ||
                        (layout.kind == Kind::chunked && layout.chunks.address == kUndefined);
-  return nowhere && dataset.space.count > 0 ? "without numbers: it was never written" : "";
+  return nowhere && dataset.space.count > 0 ? "empty: it was never written" : "";
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ class Check {
   Result<void> references() const {
     const auto lost = std::ranges::find_if(referred_, [&](const auto& path) { return !paths_.contains(path); });
     if (lost == referred_.end()) return {};
-    return bad_data(fmt::format("a reference points to '{}', which is not there", *lost));
+    return bad_data(fmt::format("a reference points to '{}', which does not exist", *lost));
   }
 
  private:
@@ -54,7 +54,7 @@ class Check {
 
   Result<void> attributes(const Attributes& all, const std::string& path) {
     if (all.size() > kMaxAttributes) {
-      return bad_data(fmt::format("{} attributes are more than {}", all.size(), kMaxAttributes), "", path);
+      return bad_data(fmt::format("it has {} attributes; the maximum is {}", all.size(), kMaxAttributes), "", path);
     }
     for (const auto& [name, attribute] : all) {
       const std::string place = fmt::format("{}, attribute '{}'", path, name);
@@ -63,7 +63,7 @@ class Check {
       }
       if (auto ok = value(attribute); !ok) return tl::unexpected(ok.error().in(place));
       if (const std::size_t bytes = size(name, attribute); bytes > kMaxAttributeBytes) {
-        return bad_data(fmt::format("{} bytes are more than the {} of an attribute", bytes, kMaxAttributeBytes),
+        return bad_data(fmt::format("it has {} bytes; an attribute has at most {}", bytes, kMaxAttributeBytes),
                         "make it a dataset", place);
       }
     }
@@ -82,22 +82,22 @@ class Check {
 
   Result<void> value(const Value& value) {
     if (value.shape.size() > kMaxDimensions) {
-      return bad_data(fmt::format("{} dimensions are more than {}", value.shape.size(), kMaxDimensions));
+      return bad_data(fmt::format("it has {} dimensions; the maximum is {}", value.shape.size(), kMaxDimensions));
     }
     if (const auto* unread = std::get_if<Unread>(&value.data)) {
-      return bad_data(fmt::format("is {}, which is not written", unread->what));
+      return bad_data(fmt::format("is {}, which cannot be written", unread->what));
     }
     const std::uint64_t expected = count_of(value.shape);
     if (const auto* numbers = std::get_if<Numbers>(&value.data)) {
       MBK_TRY(counted(static_cast<std::uint64_t>(numbers->values.size()), expected));
       if (const auto misfit = first_misfit(*numbers)) {
-        return bad_data(fmt::format("{} does not fit the type that it should be stored as", *misfit));
+        return bad_data(fmt::format("{} does not fit its storage type", *misfit));
       }
       return {};
     }
     if (const auto* texts = std::get_if<Texts>(&value.data)) {
       if (std::ranges::any_of(*texts, [](const auto& text) { return text.find('\0') != text.npos; })) {
-        return bad_data("a text holds a null character", "take it out");
+        return bad_data("a text contains a null character", "remove it");
       }
       return counted(texts->size(), expected);
     }

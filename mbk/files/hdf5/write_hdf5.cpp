@@ -269,7 +269,7 @@ class Writer {
 
 Result<std::string> serialise(const Group& root, std::string_view user_block) {
   if (const std::size_t size = user_block.size(); size != 0 && (size < 512 || (size & (size - 1)) != 0)) {
-    return bad_data(fmt::format("a user block of {} bytes is none of 0, 512, 1024, 2048, …", size));
+    return bad_data(fmt::format("a user block of {} bytes is not one of 0, 512, 1024, 2048, …", size));
   }
   MBK_TRY(check_writable(root));
   return Writer(user_block).write(root);

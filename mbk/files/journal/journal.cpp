@@ -81,7 +81,7 @@ Result<void> sync_folder(const fs::path& file) {
   const int error = errno;
   if (descriptor >= 0) close(descriptor);
   if (fine || error == EINVAL) return {};  // file systems that cannot say so
-  return bad_data(fmt::format("the folder does not reach the disk: {}", std::strerror(error)), "look at the disk",
+  return bad_data(fmt::format("the folder cannot be flushed to the disk: {}", std::strerror(error)), "check the disk",
                   folder.string());
 }
 
@@ -133,7 +133,7 @@ fs::path saved_name(const fs::path& file, int k) {
 
 Error Writer::failure(const char* what) const {
   return {ErrorKind::data, fmt::format("{}: {}", what, std::strerror(errno)),
-          "look at the disk and its free space; what is already in the file stays", file_.string()};
+          "check the disk and its free space; data already in the file is kept", file_.string()};
 }
 
 Writer::Writer(Writer&& other) noexcept : descriptor_(-1) {
@@ -167,7 +167,7 @@ Result<Writer> Writer::create(const fs::path& file, const Header& header, std::u
     return tl::unexpected(already_there(file));
   }
   Writer writer(file, descriptor);
-  if (descriptor < 0) return tl::unexpected(writer.failure("cannot be made"));
+  if (descriptor < 0) return tl::unexpected(writer.failure("cannot be created"));
   writer.lock();
   writer.trial_ = drawn_by_lot();
   writer.header_ = text_of(header);
@@ -175,7 +175,7 @@ Result<Writer> Writer::create(const fs::path& file, const Header& header, std::u
   writer.block_.reserve(sizeof(BlockHead) + kLongest * sizeof(Tick));  // no block waits for memory
   const auto size = static_cast<off_t>(expected * sizeof(Tick) * 11 / 10);
   if (size > 0 && fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, size) != 0 && errno != EOPNOTSUPP) {
-    const Error error = writer.failure("no space for the trial");
+    const Error error = writer.failure("the disk has no space for the trial");
     unlink(file.c_str());
     return tl::unexpected(error);
   }
@@ -200,7 +200,7 @@ Error Writer::already_there(const fs::path& file) {
     return {ErrorKind::usage, fmt::format("is being recorded by process {}", process), "choose another name",
             file.string()};
   }
-  return {ErrorKind::usage, "there is a journal already", "'mbk recover' makes a recording of it; then move it away",
+  return {ErrorKind::usage, "a journal already exists", "convert it with 'mbk recover', then move it away",
           file.string()};
 }
 
@@ -263,7 +263,7 @@ Result<void> Writer::end(const Ending& ending) {
 }
 
 Result<void> Writer::sync() const {
-  if (!reaches_disk()) return tl::unexpected(failure("does not reach the disk"));
+  if (!reaches_disk()) return tl::unexpected(failure("cannot be flushed to the disk"));
   return {};
 }
 

@@ -231,9 +231,10 @@ Header header_of(const Json& json) {
   header.has_force = json.at("has_force").get<bool>();
   header.has_acceleration = json.at("has_acceleration").get<bool>();
   header.force_latency = json.at("force_latency_ticks").get<int>();
-  if (json.at("tick_bytes").get<std::size_t>() != sizeof(Tick)) throw std::runtime_error("ticks of another version");
-  if (header.force_latency < 0) throw std::runtime_error("a force latency below zero");
-  if (!(header.rate > 0.0)) throw std::runtime_error("a rate that is not above zero");
+  if (json.at("tick_bytes").get<std::size_t>() != sizeof(Tick))
+    throw std::runtime_error("ticks of a different version");
+  if (header.force_latency < 0) throw std::runtime_error("a negative force latency");
+  if (!(header.rate > 0.0)) throw std::runtime_error("a rate that is not positive");
   const auto readers = value_of<Readers>(json.value("readable_by", std::string()));
   if (readers) header.readers = *readers;
   for (const Json& event : json.at("events")) {
@@ -254,7 +255,7 @@ Ending ending_of(const Json& json) {
   ending.trip = printable(json.value("trip", std::string()));
   ending.motors = printable(json.value("motors", std::string()));
   if (ending.how == Ending::How::other) ending.other = word;
-  if (ending.ticks > kLargestNumber) throw std::runtime_error("more ticks than there can be");
+  if (ending.ticks > kLargestNumber) throw std::runtime_error("an impossible number of ticks");
   return ending;
 }
 
@@ -314,17 +315,16 @@ std::vector<std::string> Damage::sentences() const {
     if (count > 0) said.push_back(plural(count, one, more));
   };
   if (!lost.empty()) said.push_back(plural(ticks_lost(), "tick is", "ticks are") + " missing: " + gaps());
-  say(bytes, "byte belongs to no whole block", "bytes belong to no whole block");
+  say(bytes, "byte belongs to no complete block", "bytes belong to no complete block");
   say(blocks, "block is missing", "blocks are missing");
-  say(doubled, "block came twice and was taken once", "blocks came twice and were taken once");
-  say(moved, "block stood in the wrong place, and was put back", "blocks stood in the wrong place, and were put back");
-  say(foreign, "block of another trial was not taken", "blocks of another trial were not taken");
-  say(contradictory, "tick is there in two versions, neither of which was taken",
-      "ticks are there in two versions, neither of which was taken");
+  say(doubled, "duplicate block was ignored", "duplicate blocks were ignored");
+  say(moved, "block was out of order and was reordered", "blocks were out of order and were reordered");
+  say(foreign, "block of another trial was ignored", "blocks of another trial were ignored");
+  say(contradictory, "tick has two conflicting versions and was ignored",
+      "ticks have two conflicting versions and were ignored");
   if (header) {
     said.emplace_back(
-        "no header is whole: robot, person and the reference's unit are not known, nor by how many ticks the force is "
-        "late");
+        "no header is complete: robot, participant, unit of the reference and latency of the force are unknown");
   }
   return said;
 }
@@ -349,17 +349,17 @@ Result<Journal> decode(Bytes bytes) {
   std::erase_if(blocks, strange);
   for (const Block& block : blocks) damage.bytes -= block.bytes + (second ? sizeof(BlockHead) : sizeof(BlockHead1));
   if (blocks.empty()) {
-    return named ? bad_data("the journal's header is not whole, nor anything behind it", "nothing was recorded yet")
-                 : bad_data("is no journal of mbk",
-                            "a journal stands beside the recording that it becomes: NAME.h5.journal");
+    return named ? bad_data("the journal contains neither a complete header nor any complete block",
+                            "nothing was recorded yet")
+                 : bad_data("is not an mbk journal", "name the journal beside the recording: NAME.h5.journal");
   }
   const std::uint64_t trial = trial_of(blocks);
   damage.foreign = std::erase_if(blocks, [&](const Block& block) { return block.trial != trial; });
   put_in_order(bytes, blocks, damage);
   const auto headers = std::ranges::count(blocks, kHeader, &Block::kind);
   if (!second && headers > 1) {
-    return bad_data("the journal holds the headers of two trials, and its format does not say whose a tick is",
-                    "take a copy from a backup");
+    return bad_data("the journal contains the headers of two trials, and its format does not assign ticks to trials",
+                    "use a backup copy");
   }
   if (second) {
     damage.blocks = blocks.back().order + 1;
@@ -370,7 +370,7 @@ Result<Journal> decode(Bytes bytes) {
   try {
     read_texts(bytes, blocks, journal);
   } catch (const std::exception& error) {
-    return bad_data(fmt::format("the journal cannot be understood: {}", error.what()),
+    return bad_data(fmt::format("the journal cannot be decoded: {}", error.what()),
                     "it may have been written by another version of mbk");
   }
   journal.ticks = ticks_of(bytes, blocks, damage);

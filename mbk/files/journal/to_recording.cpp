@@ -133,13 +133,13 @@ void add_events(Recording& recording, const Journal& journal) {
 /// Says how the trial ended, and what of it is missing.
 void add_ending(Recording& recording, const Journal& journal, const Rows& rows) {
   const Ending ending = journal.ending.value_or(
-      Ending{Ending::How::interrupted, "the program or the machine went down while it recorded"});
+      Ending{Ending::How::interrupted, "the program or the computer stopped during the recording"});
   auto& metadata = recording.metadata;
   metadata["ended"] = journal.ended();
   std::string detail = ending.detail;
   if (!journal.ending && journal.damage.bytes > 0) detail += ", or the end of the journal is damaged";
   if (ending.how == Ending::How::other) {
-    detail += fmt::format("{}this version of mbk does not know '{}'", detail.empty() ? "" : "; ", ending.word());
+    detail += fmt::format("{}'{}' is unknown to this version of mbk", detail.empty() ? "" : "; ", ending.word());
   }
   if (!detail.empty()) metadata["ended_detail"] = detail;
   if (!ending.trip.empty()) metadata["trip"] = ending.trip;
@@ -152,7 +152,7 @@ void add_ending(Recording& recording, const Journal& journal, const Rows& rows) 
     metadata["ticks_lost"] = std::to_string(journal.damage.ticks_lost());
     metadata["gaps"] = journal.damage.gaps();
   }
-  if (rows.left_open > 0) said.push_back(fmt::format("{} of them have no row of NaN", rows.left_open));
+  if (rows.left_open > 0) said.push_back(fmt::format("{} missing ticks have no row of NaN", rows.left_open));
   metadata["journal_damage"] = fmt::format("{}", fmt::join(said, "; "));
 }
 
@@ -167,7 +167,7 @@ std::string Journal::ended() const {
 }
 
 Result<Recording> to_recording(const Journal& journal) {
-  if (journal.ticks.empty()) return bad_data("the journal holds no ticks", "the trial ended before it began");
+  if (journal.ticks.empty()) return bad_data("the journal contains no ticks", "the trial ended before it began");
   const Header& header = journal.header;
   const bool known = !journal.damage.header;
   const Rows rows = rows_of(journal);

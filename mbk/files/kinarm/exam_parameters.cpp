@@ -172,15 +172,15 @@ void ExamParameters::describe(std::map<std::string, std::string>& metadata, std:
   }
   if (!stays.empty()) {
     notes.push_back(
-        fmt::format("not copied, as it may say who the person is; it stays in the exam: {}, and the name of "
+        fmt::format("not copied because it may identify the participant; it remains in the exam: {}, and the name of "
                     "the file it was saved as",
                     fmt::join(stays, ", ")));
   } else {
-    notes.emplace_back("not copied, as it may say who the person is: the name of the file it was saved as");
+    notes.emplace_back("not copied because it may identify the participant: the name of the file it was saved as");
   }
   if (!long_ones.empty()) {
     notes.push_back(
-        fmt::format("not copied, as they have more than {} values: {}", kMaxValues, fmt::join(long_ones, ", ")));
+        fmt::format("not copied because they have more than {} values: {}", kMaxValues, fmt::join(long_ones, ", ")));
   }
 }
 

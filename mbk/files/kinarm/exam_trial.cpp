@@ -75,10 +75,10 @@ void drop_wrong_torques(ExamTrial& trial) {
   if (names.empty()) return;
   std::erase_if(trial.signals, wrong);
   trial.notes.push_back(
-      fmt::format("{} {} left out: before version 3.4.2 of the task development kit it was recorded "
-                  "wrongly, and this exam {}; forces and the other torques are right",
+      fmt::format("{} {} omitted: the task development kit recorded it wrongly before version 3.4.2, and this exam {}; "
+                  "forces and the other torques are correct",
                   fmt::join(names, " and "), names.size() == 1 ? "was" : "were",
-                  version.empty() ? "names no version" : fmt::format("is of version {}", version)));
+                  version.empty() ? "states no version" : fmt::format("has version {}", version)));
 }
 
 /// The recorder calls the hand of a robot without a right arm "Right_Hand" all the same.
@@ -93,9 +93,7 @@ void rename_left_hand(ExamTrial& trial) {
     if (signal.name.starts_with(kRight)) signal.name = std::string(kLeft) + signal.name.substr(kRight.size());
   }
   trial.notes.emplace_back(
-      "there was no right arm (RIGHT_KINARM:IS_PRESENT is 0), so that what is called Right_Hand is the left hand; it "
-      "is "
-      "called Left_Hand here");
+      "there was no right arm (RIGHT_KINARM:IS_PRESENT is 0): Right_Hand is the left hand and was renamed Left_Hand");
 }
 
 /// A signal in one of these units, as long as `samples` (any length where it is negative); otherwise nullptr, and why.
@@ -235,17 +233,17 @@ bool agrees(Arm arm, const ExamTrial& trial, const HandGeometry& geometry, const
             const HandSignal& position, std::vector<std::string>& notes) {
   const RecordedHand recorded = recorded_hand(arm, trial);
   const std::string hand = fmt::format("{0}_hand_x, {0}_hand_y", name_of(arm));
-  const std::string by = fmt::format("{} are computed from the joint angles ({}), from the axis of the first link on",
-                                     hand, geometry.from);
+  const std::string by = fmt::format(
+      "{} are computed from the joint angles ({}), relative to the axis of the first link", hand, geometry.from);
   if (recorded.x == nullptr || recorded.x->values.size() != position.x.size() ||
       recorded.y->values.size() != position.y.size() || metres_in(recorded.x->unit) == 0.0 ||
       metres_in(recorded.y->unit) == 0.0) {
-    notes.push_back(by + "; no position was recorded that could confirm them");
+    notes.push_back(by + "; no recorded position was available to confirm them");
     return true;
   }
   const Difference x = difference(*recorded.x, position.x), y = difference(*recorded.y, position.y);
   if (!x.any || !y.any) {
-    notes.push_back(by + "; no position was recorded that could confirm them");
+    notes.push_back(by + "; no recorded position was available to confirm them");
     return true;
   }
   const double rounding = kEpsilon * (std::max(x.size, y.size) + geometry.link1 * largest_in(*joints.q1) +
@@ -255,11 +253,10 @@ bool agrees(Arm arm, const ExamTrial& trial, const HandGeometry& geometry, const
       recorded.x->name.substr(0, recorded.x->name.size() - (recorded.x->name.ends_with(".x") ? 2 : 1));
   std::string offset;
   if (std::max(std::abs(x.offset), std::abs(y.offset)) > rounding) {
-    offset = fmt::format("; apart from that {} stands ({:.6g}, {:.6g}) m off, which is where it counts from", name,
-                         x.offset, y.offset);
+    offset = fmt::format("; {} has a constant offset of ({:.6g}, {:.6g}) m, its origin", name, x.offset, y.offset);
   }
   if (largest <= rounding) {
-    notes.push_back(fmt::format("{}; the recorded {} agrees within {}, the rounding of its numbers{}", by, name,
+    notes.push_back(fmt::format("{}; the recorded {} agrees within {}, its rounding error{}", by, name,
                                 length_text(rounding), offset));
     return true;
   }
@@ -270,17 +267,18 @@ bool agrees(Arm arm, const ExamTrial& trial, const HandGeometry& geometry, const
   if (!wrong) {
     notes.push_back(
         fmt::format("{}; the recorded {} differs by up to {} in a motion of {}, more than the {} that rounding "
-                    "explains, as where joints and hand were not sampled at the same times{}",
+                    "explains; joints and hand may have been sampled at different times{}",
                     by, name, length_text(largest), length_text(motion), length_text(rounding), offset));
     return true;
   }
-  const std::string better = explained ? fmt::format("it fits lengths of {:.4g} m, {:.4g} m and a pointer of {:.4g} m",
-                                                     fitted.link1, fitted.link2, fitted.pointer)
-                                       : std::string("no other lengths explain it");
+  const std::string better = explained
+                                 ? fmt::format("it fits link lengths of {:.4g} m, {:.4g} m and a pointer of {:.4g} m",
+                                               fitted.link1, fitted.link2, fitted.pointer)
+                                 : std::string("no other link lengths explain it");
   notes.push_back(
-      fmt::format("! {} do not fit: the recorded {} differs by up to {} in a motion of {} (rounding explains "
-                  "{}) from what the lengths ({}) give; {}. Hand, acceleration and the sign of the force are "
-                  "not taken from them; --channels x={}_hand_x,… takes them all the same",
+      fmt::format("! {} do not fit: the recorded {} differs by up to {} in a motion of {} (rounding explains {}) from "
+                  "the values computed with the link lengths ({}); {}. They are not used for hand, acceleration and "
+                  "the sign of the force; --channels x={}_hand_x,… uses them nevertheless",
                   hand, name, length_text(largest), length_text(motion), length_text(rounding), geometry.from, better,
                   name_of(arm)));
   return false;
@@ -341,11 +339,11 @@ Result<ExamTrial> join_parts(std::vector<ExamTrial> parts) {
     whole.notes.insert(whole.notes.end(), parts[k].notes.begin(), parts[k].notes.end());
   }
   whole.notes.push_back(
-      fmt::format("the recorder split this trial into {} parts, which are joined without a gap; events "
-                  "of later parts are moved by the frames before them",
+      fmt::format("the recorder split this trial into {} parts, which were joined without a gap; events of later parts "
+                  "were shifted by the duration of the preceding parts",
                   parts.size()));
   if (!dropped.empty()) {
-    whole.notes.push_back(fmt::format("left out, as not every part has them alike: {}", fmt::join(dropped, ", ")));
+    whole.notes.push_back(fmt::format("omitted because the parts differ in them: {}", fmt::join(dropped, ", ")));
   }
   return whole;
 }
@@ -381,7 +379,7 @@ HandOfArm hand_of(Arm arm, const ExamTrial& trial, std::vector<std::string>& not
     notes.push_back(fmt::format("the {} hand cannot be computed: {}", lower(name_of(arm)), geometry.error().message));
     return hand;
   }
-  if (!why.empty()) notes.push_back(fmt::format("not everything of the hand is computed: {}", fmt::join(why, ", ")));
+  if (!why.empty()) notes.push_back(fmt::format("some hand quantities cannot be computed: {}", fmt::join(why, ", ")));
   hand.position = geometry->position(joints);
   hand.trusted = agrees(arm, trial, *geometry, joints, hand.position, notes);
   if (joints.has_velocity()) hand.velocity = geometry->velocity(joints);
@@ -391,8 +389,8 @@ HandOfArm hand_of(Arm arm, const ExamTrial& trial, std::vector<std::string>& not
     const auto singular = hand.commanded.x.array().isNaN() && joints.q1->array().isFinite() &&
                           joints.torque1->array().isFinite() && joints.torque2->array().isFinite();
     if (const Index count = singular.count(); count > 0) {
-      notes.push_back(fmt::format(
-          "{}_commanded_force is not a number in {} samples, in which the links lie in one line", name_of(arm), count));
+      notes.push_back(fmt::format("{}_commanded_force is NaN in {} samples, in which the links are collinear",
+                                  name_of(arm), count));
     }
   }
   return hand;

@@ -147,11 +147,11 @@ ForceSign ForceSignTest::result() const {
 }
 
 std::string force_sign_note(const ForceSign& sign, const std::string& sensor) {
-  const std::string turn = "--channels Fx=-force_x,Fy=-force_y,x=hand_x,y=hand_y turns it";
+  const std::string turn = "--channels Fx=-force_x,Fy=-force_y,x=hand_x,y=hand_y reverses it";
   if (sign.trials == 0) {
     return fmt::format(
-        "the sign of {} is not documented and cannot be inferred here: there is no force, or no motion by "
-        "which it could be; it is taken as stored; {}",
+        "the sign of {} is not documented and cannot be inferred here, because there is no force or no motion; the "
+        "force is used as stored; {}",
         sensor, turn);
   }
   const std::string trials = sign.trials == 1 ? "1 trial" : fmt::format("{} trials", sign.trials);
@@ -159,8 +159,8 @@ std::string force_sign_note(const ForceSign& sign, const std::string& sensor) {
     return part < 1e-5 ? std::string("less than 0.001") : fmt::format("{:.3g}", 100.0 * part);
   };
   const std::string how = fmt::format(
-      "{}, the mass of the robot times its acceleration has to be the {}measured force; this leaves {} % of "
-      "the measured force unexplained with the sign as stored (a robot of {:.3g} kg) and {} % with the sign turned "
+      "{}, the mass of the robot times its acceleration must equal the {}measured force; this leaves {} % of the "
+      "measured force unexplained with the sign as stored (robot mass {:.3g} kg) and {} % with the sign reversed "
       "({:.3g} kg)",
       trials, sign.commanded ? "commanded force of the motors plus the " : "", share(sign.unexplained[0]), sign.mass[0],
       share(sign.unexplained[1]), sign.mass[1]);
@@ -172,12 +172,12 @@ std::string force_sign_note(const ForceSign& sign, const std::string& sensor) {
           sensor, how, turn);
     case ForceSign::Verdict::turned:
       return fmt::format(
-          "the sign of {} is not documented; inferred: it is the force of the robot on the hand, so that "
-          "force_x and force_y have the opposite sign. Evidence: in {}. {}",
+          "the sign of {} is not documented; inferred: it is the force of the robot on the hand, so force_x and "
+          "force_y have the opposite sign. Evidence: in {}. {}",
           sensor, how, turn);
     default:
       return fmt::format(
-          "! the sign of {} is not documented, and the evidence is undecided: it is taken as stored, which "
+          "! the sign of {} is not documented, and the evidence is inconclusive: the force is used as stored, which "
           "may be wrong. In {}. {}",
           sensor, how, turn);
   }

@@ -101,7 +101,7 @@ Result<HandGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
   const bool end_point = version.starts_with("KINARM_EP");
   if (!end_point && !version.starts_with("KINARM_H") && !version.starts_with("KINARM_M")) {
     return bad_data(version.empty() ? "RIGHT_KINARM:VERSION is missing"
-                                    : fmt::format("the robot is a '{}', whose geometry is not known", version));
+                                    : fmt::format("the geometry of the robot '{}' is unknown", version));
   }
   const std::string group = end_point ? own : "CALIBRATION";
   const std::string side(capitals_of(arm));
@@ -115,7 +115,7 @@ Result<HandGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
   const auto pointer = parameters.number(group, offset);
   if (!pointer || !std::isfinite(*pointer)) return bad_data(fmt::format("{}:{} is missing", group, offset));
   geometry.pointer = arm == Arm::left ? -*pointer : *pointer;
-  geometry.from += fmt::format(", {} {:.6g} m{}", offset, *pointer, arm == Arm::left ? ", its sign turned" : "");
+  geometry.from += fmt::format(", {} {:.6g} m{}", offset, *pointer, arm == Arm::left ? ", sign reversed" : "");
   return geometry;
 }
 

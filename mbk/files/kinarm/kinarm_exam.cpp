@@ -128,7 +128,7 @@ struct KinarmExam::Open {
       }
       parts.push_back(std::move(part));
     }
-    if (parts.empty()) return bad_data("the exam holds no trial", "nothing was recorded, or it is damaged");
+    if (parts.empty()) return bad_data("the exam contains no trial", "nothing was recorded, or it is damaged");
     return {};
   }
 
@@ -179,7 +179,7 @@ struct KinarmExam::Open {
     Result<Buffer> bytes = archive.read_begin(part.members.front(), kBeginOfC3d);
     if (!bytes) return tl::unexpected(bytes.error());
     for (bool whole = part.size <= kBeginOfC3d;; whole = true) {
-      if (!looks_like_c3d(bytes->bytes())) return bad_data("is no C3D file");
+      if (!looks_like_c3d(bytes->bytes())) return bad_data("is not a C3D file");
       const auto parameters = decode_c3d_parameters(bytes->bytes());
       const auto length = decode_c3d_length(bytes->bytes(), part.size);
       if (parameters && length) {
@@ -197,7 +197,7 @@ struct KinarmExam::Open {
   Result<void> read_common() {
     if (c3d) {
       const auto bytes = MBK_TRY(read(std::string(kCommonC3d)));
-      if (!looks_like_c3d(bytes.bytes())) return bad_data("is no C3D file", "", std::string(kCommonC3d));
+      if (!looks_like_c3d(bytes.bytes())) return bad_data("is not a C3D file", "", std::string(kCommonC3d));
       const auto parameters = decode_c3d_parameters(bytes.bytes());
       if (!parameters) return tl::unexpected(parameters.error().in(kCommonC3d));
       common = ExamParameters::of(*parameters);
@@ -240,7 +240,8 @@ struct KinarmExam::Open {
       trial.name.name = fmt::format("{}#{}", filter, copy);
     }
     if (trial.name.name != filter) {
-      trial.notes.push_back(fmt::format("TRIAL:TRIAL_NUM {} repeats; this one is called {}", filter, trial.name.name));
+      trial.notes.push_back(
+          fmt::format("TRIAL:TRIAL_NUM {} occurs again; this trial was renamed {}", filter, trial.name.name));
     }
     double frames = 0.0, seconds = 0.0;
     std::int64_t events = 0;
@@ -301,14 +302,13 @@ struct KinarmExam::Open {
     trial.parameters = std::move(parameters);
     trial.frames = static_cast<double>(header.frames);
     trial.rate_hz = rate_of(header, trial.parameters);
-    if (trial.rate_hz == 0.0) return bad_data("neither header.bin nor ANALOG:RATE says a rate");
+    if (trial.rate_hz == 0.0) return bad_data("neither header.bin nor ANALOG:RATE states a rate");
     const auto said = trial.parameters.number("ANALOG", "RATE");
     const double analog_hz = said ? *said : common.number("ANALOG", "RATE").value_or(trial.rate_hz);
     if (!(std::abs(analog_hz - trial.rate_hz) <= kRateTolerance * trial.rate_hz)) {
-      return bad_data(fmt::format("header.bin says {} Hz, ANALOG:RATE {} Hz", trial.rate_hz, analog_hz));
+      return bad_data(fmt::format("header.bin states {} Hz, ANALOG:RATE {} Hz", trial.rate_hz, analog_hz));
     }
-    if (trial.frames == 0.0)
-      return bad_data("it says that it holds 0 frames", "nothing was recorded, or it is damaged");
+    if (trial.frames == 0.0) return bad_data("the trial states 0 frames", "nothing was recorded, or it is damaged");
     for (const std::string& member : part.members) {
       const std::string_view file = std::string_view(member).substr(member.rfind('/') + 1);
       if (auto ok = load_member(member, file, filter, header, trial); !ok) {
@@ -338,7 +338,7 @@ struct KinarmExam::Open {
       auto read_events = MBK_TRY(read_kinarm_events(bytes.bytes()));
       if (header.events != std::ssize(read_events)) {
         trial.notes.push_back(
-            fmt::format("header.bin counts {} events, examevents.bin holds {}", header.events, read_events.size()));
+            fmt::format("header.bin states {} events, examevents.bin contains {}", header.events, read_events.size()));
       }
       std::size_t no_time = 0;
       for (Event& event : read_events) {
@@ -354,7 +354,7 @@ struct KinarmExam::Open {
       if (delays.size() > 0) {
         Vector sorted = delays;
         std::ranges::sort(sorted);
-        trial.notes.push_back(fmt::format("{} video frames were acknowledged, {:.3g} ms after they were sent (median)",
+        trial.notes.push_back(fmt::format("{} video frames were acknowledged {:.3g} ms after they were sent (median)",
                                           sorted.size(), 1e3 * sorted[sorted.size() / 2]));
       }
     }
@@ -364,12 +364,12 @@ struct KinarmExam::Open {
   static void take(ExamTrial& trial, std::string label, std::string unit, Vector values) {
     if (label.empty()) label = "unnamed";
     if (static_cast<double>(values.size()) != trial.frames) {
-      trial.notes.push_back(fmt::format("! {} was left out: it has {} samples in {}", label, values.size(),
+      trial.notes.push_back(fmt::format("! {} was omitted: it has {} samples in {}", label, values.size(),
                                         counted(trial.frames, "frame")));
       return;
     }
     if (trial.find(label) != nullptr) {
-      trial.notes.push_back(fmt::format("! a second signal {} was left out", label));
+      trial.notes.push_back(fmt::format("! a second signal {} was omitted", label));
       return;
     }
     trial.signals.push_back({std::move(label), std::move(unit), trial.rate_hz, std::move(values)});
@@ -384,13 +384,13 @@ struct KinarmExam::Open {
       if (trial.find(label + ".x") == nullptr) missing.push_back(label);
     }
     if (!missing.empty()) {
-      trial.notes.push_back(fmt::format("! header.bin names signals that are not there: {}", fmt::join(missing, ", ")));
+      trial.notes.push_back(fmt::format("! header.bin names signals that do not exist: {}", fmt::join(missing, ", ")));
     }
   }
 
   [[nodiscard]] Result<ExamTrial> load_c3d(const Part& part, ArrayFilter filter) const {
     const auto bytes = MBK_TRY(read(part.members.front()));
-    if (!looks_like_c3d(bytes.bytes())) return bad_data("is no C3D file");
+    if (!looks_like_c3d(bytes.bytes())) return bad_data("is not a C3D file");
     const auto parameters = MBK_TRY(decode_c3d_parameters(bytes.bytes()));
     auto contents = MBK_TRY(decode_c3d(bytes.bytes()));
     ExamTrial trial;
@@ -414,7 +414,7 @@ struct KinarmExam::Open {
       trial.frames = static_cast<double>(trial.signals.back().values.size());
       trial.rate_hz = trial.signals.back().rate_hz;
     }
-    if (trial.rate_hz == 0.0) return bad_data("neither POINT:RATE nor ANALOG:RATE says a rate");
+    if (trial.rate_hz == 0.0) return bad_data("neither POINT:RATE nor ANALOG:RATE states a rate");
     return trial;
   }
 
@@ -432,7 +432,7 @@ struct KinarmExam::Open {
     }
     signal.unit.clear();
     if (lost > 0)
-      notes.push_back(fmt::format("{} is no status in {} samples; it is not a number there", signal.name, lost));
+      notes.push_back(fmt::format("{} is not a valid status in {} samples; it is NaN there", signal.name, lost));
   }
 
   // ---- the sign of the force ----
@@ -463,7 +463,7 @@ struct KinarmExam::Open {
     const std::string range = fmt::format("there are {} trials, {} to {}; 'mbk info' lists them", trials.size(),
                                           names.front().name, names.back().name);
     if (name.empty())
-      return bad_usage("the exam holds several trials, and none is named", "--trial names one; " + range);
+      return bad_usage("the exam contains several trials, and none was selected", "select one with --trial; " + range);
     return bad_usage(fmt::format("there is no trial '{}'", name), range);
   }
 
@@ -473,11 +473,11 @@ struct KinarmExam::Open {
       if (!choice.needs_arm) return std::optional<Arm>();
       return bad_usage(
           fmt::format("--side {}: that arm was not recorded", *choice.arm == Arm::right ? "right" : "left"),
-          arms.empty() ? "the joints of no arm were recorded; name the channels with --channels" : "leave --side out");
+          arms.empty() ? "no arm's joints were recorded; name the channels with --channels" : "omit --side");
     }
     if (arms.size() == 1) return std::optional(arms.front());
     if (arms.size() > 1 && choice.needs_arm) {
-      return bad_usage("both arms were recorded, and none is named", "pass --side right or --side left");
+      return bad_usage("both arms were recorded, and none was selected", "pass --side right or --side left");
     }
     return std::optional<Arm>();
   }
@@ -516,7 +516,7 @@ struct KinarmExam::Open {
     const auto trial = MBK_TRY(chosen(choice.trial));
     auto loaded = MBK_TRY(load(*trial, everything));
     if (loaded.signals.empty()) {
-      std::string why = "the trial holds no signal";
+      std::string why = "the trial contains no signal";
       for (const std::string& note : loaded.notes) why += "; " + note;
       return bad_data(std::move(why), "nothing was recorded, or it is damaged");
     }
@@ -531,13 +531,12 @@ struct KinarmExam::Open {
     for (std::string& note : loaded.notes) contents.notes.push_back(std::move(note));
     if (arms.empty()) {
       contents.notes.emplace_back(
-          "the joints of no arm were recorded, so that no hand is computed; a hand that was "
-          "resampled is no measure of velocity");
+          "no arm's joints were recorded, so the hand is not computed; a resampled hand position is unsuitable for "
+          "velocity");
     } else if (arms.size() == 2) {
       contents.notes.push_back(
-          arm ? fmt::format("both arms were recorded; the {} one is taken, as asked",
-                            *arm == Arm::right ? "right" : "left")
-              : "both arms were recorded, and none is taken; --side right or --side left takes one");
+          arm ? fmt::format("both arms were recorded; the {} arm was selected", *arm == Arm::right ? "right" : "left")
+              : "both arms were recorded, and none was selected; select one with --side right or --side left");
     }
     for (const Arm one : arms) {
       if (!arm || one == *arm) take_arm(one, arm == one, loaded, contents);
@@ -578,7 +577,7 @@ bool KinarmExam::is_exam(const ZipArchive& archive) {
 
 Result<KinarmExam> KinarmExam::open(std::shared_ptr<const Buffer> file) {
   auto archive = MBK_TRY(ZipArchive::open(file->bytes()));
-  if (!is_exam(archive)) return bad_data("the zip archive is no KINARM exam: it holds no raw/common");
+  if (!is_exam(archive)) return bad_data("the zip archive is not a KINARM exam: it does not contain raw/common");
   auto open = std::make_unique<Open>(std::move(archive));
   open->bytes_of_archive = std::move(file);
   open->c3d = open->archive.has(kCommonC3d);

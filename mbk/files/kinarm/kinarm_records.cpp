@@ -62,7 +62,7 @@ class Cursor {
     for (const std::int32_t one : known) {
       if (stored == one) return;
     }
-    refuse(fmt::format("version {} of {} is not known", stored, what));
+    refuse(fmt::format("version {} of {} is unknown", stored, what));
   }
 
  private:
