@@ -47,7 +47,7 @@ bool is_letter(char c) {
 }  // namespace
 
 std::string several_lines_note(std::string_view key, std::size_t lines) {
-  return fmt::format("metadata '{}' has {} lines, which are one here, with '; ' between them", key, lines);
+  return fmt::format("metadata '{}' has {} lines; they were joined with '; '", key, lines);
 }
 
 std::string unit_key(std::string_view channel) {
@@ -72,7 +72,7 @@ void take_annotations(Contents& contents) {
       contents.metadata[key] = fmt::format("{}", fmt::join(text.lines, "; "));
       if (text.lines.size() > 1) contents.notes.push_back(several_lines_note(key, text.lines.size()));
     } else {
-      contents.notes.push_back(fmt::format("variable '{}' is text; ignored", text.name));
+      contents.notes.push_back(fmt::format("variable '{}' is text and was ignored", text.name));
     }
   }
   contents.texts.clear();
@@ -96,7 +96,7 @@ Result<std::map<std::string, std::string>> metadata_with_units(const Recording& 
     if (channel.unit.empty() || (is_default && channel.origin.joint.empty())) continue;
     const auto [entry, added] = metadata.try_emplace(unit_key(channel.name), channel.unit);
     if (!added && entry->second != channel.unit) {
-      return bad_data(fmt::format("metadata '{}' is '{}', the channel is in '{}'", entry->first,
+      return bad_data(fmt::format("metadata '{}' is '{}', but the channel is in '{}'", entry->first,
                                   printable(entry->second), channel.unit),
                       "rename that entry");
     }

@@ -194,11 +194,11 @@ class Assembler {
     recording_.metadata = contents_.metadata;
     recording_.events = contents_.events;
     if (options_.axes < 0 || options_.axes > 2) {
-      return bad_usage(fmt::format("{} axes are not possible", options_.axes), "pass --axes 1 or --axes 2");
+      return bad_usage(fmt::format("a recording cannot have {} axes", options_.axes), "pass --axes 1 or --axes 2");
     }
     if (contents_.table && !options_.variable.empty()) {
       return bad_usage(
-          fmt::format("--variable {} means a variable of a MAT file, and this is a table", options_.variable),
+          fmt::format("--variable {} selects a variable of a MAT file, but this file is a table", options_.variable),
           "name its columns with --channels");
     }
     if (leaves_names(options_)) {
@@ -253,14 +253,15 @@ class Assembler {
     const bool time = !signals_.empty();
     const std::string remedy =
         !contents_.clocks.empty() && !contents_.arrays.empty()
-            ? fmt::format("say which is which, as in --channels x={},Fx=STREAM.LABEL", contents_.arrays.front().name)
-        : !contents_.table ? "say which is which, as in --channels " + example_map()
+            ? fmt::format("assign the columns or variables, as in --channels x={},Fx=STREAM.LABEL",
+                          contents_.arrays.front().name)
+        : !contents_.table ? "assign the columns or variables, as in --channels " + example_map()
         : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
-            ? "say which is which by number or name, as in --channels x=1,y=2,Fx=-LABEL"
-            : "say which is which, as in --channels time=1,x=2,Fx=3";
-    return with_code(
-        kNothingRecognised,
-        bad_data(fmt::format("no channel {}is recognised; {}", time ? "but time " : "", inventory(contents_)), remedy));
+            ? "assign the columns by number or name, as in --channels x=1,y=2,Fx=-LABEL"
+            : "assign the columns or variables, as in --channels time=1,x=2,Fx=3";
+    return with_code(kNothingRecognised, bad_data(fmt::format("no channel {}was recognised; {}",
+                                                              time ? "except time " : "", inventory(contents_)),
+                                                  remedy));
   }
 
   /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".
@@ -286,9 +287,9 @@ class Assembler {
 
   static tl::unexpected<Error> tall(const Array& array) {
     return bad_data(
-        fmt::format("matrix is {}, a logs matrix has {} rows", shape(array), kLogsRows),
+        fmt::format("the matrix is {}, but a logs matrix has {} rows", shape(array), kLogsRows),
         fmt::format("if its columns are the signals, name them: --channels "
-                    "\"time={0}[1],x={0}[2],y={0}[3],Fx={0}[10],Fy={0}[11]\"; it is not transposed by itself",
+                    "\"time={0}[1],x={0}[2],y={0}[3],Fx={0}[10],Fy={0}[11]\"; it is not transposed automatically",
                     array.name),
         fmt::format("variable '{}'", array.name));
   }
@@ -300,7 +301,7 @@ class Assembler {
     MBK_TRY(refuse_damaged_source("--variable", requested));
     const Array* named = find(contents_, requested);
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
-      return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+      return bad_data(fmt::format("variable '{}' does not exist; {}", options_.variable, inventory(contents_)));
     }
     if (named != nullptr && named->is_block()) {  // one such matrix for each trial, of which slices are signals
       if (options_.variable.empty()) return nullptr;
@@ -310,13 +311,13 @@ class Assembler {
     }
     if (named != nullptr) {
       if (named->values.size() == 0) {
-        return bad_data(fmt::format("matrix is {}: there is no sample in it", shape(*named)),
+        return bad_data(fmt::format("the matrix is {} and contains no samples", shape(*named)),
                         "copy it again from where it was recorded", fmt::format("variable '{}'", named->name));
       }
       if (named->values.rows() == kLogsRows) return named;
       if (named->values.cols() == kLogsRows) return tall(*named);
       return bad_data(
-          fmt::format("matrix is {}, a logs matrix has {} rows", shape(*named), kLogsRows),
+          fmt::format("the matrix is {}, but a logs matrix has {} rows", shape(*named), kLogsRows),
           fmt::format("name its rows or columns, as in --channels \"x={0}[2],y={0}[3],Fx={0}[10]\"", named->name),
           fmt::format("variable '{}'", named->name));
     }
@@ -330,7 +331,7 @@ class Assembler {
     if (names.size() > 1) {
       return bad_usage(
           fmt::format("several matrices have {} rows: {}", kLogsRows, quoted(names)),
-          fmt::format("say which with --variable NAME, or name the rows, as in --channels \"x={0}[2],Fx={0}[10]\"",
+          fmt::format("select one with --variable NAME, or name the rows, as in --channels \"x={0}[2],Fx={0}[10]\"",
                       names.front()));
     }
     return found;
@@ -356,7 +357,7 @@ class Assembler {
       }
     }
     recording_.notes.push_back(fmt::format(
-        "variable '{}' ({}) was read as a logs matrix; its rows 4, 5, 8, 9, 16 and 17 have no name and were ignored",
+        "variable '{}' ({}) was read as a logs matrix; rows 4, 5, 8, 9, 16 and 17 are undefined and were ignored",
         logs.name, shape(logs)));
     if (!absent.empty()) {
       recording_.notes.push_back(fmt::format("not recorded (NaN throughout): {}", quoted(absent)));
@@ -425,7 +426,7 @@ class Assembler {
       return name.empty() || std::ranges::any_of(signals_, [&](const Signal& s) { return s.line.array->name == name; });
     });
     if (aside_.empty()) return;
-    recording_.notes.push_back(fmt::format("ignored, as their names are not those of channels: {}", quoted(aside_)));
+    recording_.notes.push_back(fmt::format("ignored (names are not channel names): {}", quoted(aside_)));
   }
 
   /// A note on "reaction (dyn)": a channel with a unit in brackets that it cannot have; "" of any other.
@@ -434,7 +435,7 @@ class Assembler {
     if (!array.means.empty() || open == array.name.npos || !ends_in_brackets(array.name)) return {};
     const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(array.name.substr(0, open))).kinds;
     if (kinds.empty()) return {};
-    return fmt::format("'{}' was ignored: {} cannot be in '{}'; say its unit, as in --channels \"{}={}:{}\"",
+    return fmt::format("'{}' was ignored: {} cannot have the unit '{}'; state its unit, as in --channels \"{}={}:{}\"",
                        array.name, kinds.front()->name, in_last_brackets(array.name), kinds.front()->alias, array.name,
                        kinds.front()->measures.empty() ? "UNIT" : si_unit(kinds.front()->measures.front()));
   }
@@ -446,8 +447,9 @@ class Assembler {
       const bool matters = std::ranges::any_of(
           kinds, [&](const ChannelKind* kind) { return !kind->only_if_asked && is_requested(*kind); });
       if (!matters) continue;
-      return bad_data(fmt::format("'{}' is damaged: {}", name, why),
-                      "copy the file again from where it was recorded, or name with --channels what you need of it");
+      return bad_data(
+          fmt::format("'{}' is damaged: {}", name, why),
+          "copy the file again from where it was recorded, or select the channels that you need with --channels");
     }
     return {};
   }
@@ -467,8 +469,8 @@ class Assembler {
       const auto first = std::find_if(signals_.begin(), signals_.begin() + static_cast<std::ptrdiff_t>(i),
                                       [&](const Signal& earlier) { return same(earlier, signals_[i]); });
       if (first == signals_.begin() + static_cast<std::ptrdiff_t>(i)) continue;
-      recording_.notes.push_back(fmt::format("'{}' holds the same numbers as '{}', which is read as {}",
-                                             signals_[i].source, first->source, first->kind->name));
+      recording_.notes.push_back(fmt::format("'{}' is identical to '{}', which was read as {}", signals_[i].source,
+                                             first->source, first->kind->name));
       signals_.erase(signals_.begin() + static_cast<std::ptrdiff_t>(i--));
     }
   }
@@ -478,9 +480,9 @@ class Assembler {
     if (array.unit.empty()) return in_name != nullptr ? Result<const Unit*>(in_name) : unit_for_all(kind, array);
     const Unit* const unit = find_unit(array.unit);
     if (kind.measures.empty() || (unit != nullptr && kind.accepts(*unit))) return unit;
-    return bad_data(fmt::format("the file says that '{}' is in '{}', which channel {} cannot be in", array.name,
+    return bad_data(fmt::format("the file states '{}' in '{}', which is not a unit of channel {}", array.name,
                                 array.unit, kind.name),
-                    fmt::format("say the unit with --channels {}={}:UNIT; possible are {}", kind.name, array.name,
+                    fmt::format("state the unit with --channels {}={}:UNIT; one of {}", kind.name, array.name,
                                 unit_names(kind.measures)));
   }
 
@@ -492,12 +494,13 @@ class Assembler {
       if (kind.first_unless_said && unit->dimension != kind.measures.front()) continue;
       const std::string_view quantity = dimension_name(unit->dimension);
       if (!kind.first_unless_said && kind.measures.size() > 1) {
-        return bad_data(fmt::format("the file says that its {} are in {}, and not whether '{}' is one", quantity,
-                                    unit->name, array.name),
-                        fmt::format("say its unit, as in --channels {}={}:{}", kind.alias, array.name, unit->name));
+        return bad_data(
+            fmt::format("the file gives the unit of its {} as {} but does not state whether '{}' is one of them",
+                        quantity, unit->name, array.name),
+            fmt::format("state its unit, as in --channels {}={}:{}", kind.alias, array.name, unit->name));
       }
       recording_.notes.push_back(
-          fmt::format("{} is taken in {}, as the file says of its {}", kind.name, unit->name, quantity));
+          fmt::format("{} was read in {}, the unit that the file states for its {}", kind.name, unit->name, quantity));
       return unit;
     }
     return nullptr;
@@ -530,8 +533,8 @@ class Assembler {
       if (!entry.unit.empty()) {
         signal.unit = find_unit(entry.unit);
         if (signal.unit == nullptr || !kind->accepts(*signal.unit)) {
-          return bad_data(fmt::format("channel {} cannot be in '{}'", kind->name, entry.unit),
-                          fmt::format("possible are {}", unit_names(kind->measures)));
+          return bad_data(fmt::format("channel {} cannot have the unit '{}'", kind->name, entry.unit),
+                          fmt::format("use one of {}", unit_names(kind->measures)));
         }
       } else if (!line->array->unit.empty() && (signal.is_plain() || in_unit_of(*kind, *line->array))) {
         const auto unit = MBK_TRY(unit_said(*kind, *line->array, nullptr));
@@ -540,15 +543,16 @@ class Assembler {
                  (is_named(*line) || counted_source(entry.source)) && name.unit != nullptr &&
                  kind->accepts(*name.unit)) {
         signal.unit = name.unit;
-        recording_.notes.push_back(
-            fmt::format("{} is taken in {}, as its name '{}' says", kind->name, name.unit->name, line->array->name));
+        recording_.notes.push_back(fmt::format("{} was read in {}, the unit in its name '{}'", kind->name,
+                                               name.unit->name, line->array->name));
       } else if (signal.is_plain() && is_load(*kind) && names_a_current(line->array->name)) {
         return a_current(*kind, line->array->name);
       } else if (is_named(*line) && signal.is_plain() && !kind->measures.empty() &&
                  ends_in_brackets(line->array->name)) {
-        recording_.notes.push_back(fmt::format("the name of '{}' says {}, which {} cannot be in: it was taken in {}",
-                                               line->array->name, in_last_brackets(line->array->name), kind->name,
-                                               kind->default_unit().empty() ? "no unit" : kind->default_unit()));
+        recording_.notes.push_back(
+            fmt::format("the name of '{}' contains {}, which is not a unit of {}; it was read in {}", line->array->name,
+                        in_last_brackets(line->array->name), kind->name,
+                        kind->default_unit().empty() ? "no unit" : kind->default_unit()));
       } else if (signal.is_plain()) {
         const auto unit = MBK_TRY(unit_for_all(*kind, *line->array));
         signal.unit = unit;
@@ -567,11 +571,10 @@ class Assembler {
   static tl::unexpected<Error> a_current(const ChannelKind& kind, const std::string& name) {
     const std::string_view unit = si_unit(kind.measures.front());
     return bad_data(
-        fmt::format("channel '{}' cannot be a current, and '{}' is one by its name", kind.name, name),
-        fmt::format(
-            "give the torque constant behind the gear [{unit}/A], as in --channels \"{alias}={name}*0.12:{unit}\", "
-            "or say that it is in {unit}: \"{alias}={name}:{unit}\"",
-            fmt::arg("unit", unit), fmt::arg("alias", kind.alias), fmt::arg("name", name)));
+        fmt::format("channel '{}' cannot be a current, but the name '{}' denotes one", kind.name, name),
+        fmt::format("give the torque constant at the gear output [{unit}/A], as in --channels "
+                    "\"{alias}={name}*0.12:{unit}\", or state that it is in {unit}: \"{alias}={name}:{unit}\"",
+                    fmt::arg("unit", unit), fmt::arg("alias", kind.alias), fmt::arg("name", name)));
   }
 
   /// "V" of "cell [V]".
@@ -593,7 +596,7 @@ class Assembler {
 
   void note_arithmetic(const Signal& signal) {
     const std::string_view unit = signal.unit != nullptr ? signal.unit->name : signal.kind->default_unit();
-    recording_.notes.push_back(fmt::format("{} is {}{}, as asked{}", signal.kind->name, signal.negate ? "-" : "",
+    recording_.notes.push_back(fmt::format("{} is {}{}, as requested{}", signal.kind->name, signal.negate ? "-" : "",
                                            printable(signal.source), unit.empty() ? "" : fmt::format(", in {}", unit)));
   }
 
@@ -611,12 +614,12 @@ class Assembler {
       if (!line && &way != &ways.back()) continue;
       if (!line) return without_unit(entry, line.error());
       if (way.gain == 0.0) {
-        return bad_usage(fmt::format("channel {}: the gain 0 leaves nothing of '{}'", entry.channel, way.name),
-                         "give another gain");
+        return bad_usage(fmt::format("channel {}: the gain of '{}' is 0", entry.channel, way.name),
+                         "give a gain other than 0");
       }
       return Found{*line, way.gain, way.offset, way.name.size() < entry.source.size()};
     }
-    return bad_usage(fmt::format("channel {} names no source", entry.channel));
+    return bad_usage(fmt::format("channel {} has no source", entry.channel));
   }
 
   /// `error`, or that what stands behind the last colon is no unit, where what stands before it is there.
@@ -634,7 +637,7 @@ class Assembler {
     const Line& first = signals_.front().line;
     if (!contents_.table && first.row && first.array->values.rows() == kLogsRows) {
       signals_.push_back({time, {first.array, time->logs_row - 1, true}, nullptr, false, "row 1", "1"});
-      recording_.notes.push_back("time is row 1, as in a logs matrix");
+      recording_.notes.push_back("time was read from row 1, as in a logs matrix");
       return {};
     }
     const auto is_called_time = [&](const Array& array, std::string_view name) {
@@ -652,13 +655,13 @@ class Assembler {
     const Array& array = *called.front();
     for (const Array* other : called) {
       if (same_numbers(array, *other)) continue;
-      return bad_data(fmt::format("{} and {} both may be the time", place_of(array), place_of(*other)),
-                      fmt::format("say which in --channels, as in time={} or time={}", shortest_source(array),
+      return bad_data(fmt::format("{} and {} could both be the time", place_of(array), place_of(*other)),
+                      fmt::format("select one in --channels, as in time={} or time={}", shortest_source(array),
                                   shortest_source(*other)));
     }
     const auto unit = MBK_TRY(unit_said(*time, array, parse_column_name(leaf(array.name)).unit));
     signals_.push_back({time, vector_of(array), unit, false, array.name, array.name});
-    recording_.notes.push_back(fmt::format("time is '{}', by its name", array.name));
+    recording_.notes.push_back(fmt::format("time was read from '{}' because of its name", array.name));
     return {};
   }
 
@@ -698,9 +701,9 @@ class Assembler {
                                 this_one ? columns.front() : one.source, one.unit.empty() ? "" : ":", one.unit));
     }
     return bad_data(
-        fmt::format("channel {}: the name '{}' stands {} times, in the columns {}", entry.channel, entry.source,
+        fmt::format("channel {}: the name '{}' occurs {} times, in columns {}", entry.channel, entry.source,
                     called.size(), fmt::join(columns, ", ")),
-        fmt::format("say which by its number: --channels {} (or {})", fmt::join(map, ","), fmt::join(others, ", ")));
+        fmt::format("select one by its number: --channels {} (or {})", fmt::join(map, ","), fmt::join(others, ", ")));
   }
 
   /// @param asked  the whole of what the map says, for messages
@@ -713,11 +716,11 @@ class Assembler {
       if (array->obstacle) return tl::unexpected(array->obstacle->in(fmt::format("channel {}", entry.channel)));
       if (contents_.table || is_vector(*array)) return vector_of(*array);
       return bad_data(
-          fmt::format("channel {} needs a row or column of numbers, variable '{}' is {}", entry.channel, entry.source,
-                      shape(*array)),
+          fmt::format("channel {} needs a row or column of numbers, but variable '{}' is {}", entry.channel,
+                      entry.source, shape(*array)),
           array->is_block()
-              ? fmt::format("say which slice, as in --channels \"{}={}\"", entry.channel, example_slice(*array, 1))
-          : is_matrix(*array) ? fmt::format("say which of its {}, as in --channels \"{}={}[1]\"",
+              ? fmt::format("select a slice, as in --channels \"{}={}\"", entry.channel, example_slice(*array, 1))
+          : is_matrix(*array) ? fmt::format("select one of its {}, as in --channels \"{}={}[1]\"",
                                             is_wide(*array) ? "rows" : "columns", entry.channel, array->name)
                               : "name a signal");
     }
@@ -735,9 +738,9 @@ class Assembler {
         error != std::errc() || stop != end) {
       if (const std::string alike = numbered_alike(entry.source); !alike.empty()) {
         return bad_data(fmt::format("channel {}: the name '{}' is not unique: {}", entry.channel, entry.source, alike),
-                        "name one of them, or give its column number");
+                        "select one of them by name or column number");
       }
-      const std::string neither = asked == entry.source ? "" : fmt::format("'{}' and no ", asked);
+      const std::string neither = asked == entry.source ? "" : fmt::format("'{}' or ", asked);
       return bad_data(fmt::format("channel {}: there is no {}'{}'; {}", entry.channel, neither, entry.source,
                                   inventory(contents_)));
     }
@@ -745,7 +748,7 @@ class Assembler {
       if (number < 1 || number > std::ssize(contents_.arrays)) {
         return bad_data(
             fmt::format("channel {}: there is no column {}; {}", entry.channel, number, inventory(contents_)),
-            "columns are counted from 1");
+            "count columns from 1");
       }
       return vector_of(contents_.arrays[static_cast<std::size_t>(number - 1)]);
     }
@@ -789,21 +792,21 @@ class Assembler {
   Result<Index> trial_of(const Array& array, const SlicePlan& plan) {
     if (!plan.trial) return Index{1};
     const auto count = static_cast<Index>(dimensions_of(array)[*plan.trial]);
-    const std::string what = fmt::format("'{}' ({}) holds {} trial{} along its dimension {}", array.name,
+    const std::string what = fmt::format("'{}' ({}) contains {} trial{} along dimension {}", array.name,
                                          shape_text(array), count, count == 1 ? "" : "s", *plan.trial + 1);
     if (trials_ != 0 && trials_ != count) {
-      return bad_data(fmt::format("{}, and another array {}", what, trials_), "take arrays of the same trials");
+      return bad_data(fmt::format("{}, but another array contains {}", what, trials_), "use arrays of the same trials");
     }
     trials_ = count;
-    const std::string note = fmt::format("{}; time runs along its dimension {}", what, plan.along + 1);
+    const std::string note = fmt::format("{}; time is dimension {}", what, plan.along + 1);
     if (std::ranges::find(recording_.notes, note) == recording_.notes.end()) recording_.notes.push_back(note);
     if (options_.trial.empty() && count == 1) return Index{1};
-    if (options_.trial.empty()) return bad_usage(what, "say which, as in --trial 1");
+    if (options_.trial.empty()) return bad_usage(what, "select one, as in --trial 1");
     Index number = 0;
     const char* const end = options_.trial.data() + options_.trial.size();
     const auto [stop, error] = std::from_chars(options_.trial.data(), end, number);
     if (error == std::errc() && stop == end && number >= 1 && number <= count) return number;
-    return bad_usage(fmt::format("there is no trial '{}': {}", options_.trial, what), "they are counted from 1");
+    return bad_usage(fmt::format("trial '{}' does not exist: {}", options_.trial, what), "count from 1");
   }
 
   /// Row or column `number` of a matrix, counted from 1 across its longer side.
@@ -811,14 +814,14 @@ class Assembler {
     if (array.is_block()) {
       return bad_data(
           fmt::format("channel {}: '{}' is {}", entry.channel, array.name, shape(array)),
-          fmt::format("say which slice, as in --channels \"{}={}\"", entry.channel, example_slice(array, 1)));
+          fmt::format("select a slice, as in --channels \"{}={}\"", entry.channel, example_slice(array, 1)));
     }
     const bool wide = is_wide(array);
     const Index lines = wide ? array.values.rows() : array.values.cols();
     if (number < 1 || number > lines) {
       return bad_data(fmt::format("channel {}: there is no {} {}; the matrix is {}", entry.channel,
                                   wide ? "row" : "column", number, shape(array)),
-                      "they are counted from 1", fmt::format("variable '{}'", array.name));
+                      "count from 1", fmt::format("variable '{}'", array.name));
     }
     return Line{&array, number - 1, wide};
   }
@@ -853,7 +856,7 @@ class Assembler {
       possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
     }
     return bad_data(fmt::format("unknown unit '{}' of channel {}", unit, entry.channel),
-                    fmt::format("possible are {}", unit_names(possible)));
+                    fmt::format("use one of {}", unit_names(possible)));
   }
 
   /// SOURCE@RATE: every k-th sample of a source that runs at k times that rate.
@@ -868,15 +871,15 @@ class Assembler {
     if (line->step == 0) {
       return bad_usage(
           line->array->rate_hz > 0.0
-              ? fmt::format("channel {}: '{}' runs at {} Hz, of which '{}' is no whole part", entry.channel,
+              ? fmt::format("channel {}: the rate of '{}', {} Hz, is not an integer multiple of '{}'", entry.channel,
                             line->array->name, line->array->rate_hz, entry.source.substr(at + 1))
-              : fmt::format("channel {}: the file does not say the rate of '{}'", entry.channel, line->array->name),
+              : fmt::format("channel {}: the file does not state the rate of '{}'", entry.channel, line->array->name),
           line->array->rate_hz > 0.0 ? fmt::format("{}={}@{} takes every second sample", entry.channel,
                                                    line->array->name, line->array->rate_hz / 2)
-                                     : "leave @ out");
+                                     : "omit @");
     }
     recording_.notes.push_back(
-        fmt::format("{} is every {} sample of '{}', as asked; what '{}' holds above {:.6g} Hz folds down into it",
+        fmt::format("{} is every {} sample of '{}', as requested; components of '{}' above {:.6g} Hz alias",
                     entry.channel, ordinal(line->step), line->array->name, line->array->name, line->rate_hz() / 2));
     return line;
   }
@@ -886,7 +889,7 @@ class Assembler {
     if (!options_.variable.empty()) {
       if (const Array* named = find(contents_, options_.variable)) return named;
       MBK_TRY(refuse_damaged_source("--variable", options_.variable));
-      return bad_data(fmt::format("there is no variable '{}'; {}", options_.variable, inventory(contents_)));
+      return bad_data(fmt::format("variable '{}' does not exist; {}", options_.variable, inventory(contents_)));
     }
     if (const Array* logs = find(contents_, "logs")) return logs;
     std::vector<const Array*> matrices;
@@ -900,10 +903,10 @@ class Assembler {
     }
     if (matrices.size() == 1) return matrices.front();
     if (matrices.empty()) return bad_data(fmt::format("channel {}: {}", entry.channel, inventory(contents_)));
-    return bad_usage(fmt::format("numbers could count the lines of several variables; {}", inventory(contents_)),
-                     fmt::format("name them with their variable, as in --channels \"{}={}[{}]\", or say which with "
-                                 "--variable NAME",
-                                 entry.channel, matrices.front()->name, entry.source));
+    return bad_usage(
+        fmt::format("the numbers could refer to rows or columns of several variables; {}", inventory(contents_)),
+        fmt::format("name the variable, as in --channels \"{}={}[{}]\", or select it with --variable NAME",
+                    entry.channel, matrices.front()->name, entry.source));
   }
 
   [[nodiscard]] bool within_variable(const Array& array) const {
@@ -924,7 +927,7 @@ class Assembler {
       MBK_TRY(check_scale(signal));
     }
     if (std::ranges::none_of(signals_, [](const Signal& s) { return s.kind->name != "time"; })) {
-      return bad_data("no channel is named but time", "name at least one, as in --channels time=1,x=2");
+      return bad_data("only the time channel is named", "name at least one other channel, as in --channels time=1,x=2");
     }
     const Signal& first = signals_.front();
     for (std::size_t i = 0; i < signals_.size(); ++i) {
@@ -932,14 +935,14 @@ class Assembler {
       for (std::size_t j = 0; j < i; ++j) {
         if (signals_[j].kind != signal.kind) continue;
         return bad_data(
-            fmt::format("{} and {} both are {}", place_of(signals_[j]), place_of(signal), signal.kind->name),
-            fmt::format("say which, as in --channels {}", map_of_signals()));
+            fmt::format("{} and {} are both {}", place_of(signals_[j]), place_of(signal), signal.kind->name),
+            fmt::format("select one, as in --channels {}", map_of_signals()));
       }
       MBK_TRY(check_rates(first, signal));
       if (clock_of(signal) == clock_of(first) && signal.line.size() != first.line.size()) {
-        return bad_data(fmt::format("{} ('{}') has {} samples, {} ('{}') has {}", first.kind->name, first.source,
+        return bad_data(fmt::format("{} ('{}') has {} samples, but {} ('{}') has {}", first.kind->name, first.source,
                                     first.line.size(), signal.kind->name, signal.source, signal.line.size()),
-                        "channels of one recording must have equal lengths; name them with --channels");
+                        "select channels of equal length with --channels");
       }
     }
     if (first.line.size() == 0) return bad_data("the recording has no samples", "nothing was recorded");
@@ -950,12 +953,12 @@ class Assembler {
   static Result<void> check_scale(const Signal& signal) {
     const std::string& unapplied = signal.line.array->unapplied;
     if (unapplied.empty() || signal.is_scaled) return {};
-    return bad_data(fmt::format("the file says {} of '{}', and not whether its numbers include that already", unapplied,
-                                signal.line.array->name),
-                    fmt::format("state their scale, as in --channels {0}={1}*GAIN, or {0}={1}*1 if they are in their "
-                                "unit already",
-                                signal.kind->alias, signal.source),
-                    fmt::format("channel {}", signal.kind->name));
+    return bad_data(
+        fmt::format("the file states {} for '{}' but not whether the stored values already include it", unapplied,
+                    signal.line.array->name),
+        fmt::format("state their scale, as in --channels {0}={1}*GAIN, or {0}={1}*1 if it is already included",
+                    signal.kind->alias, signal.source),
+        fmt::format("channel {}", signal.kind->name));
   }
 
   [[nodiscard]] std::string place_of(const Signal& signal) const {
@@ -986,12 +989,12 @@ class Assembler {
     const Signal& fast = a_is_faster ? a : b;
     const double slow_hz = (a_is_faster ? b : a).line.rate_hz();
     const Index ratio = whole_ratio(fast.line.rate_hz(), slow_hz);
-    return bad_data(fmt::format("{} ('{}') runs at {} Hz, {} ('{}') at {} Hz", a.kind->name, a.source, a.line.rate_hz(),
-                                b.kind->name, b.source, b.line.rate_hz()),
+    return bad_data(fmt::format("{} ('{}') is sampled at {} Hz, but {} ('{}') at {} Hz", a.kind->name, a.source,
+                                a.line.rate_hz(), b.kind->name, b.source, b.line.rate_hz()),
                     ratio > 1
-                        ? fmt::format("name channels of one rate, or take every {} sample of the faster: {}={}@{}",
+                        ? fmt::format("name channels of equal rate, or use every {} sample of the faster one: {}={}@{}",
                                       ordinal(ratio), fast.kind->name, fast.source, slow_hz)
-                        : "name channels of one rate; they are not resampled");
+                        : "name channels of equal rate; they are not resampled");
   }
 
   // ---- on which clock ----
@@ -1015,18 +1018,17 @@ class Assembler {
     if (!options_.clock.empty()) {
       const auto named = std::ranges::find(all, options_.clock, [](const Clock* clock) { return clock->name; });
       if (named == all.end()) {
-        return bad_usage(all.empty() ? "the file has one clock, or none, so that none can be chosen"
-                                     : fmt::format("there is no clock '{}'", options_.clock),
-                         all.empty() ? "leave --clock out" : fmt::format("there are {}", clock_list(all)));
+        return bad_usage(all.empty() ? "the file does not have several clocks"
+                                     : fmt::format("clock '{}' does not exist", options_.clock),
+                         all.empty() ? "omit --clock" : fmt::format("choose one of {}", clock_list(all)));
       }
       clock_ = *named;
     } else if (!used.empty() &&
                std::ranges::all_of(used, [&](const Clock* clock) { return same_stamps(*clock, *used.front()); })) {
       clock_ = used.front();
     } else if (!used.empty()) {
-      return bad_data(fmt::format("the channels come from streams with clocks of their own: {}", clock_list(used)),
-                      fmt::format("say whose time stamps the recording has, as in --clock '{}'; the others are "
-                                  "interpolated",
+      return bad_data(fmt::format("the channels come from streams with different clocks: {}", clock_list(used)),
+                      fmt::format("select the time stamps with --clock '{}'; the other streams are interpolated",
                                   fastest(used).name));
     }
     return check_named_time(used);
@@ -1036,8 +1038,8 @@ class Assembler {
   [[nodiscard]] Result<void> check_named_time(std::span<const Clock* const> used) const {
     const bool named = std::ranges::any_of(signals_, [](const Signal& s) { return is_time(s.kind); });
     if (!named || clock_ == nullptr || (used.size() == 1 && used.front() == clock_)) return {};
-    return bad_usage("time is named, and the channels come from streams with clocks of their own",
-                     "leave time out of --channels, and say with --clock whose time stamps the recording has");
+    return bad_usage("time is named, but the channels come from streams with different clocks",
+                     "omit time from --channels, and select the time stamps with --clock");
   }
 
   static const Clock& fastest(std::span<const Clock* const> clocks) {
@@ -1111,7 +1113,7 @@ class Assembler {
       if (said == recording_.metadata.end() || signal.unit != nullptr) continue;
       const Unit* unit = find_unit(said->second);
       if (unit == nullptr || !signal.kind->accepts(*unit)) {
-        recording_.notes.push_back(fmt::format("metadata '{}' is '{}', which {} cannot be in; ignored", said->first,
+        recording_.notes.push_back(fmt::format("metadata '{}' is '{}', which is not a unit of {}; ignored", said->first,
                                                said->second, signal.kind->name));
         continue;
       }
@@ -1187,7 +1189,7 @@ class Assembler {
         (signal.negate ? -1.0 : 1.0) * signal.gain * (signal.unit != nullptr ? signal.unit->to_si(first) : first);
     for (Event& event : recording_.events) event.time -= recording_.time_zero;
     recording_.notes.push_back(
-        fmt::format("time counts from its first stamp, {} {}", whole_text(first, rests[0]), unit));
+        fmt::format("time is relative to its first stamp, {} {}", whole_text(first, rests[0]), unit));
   }
 
   /// The numbers of an array that are needed no more.
@@ -1279,27 +1281,26 @@ class Assembler {
       }
       if (own == 0.0 && !options_.rate) {
         if (possible_times_.empty()) {
-          return bad_data("the file holds no time that is recognised",
+          return bad_data("no time channel was recognised",
                           "pass the sample rate (--rate 1000) or name the time (--channels time=1,…)");
         }
-        return bad_data(fmt::format("the file holds no time that is recognised: by their names, it may be {}",
-                                    quoted(possible_times_)),
-                        fmt::format("say so if it is, as in --channels \"time={}\", or pass the sample rate "
-                                    "(--rate 1000)",
-                                    possible_times_.front()));
+        return bad_data(
+            fmt::format("no time channel was recognised; judging by the names, it may be {}", quoted(possible_times_)),
+            fmt::format("if so, pass --channels \"time={}\"; otherwise pass the sample rate (--rate 1000)",
+                        possible_times_.front()));
       }
       const Index samples = recording_.channels.front().values.size();
       const double duration = own > 0.0 ? static_cast<double>(samples) / own : 0.0;
       const bool believable = own == 0.0 || is_believable(own, samples);
       if (!believable && !options_.rate) {
         return bad_data(
-            fmt::format("the file says a rate of {:.6g} Hz{}, at which the recording would last {:.4g} s", own,
+            fmt::format("the file states a rate of {:.6g} Hz{}, at which the recording would last {:.4g} s", own,
                         contents_.rate_from.empty() ? "" : fmt::format(" ({})", contents_.rate_from), duration),
-            fmt::format("pass --rate HZ, or --rate {:.6g} if it is right as it is", own));
+            fmt::format("pass --rate HZ, or --rate {:.6g} if this rate is correct", own));
       }
       if (believable && own > 0.0 && options_.rate && !same_rate(own, options_.rate->value)) {
-        return bad_usage(fmt::format("rate {} Hz contradicts the file, which says {} Hz", options_.rate->value, own),
-                         "leave --rate out");
+        return bad_usage(fmt::format("rate {} Hz contradicts the file, which states {} Hz", options_.rate->value, own),
+                         "omit --rate");
       }
       recording_.time_from_rate = true;
       const double rate = own > 0.0 && believable ? own : options_.rate->value;
@@ -1313,8 +1314,8 @@ class Assembler {
     const double own = inspect(recording_).rate_hz;
     if (same_rate(own, options_.rate->value)) return {};
     return bad_usage(
-        fmt::format("rate {} Hz contradicts the file's own time, which runs at {:.6g} Hz", options_.rate->value, own),
-        "leave --rate out, or correct the unit of time (--channels time=…:ms)");
+        fmt::format("rate {} Hz contradicts the time in the file, which has {:.6g} Hz", options_.rate->value, own),
+        "omit --rate, or correct the unit of time (--channels time=…:ms)");
   }
 
   /// [Hz] of the samples that were taken, as the file says it beside its time; 0 where it does not.
@@ -1338,20 +1339,19 @@ class Assembler {
     if (same_rate(mean, said)) return {};
     const double own = inspect(recording_).rate_hz;
     if (!std::isfinite(own) || same_rate(own, said)) return {};
-    const std::string both =
-        fmt::format("the file says a rate of {:.6g} Hz{}, and its time '{}' runs at {:.6g} Hz", said,
-                    contents_.rate_from.empty() ? "" : fmt::format(" ({})", contents_.rate_from),
-                    recording_.time_origin.source, own);
+    const std::string both = fmt::format("the file states a rate of {:.6g} Hz{}, but its time '{}' has {:.6g} Hz", said,
+                                         contents_.rate_from.empty() ? "" : fmt::format(" ({})", contents_.rate_from),
+                                         recording_.time_origin.source, own);
     if (!differs(mean, said) || !differs(own, said)) {
-      recording_.notes.push_back(both + ", which was taken");
+      recording_.notes.push_back(both + ", which was used");
       return {};
     }
     for (const auto& [times, unit] : {std::pair{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}}) {
       if (differs(said / own, times)) continue;
-      return bad_data(both, fmt::format("say the unit of the time, as in --channels time={}:{}",
+      return bad_data(both, fmt::format("state the unit of the time, as in --channels time={}:{}",
                                         recording_.time_origin.source, unit));
     }
-    return bad_data(both, fmt::format("correct the one that is wrong; --channels time={}:s takes the time as it is",
+    return bad_data(both, fmt::format("correct the wrong one, or pass --channels time={}:s to use the time as it is",
                                       recording_.time_origin.source));
   }
 

@@ -36,8 +36,8 @@ struct Period {
 std::vector<Period> periods(const std::string& unit) {
   std::vector<std::pair<std::string_view, double>> ticks = {
       {"second", 1.0}, {"millisecond", 1e-3}, {"microsecond", 1e-6}, {"nanosecond", 1e-9}};
-  std::vector<Period> all = {{60.0, "a clock that shows the second of a minute"},
-                             {3600.0, "a clock that is set back an hour"},
+  std::vector<Period> all = {{60.0, "a clock that restarts every minute"},
+                             {3600.0, "a clock that was set back one hour"},
                              {86400.0, "a clock that passes midnight"}};
   for (const int bits : {16, 24, 31, 32}) {
     for (const auto& [name, seconds] : ticks) {
@@ -123,13 +123,13 @@ bool take_rate(Recording& recording, double rate_hz) {
     const Unit* const unit = find_unit(recording.time_origin.unit);
     const double per_second = rate_hz * (unit != nullptr ? unit->to_si(1.0) : 1.0);
     time = (time.array() - time[0]) / per_second;
-    recording.notes.push_back(fmt::format("time '{}' counts samples: it was divided by {:g} Hz", source, rate_hz));
+    recording.notes.push_back(fmt::format("time '{}' counts samples; it was divided by {:g} Hz", source, rate_hz));
     return true;
   }
   if (!are_coarse_stamps(time, rate_hz)) return false;
   recording.notes.push_back(
-      fmt::format("time '{}' is told in steps of {:g} s: the samples were put {:g} s apart instead, as --rate says",
-                  source, median_interval(time), 1.0 / rate_hz));
+      fmt::format("time '{}' has a resolution of {:g} s; the samples were spaced {:g} s apart instead (--rate)", source,
+                  median_interval(time), 1.0 / rate_hz));
   time = Vector::LinSpaced(time.size(), 0.0, static_cast<double>(time.size() - 1) / rate_hz);
   return true;
 }
@@ -162,9 +162,9 @@ void unwrap_time(Recording& recording) {
     time[i] = now + added;
   }
   if (times == 0) return;
-  recording.notes.push_back(fmt::format(
-      "time jumps back {} at sample {} ({:.6g} s), as {} does: it was taken to run on",
-      times == 1 ? "once," : fmt::format("{} times, first", times), where + 1, time[where] - time[0], what));
+  recording.notes.push_back(fmt::format("time jumps back {} at sample {} ({:.6g} s), like {}; it was unwrapped",
+                                        times == 1 ? "once," : fmt::format("{} times, first", times), where + 1,
+                                        time[where] - time[0], what));
 }
 
 Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
@@ -182,7 +182,7 @@ Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
   for (const Meaning& meaning : kMeanings) {
     const double hz = 1.0 / (in_unit * meaning.seconds);
     if (hz < kUsualSlowest || hz > kUsualFastest) continue;
-    readings.push_back(fmt::format("in {} it lasts {} at {:.4g} Hz", meaning.name, lasting(intervals / hz), hz));
+    readings.push_back(fmt::format("in {} it would last {} at {:.4g} Hz", meaning.name, lasting(intervals / hz), hz));
     maps.push_back(fmt::format("--channels time={}:{}", source, meaning.unit));
   }
   const std::string_view said = unit != nullptr ? unit->name : std::string_view("s");
@@ -192,12 +192,11 @@ Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
   }
   std::string remedy = maps.empty() ? std::string() : fmt::format("pass {}", fmt::join(maps, " or "));
   if (counts_samples(recording)) remedy += ", or --rate HZ if it counts samples";
-  remedy +=
-      fmt::format("{}time={}:{} if it is right as it is", remedy.empty() ? "pass --channels " : ", or ", source, said);
+  remedy += fmt::format("{}time={}:{} if this is correct", remedy.empty() ? "pass --channels " : ", or ", source, said);
   const std::string in = unit == nullptr || said == "s" ? "seconds" : std::string(said);
   std::string message = fmt::format(
-      "time cannot be in {}: '{}' advances by {:.6g} a sample, so that the recording would last {} at {:.4g} Hz{}{}",
-      in, source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ", fmt::join(readings, "; "));
+      "time cannot be in {}: '{}' advances by {:.6g} per sample, so the recording would last {} at {:.4g} Hz{}{}", in,
+      source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ", fmt::join(readings, "; "));
   return with_code(kUnbelievableTime, bad_data(std::move(message), std::move(remedy)));
 }
 

@@ -69,12 +69,12 @@ Result<ChannelSource> parse_entry(std::string_view entry) {
       std::vector<Dimension> possible;
       for (const ChannelKind* kind : kinds)
         possible.insert(possible.end(), kind->measures.begin(), kind->measures.end());
-      return bad_data(fmt::format("channel {} cannot be in {}", name, result.unit),
-                      fmt::format("possible are {}", unit_names(possible)));
+      return bad_data(fmt::format("channel {} cannot have the unit {}", name, result.unit),
+                      fmt::format("use one of {}", unit_names(possible)));
     }
   }
   if (source.empty()) {
-    return bad_usage(fmt::format("channel entry '{}' names no source", entry), std::string(kExample));
+    return bad_usage(fmt::format("channel entry '{}' has no source", entry), std::string(kExample));
   }
   result.source = source;
   return result;

@@ -36,19 +36,19 @@ std::string place(std::size_t line) {
 Error not_a_number(std::size_t line, std::size_t column, std::string_view cell, bool decimal_commas) {
   cell = without_quotes(cell);
   const auto count = [cell](char c) { return std::ranges::count(cell, c); };
-  std::string remedy = "the table must hold numbers, separated by commas, semicolons, tabs or blanks";
+  std::string remedy = "write numbers only, separated by commas, semicolons, tabs or blanks";
   constexpr auto kMissing = std::to_array<std::string_view>(
       {"NA", "N/A", "n/a", "-", "null", "NULL", "None", "#N/A", "#DIV/0!", "#NUM!", "#VALUE!", "#REF!", "#NAME?"});
   const std::size_t blank = cell.rfind(' ');
   if (std::ranges::find(kMissing, cell) != kMissing.end()) {
-    remedy = "leave the cell empty, or write nan, where a value is missing";
+    remedy = "leave the cell empty or write nan for a missing value";
   } else if (!cell.empty() && cell.front() >= '0' && cell.front() <= '9' &&
              (count(':') >= 1 || count('/') == 2 || (count('.') == 2 && count(':') > 0))) {
     remedy = "write times as 10:15:30.123 or 2024-03-01T10:15:30.123, or as seconds";
   } else if (blank != cell.npos && cell_number(cell.substr(0, blank)) && find_unit(cell.substr(blank + 1)) != nullptr) {
-    remedy = "write numbers alone, and their unit in the name of the column";
+    remedy = "write only numbers, and put the unit in the column name";
   } else if (cell.starts_with('[') || cell.starts_with('(')) {
-    remedy = "where it holds several numbers, write each as a column of its own";
+    remedy = "if the cell contains several numbers, write each in its own column";
   } else if (decimal_commas && cell.find('.') != cell.npos) {
     remedy = "the file has decimal commas: export it with decimal points throughout";
   }
@@ -137,8 +137,8 @@ class Table {
     }
     if (!text.status()) return text.status();
     if (rows_.rows() == 0) {
-      return bad_data(fmt::format("the only line of numbers, line {}, is incomplete", last_line_),
-                      "nothing complete was recorded");
+      return bad_data(fmt::format("the only data line, line {}, is incomplete", last_line_),
+                      "check whether the recording was cut off");
     }
     return finish();
   }
@@ -159,13 +159,12 @@ class Table {
   static Result<void> no_numbers(const CsvText& text, CsvLines& lines, std::optional<CsvLine> line) {
     const auto second = line ? lines.next() : std::nullopt;
     if (!text.status()) return text.status();
-    if (!second) return bad_data("the file holds no line of numbers", "nothing was recorded, or it is not a table");
+    if (!second) return bad_data("the file contains no line of numbers", "nothing was recorded, or it is not a table");
     constexpr std::size_t kShown = 40;
     return with_code(
-        kNoTable,
-        bad_data(fmt::format("it is text without a table of numbers ({}: '{}' is not a number)", place(second->number),
-                             printable(std::string(second->text.substr(0, kShown)))),
-                 "a table has a line for each sample, and numbers between commas, semicolons, tabs or blanks"));
+        kNoTable, bad_data(fmt::format("the file is text without a table of numbers ({}: '{}' is not a number)",
+                                       place(second->number), printable(std::string(second->text.substr(0, kShown)))),
+                           "write one line per sample, with numbers separated by commas, semicolons, tabs or blanks"));
   }
 
   Result<void> find_columns(const CsvLine& first) {
@@ -178,7 +177,7 @@ class Table {
     if (trailing_) --columns_;
     if (names.size() == columns_ + 1 && names.back().empty()) names.pop_back();
     if (columns_ > kMaxCsvColumns) {
-      return bad_data(fmt::format("it has more than {} columns", kMaxCsvColumns), "every sample is one line",
+      return bad_data(fmt::format("the table has more than {} columns", kMaxCsvColumns), "write one line per sample",
                       place(first.number));
     }
     kinds_.resize(columns_);
@@ -189,10 +188,11 @@ class Table {
       return {};
     }
     const bool both = head_.separator == ',' && columns_ == 2 * names.size();
-    return bad_data(fmt::format("the header names {} columns, line {} has {}", names.size(), first.number, columns_),
-                    both ? "where commas stand for decimal points too, export it with semicolons between the columns"
-                         : "give every column one name",
-                    place(head_.header_line));
+    return bad_data(
+        fmt::format("the header names {} columns, but line {} has {}", names.size(), first.number, columns_),
+        both ? "if commas are also decimal points, export with semicolons between the columns"
+             : "give every column exactly one name",
+        place(head_.header_line));
   }
 
   /// @param end  of the text that is there
@@ -217,8 +217,9 @@ class Table {
       MBK_TRY(take_odd(line));
     }
     if (!line.terminated && !trailing) {
-      contents.notes.push_back(fmt::format(
-          "line {} has no line end: if the recording was cut off there, its last number may be cut too", line.number));
+      contents.notes.push_back(
+          fmt::format("line {} has no line end: if the recording was cut off there, its last number may be truncated",
+                      line.number));
     }
     rows_.next_row();
     return {};
@@ -228,8 +229,9 @@ class Table {
   [[nodiscard]] Result<void> refuse_header(const CsvLine& line) const {
     const auto same = [](const Odd& one, const std::string& name) { return without_quotes(one.cell) == name; };
     if (head_.names.empty() || !std::ranges::equal(odd_, head_.names, same)) return {};
-    return bad_data(fmt::format("the names of line {} stand again: another recording begins there", head_.header_line),
-                    "write each recording to a file of its own", place(line.number));
+    return bad_data(
+        fmt::format("the column names of line {} are repeated: another recording begins there", head_.header_line),
+        "write each recording to its own file", place(line.number));
   }
 
   [[nodiscard]] Result<void> wrong_count(const CsvLine& line, std::size_t count) const {
@@ -240,17 +242,18 @@ class Table {
     });
     if (!numbers) {
       return bad_data(
-          fmt::format("it holds words in {} cells, and the lines before {} cells with numbers: another table "
-                      "may begin there",
-                      count, columns_ + (trailing_ ? 1 : 0)),
-          "write each table to a file of its own", place(line.number));
+          fmt::format(
+              "it contains words in {} cells, while the lines before contain {} numbers: another table may begin there",
+              count, columns_ + (trailing_ ? 1 : 0)),
+          "write each table to its own file", place(line.number));
     }
     const bool commas = head_.separator == ',' && line.text.find('.') == line.text.npos;
-    return bad_data(fmt::format("{} cells where the lines before have {}", count, columns_ + (trailing_ ? 1 : 0)),
-                    commas ? "every line must have a cell for every column; where commas stand for decimal points too, "
-                             "export it with semicolons between the columns"
-                           : "every line must have a cell for every column",
-                    place(line.number));
+    return bad_data(
+        fmt::format("the line has {} cells, the lines before have {}", count, columns_ + (trailing_ ? 1 : 0)),
+        commas ? "write one cell per column in every line; if commas are also decimal points, export with semicolons "
+                 "between the columns"
+               : "write one cell per column in every line",
+        place(line.number));
   }
 
   /// Lines that were taken.
@@ -412,9 +415,8 @@ class Table {
                                    [](double value) { return std::isfinite(value) && value != std::trunc(value); });
     }
     if (points) {
-      return bad_data(fmt::format("'{}' has a comma where other numbers have decimal points", printable(comma_cell_)),
-                      "a comma may stand for decimals or between thousands: export it with decimal points, and "
-                      "nothing between thousands",
+      return bad_data(fmt::format("'{}' has a comma, but other numbers have decimal points", printable(comma_cell_)),
+                      "the comma is ambiguous: export with decimal points and without thousands separators",
                       fmt::format("line {}, column {}", line.number, column + 1));
     }
     decimal_commas_ = true;
@@ -435,17 +437,18 @@ class Table {
 
   Result<void> finish() {
     if (decimal_commas_ && !comma_is_sure_) {
-      return bad_data(fmt::format("'{}' and all others like it may have a decimal comma or one between thousands",
-                                  printable(comma_cell_)),
-                      "export it with decimal points, and nothing between thousands");
+      return bad_data(
+          fmt::format("the comma in '{}' and similar numbers may be a decimal comma or a thousands separator",
+                      printable(comma_cell_)),
+          "export with decimal points and without thousands separators");
     }
     if (decimal_commas_) head_.notes.emplace_back("numbers have decimal commas");
     head_.notes.insert(head_.notes.end(), unread_.begin(), unread_.end());
     if (commented_ > 0) {
-      head_.notes.push_back(fmt::format("comments behind the numbers of {} lines, from line {} on, were left out",
+      head_.notes.push_back(fmt::format("comments after the numbers in {} lines, from line {} on, were ignored",
                                         commented_, first_commented_));
     }
-    if (trailing_) head_.notes.emplace_back("every line ends with a separator, which was not taken as a column");
+    if (trailing_) head_.notes.emplace_back("every line ends with a separator, which was not counted as a column");
     contents.notes.insert(contents.notes.begin(), head_.notes.begin(), head_.notes.end());
     const Error* first = nullptr;
     bool any = false;
@@ -480,9 +483,9 @@ class Table {
       const Unit* const in_name = parse_column_name(array.name).unit;
       const Unit* const said = find_unit(head_.units[c]);
       if (in_name != nullptr && said != nullptr && in_name != said) {
-        return bad_data(
-            fmt::format("{} is in {} by its name, and in {} by the line of units", called, in_name->name, said->name),
-            "correct the one that is wrong");
+        return bad_data(fmt::format("{} is in {} according to its name, but in {} according to the line of units",
+                                    called, in_name->name, said->name),
+                        "correct the wrong one");
       }
       array.unit = head_.units[c];
       return {};
@@ -491,8 +494,8 @@ class Table {
     if (column.mixed || column.instants + empty != rows_.rows()) {
       if (!column.obstacle) {
         column.obstacle =
-            bad_data(fmt::format("{} holds times and other numbers, or times with and without a date", called),
-                     "write all of them alike")
+            bad_data(fmt::format("{} mixes times and other numbers, or times with and without a date", called),
+                     "write all values in the same form")
                 .value();
       }
       return {};
@@ -502,13 +505,13 @@ class Table {
     if (column.dates) {
       const std::chrono::year_month_day day{std::chrono::sys_days(std::chrono::days(column.first_day))};
       contents.notes.push_back(fmt::format(
-          "{} holds dates and times, which were taken as seconds since {:04}-{:02}-{:02} 00:00", called,
+          "{} contains dates and times, which were read as seconds since {:04}-{:02}-{:02} 00:00", called,
           static_cast<int>(day.year()), static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day())));
     } else {
-      std::string note = fmt::format("{} holds times of day, which were taken as seconds since midnight", called);
+      std::string note = fmt::format("{} contains times of day, which were read as seconds since midnight", called);
       if (column.midnights > 0) {
-        note += column.midnights == 1 ? "; midnight passes once"
-                                      : fmt::format("; midnight passes {} times", column.midnights);
+        note += column.midnights == 1 ? "; it passes midnight once"
+                                      : fmt::format("; it passes midnight {} times", column.midnights);
       }
       contents.notes.push_back(std::move(note));
     }
@@ -519,8 +522,8 @@ class Table {
     constexpr std::size_t kListed = 12;
     const std::size_t more = aside.size() > kListed ? aside.size() - kListed : 0;
     aside.resize(aside.size() - more);
-    contents.notes.push_back(fmt::format("columns that do not hold numbers throughout were left aside: {}{}",
-                                         fmt::join(aside, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
+    contents.notes.push_back(fmt::format("columns with non-numeric cells were ignored: {}{}", fmt::join(aside, ", "),
+                                         more > 0 ? fmt::format(" and {} more", more) : ""));
   }
 
   /// Columns long enough for every line that can come: one for each line end, and no line is shorter than its cells. Of
@@ -580,7 +583,7 @@ Result<Contents> decode_csv(std::span<const std::byte> file) {
   }
   const std::string text = from_utf16(file);
   if (std::ranges::any_of(text, [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r'; })) {
-    return bad_data("the content is of no known format: it is no text", "export the table as text");
+    return bad_data("the file has no known format and is not text", "export the table as text");
   }
   auto contents = decode_text(CsvText(text));
   if (contents) contents->notes.insert(contents->notes.begin(), "its text is UTF-16");

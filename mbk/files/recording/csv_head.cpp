@@ -296,7 +296,7 @@ class HeadFinder {
       if (names.is_words() && names.cells.size() == line.cells.size()) {
         for (std::string& cell : cells) cell = printable(std::string(bare_unit(cell)));
         head_.units = std::move(cells);
-        head_.notes.push_back(fmt::format("line {} was taken as the units of the columns", line.line->number));
+        head_.notes.push_back(fmt::format("line {} was read as the units of the columns", line.line->number));
         cells = texts_of(names.line->text, reading_.separator);
         --at;
       }
@@ -322,7 +322,7 @@ class HeadFinder {
     }
     if (!are_different(joined)) return at;
     head_.notes.push_back(
-        fmt::format("lines {} and {} together are the names of the columns", above.line->number, line.line->number));
+        fmt::format("lines {} and {} were combined into the column names", above.line->number, line.line->number));
     head_.names = std::move(joined);
     return at - 1;
   }
@@ -367,7 +367,7 @@ class HeadFinder {
     if (known < (reading_.separator == kBlanks ? 2 : 1)) return;
     head_.names = std::move(names);
     head_.header_line = above->number;
-    head_.notes.push_back(fmt::format("the names of the columns are those of the comment in line {}", above->number));
+    head_.notes.push_back(fmt::format("the column names were read from the comment in line {}", above->number));
   }
 
   /// What stands above the table must be words.
@@ -378,9 +378,9 @@ class HeadFinder {
       if (line.is_bare() ||
           (line.numbers > 1 && line.cells.size() == reading_.width && reading_.width > 2 && !is_pairs(line))) {
         return bad_data(
-            fmt::format("numbers stand above the header in line {}, so that the file may hold several tables",
+            fmt::format("there are numbers above the header in line {}; the file may contain several tables",
                         head_.header_line > 0 ? head_.header_line : head_.first_row),
-            "write each table to a file of its own", fmt::format("line {}", line.line->number));
+            "write each table to its own file", fmt::format("line {}", line.line->number));
       }
       ++lines;
       head_.above.push_back(*line.line);
@@ -393,7 +393,7 @@ class HeadFinder {
       std::ranges::sort(head_.above, {}, &CsvLine::number);
     }
     if (lines > 0) {
-      head_.notes.push_back(fmt::format("{} above the table {} not read",
+      head_.notes.push_back(fmt::format("{} above the table {} ignored",
                                         lines == 1 ? "a line of text" : fmt::format("{} lines of text", lines),
                                         lines == 1 ? "was" : "were"));
     }
@@ -415,13 +415,13 @@ class HeadFinder {
       });
     }
     if (!leading_zero) return {};
-    return bad_data("commas may stand between the columns or for the decimal point: both readings are possible",
-                    "export it with semicolons or tabs between the columns, or with decimal points, or with a header",
+    return bad_data("the commas could separate columns or be decimal points",
+                    "export with semicolons or tabs between the columns, with decimal points, or with a header",
                     fmt::format("line {}", head_.first_row));
   }
 
   void note() {
-    if (said_ != 0) head_.notes.push_back("its first line says how columns are separated");
+    if (said_ != 0) head_.notes.push_back("the first line states the column separator");
     if (reading_.separator != ',' && (reading_.width > 1 || said_ != 0)) {
       head_.notes.insert(head_.notes.begin(), fmt::format("columns are separated by {}", name_of(reading_.separator)));
     }

@@ -17,7 +17,7 @@ Result<void> append_comments(std::string& text, const Recording& recording) {
   for (const auto& [key, value] : metadata_with_joints(recording)) {
     if (key.empty() || key.find_first_of(" :\t") != key.npos) {
       return bad_data(fmt::format("metadata '{}' cannot be written as a comment", key),
-                      "use a name without spaces and colons");
+                      "use a name without spaces or colons");
     }
     text += fmt::format("# {}: {}\n", key, value);
   }
@@ -37,7 +37,7 @@ Result<void> append_header(std::string& text, const std::vector<const Channel*>&
     std::string name = channel->name;
     if (!channel->unit.empty()) name += "_" + channel->unit;
     if (name.find_first_of(",;\t\" #%\n\r") != name.npos || is_formula(name)) {
-      return bad_data(fmt::format("'{}' cannot be the name of a column", name), "use letters, digits and _");
+      return bad_data(fmt::format("'{}' is not a valid column name", name), "use letters, digits and _");
     }
     text += ',' + name;
   }

@@ -40,7 +40,7 @@ Result<std::string> encode_hdf5(const Recording& recording) {
   root.attributes["software"] = hdf5::one_text(fmt::format("mbk {}", version()));
   for (const auto& [key, value] : metadata_with_joints(recording)) {
     if (key == "format") {
-      return bad_data("metadata 'format' cannot be written: this attribute names the layout of the file",
+      return bad_data("metadata 'format' cannot be written because this attribute is reserved for the file layout",
                       "rename that entry");
     }
     root.attributes[key] = hdf5::one_text(value);

@@ -217,9 +217,9 @@ Result<const FileFormat*> format_of(OpenFile& file) {
   bool zeros = true;
   for (const char c : file.begin()) zeros = zeros && c == '\0';
   for (const char c : file.begin().substr(0, kShown)) bytes += fmt::format("{:02x} ", static_cast<unsigned char>(c));
-  if (zeros) return bad_data("it begins with zeros alone", "copy it again from where it was recorded");
+  if (zeros) return bad_data("the file begins with zeros only", "copy it again from where it was recorded");
   return bad_data(
-      fmt::format("it is of no known format: it is binary data ({}…), and not {}", bytes, names_of_formats()),
+      fmt::format("the format is unknown: the file is binary data ({}…), not {}", bytes, names_of_formats()),
       std::string(kExports));
 }
 

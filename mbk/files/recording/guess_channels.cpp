@@ -164,7 +164,7 @@ class Guesser {
       if (rises) return;  // two that could be
       rises = k;
     }
-    if (rises) add("time", *rises, "the only one that rises by even steps");
+    if (rises) add("time", *rises, "the only signal that increases in even steps");
   }
 
   [[nodiscard]] std::string called(std::size_t k) const { return fmt::format("called '{}'", signals_[k].name); }
@@ -225,16 +225,16 @@ class Guesser {
     if (entry.channel == "time") {
       const Vector& stamps = entry.signal->values;
       if (const Unit* const unit = stamps.size() > 0 ? unit_since_1970(stamps[0]) : nullptr) {
-        return {std::string(unit->name), fmt::format("so large that it is taken for {} since 1970", unit->name)};
+        return {std::string(unit->name), fmt::format("large values, assumed to be {} since 1970", unit->name)};
       }
       const auto step = even_step(entry.signal->values);
-      if (step && *step > kSlow) return {"ms", fmt::format("steps of {:.3g} are taken for ms", *step)};
+      if (step && *step > kSlow) return {"ms", fmt::format("steps of {:.3g}, assumed to be ms", *step)};
       return {};
     }
     if (entry.channel != "x" && entry.channel != "y") return {};
     const Vector& values = entry.signal->values;
     if (values.size() == 0 || !((values.array() - values.mean()).abs().maxCoeff() > kFar)) return {};
-    return {"mm", "so large that it is taken for mm"};
+    return {"mm", "large values, assumed to be mm"};
   }
 
   [[nodiscard]] ChannelGuess finished() const {

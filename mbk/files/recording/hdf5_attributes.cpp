@@ -204,7 +204,7 @@ class Applier {
   void run(const hdf5::Attributes& attributes, bool netcdf) {
     for (const auto& [name, value] : attributes) collect(name, value);
     if (netcdf && missing_.empty()) {
-      if (const auto fill = netcdf_fill(numbers_.stored)) missing_.push_back({"netCDF's own fill value", *fill});
+      if (const auto fill = netcdf_fill(numbers_.stored)) missing_.push_back({"the default netCDF fill value", *fill});
     }
     follow_unsigned(text_attribute(attributes, "_Unsigned"));
     settle_scale();
@@ -238,7 +238,7 @@ class Applier {
       if (number && number->size() == 1 && array_.rate_hz == 0.0) {
         array_.rate_hz = rate_called(name, (*number)[0], "").value_or(0.0);
         if (array_.rate_hz > 0.0) {
-          notes_.add(fmt::format("attribute {} says the sample rate of", said(name, value)), array_.name);
+          notes_.add(fmt::format("attribute {} states the sample rate of", said(name, value)), array_.name);
         }
       }
       return;
@@ -351,7 +351,7 @@ class Applier {
         ++count;
       }
       if (count == 0) continue;
-      notes_.add(fmt::format("{} of the numbers {} {} ({}) and {} missing (NaN) in", count, count == 1 ? "is" : "are",
+      notes_.add(fmt::format("{} of the values {} {} ({}) and {} missing (NaN) in", count, count == 1 ? "is" : "are",
                              one.name, one.value, count == 1 ? "is" : "are"),
                  array_.name);
     }
@@ -368,7 +368,7 @@ class Applier {
       ++count;
     }
     if (count == 0) return;
-    notes_.add(fmt::format("{} of the numbers {} outside of the valid range, {} to {}, and {} missing (NaN) in", count,
+    notes_.add(fmt::format("{} of the values {} outside the valid range, {} to {}, and {} missing (NaN) in", count,
                            count == 1 ? "is" : "are", least, most, count == 1 ? "is" : "are"),
                array_.name);
   }
@@ -513,7 +513,7 @@ void note_unapplied(const hdf5::Attributes& attributes, const std::string& path,
     if (says == Says::nothing || says == Says::unit) continue;
     const auto numbers = numbers_of(value);
     if (!numbers || leaves_as_it_is(numbers, 1.0) || leaves_as_it_is(numbers, 0.0)) continue;
-    notes.add(fmt::format("{} was not applied to what stands in", said(name, value)), path.empty() ? "/" : path);
+    notes.add(fmt::format("{} was not applied to the contents of", said(name, value)), path.empty() ? "/" : path);
   }
 }
 

@@ -222,8 +222,8 @@ class Decoder {
     const auto kinds = kinds_called(name);
     if (frame.empty() || kinds.size() != 1 || kinds.front()->frame == frame) return;
     contents.notes.push_back(fmt::format(
-        "'{}' says that its frame is '{}'; mbk takes it {}", name, frame,
-        kinds.front()->frame.empty() ? "as it stands" : fmt::format("in the frame '{}'", kinds.front()->frame)));
+        "the frame of '{}' is '{}'; mbk reads it {}", name, frame,
+        kinds.front()->frame.empty() ? "unchanged" : fmt::format("in the frame '{}'", kinds.front()->frame)));
   }
 
   void lost(const std::string& name, const std::string& why) {

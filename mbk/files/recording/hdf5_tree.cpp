@@ -75,7 +75,7 @@ hdf5::Dataset* find_dataset(hdf5::Group& root, std::string_view path) {
 }
 
 std::string lost_note(std::string_view what, std::string_view why) {
-  return fmt::format("{} is damaged and was left out: {}; the rest of the file was read", what, why);
+  return fmt::format("{} is damaged and was ignored: {}; the rest of the file was read", what, why);
 }
 
 }  // namespace mbk::recording

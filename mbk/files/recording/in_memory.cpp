@@ -34,8 +34,8 @@ SharedMatrix shared(const InMemory::Signal& signal) {
 /// What only files have.
 Result<void> check_options(const ReadOptions& options) {
   const auto refused = [](const char* option) {
-    return bad_usage(fmt::format("{}: these are arrays in memory, not a file", option),
-                     fmt::format("leave {} out", option));
+    return bad_usage(fmt::format("{} applies to files, not to arrays in memory", option),
+                     fmt::format("omit {}", option));
   };
   if (!options.trial.empty()) return refused("--trial");
   if (!options.arm.empty()) return refused("--side");
@@ -46,25 +46,25 @@ Result<void> check_options(const ReadOptions& options) {
 
 Result<InMemory> InMemory::of(std::vector<Signal> signals, double rate_hz, std::map<std::string, std::string> metadata,
                               std::vector<Event> events) {
-  if (signals.empty()) return bad_usage("there is no signal", "give arrays by their names: time, x, Fx, …");
+  if (signals.empty()) return bad_usage("no signal was given", "name the arrays: time, x, Fx, …");
   if (!(rate_hz >= 0.0) || !std::isfinite(rate_hz)) {
     return bad_usage(fmt::format("rate {} Hz is not a positive number", rate_hz), "give the sample rate in Hz");
   }
   const auto samples_of = [](const Signal& s) { return s.rows > 0 ? s.values.size() / s.rows : s.values.size(); };
   for (std::size_t k = 0; k < signals.size(); ++k) {
     const Signal& signal = signals[k];
-    if (signal.name.empty()) return bad_usage("a signal has no name", "name each: time, x, Fx, …");
+    if (signal.name.empty()) return bad_usage("a signal has no name", "name each signal: time, x, Fx, …");
     for (std::size_t i = 0; i < k; ++i) {
       if (signals[i].name == signal.name) {
-        return bad_usage(fmt::format("two signals are called '{}'", signal.name), "give each a name of its own");
+        return bad_usage(fmt::format("two signals are called '{}'", signal.name), "give each signal a unique name");
       }
     }
     if (signal.values.size() == 0) return bad_data(fmt::format("'{}' is empty", signal.name), "nothing was recorded");
     const Signal& first = signals.front();
     if (signal.rows == 0 && first.rows == 0 && samples_of(signal) != samples_of(first)) {
-      return bad_data(fmt::format("'{}' has {} samples, '{}' has {}", first.name, samples_of(first), signal.name,
+      return bad_data(fmt::format("'{}' has {} samples, but '{}' has {}", first.name, samples_of(first), signal.name,
                                   samples_of(signal)),
-                      "signals of one recording have equal lengths");
+                      "give signals of equal length");
     }
   }
   InMemory made;

@@ -52,7 +52,7 @@ struct Inflater {
 constexpr auto kRemedy = "the file is damaged: copy it again from where it was recorded";
 
 tl::unexpected<Error> wrong_size(bool more, std::size_t size) {
-  return bad_data(fmt::format("compressed data holds {} {} bytes that its tag claims",
+  return bad_data(fmt::format("compressed data contains {} {} bytes that its tag states",
                               more ? "more than the" : "fewer than the", size),
                   kRemedy);
 }
@@ -64,7 +64,7 @@ tl::unexpected<Error> left_over(std::size_t bytes) {
 tl::unexpected<Error> damaged(const Inflater& inflater) {
   const std::string_view why = inflater.status == Z_DATA_ERROR && inflater.stream.msg != nullptr ? inflater.stream.msg
                                : inflater.status == Z_MEM_ERROR                                  ? "not enough memory"
-                                                                                                 : "it ends too early";
+                                                                                                 : "it is truncated";
   return bad_data(fmt::format("compressed data is damaged ({})", why),
                   "copy the file again from where it was recorded");
 }
@@ -100,7 +100,7 @@ Result<Buffer> inflate_exactly(
   if (inflater.fill(first, sizeof first) != sizeof first) return damaged(inflater);
   const auto claimed = MBK_TRY(claimed_size(first));
   if (claimed > largest_claim(stream.size())) {
-    return bad_data(fmt::format("{} compressed bytes claim to hold {} bytes", stream.size(), claimed), kRemedy);
+    return bad_data(fmt::format("{} compressed bytes claim to contain {} bytes", stream.size(), claimed), kRemedy);
   }
 
   const auto size = static_cast<std::size_t>(claimed);

@@ -92,8 +92,8 @@ Result<std::string> match_joints(Contents& contents, std::span<const std::string
       }
       if (same.size() > 1) {
         return bad_data(
-            fmt::format("joint '{}' stands in '{}' and in '{}'", printable(joints[k]), same[0]->name, same[1]->name),
-            "say with --clock which topic is meant, or name all channels with --channels");
+            fmt::format("joint '{}' occurs in '{}' and in '{}'", printable(joints[k]), same[0]->name, same[1]->name),
+            "select the topic with --clock, or name all channels with --channels");
       }
       if (same.empty()) {
         missing.push_back(joints[k]);
@@ -106,10 +106,9 @@ Result<std::string> match_joints(Contents& contents, std::span<const std::string
     for (const Array* array : named) {
       if (std::ranges::find(there, array->joint) == there.end()) there.push_back(array->joint);
     }
-    return bad_data(fmt::format("the recording has no joint {}; its joints are {}, those of the robot {}",
+    return bad_data(fmt::format("the recording has no joint {}; its joints are {}, the joints of the robot are {}",
                                 listed(missing), listed(there), listed(joints)),
-                    fmt::format("correct the names in the description of the robot, or say which joint is which, as "
-                                "in --channels {}",
+                    fmt::format("correct the names in the robot description, or assign the joints, as in --channels {}",
                                 example(contents)));
   }
   for (const char* const prefix : {"joint_", "torque_"}) {
@@ -121,7 +120,7 @@ Result<std::string> match_joints(Contents& contents, std::span<const std::string
     if (order.size() < joints.size()) order.push_back(fmt::format("{} {}", order.size() + 1, array->joint));
   }
   if (order.empty()) return "";
-  return fmt::format("joints and torques are matched to the robot by name: {}", listed(order));
+  return fmt::format("joints and torques were matched to the robot by name: {}", listed(order));
 }
 
 Result<void> check_joint(const ChannelKind& kind, std::span<const std::string> joints, std::string_view named,
@@ -131,10 +130,10 @@ Result<void> check_joint(const ChannelKind& kind, std::span<const std::string> j
   const std::string* const other = named_in(named, joints);
   if (other == nullptr || *other == joints[k]) return {};
   return bad_data(
-      fmt::format("{} is read from '{}', which belongs to '{}', the {} joint of the robot; its joints are {}",
+      fmt::format("{} was read from '{}', which belongs to '{}', the {} joint of the robot; its joints are {}",
                   kind.name, printable(source), printable(*other), ordinal(&*other - joints.data() + 1),
                   listed(joints)),
-      fmt::format("say with --channels which column belongs to '{}', as in {}=NAME", printable(joints[k]), kind.alias));
+      fmt::format("assign a column to '{}' with --channels {}=NAME", printable(joints[k]), kind.alias));
 }
 
 }  // namespace mbk::recording
