@@ -12,7 +12,7 @@ namespace mbk::recording {
 
 /// What is said of whole numbers that doubles do not hold.
 [[nodiscard]] inline std::string rounded_note(std::string_view name) {
-  return "'" + std::string(name) + "' holds whole numbers above 2^53, which were rounded";
+  return "'" + std::string(name) + "' contains integers above 2^53, which were rounded";
 }
 
 /// The whole number of which a double and a rest are known, digit by digit; a double above 2^64 as it is.

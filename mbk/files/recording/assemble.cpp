@@ -146,7 +146,7 @@ std::string inventory(const Contents& contents) {
   if (!contents.table) {
     std::string text = names.empty() ? "it has no numeric variable" : "it has the variables " + quoted(names);
     const auto why = std::ranges::find_if(
-        contents.notes, [](const std::string& note) { return note.find("is not taken") != note.npos; });
+        contents.notes, [](const std::string& note) { return note.find("was not used") != note.npos; });
     if (!contents.notes.empty()) text += "; " + (why == contents.notes.end() ? contents.notes.front() : *why);
     if (contents.notes.size() > 1) text += fmt::format(" (and {} more)", contents.notes.size() - 1);
     return text;

@@ -185,7 +185,7 @@ class Decoder {
       clock.time.resize(samples);
       for (Index k = 0; k < samples; ++k) clock.time[k] = begin->values[0] + static_cast<double>(k) / *rate;
       single_taken_.insert(first + "starting_time");
-      notes_.add(fmt::format("starting_time {} s and its rate {} Hz are the time of", begin->values[0], *rate),
+      notes_.add(fmt::format("starting_time {} s and its rate {} Hz define the time of", begin->values[0], *rate),
                  first + "data");
     } else if (const hdf5::Numbers* const stamps = numbers_of("timestamps"); stamps != nullptr) {
       const std::string said = text_attribute(group.datasets["timestamps"].attributes, "unit");

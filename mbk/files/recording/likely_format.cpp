@@ -18,8 +18,8 @@ struct Signature {
   std::size_t at = 0;
 };
 
-constexpr std::string_view kUnpack = "unpack it and pass the file that is in it";
-constexpr std::string_view kSaveSheet = "save the sheet as CSV (File > Save As) and pass that";
+constexpr std::string_view kUnpack = "unpack it and pass the file inside";
+constexpr std::string_view kSaveSheet = "save the sheet as CSV (File > Save As) and pass the CSV file";
 constexpr std::string_view kNoNumbers = "pass the recording itself, as CSV, MAT, HDF5 or C3D";
 constexpr std::string_view kFromPandas =
     "in Python: pandas.read_parquet or read_feather of the file, then .to_csv(\"trial.csv\", index=False)";
@@ -33,7 +33,9 @@ constexpr auto kSignatures = std::to_array<Signature>({
     {"TDSm",
      {"a LabVIEW TDMS file",
       "in Python: nptdms.TdmsFile.read of the file, then .as_dataframe().to_csv(\"trial.csv\")"}},
-    {"TDSh", {"the index of a LabVIEW TDMS file", "pass a CSV file made of the .tdms file beside it (Python: nptdms)"}},
+    {"TDSh",
+     {"the index of a LabVIEW TDMS file",
+      "convert the .tdms file beside it to CSV (Python: nptdms) and pass the CSV file"}},
     {"\xFF"
      "BIOSEMI"sv,
      {"a BDF file (BioSemi)", kFromMne}},
@@ -44,14 +46,14 @@ constexpr auto kSignatures = std::to_array<Signature>({
     {"BrainVision Data Exchange"sv, {"the header of a BrainVision recording", kFromMne}},
     {"#ROSBAG V1"sv,
      {"a ROS bag of version 1",
-      "bring it to version 2 with 'rosbag fix', then: rostopic echo -b FILE -p /TOPIC > trial.csv"}},
+      "convert it to version 2 with 'rosbag fix', then: rostopic echo -b FILE -p /TOPIC > trial.csv"}},
     {"#ROSLOG"sv,
      {"a ROS bag of version 1",
-      "bring it to version 2 with 'rosbag fix', then: rostopic echo -b FILE -p /TOPIC > trial.csv"}},
+      "convert it to version 2 with 'rosbag fix', then: rostopic echo -b FILE -p /TOPIC > trial.csv"}},
     {"SQLite format 3\0"sv,
      {"an SQLite database",
-      "where it is a ROS 2 bag, 'ros2 bag convert' makes MCAP of it; else: sqlite3 -header -csv FILE \"select * from "
-      "TABLE\" > trial.csv"}},
+      "if it is a ROS 2 bag, convert it to MCAP with 'ros2 bag convert'; otherwise: sqlite3 -header -csv FILE \"select "
+      "* from TABLE\" > trial.csv"}},
     {"NEURALSG"sv, {"a Blackrock NSx file", kFromNeo}},
     {"NEURALCD"sv, {"a Blackrock NSx file", kFromNeo}},
     {"BRSMPGRP"sv, {"a Blackrock NSx file", kFromNeo}},
@@ -73,19 +75,19 @@ constexpr auto kSignatures = std::to_array<Signature>({
     {"ARROW1\0\0"sv, {"a Feather or Arrow file", kFromPandas}},
     {"\x80\x02"sv,
      {"a Python pickle",
-      "a pickle can run any program: open it only where you trust its source, and write the arrays with numpy.savetxt "
+      "a pickle can run arbitrary code: open it only if you trust its source, and write the arrays with numpy.savetxt "
       "or h5py"}},
     {"\x80\x03"sv,
      {"a Python pickle",
-      "a pickle can run any program: open it only where you trust its source, and write the arrays with numpy.savetxt "
+      "a pickle can run arbitrary code: open it only if you trust its source, and write the arrays with numpy.savetxt "
       "or h5py"}},
     {"\x80\x04\x95"sv,
      {"a Python pickle",
-      "a pickle can run any program: open it only where you trust its source, and write the arrays with numpy.savetxt "
+      "a pickle can run arbitrary code: open it only if you trust its source, and write the arrays with numpy.savetxt "
       "or h5py"}},
     {"\x80\x05\x95"sv,
      {"a Python pickle",
-      "a pickle can run any program: open it only where you trust its source, and write the arrays with numpy.savetxt "
+      "a pickle can run arbitrary code: open it only if you trust its source, and write the arrays with numpy.savetxt "
       "or h5py"}},
     {"RDX2\n"sv, {"R data (.RData)", "in R: load it, then write.csv(data, \"trial.csv\", row.names=FALSE)"}},
     {"RDX3\n"sv, {"R data (.RData)", "in R: load it, then write.csv(data, \"trial.csv\", row.names=FALSE)"}},
@@ -94,24 +96,23 @@ constexpr auto kSignatures = std::to_array<Signature>({
     {"CDF\1"sv, {"a NetCDF file of the classic format", kToHdf5}},
     {"CDF\2"sv, {"a NetCDF file of the classic format", kToHdf5}},
     {"CDF\5"sv, {"a NetCDF file of the classic format", kToHdf5}},
-    {"\x0E\x03\x13\x01"sv, {"an HDF4 file", "h4toh5 makes HDF5 of it"}},
+    {"\x0E\x03\x13\x01"sv, {"an HDF4 file", "convert it to HDF5 with h4toh5"}},
     {"$FL2"sv, {"an SPSS file", "save it as CSV from SPSS (File > Save As)"}},
     {"<stata_dta>"sv, {"a Stata file", "in Stata: export delimited trial.csv"}},
-    {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"sv,
-     {"a document of an old version of Office, perhaps an Excel workbook (.xls)", kSaveSheet}},
-    {"Model {"sv, {"a Simulink model", "pass the log that it writes, a MAT file"}},
+    {"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"sv, {"an old Office document, perhaps an Excel workbook (.xls)", kSaveSheet}},
+    {"Model {"sv, {"a Simulink model", "pass the MAT file that it logs"}},
     // archives
     {"\x1F\x8B"sv,
-     {"packed by gzip", "unpack it with gunzip; an R file (.rds, .RData) is such a file too: write.csv in R"}},
+     {"compressed with gzip", "unpack it with gunzip; if it is an R file (.rds, .RData), use write.csv in R"}},
     {"\xFD"
      "7zXZ\0"sv,
-     {"packed by xz", "unpack it with unxz and pass the file that is in it"}},
-    {"\x28\xB5\x2F\xFD"sv, {"packed by Zstandard", "unpack it with unzstd and pass the file that is in it"}},
-    {"BZh"sv, {"packed by bzip2", "unpack it with bunzip2 and pass the file that is in it"}},
-    {"\x04\x22\x4D\x18"sv, {"packed by LZ4", "unpack it with unlz4 and pass the file that is in it"}},
+     {"compressed with xz", "unpack it with unxz and pass the file inside"}},
+    {"\x28\xB5\x2F\xFD"sv, {"compressed with Zstandard", "unpack it with unzstd and pass the file inside"}},
+    {"BZh"sv, {"compressed with bzip2", "unpack it with bunzip2 and pass the file inside"}},
+    {"\x04\x22\x4D\x18"sv, {"compressed with LZ4", "unpack it with unlz4 and pass the file inside"}},
     {"7z\xBC\xAF\x27\x1C"sv, {"a 7z archive", kUnpack}},
     {"Rar!\x1A\x07"sv, {"a RAR archive", kUnpack}},
-    {"ustar"sv, {"a tar archive", "unpack it with tar -xf and pass a file that is in it"}, 257},
+    {"ustar"sv, {"a tar archive", "unpack it with tar -xf and pass a file inside"}, 257},
     {"PK\3\4"sv, {"a zip archive", kUnpack}},
     {"PK\5\6"sv, {"an empty zip archive", kNoNumbers}},
     // documents, pictures, films
@@ -122,26 +123,24 @@ constexpr auto kSignatures = std::to_array<Signature>({
     {"II*\0"sv, {"a picture (TIFF)", kNoNumbers}},
     {"MM\0*"sv, {"a picture (TIFF)", kNoNumbers}},
     {"RIFF"sv,
-     {"a film or sound (RIFF: AVI, WAV)",
-      "of sound, write the samples as CSV; of a film, pass what was tracked in it"}},
-    {"ftyp"sv, {"a film (MP4, MOV)", "pass what was tracked in it, as CSV"}, 4},
-    {"\x1A\x45\xDF\xA3"sv, {"a film (Matroska, WebM)", "pass what was tracked in it, as CSV"}},
-    {"{\\rtf"sv, {"a text document (RTF)", "save the numbers alone as plain text with one line a sample"}},
+     {"a film or sound (RIFF: AVI, WAV)", "for sound, write the samples as CSV; for a film, pass the tracked data"}},
+    {"ftyp"sv, {"a film (MP4, MOV)", "pass the tracked data as CSV"}, 4},
+    {"\x1A\x45\xDF\xA3"sv, {"a film (Matroska, WebM)", "pass the tracked data as CSV"}},
+    {"{\\rtf"sv, {"a text document (RTF)", "save only the numbers as plain text with one line per sample"}},
     {"\x7F"
      "ELF"sv,
      {"a program", kNoNumbers}},
-    {"MZ"sv, {"a program of Windows", kNoNumbers}},
+    {"MZ"sv, {"a Windows program", kNoNumbers}},
     // text
     {kOctaveText, {"Octave's text format", "save it with 'save -v7 trial.mat'"}},
     {"<?xml"sv, {"an XML document", "export the samples as CSV, MAT or C3D from the program that wrote it"}},
     {"<!DOCTYPE"sv, {"a web page", kNoNumbers}},
     {"<!doctype"sv, {"a web page", kNoNumbers}},
     {"<html"sv, {"a web page", kNoNumbers}},
-    {"function "sv, {"a MATLAB program (.m)", "run it in MATLAB and pass what it saves"}},
-    {"function["sv, {"a MATLAB program (.m)", "run it in MATLAB and pass what it saves"}},
-    {"classdef "sv, {"a MATLAB program (.m)", "run it in MATLAB and pass what it saves"}},
-    {"{"sv,
-     {"JSON text, such as the results of mbk", "pass the recording that it was made from, or write its arrays as CSV"}},
+    {"function "sv, {"a MATLAB program (.m)", "run it in MATLAB and pass the file that it saves"}},
+    {"function["sv, {"a MATLAB program (.m)", "run it in MATLAB and pass the file that it saves"}},
+    {"classdef "sv, {"a MATLAB program (.m)", "run it in MATLAB and pass the file that it saves"}},
+    {"{"sv, {"JSON text, such as an mbk result", "pass the original recording, or write the arrays as CSV"}},
 });
 
 /// Files that are zip archives by the name of something in them.
@@ -157,8 +156,8 @@ constexpr auto kInside = std::to_array<Inside>({
     {"word/document.xml", {"a Word document", kNoNumbers}},
     {"ppt/presentation.xml", {"a PowerPoint document", kNoNumbers}},
     {"application/vnd.oasis.opendocument", {"an OpenDocument text or picture", kNoNumbers}},
-    {"simulink/", {"a Simulink model (.slx)", "pass the log that it writes, a MAT file"}},
-    {"matlab/document.xml", {"a MATLAB live script (.mlx)", "run it in MATLAB and pass what it saves"}},
+    {"simulink/", {"a Simulink model (.slx)", "pass the MAT file that it logs"}},
+    {"matlab/document.xml", {"a MATLAB live script (.mlx)", "run it in MATLAB and pass the file that it saves"}},
     {".c3d", {"a zip archive with C3D files", "unpack it with unzip and pass the C3D files"}},
     {".kinarm", {"a zip archive of a KINARM", "unpack it with unzip and pass the C3D files"}},
 });
@@ -189,7 +188,7 @@ std::optional<LikelyFormat> likely_format(std::span<const std::byte> file) {
 }
 
 tl::unexpected<Error> not_read(const LikelyFormat& format) {
-  return bad_data(fmt::format("it is {}, which is not read", format.what), std::string(format.way_out));
+  return bad_data(fmt::format("the file is {}, which is not supported", format.what), std::string(format.way_out));
 }
 
 }  // namespace mbk::recording

@@ -150,15 +150,14 @@ class MatDecoder {
       return;
     }
     if (elements_left_ == 0) return;
-    if (--elements_left_ == 0)
-      return aside(name, fmt::format("the last of {} cells and fields that are read", kMaxReferred));
+    if (--elements_left_ == 0) return aside(name, fmt::format("beyond the limit of {} cells and fields", kMaxReferred));
     if (hdf5::Dataset* const dataset = find_dataset(root_, path)) return variable(*dataset, name, depth);
     if (hdf5::Group* const group = find_group(root_, path)) return variable(*group, name, depth);
   }
 
   void text(const hdf5::Dataset& dataset, const std::string& name) {
     auto line = line_of_text(dataset);
-    if (!line) return aside(name, "text in a way that is not read");
+    if (!line) return aside(name, "text in an unsupported encoding");
     contents.texts.push_back({name, printable_lines(*line)});
   }
 
@@ -188,7 +187,7 @@ class MatDecoder {
       auto line = line_of_text(*cell);
       if (!line) return false;
       if (line->size() > text_left_) {
-        aside(name, "a cell array of too much text");
+        aside(name, "a cell array with too much text");
         return true;
       }
       text_left_ -= line->size();
@@ -204,7 +203,7 @@ class MatDecoder {
   }
 
   void aside(const std::string& name, std::string_view what) {
-    contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", name, what));
+    contents.notes.push_back(fmt::format("variable '{}' is {} and was ignored", name, what));
   }
 
   hdf5::Group& root_;

@@ -99,13 +99,13 @@ Result<Contents> decode_mat_level4(std::span<const std::byte> bytes) {
     const std::uint64_t left = file.size() - header->data_offset;
     const std::uint64_t each = kBytesOf[header->format] * (header->complex ? 2 : 1);
     if (header->entries > left / each) {
-      return bad_data(fmt::format("dimensions {}×{} need more than the {} bytes that are left", header->rows,
-                                  header->columns, left),
-                      kRemedy, where);
+      return bad_data(
+          fmt::format("dimensions {}×{} need more than the remaining {} bytes", header->rows, header->columns, left),
+          kRemedy, where);
     }
     const std::uint64_t size = header->entries * each;
     if (header->complex || header->kind != 0) {
-      contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", header->name,
+      contents.notes.push_back(fmt::format("variable '{}' is {} and was ignored", header->name,
                                            header->kind == 1   ? "text"
                                            : header->kind == 2 ? "a sparse matrix"
                                                                : "complex"));

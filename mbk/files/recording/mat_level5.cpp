@@ -66,7 +66,7 @@ struct Elements {
     }
     const std::uint64_t size = bytes.at<std::uint32_t>(offset + 4);
     if (!bytes.holds(offset + 8, size)) {
-      return damaged(fmt::format("{} claims {} bytes where {} are left", what, size, bytes.size() - offset - 8));
+      return damaged(fmt::format("{} claims {} bytes, but {} remain", what, size, bytes.size() - offset - 8));
     }
     element = {word, bytes.part(offset + 8, static_cast<std::size_t>(size))};
     const std::size_t padded = element.type == kCompressed ? size : (size + 7) / 8 * 8;
@@ -242,7 +242,7 @@ class Decoder {
         return cells(header, elements, depth);
       case kCharClass: {
         auto lines = MBK_TRY(lines_of_text(header, elements));
-        return text(header, std::move(lines), "text in a way that is not read");
+        return text(header, std::move(lines), "text in an unsupported encoding");
       }
       case kSparseClass:
         return aside(header, "a sparse matrix");
@@ -257,7 +257,7 @@ class Decoder {
   }
 
   Result<void> aside(const Header& header, std::string_view what) {
-    contents.notes.push_back(fmt::format("variable '{}' is {}; ignored", header.name, what));
+    contents.notes.push_back(fmt::format("variable '{}' is {} and was ignored", header.name, what));
     return {};
   }
 
@@ -412,7 +412,7 @@ class Decoder {
       originals.push_back(field);
       if (same > 0) {
         fields.push_back(fmt::format("{}#{}", field, same + 1));
-        contents.notes.push_back(fmt::format("structure '{}' has several fields '{}'; one is called '{}' here",
+        contents.notes.push_back(fmt::format("structure '{}' has several fields '{}'; one was renamed '{}'",
                                              header.name, field, fields.back()));
       } else {
         fields.push_back(std::move(field));

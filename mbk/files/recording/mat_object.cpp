@@ -38,7 +38,7 @@ void list_object(Contents& contents, std::string_view name, std::string_view typ
   Array& array = contents.arrays.emplace_back();
   array.name = name;
   const std::string what =
-      fmt::format("'{}' is an object of MATLAB class '{}', which is kept in a way that is not documented", name, type);
+      fmt::format("'{}' is an object of MATLAB class '{}', whose storage format is undocumented", name, type);
   const std::string cure = "in MATLAB: " + matlab_export(array.name, type);
   array.obstacle = bad_data(what, cure + "; in Python, load_from_mat of the package mat-io reads many classes").value();
   contents.notes.push_back(fmt::format("variable {}; ignored ({})", what, cure));

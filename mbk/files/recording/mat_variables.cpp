@@ -54,7 +54,7 @@ Result<std::vector<MatVariable>> mat_variables(const Recording& recording) {
     variables.push_back({"time", Matrix(recording.time)});
     for (const Channel* const channel : in_order(recording.channels)) {
       if (!is_matlab_name(channel->name)) {
-        return bad_data(fmt::format("channel '{}' cannot be the name of a MATLAB variable", channel->name));
+        return bad_data(fmt::format("channel name '{}' is not a valid MATLAB variable name", channel->name));
       }
       variables.push_back({channel->name, Matrix(channel->values)});
     }

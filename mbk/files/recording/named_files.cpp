@@ -46,7 +46,7 @@ Result<std::vector<fs::path>> files_in(const fs::path& folder) {
   if (code) return bad_data("the folder cannot be read: " + code.message(), "check its permissions", folder.string());
   if (files.empty()) {
     return bad_data(
-        fmt::format("the folder holds no recording ({})", fmt::join(format_extensions(), " ")),
+        fmt::format("the folder contains no recording ({})", fmt::join(format_extensions(), " ")),
         fmt::format("name the files, or a pattern in quotes such as '{}'", (folder / "*" / "*.mat").string()),
         folder.string());
   }
@@ -62,7 +62,7 @@ Result<std::vector<fs::path>> files_like(const std::string& pattern) {
     if (!fs::is_directory(found.gl_pathv[k], ignored)) files.emplace_back(found.gl_pathv[k]);
   }
   ::globfree(&found);
-  if (files.empty()) return bad_data("no file fits this pattern", "check it with 'ls'", pattern);
+  if (files.empty()) return bad_data("no file matches this pattern", "check it with 'ls'", pattern);
   return sorted(std::move(files));
 }
 

@@ -20,14 +20,13 @@ double median_interval(const Vector& time) {
 
 Result<void> check_rises(const Clock& clock) {
   if (!clock.time.allFinite()) {
-    return bad_data(fmt::format("the time of '{}' has stamps that are no numbers", clock.name),
-                    "take channels of one stream only");
+    return bad_data(fmt::format("the time of '{}' contains NaN", clock.name), "use channels of one stream only");
   }
   for (Index i = 1; i < clock.time.size(); ++i) {
     if (clock.time[i] > clock.time[i - 1]) continue;
-    return bad_data(fmt::format("the time of '{}' does not rise: sample {} at {:.6f} s follows one at {:.6f} s",
+    return bad_data(fmt::format("the time of '{}' does not increase: sample {} at {:.6f} s follows one at {:.6f} s",
                                 clock.name, i + 1, clock.time[i], clock.time[i - 1]),
-                    "channels of several streams need clocks that rise; take channels of one stream only");
+                    "use channels of one stream only: combining streams requires increasing times");
   }
   return {};
 }
@@ -72,8 +71,8 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
   if (chosen.time.size() == 0) return bad_data(fmt::format("'{}' has no samples", chosen.name), "name another clock");
   for (const ClockedSignal& signal : signals) {
     if (signal.values->size() == signal.clock->time.size()) continue;
-    return bad_data(fmt::format("{} has {} samples, the clock of '{}' has {}", signal.channel, signal.values->size(),
-                                signal.clock->name, signal.clock->time.size()),
+    return bad_data(fmt::format("{} has {} samples, but the clock of '{}' has {}", signal.channel,
+                                signal.values->size(), signal.clock->name, signal.clock->time.size()),
                     "name a channel of a stream");
   }
   // One stream is taken as it was recorded.
@@ -96,8 +95,8 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
   const Index first = std::lower_bound(stamps, stamps + chosen.time.size(), begin) - stamps;
   const Index count = std::upper_bound(stamps, stamps + chosen.time.size(), end) - stamps - first;
   if (count <= 0) {
-    return bad_data("the streams that are asked for were not recorded at the same time",
-                    "take channels of streams that overlap ('mbk info' lists them)");
+    return bad_data("the selected streams do not overlap in time",
+                    "use channels of overlapping streams ('mbk info' lists them)");
   }
 
   CommonClock common{chosen.time.segment(first, count), {}};
@@ -111,17 +110,15 @@ Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSig
     const double own_hz = rate_of(*signal.clock);
     const double longest = own_hz > 0.0 ? kLongestBridge / own_hz : std::numeric_limits<double>::infinity();
     *signal.values = interpolated(signal.clock->time, *signal.values, common.time, longest, unbridged);
-    std::string note = fmt::format(
-        "{} of '{}' ({:.4g} Hz) was put on the clock of '{}' ({:.4g} Hz) by linear "
-        "interpolation",
-        signal.channel, signal.clock->name, own_hz, chosen.name, rate_hz);
-    if (own_hz > 1.2 * rate_hz) note += fmt::format("; what it holds above {:.4g} Hz folds down", rate_hz / 2);
+    std::string note = fmt::format("{} of '{}' ({:.4g} Hz) was interpolated linearly to the clock of '{}' ({:.4g} Hz)",
+                                   signal.channel, signal.clock->name, own_hz, chosen.name, rate_hz);
+    if (own_hz > 1.2 * rate_hz) note += fmt::format("; components above {:.4g} Hz alias", rate_hz / 2);
     if (unbridged > 0) note += fmt::format("; {} samples in its gaps are NaN", unbridged);
     common.notes.push_back(std::move(note));
   }
   if (const Index left_out = chosen.time.size() - count; left_out > 0) {
     common.notes.push_back(
-        fmt::format("{} samples of '{}' were left out, as not every stream covers them", left_out, chosen.name));
+        fmt::format("{} samples of '{}' were omitted because not every stream covers them", left_out, chosen.name));
   }
   return common;
 }

@@ -48,7 +48,8 @@ class DecodedTrials : public OpenTrials {
   [[nodiscard]] Result<Decoded> decode(const std::filesystem::path& file, const ReadOptions& options,
                                        bool /*needs_arm*/) const override {
     if (!options.arm.empty()) {
-      return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
+      return bad_usage(fmt::format("--side {}: the file does not distinguish left and right arm", options.arm),
+                       "omit --side");
     }
     const auto record = MBK_TRY(this->record(options.trial));
     SourceFile source{file.string(), record->contents.format, sha256_};
@@ -62,9 +63,9 @@ class DecodedTrials : public OpenTrials {
     for (const NamedContents& one : records_) {
       if (records_.size() > 1 && one.name.name == trial) return &one;
     }
-    if (!trial.empty()) return bad_usage(fmt::format("there is no trial '{}'", trial), "'mbk info' lists them");
-    return bad_usage(fmt::format("the file holds {} recordings", records_.size()),
-                     fmt::format("say which, as in --trial {}", records_.front().name.name));
+    if (!trial.empty()) return bad_usage(fmt::format("trial '{}' does not exist", trial), "'mbk info' lists them");
+    return bad_usage(fmt::format("the file contains {} recordings", records_.size()),
+                     fmt::format("select one, as in --trial {}", records_.front().name.name));
   }
 
   std::vector<NamedContents> records_;
@@ -83,7 +84,8 @@ class BidsTrials : public OpenTrials {
   [[nodiscard]] Result<Decoded> decode(const std::filesystem::path& /*file*/, const ReadOptions& options,
                                        bool /*needs_arm*/) const override {
     if (!options.arm.empty()) {
-      return bad_usage(fmt::format("--side {}: a data set tells no arms apart", options.arm), "leave --side out");
+      return bad_usage(fmt::format("--side {}: the data set does not distinguish left and right arm", options.arm),
+                       "omit --side");
     }
     const auto run = MBK_TRY(this->run(options.trial));
     auto recording = MBK_TRY(read_bids_run(run->motion));
@@ -94,16 +96,16 @@ class BidsTrials : public OpenTrials {
  private:
   [[nodiscard]] Result<const BidsRun*> run(const std::string& trial) const {
     if (runs_.empty()) {
-      return bad_data("it is a folder without a BIDS recording (…_motion.tsv)",
+      return bad_data("the folder contains no BIDS recording (…_motion.tsv)",
                       "name a file, or the folder of a data set with motion data");
     }
     if (runs_.size() == 1 && trial.empty()) return &runs_.front();
     for (const BidsRun& one : runs_) {
       if (one.name.name == trial) return &one;
     }
-    if (!trial.empty()) return bad_usage(fmt::format("there is no recording '{}'", trial), "'mbk info' lists them");
-    return bad_usage(fmt::format("the folder holds {} recordings", runs_.size()),
-                     fmt::format("say which, as in --trial {}", runs_.front().name.name));
+    if (!trial.empty()) return bad_usage(fmt::format("recording '{}' does not exist", trial), "'mbk info' lists them");
+    return bad_usage(fmt::format("the folder contains {} recordings", runs_.size()),
+                     fmt::format("select one, as in --trial {}", runs_.front().name.name));
   }
 
   std::vector<BidsRun> runs_;

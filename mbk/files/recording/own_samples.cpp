@@ -95,28 +95,26 @@ Warning warning_of(const Channel& channel, const Filled& filled, double rate_hz)
   const bool held = channel.updates.staleness == Staleness::held;
   std::string message = stale_text(channel, rate_hz);
   if (filled.bridged > 0) {
-    message +=
-        held ? fmt::format(". It was interpolated between its own samples; whatever it did above {:.4g} Hz is lost",
-                           0.5 * rate_hz / channel.updates.interval)
-             : ". These samples were interpolated from their neighbours";
+    message += held ? fmt::format(". It was interpolated between its own samples; components above {:.4g} Hz are lost",
+                                  0.5 * rate_hz / channel.updates.interval)
+                    : ". These samples were interpolated from their neighbours";
   }
   if (filled.lost > 0) message += fmt::format("; {} samples in longer gaps are NaN", filled.lost);
   return {held ? WarningCode::held_signal : WarningCode::missing_samples,
           std::move(message),
           held ? "record every channel at the rate of the recording; compare the delay with 'mbk sensor delay'"
-               : "mend the logging: record a sample only when it was measured",
+               : "correct the logging: record a sample only when it was measured",
           {},
           channel.name};
 }
 
 Warning warning_of_command(const Channel& channel, double rate_hz) {
-  return {
-      WarningCode::held_signal,
-      stale_text(channel, rate_hz) +
-          ". It was left as it is: right if it is a command that acted so, late by half an update if it was measured",
-      "record it at the rate of the recording, or check what it is",
-      {},
-      channel.name};
+  return {WarningCode::held_signal,
+          stale_text(channel, rate_hz) +
+              ". It was left unchanged, which is correct for a command but delays a measured signal by half an update",
+          "record it at the rate of the recording, or check whether it is a command",
+          {},
+          channel.name};
 }
 
 bool rises(const Vector& time) {
@@ -135,10 +133,10 @@ std::string stale_text(const Channel& channel, double rate_hz) {
       return fmt::format("{} was updated at {:.4g} Hz in a recording of {:.4g} Hz: each value repeats until the next",
                          channel.name, rate_hz / updates.interval, rate_hz);
     case Staleness::repeated:
-      return fmt::format("{} repeats the value before in {} of its samples, although it moves", channel.name,
+      return fmt::format("{} repeats its previous value in {} of its samples, although it moves", channel.name,
                          percent(updates.share));
     case Staleness::frozen:
-      return fmt::format("{} freezes again and again, for {} of the time in all", channel.name, percent(updates.share));
+      return fmt::format("{} freezes repeatedly, for {} of the time in total", channel.name, percent(updates.share));
     case Staleness::placeholder:
       return fmt::format("{} is exactly {:g} {} in {} of its samples, far from the samples before and after",
                          channel.name, updates.placeholder, channel.unit, percent(updates.share));

@@ -24,7 +24,7 @@ Result<Part> parse_part(const std::filesystem::path& file) {
   const auto [end, error] = std::from_chars(name.data() + digits, name.data() + name.size(), part.number);
   if (digits == name.size() || error != std::errc()) {
     return bad_usage(fmt::format("'{}' has no number at the end of its name", file.filename().string()),
-                     "parts of one record are named like log_1.mat, log_2.mat; or read each file by itself");
+                     "name parts of one record like log_1.mat, log_2.mat, or read each file separately");
   }
   return part;
 }
@@ -43,15 +43,15 @@ Result<std::vector<Part>> ordered(const std::vector<std::filesystem::path>& file
     if (part.stem != before.stem) {
       return bad_data(
           fmt::format("'{}' and '{}' are not parts of one record", before.file.string(), part.file.string()),
-          "read the records one by one");
+          "read the records separately");
     }
     if (part.number == before.number) {
-      return bad_data(fmt::format("part {} is there twice", part.number), "name each part once", part.file.string());
+      return bad_data(fmt::format("part {} is given twice", part.number), "name each part once", part.file.string());
     }
     if (part.number != before.number + 1) {
       return bad_data(fmt::format("part {} is missing between '{}' and '{}'", before.number + 1, before.file.string(),
                                   part.file.string()),
-                      "add it, or read what lies on either side of it by itself");
+                      "add it, or read the parts before and after it separately");
     }
   }
   return parts;
@@ -71,8 +71,8 @@ Result<void> check_same_channels(const Recording& first, const Recording& part) 
   const std::string expected = describe(first);
   const std::string found = describe(part);
   if (expected == found) return {};
-  return bad_data(fmt::format("has the channels {} where the first part has {}", found, expected),
-                  "parts of one record hold the same channels; name them with --channels");
+  return bad_data(fmt::format("the channels are {}, but those of the first part are {}", found, expected),
+                  "select the same channels with --channels");
 }
 
 Result<void> check_time_runs_on(const Recording& before, const Recording& part) {
@@ -81,11 +81,12 @@ Result<void> check_time_runs_on(const Recording& before, const Recording& part) 
   if (first > last) return {};
   const double interval = part.samples() > 1 ? part.time[1] - part.time[0] : 0.0;
   if (std::abs(first) <= 1.5 * std::abs(interval)) {
-    return bad_data(fmt::format("time restarts at {} s after {} s in the part before", first, last),
-                    "it is a record of its own: read it by itself");
+    return bad_data(fmt::format("time restarts at {} s after {} s in the previous part", first, last),
+                    "read it separately, as its own record");
   }
-  return bad_data(fmt::format("time does not run on: it begins at {} s, the part before ends at {} s", first, last),
-                  "check the order of the parts, or read each by itself");
+  return bad_data(
+      fmt::format("time is not continuous: this part begins at {} s, the previous part ends at {} s", first, last),
+      "check the order of the parts, or read each separately");
 }
 
 void append(Vector& values, const Vector& more) {
@@ -119,11 +120,11 @@ Result<double> common_rate(const Recording& before, const Recording& part, const
   };
   const double earlier = rate(before), later = rate(part);
   if (earlier == 0.0 && later == 0.0) {
-    return bad_data("parts of one sample each have no rate", "pass the sample rate (--rate 1000)");
+    return bad_data("the parts have one sample each, so their rate is unknown", "pass the sample rate (--rate 1000)");
   }
   if (earlier > 0.0 && later > 0.0 && std::abs(earlier - later) > 1e-6 * earlier) {
-    return bad_data(fmt::format("it runs at {:.6g} Hz, the parts before it at {:.6g} Hz", later, earlier),
-                    "name the parts of one recording only");
+    return bad_data(fmt::format("this part has {:.6g} Hz, the previous parts {:.6g} Hz", later, earlier),
+                    "give only parts of one recording");
   }
   return earlier > 0.0 ? earlier : later;
 }
@@ -131,7 +132,7 @@ Result<double> common_rate(const Recording& before, const Recording& part, const
 }  // namespace
 
 Result<Recording> read_parts(std::vector<std::filesystem::path> files, const ReadOptions& options) {
-  if (files.empty()) return bad_usage("no file is named", "name the parts of the recording");
+  if (files.empty()) return bad_usage("no file was given", "give the parts of the recording");
   const auto parts = MBK_TRY(ordered(files));
 
   auto joined = read(parts.front().file, options);

@@ -465,7 +465,7 @@ class Reader {
         leave(one.place);
       } else if (&*first == &one) {
         found.units.push_back(one.unit);
-        found.notes.push_back(fmt::format("{}: {} are in {}, unless their column says another unit", one.place,
+        found.notes.push_back(fmt::format("{}: {} are in {}, unless a column states another unit", one.place,
                                           dimension_name(one.unit->dimension), one.unit->name));
       }
     }
@@ -474,7 +474,7 @@ class Reader {
       found.notes.push_back(unused_[k] + ", was not used");
     }
     if (unused_.size() > kListed) {
-      found.notes.push_back(fmt::format("{} more lines of that kind were not used", unused_.size() - kListed));
+      found.notes.push_back(fmt::format("{} more such lines were not used", unused_.size() - kListed));
     }
     return found;
   }

@@ -76,11 +76,12 @@ class RecordingFile {
   /// @param needs_arm  an arm must be named where there are two
   [[nodiscard]] Result<Decoded> decode(const ReadOptions& options, bool needs_arm) const {
     if (!options.arm.empty() && options.arm != "right" && options.arm != "left") {
-      return bad_usage(fmt::format("there is no arm '{}'", options.arm), "name the right or the left one");
+      return bad_usage(fmt::format("'{}' is not an arm", options.arm), "pass right or left");
     }
     if (trials_) return trials_->decode(path_, options, needs_arm);
     if (!options.arm.empty()) {
-      return bad_usage(fmt::format("--side {}: the file tells no arms apart", options.arm), "leave --side out");
+      return bad_usage(fmt::format("--side {}: the file does not distinguish left and right arm", options.arm),
+                       "omit --side");
     }
     const std::scoped_lock lock(reading_);
     auto contents = MBK_TRY(format_->decode(*file_));
@@ -144,7 +145,7 @@ FileContents listed(Decoded decoded) {
   if (!decoded.contents.metadata.empty()) {
     std::vector<std::string> keys;
     for (const auto& [key, value] : decoded.contents.metadata) keys.push_back(key);
-    listing.notes.push_back(fmt::format("it holds metadata: {}", fmt::join(keys, ", ")));
+    listing.notes.push_back(fmt::format("the file contains metadata: {}", fmt::join(keys, ", ")));
   }
   return listing;
 }
@@ -202,7 +203,7 @@ Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& opt
     note_rounded(contents);
     for (const Array& array : contents.arrays) {
       if (!array.is_block()) continue;
-      contents.notes.push_back(fmt::format("'{}' is {} and was left out, as arrays of more than two dimensions are",
+      contents.notes.push_back(fmt::format("'{}' is {} and was ignored because it has more than two dimensions",
                                            array.name, shape_text(array)));
     }
     std::erase_if(contents.arrays, [](const Array& array) { return array.is_block(); });

@@ -57,9 +57,10 @@ void name_libfranka(Contents& contents) {
     }
   }
   contents.notes.push_back(fmt::format(
-      "the columns are those of libfranka's log: q and tau_J are joints and torques{}{}",
+      "the columns are those of a libfranka log: q and tau_J were read as joints and torques{}{}",
       in_ms ? ", time is in ms" : "",
-      force ? ", the hand's force is -O_F_ext_hat_K, which libfranka defines as what the robot exerts" : ""));
+      force ? ", force of the hand is -O_F_ext_hat_K, which libfranka defines as the force that the robot exerts"
+            : ""));
 }
 
 }  // namespace

@@ -83,8 +83,8 @@ Result<SlicePlan> plan_of(const Array& array, const SlicedSource& source) {
   const std::vector<std::uint64_t> sides = dimensions_of(array);
   const std::string what = fmt::format("'{}' is {}", array.name, shape_text(array));
   if (source.at.size() > sides.size()) {
-    return bad_data(fmt::format("{}, and {} of its dimensions are named", what, source.at.size()),
-                    fmt::format("name {}, as in {}", sides.size(), example_slice(array, 1)));
+    return bad_data(fmt::format("{}, but {} dimensions are given", what, source.at.size()),
+                    fmt::format("give {}, as in {}", sides.size(), example_slice(array, 1)));
   }
   SlicePlan plan{source.at, sides.size(), std::nullopt};
   std::vector<std::size_t> along, trials;
@@ -95,16 +95,16 @@ Result<SlicePlan> plan_of(const Array& array, const SlicedSource& source) {
     if (plan.at[d] == SlicedSource::kAlong) along.push_back(d);
     if (plan.at[d] == SlicedSource::kTrial) trials.push_back(d);
     if (plan.at[d] > 0 && static_cast<std::uint64_t>(plan.at[d]) > sides[d]) {
-      return bad_data(fmt::format("{}: there is no {} in its dimension {}", what, plan.at[d], d + 1),
-                      "dimensions are counted from 1");
+      return bad_data(fmt::format("{}: index {} does not exist in dimension {}", what, plan.at[d], d + 1),
+                      "count indices from 1");
     }
   }
   if (trials.size() > 1 || along.empty() || along.size() + trials.size() > 2) {
-    return bad_data(fmt::format("{}: a slice has one ':' for time and leaves one dimension over at most", what),
+    return bad_data(fmt::format("{}: a slice needs one ':' for time and at most one free dimension", what),
                     fmt::format("write {}", example_slice(array, 1)));
   }
   const auto unclear = [&]() {
-    return bad_data(fmt::format("{}, and which of its dimensions is time may be taken in two ways", what),
+    return bad_data(fmt::format("{}, and its time dimension is ambiguous", what),
                     fmt::format("write ':' for time and 'trial' for trials, as in {}", example_slice(array, 1)));
   };
   if (along.size() == 2) {

@@ -129,8 +129,8 @@ std::string difference(const Contents& contents, const Array& one, const Unit* u
   if (apart <= kRounding * allowed) return {};
   constexpr double kOtherRate = 0.01;
   if (std::abs(other_span - span) > kOtherRate * span) {
-    return fmt::format("'{}' runs at {:.4g} Hz where '{}' runs at {:.4g} Hz", other.name, intervals / other_span,
-                       one.name, intervals / span);
+    return fmt::format("'{}' has {:.4g} Hz, but '{}' has {:.4g} Hz", other.name, intervals / other_span, one.name,
+                       intervals / span);
   }
   return fmt::format("'{}' differs from '{}' by up to {:.3g} ms", other.name, one.name, 1e3 * apart);
 }
@@ -167,14 +167,15 @@ Result<void> name_time(Contents& contents) {
   for (const Array* other : called) {
     if (other == &time || other->obstacle || time.obstacle || size_of(*other) != size_of(time)) continue;
     if (const std::string differs = difference(contents, time, unit, *other); !differs.empty()) {
-      return bad_data(fmt::format("'{}' and '{}' both may be the time: {}", time.name, other->name, differs),
-                      fmt::format("say which, as in --channels \"time={}\" or \"time={}\"", time.name, other->name));
+      return bad_data(fmt::format("'{}' and '{}' could both be the time: {}", time.name, other->name, differs),
+                      fmt::format("select one, as in --channels \"time={}\" or \"time={}\"", time.name, other->name));
     }
   }
   const bool by_size =
       unit != nullptr && time.unit.empty() && parse_column_name(name_in(contents, time)).unit == nullptr;
-  contents.notes.push_back(fmt::format("'{}' was taken as the time{}", time.name,
-                                       by_size ? fmt::format(", in {} since 1970 by its size", unit->name) : ""));
+  contents.notes.push_back(
+      fmt::format("'{}' was read as the time{}", time.name,
+                  by_size ? fmt::format(", in {} since 1970 because its values are large", unit->name) : ""));
   if (unit != nullptr) time.unit = unit->name;
   time.means = "time";
   return {};
@@ -198,7 +199,7 @@ std::vector<std::string> other_times(const Contents& contents, const Array& time
     if (other == &time || other->clock != time.clock || size_of(*other) != size_of(time)) continue;
     if (const std::string differs = difference(contents, time, unit, *other); !differs.empty()) {
       notes.push_back(
-          fmt::format("time is '{}'; {} (--channels \"time={}\" takes that)", time.name, differs, other->name));
+          fmt::format("time is '{}'; {} (use --channels \"time={}\" to select that)", time.name, differs, other->name));
     }
   }
   return notes;

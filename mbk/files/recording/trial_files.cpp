@@ -26,14 +26,15 @@ Result<std::vector<std::filesystem::path>> files_of_trials(const std::filesystem
   if (at == last.npos && trials.size() > 1) {
     const std::string example =
         fmt::format("{}_{}{}", pattern.stem().string(), kTrialPlace, pattern.extension().string());
-    return bad_usage(fmt::format("{} trials would be written to one file", trials.size()),
-                     fmt::format("put {} where their names are to stand, as in {}, or take one with --trial",
-                                 kTrialPlace, (pattern.parent_path() / example).string()));
+    return bad_usage(
+        fmt::format("{} trials would be written to one file", trials.size()),
+        fmt::format("put {} in the file name in place of the trial names, as in {}, or select one with --trial",
+                    kTrialPlace, (pattern.parent_path() / example).string()));
   }
   if (at == last.npos) return std::vector<std::filesystem::path>(trials.size(), pattern);
   if (unnamed) {
-    return bad_usage(fmt::format("the file holds one record, which has no name to put for {}", kTrialPlace),
-                     fmt::format("leave {} out", kTrialPlace));
+    return bad_usage(fmt::format("the file contains one record, which has no name to replace {}", kTrialPlace),
+                     fmt::format("omit {}", kTrialPlace));
   }
   std::vector<std::filesystem::path> files;
   std::set<std::filesystem::path> taken;
@@ -43,8 +44,8 @@ Result<std::vector<std::filesystem::path>> files_of_trials(const std::filesystem
     files.push_back(pattern.parent_path() / name);
     if (taken.insert(files.back()).second) continue;
     return bad_usage(
-        fmt::format("trial '{}' and another one would both be written to {}", trial, files.back().string()),
-        "take them one by one with --trial");
+        fmt::format("trial '{}' and another trial would both be written to {}", trial, files.back().string()),
+        "convert them separately with --trial");
   }
   return files;
 }

@@ -44,15 +44,15 @@ Result<std::string> encode(const Recording& recording, Format format) {
 }  // namespace
 
 Result<void> check_writable(const Recording& recording) {
-  if (recording.samples() == 0) return bad_data("a recording without samples is not written");
-  if (recording.channels.empty()) return bad_data("a recording without channels is not written");
+  if (recording.samples() == 0) return bad_data("a recording without samples cannot be written");
+  if (recording.channels.empty()) return bad_data("a recording without channels cannot be written");
   std::set<std::string_view> names;
   for (const Channel& channel : recording.channels) {
     if (!names.insert(channel.name).second || channel.name == "time") {
-      return bad_data(fmt::format("channel '{}' is there twice", channel.name));
+      return bad_data(fmt::format("channel '{}' occurs twice", channel.name));
     }
     if (channel.values.size() == recording.samples()) continue;
-    return bad_data(fmt::format("channel '{}' has {} samples, time has {}", channel.name, channel.values.size(),
+    return bad_data(fmt::format("channel '{}' has {} samples, but time has {}", channel.name, channel.values.size(),
                                 recording.samples()));
   }
   for (const auto& [key, value] : recording.metadata) {
@@ -86,15 +86,15 @@ Result<Format> format_of(const std::filesystem::path& file, std::string_view nam
   const std::string extension = file.extension().string();
   if (const auto by_name = value_of<Format>(name == "mat" ? "mat5" : name)) return *by_name;
   if (!name.empty()) {
-    return bad_usage(fmt::format("'{}' is not a format that is written", printable(std::string(name))),
+    return bad_usage(fmt::format("format '{}' cannot be written", printable(std::string(name))),
                      "choose mat5, mat73, hdf5 or csv");
   }
   const auto by_extension = std::ranges::find(kExtensions, extension, &Extension::name);
   if (by_extension != kExtensions.end()) return by_extension->format;
   return fail(ErrorKind::usage,
-              extension.empty() ? "the name does not say a format"
-                                : fmt::format("'{}' is not a format that is written", printable(extension)),
-              "let it end with .h5, .mat or .csv", file.string());
+              extension.empty() ? "the file name has no extension that gives the format"
+                                : fmt::format("format '{}' cannot be written", printable(extension)),
+              "use the extension .h5, .mat or .csv", file.string());
 }
 
 std::vector<std::string> lost_frames(const Recording& recording, std::string_view format) {
@@ -103,7 +103,7 @@ std::vector<std::string> lost_frames(const Recording& recording, std::string_vie
     const auto kind = std::ranges::find(channel_kinds(), channel.name, &ChannelKind::name);
     if (channel.frame == (kind == channel_kinds().end() ? "" : kind->frame)) continue;
     lost.push_back(
-        fmt::format("the frame of {} ('{}'): {} files have no place for it", channel.name, channel.frame, format));
+        fmt::format("the frame of {} ('{}'): {} files cannot store it", channel.name, channel.frame, format));
   }
   return lost;
 }

@@ -22,11 +22,11 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
   std::error_code code;
   if (fs::exists(folder, code)) {
     if (!fs::is_directory(folder, code)) {
-      return fail(ErrorKind::usage, "is a file, and a data set is a folder", "choose another name", folder.string());
+      return fail(ErrorKind::usage, "is a file, but a data set is a folder", "choose another name", folder.string());
     }
     if (!fs::is_empty(folder, code) && !fs::exists(folder / "dataset_description.json", code)) {
-      return fail(ErrorKind::usage, "the folder holds other things than a BIDS data set", "name a new folder",
-                  folder.string());
+      return fail(ErrorKind::usage, "the folder contains files that do not belong to a BIDS data set",
+                  "name a new folder", folder.string());
     }
   }
   const auto existing = [&](const std::string& path) -> std::optional<std::string> {
@@ -39,12 +39,12 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
   if (!files) return tl::unexpected(files.error().in(folder.string()));
   const fs::path motion = folder / files->back().path;
   if (!overwrite && fs::exists(motion, code)) {
-    return fail(ErrorKind::usage, "the run is there already", "name another run, or pass --overwrite to replace it",
+    return fail(ErrorKind::usage, "the run already exists", "name another run, or pass --overwrite to replace it",
                 motion.string());
   }
   fs::create_directories(motion.parent_path(), code);
   if (code) {
-    return bad_data(fmt::format("the folder cannot be made: {}", code.message()), "check its permissions",
+    return bad_data(fmt::format("the folder cannot be created: {}", code.message()), "check its permissions",
                     motion.parent_path().string());
   }
   for (const BidsFile& file : *files) {

@@ -30,7 +30,7 @@ class Names {
       const std::string number = fmt::format("_{}", k);
       name = requested.substr(0, kLongestMatlabName - number.size()) + number;
     }
-    if (name != from) said_.push_back(fmt::format("'{}' is called '{}' there", from, name));
+    if (name != from) said_.push_back(fmt::format("'{}' was renamed '{}'", from, name));
     return name;
   }
 
@@ -109,13 +109,13 @@ Result<std::string> encode_contents_hdf5(const Contents& contents, std::vector<s
     const std::string path = names.take(from.substr(from.starts_with('/') ? 1 : 0), from);
     if (put(root, path, dataset)) continue;
     const std::string other = names.take(flat(path), from);
-    if (!put(root, other, dataset)) return bad_data(fmt::format("'{}' finds no name in an HDF5 file", from));
+    if (!put(root, other, dataset)) return bad_data(fmt::format("'{}' cannot be named in an HDF5 file", from));
   }
   for (std::size_t k = 0; k < contents.clocks.size(); ++k) {
     hdf5::Dataset dataset = dataset_of(Matrix(contents.clocks[k].time));
     dataset.attributes["unit"] = hdf5::one_text("s");
     if (!put(root, "clocks/" + clocks[k], dataset)) {
-      said.push_back(fmt::format("the time stamps of '{}' found no place", contents.clocks[k].name));
+      said.push_back(fmt::format("the time stamps of '{}' could not be stored", contents.clocks[k].name));
     }
   }
   const bool events_free = !root.groups.contains("events") && !root.datasets.contains("events");
@@ -185,9 +185,9 @@ Result<std::string> encode_contents_csv(const Contents& contents, std::vector<st
     if (samples < 0) samples = length;
     if (length != samples || array.clock != first.clock) {
       return bad_data(
-          fmt::format("'{}' has {} samples{}, '{}' has {}: they are no one table", name_of(contents, 0), samples,
-                      array.clock != first.clock ? " of another clock" : "", name_of(contents, k), length),
-          "write .h5 or .mat, or name with --channels those that belong together");
+          fmt::format("'{}' has {} samples{}, '{}' has {}; they cannot form one table", name_of(contents, 0), samples,
+                      array.clock != first.clock ? " of a different clock" : "", name_of(contents, k), length),
+          "write .h5 or .mat, or select channels of equal length with --channels");
     }
     const Index lines = row ? array.values.rows() : array.values.cols();
     for (Index line = 0; line < lines; ++line) {
@@ -196,7 +196,7 @@ Result<std::string> encode_contents_csv(const Contents& contents, std::vector<st
       columns.push_back({names.take(cell(with_unit), with_unit), &array.values, line, row});
     }
   }
-  if (samples <= 0 || columns.empty()) return bad_data("the arrays hold no sample", "nothing was recorded");
+  if (samples <= 0 || columns.empty()) return bad_data("the arrays contain no samples", "nothing was recorded");
   const bool one_rate = first.rate_hz > 0.0 && std::ranges::all_of(contents.arrays, [&](const Array& array) {
                           return array.rate_hz == first.rate_hz;
                         });
@@ -204,12 +204,12 @@ Result<std::string> encode_contents_csv(const Contents& contents, std::vector<st
       first.clock >= 0 ? &contents.clocks[static_cast<std::size_t>(first.clock)].time : nullptr;
   const bool timed = one_rate || (stamps != nullptr && stamps->size() == samples);
   std::string text =
-      fmt::format("# written by mbk {}, as it stood in a file of the format {}\n", version(), contents.format);
+      fmt::format("# written by mbk {}, unchanged from a file of the format {}\n", version(), contents.format);
   for (const auto& [key, value] : contents.metadata) text += fmt::format("# {}: {}\n", key, value);
   if (timed) {
     text += names.take("time_s", "time_s");
-    said.emplace_back(stamps != nullptr ? "the time stamps are the first column"
-                                        : "the time, by the rate that the file says, is the first column");
+    said.emplace_back(stamps != nullptr ? "the first column contains the time stamps"
+                                        : "the first column is the time computed from the rate in the file");
   }
   for (std::size_t k = 0; k < columns.size(); ++k) text += (k > 0 || timed ? "," : "") + columns[k].name;
   text += '\n';
@@ -222,7 +222,7 @@ Result<std::string> encode_contents_csv(const Contents& contents, std::vector<st
     text += '\n';
   }
   if (!contents.events.empty())
-    said.push_back(fmt::format("{} events have no place in such a CSV file", contents.events.size()));
+    said.push_back(fmt::format("{} events cannot be stored in such a CSV file", contents.events.size()));
   return text;
 }
 
@@ -238,7 +238,7 @@ Result<std::string> encode(const Contents& contents, Format format, std::vector<
 Result<std::vector<std::string>> write_contents(const Contents& contents, const std::filesystem::path& file,
                                                 Format format, bool overwrite, Readers readers) {
   if (contents.arrays.empty()) {
-    return fail(ErrorKind::data, "there is no numeric array to write", "see with 'mbk info' what the file holds",
+    return fail(ErrorKind::data, "there is no numeric array to write", "check the contents of the file with 'mbk info'",
                 file.string());
   }
   std::vector<std::string> said;

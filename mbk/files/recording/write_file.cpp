@@ -74,11 +74,12 @@ struct Temporary {
 
 Result<void> cannot_write(const fs::path& file, int code) {
   if (code == EEXIST) {
-    return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
+    return fail(ErrorKind::usage, "the file already exists", "pass --overwrite to replace it", file.string());
   }
   return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                  code == ENAMETOOLONG ? "choose a shorter name: while it is written some twenty characters are added"
-                                       : "check the folder, its permissions and the space on the disk",
+                  code == ENAMETOOLONG
+                      ? "choose a shorter name: about twenty characters are added while it is being written"
+                      : "check the folder, its permissions and the space on the disk",
                   file.string());
 }
 
@@ -91,7 +92,7 @@ Result<void> check_name(const fs::path& file, bool overwrite) {
   }
   if (!overwrite && name != fs::file_type::not_found) return cannot_write(file, EEXIST);
   if (type != fs::file_type::not_found && type != fs::file_type::regular) {
-    return fail(ErrorKind::usage, "is no file that could be replaced", "choose another name", file.string());
+    return fail(ErrorKind::usage, "is not a regular file and cannot be replaced", "choose another name", file.string());
   }
   return {};
 }
@@ -109,9 +110,8 @@ fs::path temporary_name(const fs::path& file) {
 
 Result<void> not_begun(const fs::path& file, const Temporary& temporary, int code) {
   if (code != EEXIST) return cannot_write(file, code);
-  return bad_data(
-      fmt::format("its temporary file {} is there and cannot be removed", temporary.path.filename().string()),
-      "remove that file, and check the folder's permissions and the disk", file.string());
+  return bad_data(fmt::format("its temporary file {} exists and cannot be removed", temporary.path.filename().string()),
+                  "remove that file, and check the folder's permissions and the disk", file.string());
 }
 
 Result<void> write_as(const fs::path& file, bool overwrite, std::string_view text, const Mode& mode) {

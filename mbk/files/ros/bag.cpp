@@ -69,8 +69,8 @@ class BagDecoder {
     const auto magic = MBK_TRY(bytes_.take(kBagMagic.size()));
     const std::string begin(reinterpret_cast<const char*>(magic.data()), magic.size());
     if (begin != kBagMagic) {
-      return bad_data(fmt::format("bags of the version '{}' are not read", begin.substr(kAnyMagic.size())),
-                      "bring it to version 2.0 with 'rosbag fix'");
+      return bad_data(fmt::format("bag version '{}' is not supported", begin.substr(kAnyMagic.size())),
+                      "convert it to version 2.0 with 'rosbag fix'");
     }
     while (!cut_ && bytes_.position() < size_) {
       MBK_TRY(take_record(bytes_, size_ - bytes_.position(), false));
@@ -85,13 +85,13 @@ class BagDecoder {
   [[nodiscard]] std::string place() const { return fmt::format("byte {}", bytes_.position()); }
 
   [[nodiscard]] tl::unexpected<Error> odd(std::string_view record) const {
-    return bad_data(fmt::format("a {} record is not what it says", record), std::string(kCopyAgain), place());
+    return bad_data(fmt::format("a {} record is malformed", record), std::string(kCopyAgain), place());
   }
 
   Result<void> ends_within(std::uint64_t at, bool in_chunk) {
     if (in_chunk) return odd("chunk");
     cut_ = true;
-    notes_.push_back(fmt::format("the file is cut short: it ends within a record; it was read up to byte {}", at));
+    notes_.push_back(fmt::format("the file is truncated: it ends within a record; it was read up to byte {}", at));
     return {};
   }
 
@@ -144,11 +144,11 @@ class BagDecoder {
 
   Result<void> take_bag_header(const Pairs& pairs) {
     if (!pairs.text("encryptor").empty()) {
-      return bad_data(fmt::format("the bag is encrypted by '{}'", pairs.text("encryptor")),
+      return bad_data(fmt::format("the bag is encrypted with '{}'", pairs.text("encryptor")),
                       "decrypt it with 'rosbag decrypt'");
     }
     if (pairs.number<std::uint64_t>("index_pos").value_or(0) == 0) {
-      notes_.emplace_back("the bag was not closed, so that it has no index; all that it holds was read");
+      notes_.emplace_back("the bag was not closed and has no index; all of its contents were read");
     }
     return {};
   }
@@ -183,8 +183,8 @@ class BagDecoder {
     const auto size = pairs.number<std::uint32_t>("size");
     if (!size) return odd("chunk");
     if (called != "none" && called != "lz4" && called != "bz2") {
-      return bad_data(fmt::format("a chunk is packed by '{}', which is not read", called),
-                      "pack it by bz2, lz4 or not at all ('rosbag compress')", where);
+      return bad_data(fmt::format("a chunk is compressed with '{}', which is not supported", called),
+                      "compress it with bz2 or lz4, or not at all ('rosbag compress')", where);
     }
     PartOfBytes chunk(bytes_, packed_size);
     const auto records = unpacked(called == "lz4"   ? Packing::lz4
@@ -198,7 +198,7 @@ class BagDecoder {
     }
     const auto more = records->take(1);
     if (!more) return tl::unexpected(more.error().in(where));
-    if (!more->empty()) return bad_data("a chunk is longer than it says", std::string(kCopyAgain), where);
+    if (!more->empty()) return bad_data("a chunk is longer than its stated size", std::string(kCopyAgain), where);
     return leave_out(chunk, chunk.left());
   }
 

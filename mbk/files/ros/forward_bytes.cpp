@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPiece = std::size_t{1} << 18;
 
 tl::unexpected<Error> broken(std::string_view packing, std::string_view why) {
-  return bad_data(fmt::format("a chunk packed by {} is damaged: {}", packing, why), std::string(kCopyAgain));
+  return bad_data(fmt::format("a chunk compressed with {} is damaged: {}", packing, why), std::string(kCopyAgain));
 }
 
 /// What was unpacked and not yet taken, and how more of it is made.
@@ -79,7 +79,7 @@ class Zstd : public Unpacking {
       if (used.pos > 0 || made.pos > 0) within_ = left != 0;
       if (made.pos > 0) return made.pos;
       if (input) continue;
-      if (within_) return broken("zstd", "it ends too early");
+      if (within_) return broken("zstd", "it is truncated");
       return 0;
     }
   }
@@ -110,7 +110,7 @@ class Lz4 : public Unpacking {
       if (used > 0 || made > 0) within_ = left != 0;
       if (made > 0) return made;
       if (input) continue;
-      if (within_) return broken("lz4", "it ends too early");
+      if (within_) return broken("lz4", "it is truncated");
       return 0;
     }
   }
@@ -147,7 +147,7 @@ class Bz2 : public Unpacking {
       ended_ = state == BZ_STREAM_END;
       if (ended_) break;
       if (state != BZ_OK) return broken("bz2", fmt::format("error {}", state));
-      if (!input && stream_.avail_out == room) return broken("bz2", "it ends too early");
+      if (!input && stream_.avail_out == room) return broken("bz2", "it is truncated");
     }
     return room - stream_.avail_out;
   }

@@ -93,7 +93,7 @@ class McapDecoder {
     for (auto& [key, value] : metadata_) contents.metadata.insert_or_assign(key, std::move(value));
     if (!strange_metadata_.empty()) {
       contents.notes.push_back(
-          printable(fmt::format("its metadata records were not taken over: {}", fmt::join(strange_metadata_, ", "))));
+          printable(fmt::format("its metadata records were not copied: {}", fmt::join(strange_metadata_, ", "))));
     }
     for (std::string& note : notes_) contents.notes.push_back(std::move(note));
     return contents;
@@ -103,13 +103,13 @@ class McapDecoder {
   [[nodiscard]] std::string place() const { return fmt::format("byte {}", bytes_.position()); }
 
   [[nodiscard]] tl::unexpected<Error> odd(std::string_view record) const {
-    return bad_data(fmt::format("a {} record is not what it says", record), std::string(kCopyAgain), place());
+    return bad_data(fmt::format("a {} record is malformed", record), std::string(kCopyAgain), place());
   }
 
   void cut_short(std::uint64_t at) {
     ended_ = true;
     notes_.push_back(fmt::format(
-        "the file is cut short: it ends within a record or without its end; it was read up to byte {}", at));
+        "the file is truncated: it ends within a record or without a footer; it was read up to byte {}", at));
   }
 
   /// One record, of the file or of a chunk.
@@ -222,8 +222,8 @@ class McapDecoder {
     const std::string called(reinterpret_cast<const char*>(name.data()), name.size());
     const auto packing = packing_called(called);
     if (!packing) {
-      return bad_data(fmt::format("a chunk is packed by '{}', which is not read", called),
-                      "pack it by zstd, lz4 or not at all ('mcap compress')", where);
+      return bad_data(fmt::format("a chunk is compressed with '{}', which is not supported", called),
+                      "compress it with zstd or lz4, or not at all ('mcap compress')", where);
     }
     const auto record_size = MBK_TRY(chunk.take(sizeof(std::uint64_t)));
     McapFields rest(record_size);
@@ -238,9 +238,9 @@ class McapDecoder {
     }
     const auto more = records->take(1);
     if (!more) return tl::unexpected(more.error().in(where));
-    if (!more->empty()) return bad_data("a chunk is longer than it says", std::string(kCopyAgain), where);
+    if (!more->empty()) return bad_data("a chunk is longer than its stated size", std::string(kCopyAgain), where);
     if (crc != 0 && crc != records->crc()) {
-      return bad_data("a chunk does not have the checksum that it says", std::string(kCopyAgain), where);
+      return bad_data("the checksum of a chunk is wrong", std::string(kCopyAgain), where);
     }
     return leave_out(chunk, chunk.left());
   }
@@ -249,7 +249,7 @@ class McapDecoder {
     const auto said = record.number<std::uint32_t>();
     if (record.failed()) return odd("last data");
     if (said != 0 && said != crc) {
-      return bad_data("the data do not have the checksum that the file says", std::string(kCopyAgain));
+      return bad_data("the checksum of the data section is wrong", std::string(kCopyAgain));
     }
     bytes_.restart_crc();
     in_summary_ = true;
@@ -263,12 +263,12 @@ class McapDecoder {
     const auto sum = MBK_TRY(bytes_.take(4));
     const auto said = McapFields(sum).number<std::uint32_t>();
     if (said != 0 && in_summary_ && said != crc) {
-      return bad_data("the summary does not have the checksum that the file says", std::string(kCopyAgain));
+      return bad_data("the checksum of the summary section is wrong", std::string(kCopyAgain));
     }
     MBK_TRY(leave_out(bytes_, length - kFooter));
     const auto magic = MBK_TRY(bytes_.take(kMcapMagic.size()));
     if (std::string_view(reinterpret_cast<const char*>(magic.data()), magic.size()) != kMcapMagic) {
-      notes_.emplace_back("the file does not end as an MCAP file does; all of its records were read");
+      notes_.emplace_back("the file lacks the end magic of MCAP; all of its records were read");
     }
     ended_ = true;
     return {};

@@ -116,13 +116,13 @@ class Parser {
       section = sections_.try_emplace(full, definition_.dialect == Dialect::ros1 ? kHeader1 : kHeader2).first;
     }
     if (section == sections_.end()) {
-      return bad_data(fmt::format("the type '{}' is defined nowhere", name));
+      return bad_data(fmt::format("the type '{}' is not defined", name));
     }
     if (const auto known = known_.find(full); known != known_.end()) {
-      if (known->second < 0) return bad_data(fmt::format("the type '{}' holds itself", full));
+      if (known->second < 0) return bad_data(fmt::format("the type '{}' contains itself", full));
       return known->second;
     }
-    if (depth_ >= kDeepestType) return bad_data("types stand too deep within each other");
+    if (depth_ >= kDeepestType) return bad_data("types are nested too deeply");
     known_[full] = -1;
     const std::size_t index = definition_.messages.size();
     definition_.messages.push_back({full, {}, 0});
@@ -166,7 +166,7 @@ class Parser {
 
   /// Nothing where the line defines a constant.
   Result<std::optional<MessageField>> parse_field(std::string_view line, const std::string& package) {
-    const auto odd = [&] { return bad_data(fmt::format("'{}' defines no field", line.substr(0, 80))); };
+    const auto odd = [&] { return bad_data(fmt::format("'{}' defines no fields", line.substr(0, 80))); };
     const std::size_t space = line.find_first_of(" \t");
     if (space == line.npos) return odd();
     std::string_view type = line.substr(0, space);

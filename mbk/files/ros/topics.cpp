@@ -200,14 +200,15 @@ void Topics::prepare(Topic& topic) {
   if (said.encoding == "json") return;
   const bool ros1 = said.encoding == "ros1" && said.schema_encoding == "ros1msg";
   if (!ros1 && !(said.encoding == "cdr" && said.schema_encoding == "ros2msg")) {
-    topic.unread = fmt::format("its messages are '{}' described by '{}'", said.encoding, said.schema_encoding);
+    topic.unread =
+        fmt::format("its messages have encoding '{}' and schema encoding '{}'", said.encoding, said.schema_encoding);
     return;
   }
   auto definition = parse_definition(said.type, said.definition, ros1 ? Dialect::ros1 : Dialect::ros2);
   if (!definition) {
-    topic.unread = fmt::format("the definition of {} is not understood: {}", said.type, definition.error().message);
+    topic.unread = fmt::format("the definition of {} cannot be parsed: {}", said.type, definition.error().message);
   } else if (definition->wide_texts) {
-    topic.unread = "it has wide strings, whose size in bytes differs from program to program";
+    topic.unread = "it has wide strings, whose size in bytes differs between programs";
   } else {
     topic.definition = std::make_shared<const MessageDefinition>(std::move(*definition));
   }
@@ -251,7 +252,7 @@ Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std:
     if (event) {
       events_.push_back({event->time, printable(std::move(event->name)), event->value});
     } else {
-      topic.unread = fmt::format("message {} is not what the definition says", topic.count);
+      topic.unread = fmt::format("message {} does not match its definition", topic.count);
     }
   } else {
     Stream* const stream = stream_of(topic, message);
@@ -263,8 +264,8 @@ Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std:
       stream->channel = channel;
     } else {
       topic.unread = stream == nullptr && topic.streams.size() >= kMaxSets
-                         ? fmt::format("its messages hold more than {} different sets of joints", kMaxSets)
-                         : fmt::format("message {} is not what the definition says", topic.count);
+                         ? fmt::format("its messages contain more than {} different sets of joints", kMaxSets)
+                         : fmt::format("message {} does not match its definition", topic.count);
       topic.streams.clear();
     }
   }
@@ -278,7 +279,7 @@ Result<void> Topics::count(std::size_t numbers) {
   }
   numbers_ += numbers;
   if (numbers_ <= max_numbers_) return {};
-  return bad_data(fmt::format("it claims {} numbers, more than a file of its size can hold", numbers_),
+  return bad_data(fmt::format("it claims {} numbers, more than a file of its size can contain", numbers_),
                   std::string(kCopyAgain));
 }
 
@@ -298,7 +299,7 @@ void Topics::note_topics(Contents& contents) const {
   if (!read.empty()) contents.notes.push_back(printable(fmt::format("topics: {}", fmt::join(read, ", "))));
   for (const Topic& topic : topics_) {
     if (!topic.unread.empty()) {
-      contents.notes.push_back(printable(fmt::format("'{}' is not read: {}", topic.name, topic.unread)));
+      contents.notes.push_back(printable(fmt::format("'{}' was not read: {}", topic.name, topic.unread)));
     }
   }
 }
@@ -312,32 +313,31 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
     const std::string channels = vector != nullptr     ? fmt::format(" as {0}_x and {0}_y", vector->channel)
                                  : type == kJointState ? " as joint_1 …, torque_1 …"
                                                        : " as channels";
-    note(fmt::format("'{}' is not taken{}: {}", stream.name, channels, stream.doubt));
+    note(fmt::format("'{}' was not used{}: {}", stream.name, channels, stream.doubt));
   } else if (vector != nullptr) {
     const std::set<std::string> frames = frames_of(messages);
     note(fmt::format(
         "{0}_x and {0}_y are {1}.x and .y of '{2}', {3}", vector->channel, vector->path, stream.name,
-        frames.empty() ? "whose frame the messages do not name" : fmt::format("in its {}", frames_text(frames))));
+        frames.empty() ? "whose frame is not stated in the messages" : fmt::format("in its {}", frames_text(frames))));
     if (vector->channel == "force") {
-      contents.notes.back() += printable(fmt::format(
-          ", with the sign that they have there; mbk needs the force of the hand on the robot, in the frame of the "
-          "robot's base: where the sensor says the opposite, turn it with --channels Fx=-{0}.{1}.x,Fy=-{0}.{1}.y and "
-          "name the other channels there too, as x=hand_x,y=hand_y",
-          stream.name, vector->path));
+      contents.notes.back() += printable(
+          fmt::format(", with unchanged sign; mbk needs the force of the hand on the robot, in the base frame of the "
+                      "robot: if the sensor has the opposite sign, reverse it with --channels "
+                      "Fx=-{0}.{1}.x,Fy=-{0}.{1}.y and name the other channels there too, as x=hand_x,y=hand_y",
+                      stream.name, vector->path));
     }
   } else if (type == kJointState && messages.joints.empty()) {
-    note(
-        fmt::format("joints and torques are position and effort of '{}' in their order: its messages do not name the "
-                    "joints",
-                    stream.name));
+    note(fmt::format(
+        "joints and torques are position and effort of '{}' in stored order: its messages do not name the joints",
+        stream.name));
   } else if (type == kJointState) {
     std::vector<std::string> names;
     for (std::size_t k = 0; k < messages.joints.size(); ++k) {
       names.push_back(fmt::format("{} {}", k + 1, messages.joints[k]));
     }
     note(
-        fmt::format("joints and torques are position and effort of '{}', in the order of its first message: {}; with a "
-                    "robot whose description names its joints they are matched by name",
+        fmt::format("joints and torques are position and effort of '{}', in the order of its first message: {}; if the "
+                    "robot description names the joints, they are matched by name",
                     stream.name, listed(std::move(names))));
   }
   for (const auto& [array, channel] : {std::pair("position", "joint_1"), std::pair("effort", "torque_1")}) {
@@ -347,9 +347,9 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
     const char* const why = type != kJointState                 ? nullptr
                             : messages.changing.contains(array) ? "its length changes from message to message"
                             : std::ranges::any_of(messages.columns, is_uneven)
-                                ? "it has more or fewer numbers than there are names of joints"
+                                ? "its length differs from the number of joint names"
                                 : nullptr;
-    if (why != nullptr) note(fmt::format("'{}.{}' is not taken as {} …: {}", stream.name, array, channel, why));
+    if (why != nullptr) note(fmt::format("'{}.{}' was not used as {} …: {}", stream.name, array, channel, why));
   }
   const auto list = [&](const std::set<std::string>& paths) {
     std::vector<std::string> names;
@@ -357,20 +357,18 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
     return listed(std::move(names));
   };
   if (!messages.bulky.empty()) {
-    note(
-        fmt::format("left out, as arrays of more than {} numbers or {} bytes are, and more than {} numbers of one "
-                    "message: {}",
-                    kLongestArray, kLongestBytes, kMaxColumns, list(messages.bulky)));
+    note(fmt::format("omitted because they exceed {} numbers or {} bytes per array, or {} numbers per message: {}",
+                     kLongestArray, kLongestBytes, kMaxColumns, list(messages.bulky)));
   }
   if (!messages.changing.empty()) {
-    note(fmt::format("left out, as not every message has them, or not as many of them: {}", list(messages.changing)));
+    note(fmt::format("omitted because their presence or length varies between messages: {}", list(messages.changing)));
   }
   if (!messages.from_text.empty()) {
-    note(fmt::format("written as text and read as numbers: {}", list(messages.from_text)));
+    note(fmt::format("stored as text and read as numbers: {}", list(messages.from_text)));
   }
-  if (!messages.only_text.empty()) note(fmt::format("left out, as they are text: {}", list(messages.only_text)));
+  if (!messages.only_text.empty()) note(fmt::format("omitted because they are text: {}", list(messages.only_text)));
   if (messages.rounded) {
-    note(fmt::format("'{}' holds whole numbers above 2^53, which were rounded", stream.name));
+    note(fmt::format("'{}' contains integers above 2^53, which were rounded", stream.name));
   }
 }
 
@@ -386,7 +384,7 @@ void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Co
   contents.clocks.push_back({stream.name, without(std::move(time), times.unset)});
   if (!times.unset.empty()) {
     contents.notes.push_back(printable(fmt::format(
-        "{} of {} messages of '{}' are left out, as the time {} them was not set (0)", times.unset.size(),
+        "{} of {} messages of '{}' were omitted because the time {} them was not set (0)", times.unset.size(),
         times.all->size(), stream.name, times.all == &messages.stamps ? "in the header of" : "of recording")));
   }
   const std::string type = plain_type(topic.description.type);
@@ -430,7 +428,7 @@ void Topics::doubt(const std::vector<std::pair<Topic*, Stream*>>& streams) {
     const bool may_be_channels =
         vector != nullptr || plain_type(topic->description.type) == kJointState || !is_of_ros(topic->description.type);
     if (stream->alternates && may_be_channels) {
-      stream->doubt = fmt::format("{} publishers take turns in it", stream->channels.size());
+      stream->doubt = fmt::format("{} publishers alternate in it", stream->channels.size());
     } else if (messages.joints_repeat) {
       stream->doubt = "its messages name a joint twice";
     } else if (vector != nullptr) {
@@ -440,8 +438,8 @@ void Topics::doubt(const std::vector<std::pair<Topic*, Stream*>>& streams) {
       } else if (hand != nullptr && !frames.empty() && !of_hands.contains(*frames.begin())) {
         const std::string source = fmt::format("{}.{}", stream->name, vector->path);
         stream->doubt = fmt::format(
-            "it is in {}, and the position of '{}' in {}; turn it into that frame before it is recorded (tf2), or, "
-            "where the axes of both are parallel, name it, as in --channels x=hand_x,y=hand_y,{}x={}.x,{}y={}.y",
+            "it is in {}, but the position of '{}' is in {}; transform it to that frame before recording (tf2) or, if "
+            "the axes of both frames are parallel, name it, as in --channels x=hand_x,y=hand_y,{}x={}.x,{}y={}.y",
             frames_text(frames), hand->name, frames_text(of_hands), vector->channel == "force" ? 'F' : 'a', source,
             vector->channel == "force" ? 'F' : 'a', source);
       }
@@ -460,7 +458,7 @@ Contents Topics::contents(std::string format, bool exact_times) {
       of_topic += static_cast<std::size_t>(std::ranges::count(stream.messages->columns, true, &NumberColumn::kept));
     }
     if (arrays + of_topic > kMaxArrays) {
-      topic.unread = fmt::format("the file has more than {} numbers in its messages", kMaxArrays);
+      topic.unread = fmt::format("the messages contain more than {} numbers", kMaxArrays);
       topic.streams.clear();
       continue;
     }
@@ -496,9 +494,8 @@ Contents Topics::contents(std::string format, bool exact_times) {
       const std::int64_t lag = lag_of(*stream->messages, times_of(*stream->messages));
       if (std::abs(lag) > kLongLag) {
         contents.notes.push_back(printable(fmt::format(
-            "the stamps of '{}' are {:.6g} s {} the time when they were recorded: they come from another clock",
-            stream->name, static_cast<double>(std::abs(lag)) / static_cast<double>(kSecond),
-            lag > 0 ? "before" : "after")));
+            "the stamps of '{}' are {:.6g} s {} their recording time: they come from another clock", stream->name,
+            static_cast<double>(std::abs(lag)) / static_cast<double>(kSecond), lag > 0 ? "before" : "after")));
       }
     }
     take(*topic, *stream, begin, times.has_value(), contents);
@@ -510,18 +507,18 @@ Contents Topics::contents(std::string format, bool exact_times) {
   if (times) {
     contents.events = std::move(events_);
   } else if (!events_.empty()) {
-    contents.notes.push_back("its events are left out, as the times of its channels differ");
+    contents.notes.push_back("its events were omitted because the times of its channels differ");
   }
   if (!streams.empty() && !times) {
-    std::string note = "times count from the first one";
+    std::string note = "times are relative to the first one";
     if (begin >= kFirstDate) {
       contents.metadata["start"] = date_of(begin);
       note += fmt::format(", {}", contents.metadata["start"]);
     }
-    if (!stamped.empty()) note += fmt::format("; they are those of header.stamp in {}", listed(std::move(stamped)));
+    if (!stamped.empty()) note += fmt::format("; header.stamp is used for {}", listed(std::move(stamped)));
     if (!logged.empty()) {
       note +=
-          fmt::format("; of {} those when they were recorded, as no message has a stamp", listed(std::move(logged)));
+          fmt::format("; the recording time is used for {}, whose messages have no stamp", listed(std::move(logged)));
     }
     contents.notes.insert(contents.notes.begin(), printable(std::move(note)));
   }

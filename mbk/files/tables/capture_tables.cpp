@@ -61,9 +61,9 @@ class ViconDecoder {
     }
     leave_out(above_.size());
     if (!left_out_.empty()) {
-      contents_.notes.push_back(fmt::format("sections without frames were left out: {}", fmt::join(left_out_, ", ")));
+      contents_.notes.push_back(fmt::format("sections without frames were omitted: {}", fmt::join(left_out_, ", ")));
     }
-    if (contents_.arrays.empty()) return bad_data("it holds no frame", "nothing was recorded, or exported");
+    if (contents_.arrays.empty()) return bad_data("the file contains no frames", "nothing was recorded, or exported");
     return std::move(contents_);
   }
 
@@ -84,7 +84,7 @@ class ViconDecoder {
     leave_out(above_.size() - header);
     above_.clear();
     if (!(section.rate_hz > 0.0) || section.rate_hz > 1e9) {
-      return bad_data("no rate stands above the names of its section", std::string(kWriteAgain),
+      return bad_data("the rate above the names of its section is missing", std::string(kWriteAgain),
                       line_place(axes.number));
     }
     name_columns(labels_of(axes.text, separator), groups, section);
@@ -129,7 +129,7 @@ class ViconDecoder {
       MBK_TRY(steps.add(rows, *line));
     }
     if (line && !is_empty_row(line->text) && !begins_frames(labels_of(line->text, separator)) && rows.count() == 0) {
-      return bad_data("no row of numbers stands below its units", std::string(kWriteAgain), line_place(line->number));
+      return bad_data("there is no row of numbers below its units", std::string(kWriteAgain), line_place(line->number));
     }
     if (rows.count() == 0) {
       left_out_.push_back(section.name);
@@ -137,9 +137,9 @@ class ViconDecoder {
     }
     section.first_frame = rows.column(0).front();
     if (first_ && first_->first_frame != section.first_frame) {
-      return bad_data(fmt::format("'{}' begins at frame {}, and '{}' at frame {}", first_->name, first_->first_frame,
+      return bad_data(fmt::format("'{}' begins at frame {}, but '{}' at frame {}", first_->name, first_->first_frame,
                                   section.name, section.first_frame),
-                      "export all of it over the same frames");
+                      "export everything over the same frames");
     }
     if (!first_) first_ = section;
     take(section, rows);
@@ -162,7 +162,7 @@ class ViconDecoder {
         return {};
       }
       return bad_data(fmt::format("frame {}, {} does not follow frame {}, {}", frame, sub, frame_before, sub_before),
-                      "its times follow from its rate: export every frame", line_place(line.number));
+                      "export every frame: times are computed from the rate", line_place(line.number));
     }
   };
 
@@ -233,7 +233,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
     if (in_lower_case(header.back().front()) == "frame" || header.size() > 16) break;
   }
   if (header.empty() || in_lower_case(header.back().front()) != "frame" || header.back().size() > kMaxTextColumns) {
-    return bad_data("no row of axes, Frame, Time (Seconds), X, Y, Z, stands in its header",
+    return bad_data("the header has no row of axes: Frame, Time (Seconds), X, Y, Z",
                     "export it again from Motive with its header");
   }
   const std::vector<std::string>& axes = header.back();
@@ -247,7 +247,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
   // Without words in front they are Type, Name, ID, kind.
   const std::size_t name_row = row_called("name").value_or(1);
   if (header.size() < 3 || name_row + 1 >= header.size()) {
-    return bad_data("no row of names stands in its header", "export it again from Motive with its header");
+    return bad_data("the header has no row of names", "export it again from Motive with its header");
   }
   const std::size_t kind_row = header.size() - 2;
   const bool has_kinds = kind_row > name_row && header[kind_row].size() > 1 && header[kind_row][1].empty();
@@ -278,7 +278,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
   number_repeated(names);
   const std::size_t columns = used.empty() ? 1 : used.back().number + 1;
   const double rate = positive_number(said["export frame rate"]).value_or(0.0);
-  if (said["length units"].empty()) contents.notes.emplace_back("the header does not say the unit of lengths");
+  if (said["length units"].empty()) contents.notes.emplace_back("the header does not state the unit of lengths");
 
   TextRows rows(columns, file.size());
   for (auto line = lines.next_filled(); line; line = lines.next_filled()) {
@@ -289,7 +289,7 @@ Result<Contents> decode_motive(std::span<const std::byte> file) {
     }
     MBK_TRY(add_row(rows, *line, separator, columns));
   }
-  if (rows.count() == 0) return bad_data("no frame stands behind the header", "nothing was recorded");
+  if (rows.count() == 0) return bad_data("there is no frame after the header", "nothing was recorded");
   compare_counts(positive_number(said["total exported frames"]), rows.count(), "frames", contents);
   for (std::size_t k = 0; k < used.size(); ++k) {
     rows.give(used[k].number, add_array(contents, names[k], used[k].unit, rate < 1e9 ? rate : 0.0));
@@ -325,7 +325,7 @@ Result<Contents> decode_qualisys(std::span<const std::byte> file) {
   const auto value = [&](const char* key) { return said[key].empty() ? std::string() : said[key].front(); };
   std::vector<std::string> markers = said["MARKER_NAMES"];
   if (markers.empty()) {
-    return bad_data(fmt::format("it holds {} data, and no markers",
+    return bad_data(fmt::format("the file contains {} data but no markers",
                                 value("DATA_INCLUDED").empty() ? "other" : value("DATA_INCLUDED")),
                     "export C3D from QTM, or the 3D data as TSV");
   }
@@ -340,13 +340,13 @@ Result<Contents> decode_qualisys(std::span<const std::byte> file) {
         in_lower_case(heads.front()) == "frame" ? (heads.size() > 1 && in_lower_case(heads[1]) == "time" ? 2 : 1) : 0;
     line = lines.next_filled();
   }
-  if (!line) return bad_data("no frame stands behind the header", "nothing was recorded");
+  if (!line) return bad_data("there is no frame after the header", "nothing was recorded");
   if (!before) {
     const std::size_t cells = filled_cells_of(line->text, '\t').size();
     before = cells >= 3 * markers.size() ? cells - 3 * markers.size() : 0;
   }
   if (*before > 2 || markers.size() > kMaxTextColumns) {
-    return bad_data(fmt::format("its rows hold {} numbers more than its {} markers need", *before, markers.size()),
+    return bad_data(fmt::format("its rows have {} numbers more than its {} markers need", *before, markers.size()),
                     std::string(kWriteAgain), line_place(line->number));
   }
   const std::size_t columns = *before + 3 * markers.size();
@@ -362,8 +362,9 @@ Result<Contents> decode_qualisys(std::span<const std::byte> file) {
       break;
     }
     if (cells.size() > columns) {
-      return bad_data(fmt::format("{} cells where its {} markers need {}", cells.size(), markers.size(), columns),
-                      std::string(kWriteAgain), line_place(line->number));
+      return bad_data(
+          fmt::format("the row has {} cells, but its {} markers need {}", cells.size(), markers.size(), columns),
+          std::string(kWriteAgain), line_place(line->number));
     }
     MBK_TRY(rows.add(*line, cells, line->text.find(',') != line->text.npos));
   }
@@ -389,7 +390,7 @@ Result<Contents> decode_qualisys(std::span<const std::byte> file) {
   }
   contents.notes.emplace_back("its positions are in mm, as QTM exports them");
   if (missing > 0) {
-    contents.notes.push_back(fmt::format("{} positions of exactly 0, 0, 0 were taken as missing markers", missing));
+    contents.notes.push_back(fmt::format("{} positions of exactly 0, 0, 0 were read as missing markers", missing));
   }
   return contents;
 }

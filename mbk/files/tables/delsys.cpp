@@ -59,7 +59,7 @@ class DelsysDecoder {
     group(rows);
     take(rows);
     if (above_ > 0) {
-      contents_.notes.push_back(fmt::format("{} lines of text above its numbers were not read", above_));
+      contents_.notes.push_back(fmt::format("{} lines of text above its numbers were ignored", above_));
     }
     return std::move(contents_);
   }
@@ -75,10 +75,10 @@ class DelsysDecoder {
       // The sensors stand above their modes, or above the names.
       if (!in_lower_case(labels_.front()).starts_with("sensor mode")) sensors_ = labels_;
     }
-    if (!line) return bad_data("no row of names stands in its header", std::string(kWriteAgain));
+    if (!line) return bad_data("the header has no row of names", std::string(kWriteAgain));
     while (!labels_.empty() && labels_.back().empty()) labels_.pop_back();
     if (labels_.size() > kMaxTextColumns) {
-      return bad_data(fmt::format("its header names {} columns", labels_.size()), "export fewer of them");
+      return bad_data(fmt::format("the header names {} columns", labels_.size()), "export fewer columns");
     }
     return {};
   }
@@ -95,7 +95,7 @@ class DelsysDecoder {
       }
       MBK_TRY(add_row(rows, *line, separator_, labels_.size()));
     }
-    if (rows.count() == 0) return bad_data("no sample stands below its names", "nothing was recorded");
+    if (rows.count() == 0) return bad_data("there is no sample below the names", "nothing was recorded");
     return {};
   }
 

@@ -121,7 +121,7 @@ class Reader {
       line = MBK_TRY(rows(line));
     }
     std::erase_if(segments, [](const Segment& one) { return one.rows.count() == 0; });
-    if (segments.empty()) return bad_data("no sample stands behind its header", "nothing was recorded");
+    if (segments.empty()) return bad_data("there is no sample after the header", "nothing was recorded");
     return {};
   }
 
@@ -174,8 +174,8 @@ class Reader {
       style_.decimal = ',';
     }
     if (style_.separator == ',' && style_.decimal == ',') {
-      return bad_data("commas stand between its columns and for decimal points",
-                      "write it with tabs between the columns", line_place(first.number));
+      return bad_data("commas separate columns and are also decimal points", "write it with tabs between the columns",
+                      line_place(first.number));
     }
     if (const std::string columns = in_lower_case(said("x_columns")); !columns.empty()) style_.x_columns = columns;
     header_ = {};
@@ -190,7 +190,7 @@ class Reader {
     same_header_ = false;
     for (std::optional<TextLine> line = first; !line->text.starts_with(kEndOfHeader);) {
       if (is_row(line->text) && line->number != first.number) {
-        return bad_data("numbers stand in the header of a segment", std::string(kWriteAgain), line_place(line->number));
+        return bad_data("the header of a segment contains numbers", std::string(kWriteAgain), line_place(line->number));
       }
       add(header_, line->text);
       line = next_line();
@@ -200,9 +200,9 @@ class Reader {
   }
 
   [[nodiscard]] tl::unexpected<Error> unending(const TextLine& first) const {
-    return bad_data(fmt::format("'{}' begins a header, and no {} follows",
+    return bad_data(fmt::format("'{}' begins a header, but no {} follows",
                                 label_of(first_cell(first.text).substr(0, 40)), kEndOfHeader),
-                    "it may have been cut off: write it again with LabVIEW", line_place(first.number));
+                    "the file may be truncated: write it again with LabVIEW", line_place(first.number));
   }
 
   void add(Header& header, std::string_view line) const {
@@ -244,8 +244,8 @@ class Reader {
   Result<void> begin_segment() {
     columns_ += labels_.size();
     if (segments.size() > 8 && columns_ > 1024 + bytes_ / 16) {
-      return bad_data(fmt::format("it holds more than {} segments of hardly any samples", segments.size()),
-                      "write it with one header and X values that run on");
+      return bad_data(fmt::format("the file contains more than {} segments with hardly any samples", segments.size()),
+                      "write it with one header and continuous X values");
     }
     segments.push_back(
         {style_, header_, labels_, has_comments_, TextRows(labels_.size(), bytes_), {}, "", same_header_});
@@ -278,7 +278,7 @@ class Reader {
     const std::size_t columns = segment->labels.size();
     while (cells.size() > columns && is_blank(cells.back())) cells.pop_back();
     if (cells.size() > columns && !segment->comments) {
-      return bad_data(fmt::format("{} cells where its segment names {} columns", cells.size(), columns),
+      return bad_data(fmt::format("the line has {} cells, but its segment names {} columns", cells.size(), columns),
                       std::string(kWriteAgain), line_place(line.number));
     }
     if (is_cut(line, cells.size(), columns)) {
@@ -288,7 +288,7 @@ class Reader {
     const bool commented = cells.size() > columns;
     padded_ += columns - std::min(cells.size(), columns);
     if (padded_ > largest_claim(bytes_) / sizeof(double)) {
-      return bad_data(fmt::format("most lines hold far fewer numbers than the {} columns of their segment", columns),
+      return bad_data(fmt::format("most lines contain far fewer numbers than the {} columns of their segment", columns),
                       std::string(kWriteAgain), line_place(line.number));
     }
     cells.resize(std::min(cells.size(), columns));
@@ -381,8 +381,7 @@ class Record {
     contents_.format = "LVM";
     contents_.table = true;
     if (parts_.size() > 1) {
-      contents_.notes.push_back(
-          fmt::format("{} segments that follow each other without a pause were joined", parts_.size()));
+      contents_.notes.push_back(fmt::format("{} contiguous segments were joined", parts_.size()));
     }
     group();
     if (bases_.size() == 1) {
@@ -490,11 +489,11 @@ class Record {
       if (time) x.means = "time";
     } else if (basis.interval == 0.0) {
       contents_.notes.emplace_back(
-          "the header says no sampling rate (Delta_X is missing or 1, which LabVIEW writes where it knows none)");
+          "the header states no sampling rate (Delta_X is missing or 1, which LabVIEW writes if it is unknown)");
     }
     if (!first_.is_in_time(basis.signals.front())) {
       contents_.notes.push_back(
-          fmt::format("its X is '{}', which is no time", first_.said("x_dimension", basis.signals.front())));
+          fmt::format("its X is '{}', which is not a time", first_.said("x_dimension", basis.signals.front())));
     }
     for (const std::size_t column : basis.signals) {
       add_signal(column, values(column), meant ? basis.interval : 0.0, -1);
@@ -531,13 +530,12 @@ class Record {
       const bool longer = part.segment->has_no_x() && *said < static_cast<double>(part.size()) && *said > 0.0;
       if (*said > static_cast<double>(part.size())) compare_counts(said, part.size(), "samples", contents_);
       if (longer) {
-        contents_.notes.push_back(
-            fmt::format("the header says {} samples a segment, and {} follow: pauses between "
-                        "segments do not show",
-                        *said, part.size()));
+        contents_.notes.push_back(fmt::format(
+            "the header states {} samples per segment, but {} follow: pauses between segments cannot be detected",
+            *said, part.size()));
       }
     }
-    if (commented > 0) contents_.notes.push_back(fmt::format("{} comments behind its lines were left out", commented));
+    if (commented > 0) contents_.notes.push_back(fmt::format("{} comments at line ends were ignored", commented));
   }
 
   const std::vector<Part>& parts_;
@@ -560,8 +558,8 @@ Result<std::vector<NamedContents>> decode_lvm(std::span<const std::byte> file) {
   std::vector<NamedContents> records;
   const auto all = lvm::records_of(reader.segments);
   if (all.size() > 1024 + file.size() / 256) {
-    return bad_data(fmt::format("it holds {} segments of hardly any samples", all.size()),
-                    "write it with one header and X values that run on");
+    return bad_data(fmt::format("the file contains {} segments with hardly any samples", all.size()),
+                    "write it with one header and continuous X values");
   }
   for (const std::vector<lvm::Part>& parts : all) {
     std::size_t samples = 0;
@@ -573,9 +571,9 @@ Result<std::vector<NamedContents>> decode_lvm(std::span<const std::byte> file) {
     auto& notes = record.contents.notes;
     if (all.size() > 1) {
       notes.insert(notes.begin(),
-                   fmt::format("segment {} of {}, each a recording of its own", records.size(), all.size()));
+                   fmt::format("segment {} of {}, each a separate recording", records.size(), all.size()));
     }
-    if (reader.special_blocks > 0) notes.emplace_back("special blocks of LabVIEW were left out");
+    if (reader.special_blocks > 0) notes.emplace_back("special LabVIEW blocks were ignored");
     if (&parts == &all.back()) notes.insert(notes.end(), reader.notes.begin(), reader.notes.end());
   }
   return records;

@@ -39,17 +39,17 @@ struct Npy {
 Result<Npy> parse(std::span<const std::byte> file) {
   constexpr std::size_t kVersion = 6, kLength = 8;
   const ByteView view{file, std::endian::native == std::endian::big};
-  if (file.size() < kLength + 2) return bad_data("the NumPy array ends in its header", std::string(kAgain));
+  if (file.size() < kLength + 2) return bad_data("the NumPy array is truncated in its header", std::string(kAgain));
   const int major = std::to_integer<int>(file[kVersion]);
   if (major < 1 || major > 3) {
-    return bad_data(fmt::format("the NumPy array is of format {}.{}; 1.0 to 3.0 are read", major,
+    return bad_data(fmt::format("the NumPy array has format {}.{}; 1.0 to 3.0 are supported", major,
                                 std::to_integer<int>(file[kVersion + 1])),
                     std::string(kAgain));
   }
   const std::size_t begin = kLength + (major == 1 ? 2 : 4);
-  if (file.size() < begin) return bad_data("the NumPy array ends in its header", std::string(kAgain));
+  if (file.size() < begin) return bad_data("the NumPy array is truncated in its header", std::string(kAgain));
   const std::uint64_t length = major == 1 ? view.at<std::uint16_t>(kLength) : view.at<std::uint32_t>(kLength);
-  if (!view.holds(begin, length)) return bad_data("the NumPy array ends in its header", std::string(kAgain));
+  if (!view.holds(begin, length)) return bad_data("the NumPy array is truncated in its header", std::string(kAgain));
   auto header = MBK_TRY(parse_npy_header(view.part(begin, static_cast<std::size_t>(length)).text()));
   return Npy{std::move(header), file.subspan(begin + static_cast<std::size_t>(length))};
 }
@@ -111,9 +111,9 @@ TimeUnit time_unit(std::string_view type) {
 
 Error object_error(const NpyField& field, const std::string& name) {
   const bool object = field.kind == 'O';
-  return bad_data(object ? std::string("it holds Python objects, which are not read")
-                         : fmt::format("its numbers are of the type '{}', which is not read", field.type),
-                  object ? "save each array of numbers by itself, as in numpy.savez('trial.npz', time=time, x=x, F=F)"
+  return bad_data(object ? std::string("it contains Python objects, which are not supported")
+                         : fmt::format("its numbers have the type '{}', which is not supported", field.type),
+                  object ? "save each array of numbers separately, as in numpy.savez('trial.npz', time=time, x=x, F=F)"
                          : "save real numbers, as in numpy.savez('trial.npz', x=x.astype(float))",
                   fmt::format("array '{}'", name))
       .value();
@@ -149,7 +149,7 @@ class NpyDecoder {
   static std::string place(const std::string& name) { return fmt::format("array '{}'", name.empty() ? "array" : name); }
 
   static tl::unexpected<Error> cut(const std::string& name, const NpyHeader& header, const Npy& npy) {
-    return bad_data(fmt::format("it is cut short: {} elements of {} bytes need more than the {} bytes that are there",
+    return bad_data(fmt::format("it is truncated: {} elements of {} bytes need more than the {} bytes present",
                                 fmt::join(header.shape, "×"), header.element, npy.data.size()),
                     "copy it again from where it was recorded", place(name));
   }
@@ -173,15 +173,15 @@ class NpyDecoder {
       array.name = name;
       array.obstacle = read == nullptr ? object_error(field, name)
                                        : bad_data(fmt::format("it has {} dimensions", dimensions),
-                                                  "save arrays of one or two", place(name))
+                                                  "save arrays of one or two dimensions", place(name))
                                              .value();
-      contents_.notes.push_back(fmt::format("array '{}' was left aside: {}", name, array.obstacle->message));
+      contents_.notes.push_back(fmt::format("array '{}' was ignored: {}", name, array.obstacle->message));
       return {};
     }
     const std::uint64_t rows = sizes.empty() ? 1 : sizes[0];
     const std::uint64_t columns = sizes.size() == 2 ? sizes[1] : field.count;
     if (rows > (std::uint64_t{1} << 40) || columns > (std::uint64_t{1} << 40)) {
-      return bad_data(fmt::format("it is said to be {}×{}", rows, columns), std::string(kAgain), place(name));
+      return bad_data(fmt::format("its stated shape is {}×{}", rows, columns), std::string(kAgain), place(name));
     }
     MBK_TRY(check_memory(8 * rows * columns));
     const ByteView view{data, field.big_endian != (std::endian::native == std::endian::big)};
@@ -275,7 +275,7 @@ class NpyDecoder {
     const std::chrono::sys_days days{std::chrono::days(*midnight / day)};
     const std::chrono::year_month_day date{days};
     contents_.notes.push_back(fmt::format(
-        "'{}' holds dates and times, which were taken as seconds since {:04}-{:02}-{:02} 00:00", name,
+        "'{}' contains dates and times, which were read as seconds since {:04}-{:02}-{:02} 00:00", name,
         static_cast<int>(date.year()), static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day())));
   }
 
@@ -332,7 +332,7 @@ Result<Contents> decode_npy(std::span<const std::byte> file) {
   const auto usable = [](const Array& array) { return !array.obstacle; };
   if (std::ranges::none_of(contents.arrays, usable)) {
     if (!contents.arrays.empty()) return tl::unexpected(*contents.arrays.front().obstacle);
-    return bad_data("it holds no numbers", "save arrays of numbers");
+    return bad_data("the file contains no numbers", "save arrays of numbers");
   }
   // The fields of a list of records are the columns of a table.
   const Index rows = std::ranges::find_if(contents.arrays, usable)->values.rows();
@@ -348,13 +348,14 @@ Result<Contents> decode_npz(const ZipArchive& archive) {
   contents.format = "NumPy archive";
   for (const ZipMember& member : archive.members()) {
     if (!is_array(member)) {
-      contents.notes.push_back(fmt::format("'{}' in the archive is no NumPy array; ignored", printable(member.name)));
+      contents.notes.push_back(
+          fmt::format("'{}' in the archive is not a NumPy array and was ignored", printable(member.name)));
       continue;
     }
     const auto bytes = MBK_TRY(archive.read(member.name));
     const std::string name = printable(member.name.substr(0, member.name.size() - kEnd.size()));
     if (!looks_like_npy(bytes.bytes())) {
-      return bad_data("it does not begin as a NumPy array does", std::string(kAgain), fmt::format("array '{}'", name));
+      return bad_data("it has no NumPy signature", std::string(kAgain), fmt::format("array '{}'", name));
     }
     MBK_TRY(NpyDecoder(contents).add(bytes.bytes(), name.empty() ? "array" : name));
   }

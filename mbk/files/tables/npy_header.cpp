@@ -186,22 +186,22 @@ Result<NpyHeader> parse_npy_header(std::string_view text) {
     return bad_data(fmt::format("the header of the NumPy array is damaged: {}", what), "save it again with numpy.save");
   };
   const auto literal = Parser(text).whole();
-  if (!literal) return damaged("it is no Python literal");
+  if (!literal) return damaged("it is not a Python literal");
   const Literal* const type = literal->at("descr");
   const Literal* const order = literal->at("fortran_order");
   const Literal* const shape = literal->at("shape");
   if (type == nullptr || order == nullptr || shape == nullptr)
     return damaged("'descr', 'fortran_order' or 'shape' is missing");
-  if (order->kind != Literal::logical || shape->kind != Literal::list) return damaged("the shape is none");
+  if (order->kind != Literal::logical || shape->kind != Literal::list) return damaged("the shape is invalid");
   NpyHeader header;
   header.fortran_order = order->value != 0;
   header.structured = type->kind == Literal::list;
   for (const Literal& length : shape->items) {
-    if (length.kind != Literal::number) return damaged("the shape is none");
+    if (length.kind != Literal::number) return damaged("the shape is invalid");
     header.shape.push_back(length.value);
   }
   const auto element = add_fields(*type, "", 0, header.fields);
-  if (!element) return damaged("its type is not known");
+  if (!element) return damaged("its type is unknown");
   header.element = *element;
   return header;
 }

@@ -41,14 +41,15 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
         mbk::trimmed(std::string_view(lower).substr(std::min(end + 1, lower.size())), " \t=");
   }
   const auto labels_line = lines.next_filled();
-  if (!labels_line) return bad_data("no labels stand behind 'endheader'", "nothing was recorded, or it was cut off");
+  if (!labels_line)
+    return bad_data("there are no labels after 'endheader'", "nothing was recorded, or the file is truncated");
   std::vector<std::string> labels;
   const char separator = separator_of(labels_line->text);
   for (const std::string_view cell : filled_cells_of(labels_line->text, separator)) {
     labels.push_back(printable(std::string(mbk::trimmed(cell, " \t"))));
   }
   if (labels.empty() || labels.size() > kMaxTextColumns || general_number(labels.front())) {
-    return bad_data("the line behind 'endheader' holds no labels", std::string(kWriteAgain),
+    return bad_data("the line after 'endheader' contains no labels", std::string(kWriteAgain),
                     line_place(labels_line->number));
   }
   TextRows rows(labels.size(), file.size());
@@ -61,12 +62,12 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
       break;
     }
     if (cells.size() != labels.size()) {
-      return bad_data(fmt::format("{} numbers where there are {} labels", cells.size(), labels.size()),
+      return bad_data(fmt::format("the line has {} numbers, but there are {} labels", cells.size(), labels.size()),
                       std::string(kWriteAgain), line_place(line->number));
     }
     MBK_TRY(rows.add(*line, cells));
   }
-  if (rows.count() == 0) return bad_data("no line of numbers stands behind the labels", "nothing was recorded");
+  if (rows.count() == 0) return bad_data("there is no line of numbers after the labels", "nothing was recorded");
   const auto said = [&](const char* today, const char* old) -> std::optional<double> {
     for (const char* key : {today, old}) {
       if (const auto entry = header.find(key); entry != header.end()) return positive_number(entry->second);
@@ -79,7 +80,7 @@ Result<Contents> decode_opensim(std::span<const std::byte> file) {
     if (entry->second == "yes") contents.units = {"deg"};
   } else if (!header.contains("datatype")) {  // of orientations, which are vectors
     contents.notes.emplace_back(
-        "the header does not say inDegrees: angles are taken in rad unless --channels says deg");
+        "the header does not state inDegrees: angles are read in rad unless --channels gives deg");
   }
   for (std::size_t c = 0; c < labels.size(); ++c) {
     Array& array = contents.arrays.emplace_back();
@@ -129,19 +130,19 @@ Result<void> check_axes(const TextLine& line, char separator, const std::vector<
   std::erase_if(labels, is_blank);
   if (labels.size() != 3 * markers.size()) {
     if (!labels.empty() && !cell_number(labels.front())) return {};
-    return bad_data("no line of axes, X1 Y1 Z1, stands below the names", std::string(kWriteAgain),
+    return bad_data("there is no line of axes, X1 Y1 Z1, below the names", std::string(kWriteAgain),
                     line_place(line.number));
   }
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const std::string label = in_lower_case(labels[k]);
     if (label.front() != "xyz"[k % 3]) {
-      return bad_data(fmt::format("'{}' stands where the {} axis of '{}' must", printable(std::string(labels[k])),
+      return bad_data(fmt::format("'{}' was found in place of the {} axis of '{}'", printable(std::string(labels[k])),
                                   "XYZ"[k % 3], markers[k / 3]),
                       std::string(kWriteAgain), line_place(line.number));
     }
     const auto number = cell_number(std::string_view(label).substr(1));
     if (k % 3 == 0 && number && *number != static_cast<double>(k / 3 + 1) && label.size() > 1) {
-      contents.notes.push_back(fmt::format("the axes of '{}' are called {}, and its name was taken", markers[k / 3],
+      contents.notes.push_back(fmt::format("the axes of '{}' are called {}; the marker name was used", markers[k / 3],
                                            printable(std::string(labels[k]))));
     }
   }
@@ -158,7 +159,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
   lines.next();
   const auto keys = lines.next_filled(), values = lines.next_filled(), names = lines.next_filled(),
              axes = lines.next_filled();
-  if (!axes) return bad_data("a TRC file has five lines of header, and this ends before", std::string(kWriteAgain));
+  if (!axes) return bad_data("the file ends within the five header lines of a TRC file", std::string(kWriteAgain));
   const TrcHeader header(keys->text, values->text);
   const auto rate = positive_number(header["datarate"]);
   std::vector<std::string> markers;
@@ -175,7 +176,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
   }
   const std::size_t columns = 2 + 3 * markers.size();
   if (markers.empty() || columns > kMaxTextColumns) {
-    return bad_data(fmt::format("it names {} markers", markers.size()), std::string(kWriteAgain),
+    return bad_data(fmt::format("the header names {} markers", markers.size()), std::string(kWriteAgain),
                     line_place(names->number));
   }
   MBK_TRY(check_axes(*axes, separator, markers, contents));
@@ -185,9 +186,9 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
     auto cells = cells_of(line->text, separator);
     while (cells.size() > columns && is_blank(cells.back())) cells.pop_back();
     if (cells.size() > columns) {
-      return bad_data(
-          fmt::format("{} cells where frame, time and {} markers have {}", cells.size(), markers.size(), columns),
-          std::string(kWriteAgain), line_place(line->number));
+      return bad_data(fmt::format("the row has {} cells, but frame, time and {} markers need {}", cells.size(),
+                                  markers.size(), columns),
+                      std::string(kWriteAgain), line_place(line->number));
     }
     if (is_cut(*line, cells.size(), columns)) {
       contents.notes.push_back(note_of_cut(*line));
@@ -195,13 +196,13 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
     }
     MBK_TRY(rows.add(*line, cells));
   }
-  if (rows.count() == 0) return bad_data("no frame stands behind the header", "nothing was recorded");
+  if (rows.count() == 0) return bad_data("there is no frame after the header", "nothing was recorded");
   compare_counts(positive_number(header["numframes"]), rows.count(), "frames", contents);
   // No row has more cells than the names need, so that these are right.
   if (const auto count = positive_number(header["nummarkers"]);
       count && *count != static_cast<double>(markers.size())) {
     contents.notes.push_back(
-        fmt::format("the header says {} markers, and names {}, which were read", *count, markers.size()));
+        fmt::format("the header states {} markers but names {}, which were read", *count, markers.size()));
   }
   const auto add = [&](std::string name, std::string unit, std::size_t c) {
     Array& array = contents.arrays.emplace_back();
@@ -213,7 +214,7 @@ Result<Contents> decode_trc(std::span<const std::byte> file) {
   add("Frame#", "", 0);
   add("Time", "s", 1);
   const std::string unit = printable(std::string(header["units"]));
-  if (unit.empty()) contents.notes.emplace_back("the header does not say the unit of the markers");
+  if (unit.empty()) contents.notes.emplace_back("the header does not state the unit of the markers");
   number_repeated(markers);
   for (std::size_t m = 0; m < markers.size(); ++m) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -134,7 +134,7 @@ class AcqKnowledge {
         begin_ = 1;
       }
     }
-    if (rows.count() <= begin_) return bad_data("no sample stands below its names", "nothing was recorded");
+    if (rows.count() <= begin_) return bad_data("there is no sample below the names", "nothing was recorded");
     take(rows);
     return std::move(contents_);
   }
@@ -153,14 +153,14 @@ class AcqKnowledge {
     for (std::size_t k = 0; k < count; ++k) {
       const auto name = lines_.next();
       const auto unit = lines_.next();
-      if (!name || !unit) return bad_data("its header ends before the names of its channels", std::string(kWriteAgain));
+      if (!name || !unit) return bad_data("the header ends before the channel names", std::string(kWriteAgain));
       names_.push_back(label_of(name->text));
       units.push_back(label_of(unit->text));
     }
     settle_names(names_);
     for (std::size_t k = 0; k < count; ++k) add_array(contents_, names_[k], units[k], 0.0);
     line = lines_.next_filled();
-    if (!line) return bad_data("no sample stands below its names", "nothing was recorded");
+    if (!line) return bad_data("there is no sample below the names", "nothing was recorded");
     separator_ = separator_of(line->text);
     auto labels = labels_of(line->text, separator_);
     if (std::ranges::all_of(labels, [](const std::string& label) { return number_of(label, true).has_value(); })) {
@@ -171,7 +171,7 @@ class AcqKnowledge {
                       std::string(kWriteAgain), line_place(line->number));
     }
     line = lines_.next_filled();
-    if (!line) return bad_data("no sample stands below its names", "nothing was recorded");
+    if (!line) return bad_data("there is no sample below the names", "nothing was recorded");
     auto cells = split(line->text, separator_);
     while (!cells.empty() && is_blank(cells.back())) cells.pop_back();
     const bool blank_time = time_ != nullptr && !cells.empty() && without_quotes(cells.front()).empty();
@@ -181,7 +181,7 @@ class AcqKnowledge {
       return *line;
     for (std::size_t c = from; c < cells.size(); ++c) counts_.push_back(cell_number(cells[c]).value_or(0.0));
     line = lines_.next_filled();
-    if (!line) return bad_data("no sample stands below its names", "nothing was recorded");
+    if (!line) return bad_data("there is no sample below the names", "nothing was recorded");
     return *line;
   }
 
@@ -192,11 +192,11 @@ class AcqKnowledge {
     for (std::size_t c = 0; c < names_.size(); ++c) {
       Array& array = contents_.arrays[c];
       if (!counts_.empty() && counts_[c] != most) {
-        array.obstacle = bad_data(fmt::format("'{}' holds {} samples where others hold {}: it was recorded at a lower "
-                                              "rate",
-                                              names_[c], counts_[c], most),
-                                  "resample it in AcqKnowledge, or export the channels of one rate")
-                             .value();
+        array.obstacle =
+            bad_data(fmt::format("'{}' has {} samples, but others have {}: it was recorded at a lower rate", names_[c],
+                                 counts_[c], most),
+                     "resample it in AcqKnowledge, or export channels of equal rate")
+                .value();
         continue;
       }
       array.obstacle = rows.obstacle(first + c);
@@ -220,7 +220,7 @@ class AcqKnowledge {
     }
     if (even) {
       contents_.notes.push_back(
-          fmt::format("its column of time, in {}, agrees with that rate and was not needed", time_->unit));
+          fmt::format("its time column, in {}, agrees with that rate and was not used", time_->unit));
       return;
     }
     Array& array = add_array(contents_, "time", std::string(time_->unit), 0.0);
@@ -260,10 +260,10 @@ class LabChart {
     if (rows_) {
       MBK_TRY(end_block());
     }
-    if (records_.empty()) return bad_data("no sample stands below its header", "nothing was recorded");
+    if (records_.empty()) return bad_data("there is no sample below the header", "nothing was recorded");
     for (std::size_t k = 0; k < records_.size() && records_.size() > 1; ++k) {
       auto& notes = records_[k].contents.notes;
-      notes.insert(notes.begin(), fmt::format("block {} of {}, each a recording of its own", k + 1, records_.size()));
+      notes.insert(notes.begin(), fmt::format("block {} of {}, each a separate recording", k + 1, records_.size()));
     }
     return std::move(records_);
   }
@@ -287,14 +287,14 @@ class LabChart {
     auto cells = labels_of(rest, separator_);
     while (!cells.empty() && cells.back().empty()) cells.pop_back();
     if (cells.size() > kMaxTextColumns) {
-      return bad_data("it has too many columns", std::string(kWriteAgain), line_place(line.number));
+      return bad_data("the table has too many columns", std::string(kWriteAgain), line_place(line.number));
     }
     if (key == "Interval") {
       const auto differs = [&](const std::string& cell) { return !cell.empty() && cell != cells.front(); };
       interval_ = cells.empty() ? std::nullopt : interval_of(cells.front());
       if (!interval_ || std::ranges::any_of(cells, differs)) {
-        return bad_data(fmt::format("'{}' says no interval that all its channels have", label_of(line.text)),
-                        "export channels of one rate", line_place(line.number));
+        return bad_data(fmt::format("'{}' states no interval common to all channels", label_of(line.text)),
+                        "export channels of equal rate", line_place(line.number));
       }
       contents_.rate_hz = 1.0 / *interval_;
       contents_.rate_from = fmt::format("line {}, '{}'", line.number, label_of(line.text));
@@ -312,12 +312,12 @@ class LabChart {
 
   Result<void> begin_block(const TextLine& line, std::size_t cells) {
     if (!interval_ || titles_.empty()) {
-      return bad_data("numbers stand below a header without Interval= or ChannelTitle=",
+      return bad_data("there are numbers below a header without Interval= or ChannelTitle=",
                       "export it from LabChart with its block header", line_place(line.number));
     }
     extra_ = std::max(cells, titles_.size()) - titles_.size();
     if (cells < titles_.size() || extra_ > 2) {
-      return bad_data(fmt::format("{} cells where the header has {} titles", cells, titles_.size()),
+      return bad_data(fmt::format("the row has {} cells, but the header has {} titles", cells, titles_.size()),
                       std::string(kWriteAgain), line_place(line.number));
     }
     rows_.emplace(titles_.size() + 1, bytes_);
@@ -346,7 +346,7 @@ class LabChart {
       return {};
     }
     if (cells.size() != columns) {
-      return bad_data(fmt::format("{} cells where the rows above have {}", cells.size(), columns),
+      return bad_data(fmt::format("the row has {} cells, the rows above have {}", cells.size(), columns),
                       std::string(kWriteAgain), line_place(line.number));
     }
     std::vector<std::string_view> numbers{numeric_ ? cells.front() : std::string_view()};
@@ -367,7 +367,7 @@ class LabChart {
     contents_.table = true;
     if (numeric_) rows_->give(0, add_array(contents_, "time", "s", 0.0));
     if (extra_ > 0 && !numeric_)
-      contents_.notes.emplace_back("its times of day were left aside: its interval says the time");
+      contents_.notes.emplace_back("its times of day were ignored: the interval defines the time");
     std::vector<std::string> names = titles_;
     settle_names(names);
     for (std::size_t c = 0; c < names.size(); ++c) {
@@ -452,7 +452,7 @@ class Spike2 {
     const auto begin = labels.size() > 1 ? number_of(labels[1], true) : std::nullopt;
     const auto interval = labels.size() > 2 ? interval_of(labels[2]) : std::nullopt;
     if (!begin || !std::isfinite(*begin) || !interval) {
-      return bad_data(fmt::format("'{}' says no start and sampling interval", label_of(line.text)),
+      return bad_data(fmt::format("'{}' states no start and sampling interval", label_of(line.text)),
                       "export the channels as waveforms, or as MAT", line_place(line.number));
     }
     channel.segments.push_back({*begin, *interval, channel.values.size()});
@@ -473,7 +473,7 @@ class Spike2 {
     }
     if (!value) {
       return bad_data(fmt::format("'{}' is not one number", label_of(line.text.substr(0, 40))),
-                      "export the channels as text with one number a line, or as MAT", line_place(line.number));
+                      "export the channels as text with one number per line, or as MAT", line_place(line.number));
     }
     channel.values.push_back(*value);
     return {};
@@ -508,7 +508,7 @@ class Spike2 {
       if (known == clocks.end()) clocks.push_back(&channel);
     }
     if (clocks.empty())
-      return bad_data("it holds no CHANNEL section with a START and a sampling interval",
+      return bad_data("the file contains no CHANNEL section with a START and a sampling interval",
                       "export the channels as waveforms, or as MAT");
     number_repeated(names);
     const bool one = clocks.size() == 1;

@@ -86,8 +86,8 @@ std::string note_of_cut(const TextLine& line) {
 
 void compare_counts(const std::optional<double>& said, std::size_t there, std::string_view what, Contents& contents) {
   if (!said || *said == static_cast<double>(there)) return;
-  contents.notes.push_back(fmt::format("the header says {} {}, and there are {}{}", *said, what, there,
-                                       *said > static_cast<double>(there) ? ": the file may have been cut off" : ""));
+  contents.notes.push_back(fmt::format("the header states {} {}, but there are {}{}", *said, what, there,
+                                       *said > static_cast<double>(there) ? ": the file may be truncated" : ""));
 }
 
 void number_repeated(std::vector<std::string>& names) {
@@ -106,7 +106,7 @@ void note_obstacles(std::string_view what, Contents& contents) {
   constexpr std::size_t kListed = 12;
   const std::size_t more = names.size() > kListed ? names.size() - kListed : 0;
   names.resize(names.size() - more);
-  contents.notes.push_back(fmt::format("columns that hold {} were left aside: {}{}", what, fmt::join(names, ", "),
+  contents.notes.push_back(fmt::format("columns with {} were ignored: {}{}", what, fmt::join(names, ", "),
                                        more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
@@ -135,7 +135,7 @@ Result<void> add_row(TextRows& rows, const TextLine& line, char separator, std::
   auto cells = split(line.text, separator);
   while (cells.size() > columns && is_blank(cells.back())) cells.pop_back();
   if (cells.size() > columns) {
-    return bad_data(fmt::format("{} cells where the header names {} columns", cells.size(), columns),
+    return bad_data(fmt::format("the line has {} cells, but the header names {} columns", cells.size(), columns),
                     std::string(kWriteAgain), line_place(line.number));
   }
   return rows.add(line, cells, separator != ',' && line.text.find(',') != line.text.npos);
@@ -157,7 +157,7 @@ TextRows::TextRows(std::size_t columns, std::size_t bytes)
 Result<void> TextRows::add(const TextLine& line, std::span<const std::string_view> cells, bool decimal_commas) {
   if (count() >= most_) {
     return bad_data(
-        fmt::format("most lines hold far fewer numbers than the {} columns that the header names", numbers_.size()),
+        fmt::format("most lines contain far fewer numbers than the {} columns in the header", numbers_.size()),
         std::string(kWriteAgain), line_place(line.number));
   }
   for (std::size_t c = 0; c < numbers_.size(); ++c) {
@@ -172,7 +172,7 @@ Result<void> TextRows::add(const TextLine& line, std::span<const std::string_vie
       }
       if (!obstacles_[c]) {
         obstacles_[c] =
-            bad_data(fmt::format("'{}' is a vector", cell), "write each of its numbers as a column of its own", where)
+            bad_data(fmt::format("'{}' is a vector", cell), "write each of its numbers in its own column", where)
                 .value();
       }
       value = std::numeric_limits<double>::quiet_NaN();

@@ -115,7 +115,7 @@ class Decoder {
     std::ranges::move(details_, std::back_inserter(contents_.notes));
     std::ranges::stable_sort(contents_.events, {}, &Event::time);
     if (contents_.arrays.empty() && contents_.events.empty()) {
-      return bad_data(file_.streams.empty() ? "no stream is in it" : "none of its streams has a sample",
+      return bad_data(file_.streams.empty() ? "the file contains no stream" : "none of its streams has a sample",
                       contents_.notes.empty() ? "nothing was recorded" : contents_.notes.front());
     }
     return std::move(contents_);
@@ -137,7 +137,7 @@ class Decoder {
       Dejittered even = evened(stream, clock);
       effective_hz = even.effective_hz;
       if (stream.can_drop_samples) {
-        said.emplace_back("its stamps were not evened out, as it says that it can drop samples");
+        said.emplace_back("its stamps were not dejittered, because it declares that it can drop samples");
       } else {
         say_dejittered(stream, clock.time, even, doubts, said);
         say_backward(clock.time, even, said);
@@ -165,9 +165,8 @@ class Decoder {
     Index moved = 0;
     for (std::size_t k = 0; k < order.size(); ++k) moved += order[k] != static_cast<Index>(k);
     doubts.push_back(
-        fmt::format("groups of samples are out of order in the file: {} of {} samples were put in the order of their "
-                    "time stamps",
-                    moved, order.size()));
+        fmt::format("groups of samples are out of order in the file: {} of {} samples were sorted by time stamp", moved,
+                    order.size()));
   }
 
   /// Stamps of the recorder's clock, evened out on the clock on which they are more even: where the drift of the
@@ -212,26 +211,26 @@ class Decoder {
       last = stamp;
     }
     if (missing == 0) return;
-    said.push_back(fmt::format("{} of {} samples have no time stamp: {}", missing, stream.stamps.size(),
-                               step > 0.0 ? fmt::format("they follow the one before by {:.6g} ms", step * kMilliseconds)
-                                          : "they were given that of the one before"));
+    said.push_back(fmt::format(
+        "{} of {} samples have no time stamp: {}", missing, stream.stamps.size(),
+        step > 0.0 ? fmt::format("each was placed {:.6g} ms after the previous sample", step * kMilliseconds)
+                   : "each was given the stamp of the previous sample"));
   }
 
   static void say_clock(const XdfStream& stream, const Synchronised& clock, std::vector<std::string>& doubts,
                         std::vector<std::string>& said) {
     if (clock.not_finite > 0)
-      said.push_back(fmt::format("{} clock offsets that are no times were ignored", clock.not_finite));
+      said.push_back(fmt::format("{} clock offsets that are not finite were ignored", clock.not_finite));
     if (clock.last_was_corrupt) {
       said.push_back(
-          fmt::format("the last of {} clock offsets is corrupt and was ignored: there are more samples than "
-                      "the footer counts, and it is far from the others",
+          fmt::format("the last of {} clock offsets is corrupt and was ignored: there are more samples than the footer "
+                      "states, and it is far from the others",
                       stream.offsets.size() - clock.not_finite));
     }
     if (stream.stamps.size() == 0) return;
     if (clock.segments.empty()) {
       said.emplace_back(
-          "there is no clock offset: its time is that of the sender's clock, which other streams need "
-          "not share");
+          "there is no clock offset: its time is that of the sender's clock, which other streams may not share");
       return;
     }
     if (const std::size_t resets = clock.segments.size() - 1; resets > 0) {
@@ -243,35 +242,34 @@ class Decoder {
       const ClockCorrection& correction = segment.correction;
       const std::string where =
           clock.segments.size() == 1 ? "" : fmt::format(" of samples {} to {}", segment.first + 1, segment.last + 1);
-      said.push_back(fmt::format("time stamps{} were put on the recorder's clock: {:+.6f} s, drift {:+.3g} µs/s", where,
-                                 correction.line.offset, correction.line.slope * kMicroseconds));
+      said.push_back(fmt::format("time stamps{} were converted to the recorder's clock: {:+.6f} s, drift {:+.3g} µs/s",
+                                 where, correction.line.offset, correction.line.slope * kMicroseconds));
       if (correction.bend > 0.0) {
         said.push_back(
-            fmt::format("its drift{} changes: a curve through the clock offsets was added, which is up to "
+            fmt::format("its drift{} changes: a curve through the clock offsets was added, which deviates by up to "
                         "{:.2g} ms from a straight line",
                         where, correction.bend * kMilliseconds));
       }
       if (correction.outliers > 0) {
         said.push_back(
             correction.outliers == 1
-                ? fmt::format("one clock offset{} is an outlier and counts little", where)
-                : fmt::format("{} clock offsets{} are outliers and count little", correction.outliers, where));
+                ? fmt::format("one clock offset{} is an outlier and has little weight", where)
+                : fmt::format("{} clock offsets{} are outliers and have little weight", correction.outliers, where));
       }
       if (correction.doubt > 0.0) {
         doubts.push_back(
-            fmt::format("its clock offsets{} differ by more than clocks drift ({:.0f} µs/s) and do not show why: their "
-                        "median was added, and its time may be off by {:.3g} ms",
+            fmt::format("its clock offsets{} differ by more than clock drift ({:.0f} µs/s) for an unknown reason: "
+                        "their median was added, and its time may be off by {:.3g} ms",
                         where, kLargestDrift * kMicroseconds, correction.doubt * kMilliseconds));
       } else if (std::abs(correction.line.slope) > kLargestDrift) {
-        doubts.push_back(
-            fmt::format("its clock{} drifts by {:+.3g} µs/s, more than quartz does ({:.0f} µs/s): check "
-                        "the clock of the sender",
-                        where, correction.line.slope * kMicroseconds, kLargestDrift * kMicroseconds));
+        doubts.push_back(fmt::format(
+            "its clock{} drifts by {:+.3g} µs/s, more than a quartz clock ({:.0f} µs/s): check the clock of the sender",
+            where, correction.line.slope * kMicroseconds, kLargestDrift * kMicroseconds));
       }
     }
     if (clock.uncovered > kLongUncovered) {
-      said.push_back(fmt::format("its nearest clock offset is up to {:.0f} s from its samples: the drift was continued",
-                                 clock.uncovered));
+      said.push_back(fmt::format(
+          "its nearest clock offset is up to {:.0f} s from its samples: the drift was extrapolated", clock.uncovered));
     }
   }
 
@@ -281,15 +279,15 @@ class Decoder {
       const ClockStep& step = steps[k];
       if (step.unsure == 0) {
         doubts.push_back(
-            fmt::format("the sender's clock was set by {} behind sample {}, as its clock offsets show: this was taken "
-                        "out of the time stamps behind it",
+            fmt::format("the sender's clock was set by {} after sample {}, as its clock offsets show: later time "
+                        "stamps were corrected",
                         signed_duration(-step.size), step.first));
         continue;
       }
       doubts.push_back(
           fmt::format("its clock offsets step by {}, and its time stamps do not show at which of samples {} to {}: {}",
                       signed_duration(step.size), step.first - step.unsure + 1, step.first,
-                      stream.value == XdfValue::string ? "their times may be off by as much" : "these were left out"));
+                      stream.value == XdfValue::string ? "their times may be off by as much" : "these were omitted"));
     }
     if (steps.size() > kMaxPartsListed) {
       doubts.push_back(fmt::format("its clock offsets show {} such steps", steps.size()));
@@ -300,14 +298,14 @@ class Decoder {
                              std::vector<std::string>& doubts, std::vector<std::string>& said) {
     const std::size_t breaks = even.segments.size() - 1;
     const double shift = even.largest_shift * kMilliseconds;
-    std::string moved = fmt::format("time stamps were evened out, which moved them by {}",
-                                    shift < 1e-3 ? "less than 0.001 ms" : fmt::format("{:.3g} ms at most", shift));
+    std::string moved = fmt::format("time stamps were dejittered, which moved them by {}",
+                                    shift < 1e-3 ? "less than 0.001 ms" : fmt::format("at most {:.3g} ms", shift));
     const double samples = even.lasting_shift * stream.nominal_hz;
     const bool wander = samples > kManySamples && even.lasting_shift > even.largest_shift / 2.0;  // and do not jitter
     if (wander) {
       moved += fmt::format(
-          ", and for two seconds and more by {:.0f} samples: where samples were lost, those behind them stand at "
-          "wrong times; compare with '{}.raw_time'",
+          ", and for at least two seconds by {:.0f} samples: if samples were lost, the times of later samples are "
+          "wrong; compare with '{}.raw_time'",
           samples, stream.name);
     }
     (wander ? doubts : said).push_back(std::move(moved));
@@ -315,11 +313,10 @@ class Decoder {
     std::string what = fmt::format("{} break{} in its time", breaks, breaks == 1 ? "" : "s");
     for (std::size_t k = 0; k < std::min(breaks, kMaxPartsListed); ++k) {
       const Index last = even.segments[k].last;
-      what +=
-          fmt::format("{} {:.6g} s behind sample {}", k == 0 ? ":" : ",", before[last + 1] - before[last], last + 1);
+      what += fmt::format("{} {:.6g} s after sample {}", k == 0 ? ":" : ",", before[last + 1] - before[last], last + 1);
     }
     if (breaks > kMaxPartsListed) what += ", …";
-    doubts.push_back(what + "; each part was evened out separately");
+    doubts.push_back(what + "; each part was dejittered separately");
   }
 
   /// Stamps that ran backward before they were evened out, and did not show that samples are out of order.
@@ -335,8 +332,8 @@ class Decoder {
     }
     if (places == 0) return;
     said.push_back(
-        fmt::format("its time stamps run backward in {} places, by up to {:.3g} ms, as if they jitter: its samples "
-                    "were kept in the order of the file",
+        fmt::format("its time stamps run backward in {} places, by up to {:.3g} ms, which looks like jitter: its "
+                    "samples were kept in file order",
                     places, farthest * kMilliseconds));
   }
 
@@ -379,7 +376,7 @@ class Decoder {
   void say_rounded(const std::string& name, const XdfChannel& channel) {
     std::string note = fmt::format("{}: by up to {}", rounded_note(name), channel.rounded);
     if (const double unit = seconds_of(channel.unit); unit > 0.0) {
-      note += fmt::format("; as times they are exact to {:.3g} µs", channel.rounded * unit * kMicroseconds);
+      note += fmt::format("; as times they are accurate to {:.3g} µs", channel.rounded * unit * kMicroseconds);
     }
     contents_.notes.push_back(std::move(note));
   }
@@ -398,7 +395,7 @@ class Decoder {
       contents_.events.push_back({time[static_cast<Index>(k / channels)], std::move(name), number_in(text)});
       ++taken;
     }
-    details_.push_back(fmt::format("the texts of '{}' are {} events", stream.name, taken));
+    details_.push_back(fmt::format("the texts of '{}' were read as {} events", stream.name, taken));
   }
 
   XdfFile file_;

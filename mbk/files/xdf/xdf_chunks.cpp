@@ -232,7 +232,7 @@ class Parser {
     file_.recorded = one_line(info.child_value("datetime"));
     const std::string version = one_line(info.child_value("version"));
     if (version != "1.0" && version != "1") {
-      file_.notes.push_back(fmt::format("the file says that it is XDF '{}'; it was read as version 1.0", version));
+      file_.notes.push_back(fmt::format("the file states XDF version '{}'; it was read as version 1.0", version));
     }
     return true;
   }
@@ -318,20 +318,20 @@ class Parser {
       const Damage& one = damage_[k];
       lost += one.end - one.begin;
       if (k >= kMaxDamageListed) continue;
-      file_.notes.push_back(fmt::format("the file is damaged at byte {}: {} bytes were lost, {}", one.begin,
-                                        one.end - one.begin,
-                                        one.end == bytes_.size() ? "to its end" : "up to the next boundary"));
+      file_.notes.push_back(
+          fmt::format("the file is damaged at byte {}: {} bytes were lost, {}", one.begin, one.end - one.begin,
+                      one.end == bytes_.size() ? "up to the end of the file" : "up to the next boundary"));
     }
     if (damage_.size() > kMaxDamageListed) {
       file_.notes.push_back(
-          fmt::format("it is damaged in {} places, and {} bytes were lost in all", damage_.size(), lost));
+          fmt::format("the file is damaged in {} places; {} bytes were lost in total", damage_.size(), lost));
     }
     if (!without_header_.empty()) {
       std::ranges::sort(without_header_);
       const std::size_t chunks = without_header_.size();
       const auto same = std::ranges::unique(without_header_);
       without_header_.erase(same.begin(), same.end());
-      file_.notes.push_back(fmt::format("{} chunks belong to {} streams whose headers are not there or were ignored",
+      file_.notes.push_back(fmt::format("{} chunks belong to {} streams whose headers are missing or were ignored",
                                         chunks, without_header_.size()));
     }
   }
@@ -387,7 +387,7 @@ bool looks_like_xdf(std::span<const std::byte> file) {
 }
 
 Result<XdfFile> parse_xdf(std::span<const std::byte> file) {
-  if (!looks_like_xdf(file)) return bad_data("it does not begin as an XDF file");
+  if (!looks_like_xdf(file)) return bad_data("the file has no XDF signature");
   return Parser(file).run();
 }
 
