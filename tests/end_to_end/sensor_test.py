@@ -87,7 +87,7 @@ class Calibrate(Case):
                                      ("Fx=1,Fy=2", BAD_DATA, "voltage_x"),
                                      ("Vx=3", BAD_DATA, "force"),
                                      ("Fx=1:V,Vx=3", BAD_DATA, "in V"),
-                                     ("Fx=1*0,Vx=3", WRONG_USAGE, "gain 0")):
+                                     ("Fx=1*0,Vx=3", WRONG_USAGE, "gain")):
             with self.subTest(channels):
                 self.refused(code, "sensor", "calibrate", table, "--channels", channels, says=says)
         self.refused(WRONG_USAGE, "sensor", "calibrate", table, "--bits", 12, says="--range")

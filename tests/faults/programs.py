@@ -406,7 +406,7 @@ class Session(Task):
     def said_loss(self, ran, fault):
         if self.speechless(fault) and ran.code != FINE:
             return True
-        return re.search(r"not written|dropped|lost|missing|cannot be made|no space", ran.err + ran.out) is not None
+        return re.search(r"not written|dropped|lost|missing|cannot be created|no space", ran.err + ran.out) is not None
 
 
 class Recover(Task):

@@ -638,7 +638,7 @@ TEST(DecodeC3d, RefusesWhereHeaderAndParametersContradictEachOther) {
   };
   // The file is short: its last block has room for either.
   EXPECT_THAT(with(n.words(C3d::kPoint, "USED", {3})), AllOf(HasSubstr("header"), HasSubstr("2 points")));
-  EXPECT_THAT(with(n.words(C3d::kAnalog, "USED", {4})), AllOf(HasSubstr("header"), HasSubstr("6 analog numbers")));
+  EXPECT_THAT(with(n.words(C3d::kAnalog, "USED", {4})), AllOf(HasSubstr("header"), HasSubstr("6 analog values")));
   EXPECT_THAT(with(n.reals(C3d::kPoint, "SCALE", {0.5})), HasSubstr("scale"));
   EXPECT_THAT(with(n.reals(C3d::kAnalog, "RATE", {300.0})),
               AllOf(HasSubstr("2 analog samples"), HasSubstr("ANALOG:RATE"), HasSubstr("300 Hz"),
@@ -663,7 +663,7 @@ TEST(DecodeC3d, RefusesUnknownProcessorsTypesAndDimensions) {
   C3d file = small_c3d();
   std::string bytes = file.bytes();
   bytes[515] = 87;
-  EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("processor 87"), HasSubstr("Intel"), HasSubstr("DEC"), HasSubstr("SGI")));
+  EXPECT_THAT(refusal(bytes), AllOf(HasSubstr("type 87"), HasSubstr("Intel"), HasSubstr("DEC"), HasSubstr("SGI")));
   file.records = file.numbers().parameter(C3d::kPoint, "ODD", 3, {}, "abc");
   EXPECT_THAT(refusal(file.bytes()), AllOf(HasSubstr("ODD"), HasSubstr("type 3")));
   file.records = file.numbers().parameter(C3d::kPoint, "ODD", 1, std::vector<int>(8, 1), "a");

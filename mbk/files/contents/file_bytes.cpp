@@ -42,7 +42,7 @@ Result<Opened> open_file(const std::filesystem::path& file) {
   // O_NONBLOCK: opening a pipe must not wait for its writer.
   Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (descriptor.number < 0) {
-    if (errno == ENOENT) return bad_data("the file does not exist", "check the name and the folder");
+    if (errno == ENOENT) return bad_data("there is no such file", "check the name and the folder");
     return bad_data(fmt::format("cannot be opened: {}", reason(errno)), "check its permissions");
   }
   struct stat status {};

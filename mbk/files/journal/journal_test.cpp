@@ -381,7 +381,7 @@ TEST_F(JournalFile, AnEndingOfANewerVersionKeepsItsWordAndIsSaid) {
   EXPECT_EQ(journal->ending->how, Ending::How::other);
   const auto metadata = to_recording(*journal)->metadata;
   EXPECT_EQ(metadata.at("ended"), "unplugged");
-  EXPECT_EQ(metadata.at("ended_detail"), "no power; this version of mbk does not know 'unplugged'");
+  EXPECT_EQ(metadata.at("ended_detail"), "no power; 'unplugged' is unknown to this version of mbk");
 }
 
 TEST_F(JournalFile, LateForcesStandBesideTheirOwnAngles) {

@@ -241,11 +241,10 @@ class Table {
       return !numbers;
     });
     if (!numbers) {
-      return bad_data(
-          fmt::format(
-              "it contains words in {} cells, while the lines before contain {} numbers: another table may begin there",
-              count, columns_ + (trailing_ ? 1 : 0)),
-          "write each table to its own file", place(line.number));
+      return bad_data(fmt::format("it contains words in {} cells, but the lines before have numbers in {} cells: "
+                                  "another table may begin there",
+                                  count, columns_ + (trailing_ ? 1 : 0)),
+                      "write each table to its own file", place(line.number));
     }
     const bool commas = head_.separator == ',' && line.text.find('.') == line.text.npos;
     return bad_data(

@@ -228,7 +228,7 @@ class Reader {
       labels_.resize(filled_cells_of(line->text, style_.separator).size());
     }
     if (labels_.size() < 2 || labels_.size() > kMaxTextColumns) {
-      return bad_data(fmt::format("its segment names {} columns", labels_.size()), std::string(kWriteAgain),
+      return bad_data(fmt::format("the segment names {} columns", labels_.size()), std::string(kWriteAgain),
                       line ? line_place(line->number) : "");
     }
     if (line && is_row(line->text)) {
@@ -381,7 +381,7 @@ class Record {
     contents_.format = "LVM";
     contents_.table = true;
     if (parts_.size() > 1) {
-      contents_.notes.push_back(fmt::format("{} contiguous segments were joined", parts_.size()));
+      contents_.notes.push_back(fmt::format("{} segments without a pause between them were joined", parts_.size()));
     }
     group();
     if (bases_.size() == 1) {
