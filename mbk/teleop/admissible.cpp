@@ -138,7 +138,7 @@ Result<void> add_poles(const Ratio& ratio, CriticalValues& critical) {
   const Elimination axis = odd.is_zero() ? Elimination{even, {}} : eliminate(even, odd);
   if (axis.common.degree() > 0) {
     return fail(ErrorKind::not_usable, "the network has undamped poles for every value of the parameter",
-                "give some damping, or ask for single values");
+                "add some damping, or test single values");
   }
   critical.add(axis.resultant, true);
   return {};
@@ -254,7 +254,7 @@ double value_of(const Boundary& boundary) {
 
 Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Rational& low, const Rational& high,
                                      const std::function<void(double)>& progress) {
-  if (low > high) return bad_usage("the range of the parameter ends before it begins", "write LOW:HIGH");
+  if (low > high) return bad_usage("the upper end of the parameter range is below the lower end", "write LOW:HIGH");
   const auto two_port = MBK_TRY(immittance(equations));
   const auto critical = MBK_TRY(critical_values(two_port, progress));
   const std::vector<Boundary> ends = boundaries(critical, low, high);

@@ -55,7 +55,7 @@ Polynomial read_polynomial(const Section& entry, std::string_view key, std::vect
   constexpr std::size_t kMax = 13;  // degree 12: two-ports beyond that take minutes
   std::vector<double> coefficients = entry.numbers(key, std::move(fallback));
   if (coefficients.empty()) {
-    entry.reject(key, "has no coefficients", "list them, that of the highest power of s first: [1, 0.5] is s + 0.5");
+    entry.reject(key, "has no coefficients", "list them, highest power of s first: [1, 0.5] is s + 0.5");
   }
   if (coefficients.size() > kMax) {
     entry.reject(key, fmt::format("has {} coefficients, more than {}", coefficients.size(), kMax),
@@ -85,7 +85,7 @@ TwoPort read_two_port(const Section& section) {
       if (function) {
         result.matrix(i, j) = std::move(*function);
       } else {
-        entry.reject("denominator", "is zero", "one of its coefficients must not be");
+        entry.reject("denominator", "is zero", "make at least one coefficient non-zero");
       }
     }
   }
@@ -145,7 +145,7 @@ Result<Design> design_of(const Document& document, std::string_view file) {
   design.name = root.text("name", "");
   const Section two_port = root.section("two_port");
   if (two_port.given() && root.section("architecture").given()) {
-    return tl::unexpected(two_port.error("form", "there is an [architecture] too", "keep one of the two"));
+    return tl::unexpected(two_port.error("form", "there is also an [architecture]", "keep one of the two"));
   }
   if (!two_port.given() && !root.section("architecture").given()) {
     return tl::unexpected(root.error("architecture", "is missing, and there is no [two_port] either",
@@ -175,7 +175,7 @@ Result<Rational> bounded(double value, Sizes sizes) {
   if (value == 0.0 || (size >= sizes.smallest && size <= sizes.largest)) return lti::exact(value);
   return bad_usage(fmt::format("{:g} is {} {:g} {}", value, size < sizes.smallest ? "closer to zero than" : "beyond",
                                size < sizes.smallest ? sizes.smallest : sizes.largest, sizes.unit),
-                   size < sizes.smallest ? "write 0 where it is none" : "check its unit");
+                   size < sizes.smallest ? "write 0 if there is none" : "check its unit");
 }
 
 PortEquations Design::equations(std::string_view parameter) const {

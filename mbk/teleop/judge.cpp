@@ -90,8 +90,8 @@ std::vector<Chart> charts(const Immittance& immittance, const std::vector<RadPer
   };
   return {chart("First condition: r11 must not be negative", resistance(1), std::move(r11)),
           chart("Second condition: r22 must not be negative", resistance(2), std::move(r22)),
-          chart("Third condition: 2 r11 r22 − Re p − |p| must not be negative", {"over 2 |r11 r22| + |Re p| + |p|", ""},
-                std::move(third))};
+          chart("Third condition: 2 r11 r22 − Re p − |p| must not be negative",
+                {"divided by 2 |r11 r22| + |Re p| + |p|", ""}, std::move(third))};
 }
 
 /// How a design is judged, exactly or on a grid, with a shortage at a port.
@@ -132,12 +132,12 @@ void describe(const Design& design, TeleoperationFinding& finding) {
   if (design.exact_delay) {
     finding.grid = design.exact_delay;
     finding.notes.push_back(
-        "the delay is exact and the verdict holds on the grid only: a violation between two of its "
-        "points is not seen; with pade instead of exact it would be decided for every frequency");
+        "the delay is exact, so the verdict applies to the grid frequencies only: a violation between grid points is "
+        "not detected; use pade instead of exact to decide every frequency");
   } else if (teleoperator.has_delay()) {
     finding.notes.push_back(
-        fmt::format("each delay is a Padé approximation of order {}: the verdict is exact for that, "
-                    "and the phase of a true delay differs beyond about {}/T rad/s",
+        fmt::format("each delay is a Padé approximation of order {}: the verdict is exact for this approximation; the "
+                    "phase of a true delay differs above about {}/T rad/s",
                     teleoperator.pade_order, 2 * teleoperator.pade_order));
   }
 }
@@ -145,7 +145,7 @@ void describe(const Design& design, TeleoperationFinding& finding) {
 Result<std::string> unit_of(const Design& design, const std::string& name) {
   const auto* teleoperator = std::get_if<Teleoperator>(&design.network);
   if (teleoperator == nullptr) {
-    return bad_usage("--parameter: a two-port that is given as such has no parameters", "write an [architecture]");
+    return bad_usage("--parameter: a design given as [two_port] has no parameters", "write an [architecture]");
   }
   std::vector<std::string_view> names;
   for (const Parameter& parameter : all_parameters()) {
@@ -153,15 +153,15 @@ Result<std::string> unit_of(const Design& design, const std::string& name) {
     if (parameter.name == name) return std::string(parameter.unit);
     names.push_back(parameter.name);
   }
-  return bad_usage(fmt::format("--parameter: '{}' is no parameter of {}", name, word_of(teleoperator->architecture)),
-                   fmt::format("it has {}", fmt::join(names, ", ")));
+  return bad_usage(fmt::format("--parameter: '{}' is not a parameter of {}", name, word_of(teleoperator->architecture)),
+                   fmt::format("use one of {}", fmt::join(names, ", ")));
 }
 
 Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, const Rational& a,
                             const std::function<void(double)>& progress = {}) {
   auto unit = MBK_TRY(unit_of(design, asked.parameter));
   if (design.exact_delay) {
-    return bad_usage("--parameter: with an exact delay there are no polynomials to solve", "use pade in [delay]");
+    return bad_usage("--parameter: an exact delay has no polynomial form", "use pade in [delay]");
   }
   const PortEquations equations = design.equations(asked.parameter).with_shortage(design.operator_port, Polynomial{a});
   auto set = admissible_set(equations, asked.low, asked.high, progress);
@@ -210,7 +210,7 @@ Result<ExcessSweep> sweep_excess(const Design& design, const Question::Sweep& as
 
 /// The least and the largest admissible value against the excess, with the measured one.
 Chart excess_chart(const ExcessSweep& sweep, const std::optional<OperatorShortage>& shortage) {
-  ChartSeries least{"least stable", {}, {}, {}, ChartSeries::Drawn::line}, largest = least;
+  ChartSeries least{"smallest stable", {}, {}, {}, ChartSeries::Drawn::line}, largest = least;
   largest.name = "largest stable";
   for (const ExcessStep& step : sweep.steps) {
     if (step.set.intervals.empty()) continue;
@@ -220,7 +220,7 @@ Chart excess_chart(const ExcessSweep& sweep, const std::optional<OperatorShortag
     largest.y.push_back(step.set.intervals.back().high.value);
   }
   Chart chart;
-  chart.title = "What an excess of passivity buys: stable values of " + sweep.parameter;
+  chart.title = "Stable values against excess of passivity: " + sweep.parameter;
   chart.x = {"excess of passivity of the operator", "N·s/m"};
   chart.y = {sweep.parameter, sweep.unit};
   chart.series = {std::move(least), std::move(largest)};
@@ -289,7 +289,8 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
   finding.operator_shortage = question.operator_shortage;
   if (design.shortage) {
     if (question.operator_shortage) {
-      return bad_usage("a of the operator is given by --operator and by shortage_N_s_per_m", "keep one of the two");
+      return bad_usage("a of the operator is given both by --operator and by shortage_N_s_per_m",
+                       "keep one of the two");
     }
     finding.operator_shortage = OperatorShortage{lti::to_double(*design.shortage), "[operator] of the design", {}};
   }
@@ -312,7 +313,7 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
   }
   if (question.excess) {
     if (!question.sweep)
-      return bad_usage("--excess shows a parameter against it", "name one: --parameter slave.k=0:1000");
+      return bad_usage("--excess needs a parameter to sweep", "name one, as in --parameter slave.k=0:1000");
     auto swept = MBK_TRY(sweep_excess(design, *question.sweep, *question.excess, question.progress));
     swept.chart = excess_chart(swept, finding.operator_shortage);
     finding.excess = std::move(swept);

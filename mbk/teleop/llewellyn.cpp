@@ -78,7 +78,7 @@ void judge_diagonal(const RationalMatrix& m, Index i, std::string_view form, std
       violated.push_back(at_pole(where.low.value, fmt::format("{} of {}", what, name_of(form, {i, i}))));
     }
   };
-  note(lti::PositiveRealCondition::simple_poles, "a pole that is not simple");
+  note(lti::PositiveRealCondition::simple_poles, "a multiple pole");
   note(lti::PositiveRealCondition::residues, "a pole without a positive residue");
 }
 

@@ -20,7 +20,7 @@ Result<void> check_poles(const Teleoperator& teleoperator) {
   const Rational local =
       (1 + value(teleoperator, "master.local_force_gain")) * (1 + value(teleoperator, "slave.local_force_gain"));
   if (abs(sent) < abs(local)) return {};
-  return fail(ErrorKind::not_usable, "with |C2 C3| ≥ |(1 + C5)(1 + C6)| an exact delay adds poles without end",
+  return fail(ErrorKind::not_usable, "with |C2 C3| ≥ |(1 + C5)(1 + C6)| an exact delay adds infinitely many poles",
               "give a Padé order instead, pade = 2 without exact");
 }
 

@@ -64,7 +64,7 @@ Result<void> read_bytes(int descriptor, std::size_t from, void* to, std::size_t 
         ::pread(descriptor, static_cast<std::byte*>(to) + done, count - done, static_cast<off_t>(from + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
-    if (got == 0) return bad_data("the file was truncated while it was being read", "wait until writing has finished");
+    if (got == 0) return bad_data("the file became shorter while it was being read", "wait until writing has finished");
     done += static_cast<std::size_t>(got);
   }
   return {};

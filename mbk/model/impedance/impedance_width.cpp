@@ -12,7 +12,7 @@ namespace mbk::impedance {
 namespace {
 
 Result<Matrix> positive_definite(const Matrix& Z, const char* which) {
-  if (!Z.allFinite()) return bad_data(fmt::format("the {} matrix is not known", which));
+  if (!Z.allFinite()) return bad_data(fmt::format("the {} matrix is unknown", which));
   const Matrix symmetric = symmetric_part(Z);
   const Vector eigenvalues = numeric::symmetric_eigenvalues(symmetric);
   const double smallest = eigenvalues.minCoeff(), largest = eigenvalues.maxCoeff();

@@ -5,7 +5,8 @@
 
 namespace mbk::perturbation {
 Result<AxisPair> interleaved(const Multisine& signal) {
-  if (signal.lines().size() < 2) return bad_usage("one line cannot go to two axes", "give at least two lines");
+  if (signal.lines().size() < 2)
+    return bad_usage("one harmonic cannot be split between two axes", "give at least two harmonics");
   std::vector<Multisine::Line> lines = signal.lines();
   std::ranges::sort(lines, {}, &Multisine::Line::harmonic);
   std::array<std::vector<Multisine::Line>, 2> axes;

@@ -47,16 +47,16 @@ Multisine::Multisine(double period, std::vector<Line> lines) : period_(period), 
 }
 
 Result<Multisine> Multisine::create(double period, std::vector<Line> lines) {
-  if (!(period > 0.0 && std::isfinite(period))) return bad_usage(fmt::format("period {} s is not above 0", period));
-  if (lines.empty()) return bad_usage("a multisine needs at least one line");
+  if (!(period > 0.0 && std::isfinite(period))) return bad_usage(fmt::format("period {} s is not positive", period));
+  if (lines.empty()) return bad_usage("a multisine needs at least one harmonic");
   std::set<int> seen;
   for (const Line& line : lines) {
-    if (line.harmonic < 1) return bad_usage(fmt::format("harmonic {} is not above 0", line.harmonic));
+    if (line.harmonic < 1) return bad_usage(fmt::format("harmonic {} is not positive", line.harmonic));
     if (line.harmonic > kHighestHarmonic) {
       return bad_usage(fmt::format("harmonic {} is above {}", line.harmonic, kHighestHarmonic),
-                       "take a shorter period");
+                       "choose a shorter period");
     }
-    if (!seen.insert(line.harmonic).second) return bad_usage(fmt::format("harmonic {} stands twice", line.harmonic));
+    if (!seen.insert(line.harmonic).second) return bad_usage(fmt::format("harmonic {} occurs twice", line.harmonic));
     if (!std::isfinite(line.amplitude) || !std::isfinite(line.phase)) {
       return bad_usage(fmt::format("amplitude {} or phase {} rad of harmonic {} is not finite", line.amplitude,
                                    line.phase, line.harmonic));
@@ -69,7 +69,7 @@ Result<Multisine> Multisine::with_random_phases(double period, const std::vector
                                                 const std::vector<double>& amplitudes, std::uint64_t seed,
                                                 std::uint32_t stream) {
   if (harmonics.size() != amplitudes.size()) {
-    return bad_usage(fmt::format("{} harmonics, but {} amplitudes", harmonics.size(), amplitudes.size()));
+    return bad_usage(fmt::format("there are {} harmonics but {} amplitudes", harmonics.size(), amplitudes.size()));
   }
   numeric::Random random(seed, stream);
   std::vector<Line> lines;

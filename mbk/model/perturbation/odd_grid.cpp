@@ -9,10 +9,11 @@ namespace mbk::perturbation {
 
 Result<std::vector<int>> odd_grid(int highest, int group, std::uint64_t seed) {
   if (highest < 1 || highest > Multisine::kHighestHarmonic) {
-    return bad_usage(fmt::format("odd harmonics up to {} are not in 1 to {}", highest, Multisine::kHighestHarmonic));
+    return bad_usage(
+        fmt::format("the highest odd harmonic {} is not within 1 to {}", highest, Multisine::kHighestHarmonic));
   }
   if (group < 0 || group == 1) {
-    return bad_usage(fmt::format("one left out of every {} lines leaves none", group), "choose 2 or more, or 0");
+    return bad_usage(fmt::format("omitting one of every {} harmonics leaves none", group), "choose 2 or more, or 0");
   }
   std::vector<int> lines;
   numeric::Random random(seed, 20);

@@ -13,7 +13,7 @@ namespace {
 Result<void> check(const OptimalPowerOptions& o) {
   if (o.limited != LimitedSignal::force) return {};
   if (!o.nominal) {
-    return bad_usage("a limited force needs a nominal impedance", "give M, B and K as far as they are known");
+    return bad_usage("a limited force needs a nominal impedance", "give approximate M, B and K");
   }
   const auto [M, B, K] = *o.nominal;
   if (!(std::isfinite(M) && std::isfinite(B) && std::isfinite(K))) {
@@ -48,13 +48,14 @@ Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmon
   std::vector<Multisine::Line> lines;
   for (const int k : harmonics) lines.push_back({k, 1.0, 0.0});
   MBK_TRY(Multisine::create(period, lines));
-  if (n < 2) return bad_usage("one line cannot tell M from K", "give at least two lines");
+  if (n < 2) return bad_usage("one harmonic cannot distinguish M from K", "give at least two harmonics");
   if (!(options.floor >= 0.0 && options.floor * static_cast<double>(n) < 1.0)) {
-    return bad_usage(fmt::format("floor {} at each of {} lines is not from 0 to below 1 in all", options.floor, n));
+    return bad_usage(
+        fmt::format("floor {} at each of {} harmonics is negative or sums to 1 or more", options.floor, n));
   }
   if (options.floor > 0.0 && n < 5) {
-    return bad_usage(fmt::format("{} lines have no three between the lowest and the highest", n),
-                     "give at least five lines, or take floor 0");
+    return bad_usage(fmt::format("{} harmonics leave fewer than three between the lowest and the highest", n),
+                     "give at least five harmonics, or set floor 0");
   }
 
   // Iₖ with frequencies relative to the highest: the determinant changes by a factor only.
@@ -94,8 +95,8 @@ Result<OptimalPower> optimal_power(double period, const std::vector<int>& harmon
     v = v.cwiseProduct(power.sensitivity) / mean;
   }
   return fail(ErrorKind::not_usable,
-              fmt::format("the shares of power are {:.1e} from optimal after {} steps", power.gap, kMaxIterations),
-              "leave out lines that stand close to others");
+              fmt::format("the power distribution is {:.1e} from optimal after {} steps", power.gap, kMaxIterations),
+              "remove closely spaced harmonics");
 }
 
 }  // namespace mbk::perturbation

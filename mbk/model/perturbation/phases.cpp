@@ -130,12 +130,12 @@ Multisine with_schroeder_phases(const Multisine& signal) {
 }
 
 Result<Multisine> with_low_crest_phases(const Multisine& signal, const LowCrestOptions& options) {
-  if (options.starts < 1) return bad_usage(fmt::format("{} starts: at least 1 is needed", options.starts));
+  if (options.starts < 1) return bad_usage(fmt::format("{} starts are too few: at least 1 is needed", options.starts));
   if (!(signal.root_mean_square() > 0.0)) return bad_usage("every amplitude of the multisine is zero");
   constexpr int kCoarse = 16, kFine = 64, kHighestHarmonic = 10'000;
   const int highest = std::ranges::max(signal.lines(), {}, &Multisine::Line::harmonic).harmonic;
   if (highest > kHighestHarmonic) {
-    return bad_usage(fmt::format("harmonic {} is above {}", highest, kHighestHarmonic), "take a shorter period");
+    return bad_usage(fmt::format("harmonic {} is above {}", highest, kHighestHarmonic), "choose a shorter period");
   }
   const SampledPeriod period(signal.lines(), kCoarse);
   numeric::Random random(options.seed);

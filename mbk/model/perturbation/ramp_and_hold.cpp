@@ -16,22 +16,25 @@ namespace {
 Result<void> check_ramps(const RampAndHold::Options& o) {
   const auto positive = [](const char* what, double value, const char* unit) -> Result<void> {
     if (value > 0.0 && std::isfinite(value)) return {};
-    return bad_usage(fmt::format("{} {}{} is not above 0", what, value, unit));
+    return bad_usage(fmt::format("{} {}{} is not positive", what, value, unit));
   };
   MBK_TRY(positive("amplitude of the ramps", o.amplitude, ""));
   MBK_TRY(positive("duration of a ramp", o.ramp, " s"));
   MBK_TRY(positive("duration of the hold", o.hold, " s"));
-  MBK_TRY(positive("duration of the way back", o.way_back, " s"));
-  if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
-  if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
+  MBK_TRY(positive("duration of the return", o.way_back, " s"));
+  if (o.directions < 1) return bad_usage(fmt::format("{} directions are too few: at least 1 is needed", o.directions));
+  if (o.repetitions < 1)
+    return bad_usage(fmt::format("{} repetitions are too few: at least 1 is needed", o.repetitions));
   if (o.repetitions > RampAndHold::kMaxRamps / o.directions) {
     return bad_usage(fmt::format("{} directions, {} times each, are more than {} ramps", o.directions, o.repetitions,
                                  RampAndHold::kMaxRamps));
   }
   if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
-    return bad_usage(fmt::format("pauses from {} s to {} s are no range from 0", o.shortest_pause, o.longest_pause));
+    return bad_usage(fmt::format("pauses from {} s to {} s are not a range of non-negative times", o.shortest_pause,
+                                 o.longest_pause));
   }
-  if (!(o.quiet >= 0.0 && std::isfinite(o.quiet))) return bad_usage(fmt::format("quiet time {} s is below 0", o.quiet));
+  if (!(o.quiet >= 0.0 && std::isfinite(o.quiet)))
+    return bad_usage(fmt::format("quiet time {} s is negative", o.quiet));
   return {};
 }
 

@@ -13,19 +13,19 @@ namespace {
 
 Result<void> check(const RandomBinaryOptions& o, double duration) {
   if (!(o.amplitude > 0.0 && std::isfinite(o.amplitude))) {
-    return bad_usage(fmt::format("binary amplitude {} is not above 0", o.amplitude));
+    return bad_usage(fmt::format("binary amplitude {} is not positive", o.amplitude));
   }
   if (!(duration > 0.0 && std::isfinite(duration))) {
-    return bad_usage(fmt::format("duration {} s is not above 0", duration));
+    return bad_usage(fmt::format("duration {} s is not positive", duration));
   }
   if (!(o.switching_time > 0.0 && o.switching_time <= duration)) {
     return bad_usage(
-        fmt::format("switching time {} s is not above 0 and at most the duration {} s", o.switching_time, duration));
+        fmt::format("switching time {} s is not between 0 and the duration {} s", o.switching_time, duration));
   }
   if (duration / o.switching_time > RandomBinary::kMaxIntervals) {
     return bad_usage(fmt::format("switching time {} s divides the duration {} s into more than {} intervals",
                                  o.switching_time, duration, RandomBinary::kMaxIntervals),
-                     "take a longer switching time");
+                     "choose a longer switching time");
   }
   return {};
 }
@@ -48,9 +48,10 @@ Result<RandomBinary> RandomBinary::create(const RandomBinaryOptions& options, do
   std::vector<double> signs;
   if (options.zero_mean) {
     if (count % 2 != 0 || std::abs(ratio - static_cast<double>(count)) > kRounding) {
-      return bad_usage(fmt::format("duration {} s is no even number of switching times {} s, so that the mean is not 0",
-                                   duration, options.switching_time),
-                       fmt::format("take {} s", 2.0 * options.switching_time * std::ceil(0.5 * ratio - kRounding)));
+      return bad_usage(
+          fmt::format("duration {} s is not an even multiple of the switching time {} s, so the mean would not be 0",
+                      duration, options.switching_time),
+          fmt::format("choose a duration of {} s", 2.0 * options.switching_time * std::ceil(0.5 * ratio - kRounding)));
     }
     for (std::size_t i = 0; i < count; ++i) signs.push_back(i % 2 == 0 ? 1.0 : -1.0);
     for (std::size_t i = count - 1; i > 0; --i) std::swap(signs[i], signs[random.below(i + 1)]);

@@ -15,28 +15,29 @@ namespace mbk::perturbation {
 namespace {
 
 Result<void> check_counts(const ReachSchedule::Options& o) {
-  if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
-  if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
+  if (o.directions < 1) return bad_usage(fmt::format("{} directions are too few: at least 1 is needed", o.directions));
+  if (o.repetitions < 1)
+    return bad_usage(fmt::format("{} repetitions are too few: at least 1 is needed", o.repetitions));
   if (o.undisturbed_first < ReachSchedule::kMinUndisturbedFirst) {
-    return bad_usage(fmt::format("{} undisturbed reaches at the beginning are fewer than {}", o.undisturbed_first,
+    return bad_usage(fmt::format("{} unperturbed reaches at the beginning are fewer than {}", o.undisturbed_first,
                                  ReachSchedule::kMinUndisturbedFirst),
-                     "the prediction of the others is learned from them");
+                     "add more: they are used to predict the perturbed reaches");
   }
-  if (o.undisturbed_between < 0) return bad_usage(fmt::format("{} undisturbed reaches", o.undisturbed_between));
+  if (o.undisturbed_between < 0) return bad_usage(fmt::format("{} unperturbed reaches", o.undisturbed_between));
   const int most = ReachSchedule::kMaxReaches;
   if (o.undisturbed_first > most || o.undisturbed_between > most || o.repetitions > most / o.directions ||
       o.directions * o.repetitions + o.undisturbed_first + o.undisturbed_between > most) {
-    return bad_usage(fmt::format("there are more than {} reaches", most), "make several trials");
+    return bad_usage(fmt::format("there are more than {} reaches", most), "split them into several trials");
   }
   return {};
 }
 
 Result<void> check(const ReachSchedule::Options& o) {
   if (auto ok = above_zero({{"amplitude of the displacement", o.amplitude, "m"},
-                            {"duration of the way out", o.out, "s"},
+                            {"duration of the outward ramp", o.out, "s"},
                             {"duration of the hold", o.hold, "s"},
-                            {"duration of the way back", o.back, "s"},
-                            {"way to the trigger", o.trigger, "m"},
+                            {"duration of the return", o.back, "s"},
+                            {"distance to the trigger", o.trigger, "m"},
                             {"duration of a reach", o.reach_time, "s"}});
       !ok) {
     return ok;
@@ -45,12 +46,12 @@ Result<void> check(const ReachSchedule::Options& o) {
   MBK_TRY(check_counts(o));
   if (!o.reach.allFinite() || !(o.trigger < o.reach.norm())) {
     return bad_usage(
-        fmt::format("the trigger after {:g} m is not before the target, {:g} m away", o.trigger, o.reach.norm()));
+        fmt::format("the trigger at {:g} m is not before the target at {:g} m", o.trigger, o.reach.norm()));
   }
   if (!(o.interval >= 2.0 * o.reach_time && std::isfinite(o.interval))) {
     return bad_usage(
         fmt::format("an interval of {:g} s is shorter than two reaches of {:g} s", o.interval, o.reach_time),
-        "the hand has to come back too");
+        "choose a longer interval: the hand must also return");
   }
   return {};
 }
@@ -96,7 +97,7 @@ Result<ReachSchedule> ReachSchedule::create(const Options& options) {
   MBK_TRY(check(options));
   ReachSchedule schedule(options, ordered(options));
   if (schedule.to_trigger_ + schedule.displaced_for() > options.interval) {
-    return bad_usage(fmt::format("a displacement of {:g} s lasts beyond the interval of {:g} s",
+    return bad_usage(fmt::format("a displacement of {:g} s is longer than the interval of {:g} s",
                                  schedule.displaced_for(), options.interval));
   }
   return schedule;

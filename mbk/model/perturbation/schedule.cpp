@@ -12,9 +12,10 @@ namespace mbk::perturbation {
 namespace {
 
 Result<void> check_duration(double duration) {
-  if (!(duration > 0.0)) return bad_usage(fmt::format("duration {} s is not above 0", duration));
+  if (!(duration > 0.0)) return bad_usage(fmt::format("duration {} s is not positive", duration));
   if (!(duration <= Schedule::kLongest)) {
-    return bad_usage(fmt::format("duration {:g} s is above {} s", duration, Schedule::kLongest), "make several trials");
+    return bad_usage(fmt::format("duration {:g} s is above {} s", duration, Schedule::kLongest),
+                     "split it into several trials");
   }
   return {};
 }
@@ -64,8 +65,7 @@ Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity
                                      double moving_in) {
   MBK_TRY(check_duration(duration));
   if (!(moving_in > 0.0 && moving_in <= duration)) {
-    return bad_usage(
-        fmt::format("moving-in time {} s is not above 0 and at most the duration {} s", moving_in, duration));
+    return bad_usage(fmt::format("moving-in time {} s is not between 0 and the duration {} s", moving_in, duration));
   }
   const MinimumJerk growth({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, moving_in);
   return with_countable_cycles(
@@ -76,7 +76,7 @@ Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantit
   auto schedule = PulseSchedule::create(options);
   if (!schedule) return tl::unexpected(schedule.error());
   if (!(tail >= options.return_duration)) {
-    return bad_usage(fmt::format("tail {} s is shorter than the way back {} s", tail, options.return_duration));
+    return bad_usage(fmt::format("tail {} s is shorter than the return {} s", tail, options.return_duration));
   }
   const double duration = schedule->pulses().back().offset + tail;
   MBK_TRY(check_duration(duration));
@@ -95,7 +95,7 @@ Result<Schedule> Schedule::random_binary(const RandomBinaryOptions& options, dou
 Result<Schedule> Schedule::ramps(const RampAndHold::Options& options, double tail, Space space) {
   auto schedule = RampAndHold::create(options);
   if (!schedule) return tl::unexpected(schedule.error());
-  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is below 0", tail));
+  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is negative", tail));
   const double duration = schedule->end() + tail;
   MBK_TRY(check_duration(duration));
   return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, space, duration));
@@ -104,7 +104,7 @@ Result<Schedule> Schedule::ramps(const RampAndHold::Options& options, double tai
 Result<Schedule> Schedule::reaches(const ReachSchedule::Options& options, double tail) {
   auto schedule = ReachSchedule::create(options);
   if (!schedule) return tl::unexpected(schedule.error());
-  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is below 0", tail));
+  if (!(tail >= 0.0)) return bad_usage(fmt::format("tail {} s is negative", tail));
   const double duration = schedule->end() + tail;
   MBK_TRY(check_duration(duration));
   return with_countable_cycles(Schedule(*std::move(schedule), Quantity::position, Space::hand, duration));
@@ -182,7 +182,7 @@ Result<Schedule> Schedule::with_countable_cycles(Schedule schedule) {
   if (cycles <= kMaxCycles) return schedule;
   return bad_usage(fmt::format("{:.4g} Hz over {:g} s are more than {:g} cycles", schedule.fastest().value,
                                schedule.duration(), kMaxCycles),
-                   "lower the highest frequency, or make several trials");
+                   "lower the highest frequency, or split it into several trials");
 }
 
 /// Times between which the signal is smooth, from 0 to the duration.
@@ -296,7 +296,7 @@ Result<void> Schedule::check(const Limits& limits) const {
   for (const Demand& demand : demands) {
     if (!demand.limit) continue;
     if (!(*demand.limit > 0.0)) {
-      return bad_usage(fmt::format("limit {} {} of the {} is not above 0", *demand.limit, demand.unit, demand.name));
+      return bad_usage(fmt::format("limit {} {} of the {} is not positive", *demand.limit, demand.unit, demand.name));
     }
     if (demand.value <= *demand.limit) continue;
     return bad_usage(
@@ -306,13 +306,13 @@ Result<void> Schedule::check(const Limits& limits) const {
   }
   if (limits.bandwidth) {
     if (!(limits.bandwidth->value > 0.0)) {
-      return bad_usage(fmt::format("limit {} Hz of the bandwidth is not above 0", limits.bandwidth->value));
+      return bad_usage(fmt::format("limit {} Hz of the bandwidth is not positive", limits.bandwidth->value));
     }
     if (found.highest_frequency > *limits.bandwidth) {
       const bool lines = std::holds_alternative<Sines>(shape_);
-      return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {}, throughout, is above the limit {:.4g} Hz",
+      return bad_usage(fmt::format("highest frequency {:.4g} Hz of the {} is above the limit {:.4g} Hz",
                                    found.highest_frequency.value, name, limits.bandwidth->value),
-                       lines ? "leave out the lines above it"
+                       lines ? "remove the harmonics above it"
                        : std::holds_alternative<RampAndHold>(shape_) || reaches() != nullptr
                            ? "make the ramps slower"
                            : "lower the natural frequency of the filter");

@@ -11,7 +11,7 @@ Result<UnderdampedFilter> UnderdampedFilter::create(double damping_ratio, RadPer
     return bad_usage(fmt::format("damping ratio {} is not between 0 and 1", damping_ratio));
   }
   if (!(natural_frequency.value > 0.0 && std::isfinite(natural_frequency.value))) {
-    return bad_usage(fmt::format("natural frequency {} rad/s is not above 0", natural_frequency.value));
+    return bad_usage(fmt::format("natural frequency {} rad/s is not positive", natural_frequency.value));
   }
   return UnderdampedFilter(damping_ratio, natural_frequency.value);
 }

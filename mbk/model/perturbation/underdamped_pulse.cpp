@@ -13,25 +13,28 @@ namespace mbk::perturbation {
 namespace {
 
 Result<void> check(const PulseSchedule::Options& o) {
-  if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not above 0", o.amplitude));
-  if (o.directions < 1) return bad_usage(fmt::format("{} directions: at least 1 is needed", o.directions));
-  if (o.repetitions < 1) return bad_usage(fmt::format("{} repetitions: at least 1 is needed", o.repetitions));
+  if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not positive", o.amplitude));
+  if (o.directions < 1) return bad_usage(fmt::format("{} directions are too few: at least 1 is needed", o.directions));
+  if (o.repetitions < 1)
+    return bad_usage(fmt::format("{} repetitions are too few: at least 1 is needed", o.repetitions));
   if (o.repetitions > PulseSchedule::kMaxPulses / o.directions) {
     return bad_usage(fmt::format("{} directions, {} times each, are more than {} pulses", o.directions, o.repetitions,
                                  PulseSchedule::kMaxPulses));
   }
   if (!(o.shortest_duration > 0.0 && o.shortest_duration <= o.longest_duration && std::isfinite(o.longest_duration))) {
-    return bad_usage(
-        fmt::format("pulse durations from {} s to {} s are no range above 0", o.shortest_duration, o.longest_duration));
+    return bad_usage(fmt::format("pulse durations from {} s to {} s are not a range of positive times",
+                                 o.shortest_duration, o.longest_duration));
   }
   if (!(o.shortest_pause >= 0.0 && o.shortest_pause <= o.longest_pause && std::isfinite(o.longest_pause))) {
-    return bad_usage(fmt::format("pauses from {} s to {} s are no range from 0", o.shortest_pause, o.longest_pause));
+    return bad_usage(fmt::format("pauses from {} s to {} s are not a range of non-negative times", o.shortest_pause,
+                                 o.longest_pause));
   }
   if (!(o.return_duration > 0.0 && o.return_duration <= o.shortest_pause)) {
-    return bad_usage(fmt::format("the way back takes {} s, which is not above 0 and at most the shortest pause {} s",
+    return bad_usage(fmt::format("the return takes {} s, which is not between 0 and the shortest pause {} s",
                                  o.return_duration, o.shortest_pause));
   }
-  if (!(o.quiet >= 0.0 && std::isfinite(o.quiet))) return bad_usage(fmt::format("quiet time {} s is below 0", o.quiet));
+  if (!(o.quiet >= 0.0 && std::isfinite(o.quiet)))
+    return bad_usage(fmt::format("quiet time {} s is negative", o.quiet));
   return {};
 }
 

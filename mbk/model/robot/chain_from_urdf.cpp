@@ -105,9 +105,9 @@ Result<void> check_tree(const Model& model) {
   for (const auto& [name, joint] : model->joints_) {
     const auto [first, is_first] = parent_joint.emplace(joint->child_link_name, name);
     if (!is_first) {
-      return bad_data(
-          fmt::format("link '{}' hangs on two joints, '{}' and '{}'", joint->child_link_name, first->second, name),
-          "a serial robot is a tree: give each link one parent");
+      return bad_data(fmt::format("link '{}' is the child of two joints, '{}' and '{}'", joint->child_link_name,
+                                  first->second, name),
+                      "give each link one parent: a serial robot is a tree");
     }
   }
   std::size_t reached = 0;
@@ -119,9 +119,9 @@ Result<void> check_tree(const Model& model) {
     for (const auto& child : link->child_links) open.push_back(child);
   }
   if (reached == model->links_.size()) return {};
-  return bad_data(fmt::format("{} of {} links do not hang on the root link '{}'", model->links_.size() - reached,
+  return bad_data(fmt::format("{} of {} links are not connected to the root link '{}'", model->links_.size() - reached,
                               model->links_.size(), model->getRoot()->name),
-                  "a serial robot is one tree: join them");
+                  "connect them: a serial robot is one tree");
 }
 
 /// The parser hands what it complains of to printf as a format, so that "%n" in a number would write into memory: each
@@ -140,12 +140,14 @@ void take_apart(const urdf::ModelInterface& model) {
 Result<Model> parse(std::string_view urdf) {
   constexpr int kDeepest = 1000;        // a URDF stands 4 deep
   constexpr int kMaxAttributes = 1000;  // its elements have up to six
-  constexpr const char* kRemedy = "check it, as by 'check_urdf FILE'";
-  if (depth(urdf) > kDeepest) return bad_data("no URDF: elements stand too deep in one another", kRemedy);
+  constexpr const char* kRemedy = "check it, for example with 'check_urdf FILE'";
+  if (depth(urdf) > kDeepest) return bad_data("the file is not a URDF: elements are nested too deeply", kRemedy);
   if (max_attributes(urdf) > kMaxAttributes) {
-    return bad_data(fmt::format("no URDF: an element has more than {} attributes", kMaxAttributes), kRemedy);
+    return bad_data(fmt::format("the file is not a URDF: an element has more than {} attributes", kMaxAttributes),
+                    kRemedy);
   }
-  if (urdf.find("</robot") == std::string_view::npos) return bad_data("no URDF: there is no </robot>", kRemedy);
+  if (urdf.find("</robot") == std::string_view::npos)
+    return bad_data("the file is not a URDF: </robot> is missing", kRemedy);
   const Overheard overheard;
   Model model;
   try {
@@ -172,7 +174,7 @@ Result<Link> find_link(const Model& model, const std::string& name, const char* 
   if (const Link link = model->getLink(without_formats(name))) return link;
   std::vector<std::string> known;
   for (const auto& [one, link] : model->links_) known.push_back(one);
-  return bad_usage(fmt::format("the URDF has no link '{}' for the {}", name, which), "it has " + names(known));
+  return bad_usage(fmt::format("the URDF has no link '{}' for the {}", name, which), "use one of " + names(known));
 }
 
 Result<Link> only_leaf(const Model& model, const Link& base) {
@@ -186,8 +188,7 @@ Result<Link> only_leaf(const Model& model, const Link& base) {
   }
   if (leaves.size() == 1) return Link(model->getLink(leaves.front()));
   std::sort(leaves.begin(), leaves.end());
-  return bad_data(fmt::format("the robot ends in several links: {}", names(leaves)),
-                  "say by tip_link which is the hand");
+  return bad_data(fmt::format("the robot ends in several links: {}", names(leaves)), "select the hand with tip_link");
 }
 
 /// The joints from base to tip, in this order.
@@ -195,7 +196,7 @@ Result<std::vector<JointOfTree>> way(const Link& base, const Link& tip) {
   std::vector<JointOfTree> joints;
   for (Link link = tip; link != base; link = link->getParent()) {
     if (!link->parent_joint) {
-      return bad_usage(fmt::format("link '{}' does not hang on link '{}'", tip->name, base->name),
+      return bad_usage(fmt::format("link '{}' is not a descendant of link '{}'", tip->name, base->name),
                        "choose base_link and tip_link along one arm");
     }
     joints.emplace_back(link->parent_joint);
@@ -232,17 +233,17 @@ Result<void> gather(const Link& link, const KDL::Frame& from_body, const std::st
     const KDL::Frame centre = from_body * frame(one.origin);
     const double sum = one.mass + one.ixx + one.iyy + one.izz + one.ixy + one.ixz + one.iyz;
     if (!std::isfinite(sum) || !finite(centre)) {
-      return bad_data(fmt::format("<inertial> of link '{}' holds a number that is not finite", link->name),
+      return bad_data(fmt::format("<inertial> of link '{}' contains a number that is not finite", link->name),
                       "correct it");
     }
     if (one.mass < 0.0) {
       return bad_data(fmt::format("link '{}' has a mass of {:g} kg", link->name, one.mass),
-                      "correct it; where it is going to be identified, 0 will do");
+                      "correct it, or write 0 if it will be identified");
     }
     if (!can_exist(one)) {
       body.impossible.push_back(
-          fmt::format("no body has the inertia of link '{}' (ixx {:.4g}, iyy {:.4g}, izz {:.4g} kg·m²)", link->name,
-                      one.ixx, one.iyy, one.izz));
+          fmt::format("the inertia of link '{}' is physically impossible (ixx {:.4g}, iyy {:.4g}, izz {:.4g} kg·m²)",
+                      link->name, one.ixx, one.iyy, one.izz));
     }
     body.inertia = body.inertia + centre * KDL::RigidBodyInertia(one.mass, KDL::Vector::Zero(), about_centre);
     body.stated = true;
@@ -269,11 +270,11 @@ Result<void> check_kind(const urdf::Joint& joint) {
                                   joint.type == urdf::Joint::FLOATING ? "floating"
                                   : joint.type == urdf::Joint::PLANAR ? "planar"
                                                                       : "of an unknown type"),
-                      "between base and tip joints are revolute, continuous, prismatic or fixed");
+                      "use only revolute, continuous, prismatic or fixed joints between base and tip");
   }
   if (joint.mimic) {
     return bad_data(fmt::format("joint '{}' mimics joint '{}'", joint.name, joint.mimic->joint_name),
-                    "only joints that move by themselves are supported; make it fixed, or model the chain without it");
+                    "make it fixed, or model the chain without it: mimic joints are not supported");
   }
   return {};
 }
@@ -285,12 +286,12 @@ Result<SerialChain::Joint> description(const urdf::Joint& joint, double zero, in
     d.damping = joint.dynamics->damping;
     d.friction = joint.dynamics->friction;
     if (!std::isfinite(d.damping + d.friction)) {
-      return bad_data(fmt::format("<dynamics> of joint '{}' holds a number that is not finite", joint.name),
+      return bad_data(fmt::format("<dynamics> of joint '{}' contains a number that is not finite", joint.name),
                       "correct it");
     }
     if (d.damping < 0.0 || d.friction < 0.0) {
-      return bad_data(fmt::format("<dynamics> of joint '{}' is negative: friction would drive it", joint.name),
-                      "correct it; where it is going to be identified, 0 will do");
+      return bad_data(fmt::format("<dynamics> of joint '{}' is negative: friction would add energy", joint.name),
+                      "correct it, or write 0 if it will be identified");
     }
   }
   if (joint.type == urdf::Joint::CONTINUOUS) {
@@ -300,8 +301,9 @@ Result<SerialChain::Joint> description(const urdf::Joint& joint, double zero, in
   }
   const double lower = joint.limits ? joint.limits->lower : 0.0, upper = joint.limits ? joint.limits->upper : 0.0;
   if (!(lower < upper) || !std::isfinite(upper - lower)) {
-    return bad_data(fmt::format("the limits of joint '{}', {:g} … {:g}, leave it no room", joint.name, lower, upper),
-                    "write lower and upper in its <limit>, or make it continuous or fixed");
+    return bad_data(
+        fmt::format("the limits of joint '{}', {:g} … {:g}, leave no range of motion", joint.name, lower, upper),
+        "write lower and upper in its <limit>, or make it continuous or fixed");
   }
   const auto [low, high] = std::minmax({sign * (lower - zero), sign * (upper - zero)});
   d.range = {low, high};
@@ -327,10 +329,10 @@ void append_coefficients(const std::string& link, const KDL::RigidBodyInertia& i
 
 Result<void> check_options(const SerialChain::Options& options) {
   if (!options.gravity.allFinite()) return bad_usage("gravity is not finite", "give three numbers in m/s²");
-  if (!options.tool.allFinite()) return bad_usage("the tool is not finite", "give three numbers");
+  if (!options.tool.allFinite()) return bad_usage("the tool position is not finite", "give three numbers");
   const std::set<SerialChain::Axis> different(options.hand_axes.begin(), options.hand_axes.end());
   if (different.empty() || different.size() > 2 || different.size() != options.hand_axes.size()) {
-    return bad_usage("the hand is not measured along one or two different axes", "choose them from x, y and z");
+    return bad_usage("the measured axes of the hand are not one or two different axes", "choose from x, y and z");
   }
   return {};
 }
@@ -338,15 +340,16 @@ Result<void> check_options(const SerialChain::Options& options) {
 Result<void> check_readings(const SerialChain::Options& options, std::size_t joints) {
   const auto fits = [&](std::size_t given, const char* what) -> Result<void> {
     if (given == 0 || given == joints) return {};
-    return bad_usage(fmt::format("{} {} for {} joints", given, what, joints), "give one for each joint that moves");
+    return bad_usage(fmt::format("there are {} {} for {} joints", given, what, joints),
+                     "give one for each moving joint");
   };
   MBK_TRY(fits(options.zero.size(), "zeros"));
   MBK_TRY(fits(options.sign.size(), "signs"));
   if (!std::all_of(options.zero.begin(), options.zero.end(), [](double zero) { return std::isfinite(zero); })) {
-    return bad_usage("the zero of a joint is not finite", "give numbers");
+    return bad_usage("the zero of a joint is not finite", "give finite numbers");
   }
   if (!std::all_of(options.sign.begin(), options.sign.end(), [](int sign) { return sign == 1 || sign == -1; })) {
-    return bad_usage("the sign of a joint is neither 1 nor −1", "choose one of them");
+    return bad_usage("the sign of a joint is neither 1 nor −1", "choose 1 or −1");
   }
   return {};
 }
@@ -384,7 +387,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
   for (const JointOfTree& joint : joints) {
     const KDL::Frame origin = from_body * frame(joint->parent_to_joint_origin_transform);
     if (!finite(origin)) {
-      return bad_data(fmt::format("<origin> of joint '{}' holds a number that is not finite", joint->name),
+      return bad_data(fmt::format("<origin> of joint '{}' contains a number that is not finite", joint->name),
                       "correct it");
     }
     from_body = origin;
@@ -397,7 +400,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
     if (!told) return tl::unexpected(told.error());
     KDL::Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
     if (const double length = axis.Norm(); !(length > 0.0) || !std::isfinite(length)) {
-      return bad_data(fmt::format("the axis of joint '{}' has no length", joint->name),
+      return bad_data(fmt::format("the axis of joint '{}' has zero length", joint->name),
                       "write a direction in its <axis>");
     }
     axis = axis / axis.Norm();
@@ -409,7 +412,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
     MBK_TRY(gather(model->getLink(told->link), KDL::Frame(), beyond, body));
     if (!body.stated) {
       return bad_data(fmt::format("link '{}' moves but has no <inertial>", told->link),
-                      "give it one; where its numbers are going to be identified, any will do, also 0");
+                      "add <inertial>; if its values will be identified, any values are accepted, including 0");
     }
     append_coefficients(told->link, body.inertia, parts);
     parts.impossible.insert(parts.impossible.end(), body.impossible.begin(), body.impossible.end());
@@ -418,7 +421,7 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
   }
   parts.hand = from_body * vector(options.tool);
   if (!parts.stated.allFinite()) {
-    return bad_data("the bodies are too heavy or too large for numbers", "check mass, inertia and origin of each link");
+    return bad_data("the inertias of the bodies are not finite", "check mass, inertia and origin of each link");
   }
   return parts;
 }

@@ -149,7 +149,7 @@ Result<HandJacobian> hand_from_joints(const Mechanism& mechanism, const JointVec
   for (Index k = 0; k < position.size(); ++k) {
     joints += fmt::format("{}{:.4g}", joints.empty() ? "" : ", ", position[k]);
   }
-  return bad_data(fmt::format("a singular configuration: with the joints at [{}] no torque of the motors answers a "
+  return bad_data(fmt::format("the configuration is singular: with the joints at [{}] no motor torque can balance a "
                               "force along one direction of the hand",
                               joints),
                   "choose a window or a test location away from it");

@@ -34,10 +34,10 @@ Result<Matrix2d> PlanarRobot::inertia_at_hand(const Vector2d& theta) const {
   constexpr double kSmallestCosine = 1e-6;
   const double difference = theta[0] - theta[1];
   if (!(std::abs(std::cos(difference)) >= kSmallestCosine)) {
-    return bad_usage(fmt::format("the links lie on one line (θ₁ − θ₂ = {:.4g}°), where no force can move the hand "
-                                 "along it",
-                                 difference * 180.0 / std::numbers::pi),
-                     "choose another place");
+    return bad_usage(
+        fmt::format("the links are collinear (θ₁ − θ₂ = {:.4g}°), so no force can move the hand along them",
+                    difference * 180.0 / std::numbers::pi),
+        "choose another hand position");
   }
   const Matrix2d inverse = jacobian(geometry, theta).inverse();
   return Matrix2d(inverse.transpose() * inertia.matrix(theta) * inverse);

@@ -37,7 +37,7 @@ Result<Vector2d> joint_angles(const Geometry& geometry, const Vector2d& hand) {
     return bad_usage(fmt::format("the hand at ({:.4g}, {:.4g}) m is {:.4g} m from the base, not between {:.4g} and "
                                  "{:.4g} m",
                                  hand.x(), hand.y(), r, std::abs(d1 - d2), d1 + d2),
-                     "choose a place that both links reach");
+                     "choose a reachable hand position");
   }
   // The angle at the elbow and the one at the base, both in the triangle of base, elbow and hand
   const double elbow = std::acos(std::clamp((d1 * d1 + d2 * d2 - r * r) / (2.0 * d1 * d2), -1.0, 1.0));

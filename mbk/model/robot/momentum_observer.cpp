@@ -21,15 +21,15 @@ Result<MomentumObserver> MomentumObserver::create(const DynamicModel& model, dou
   MBK_TRY(above_zero({{"observer gain", gain, "1/s"}, {"sample time", sample_time, "s"}}));
   const auto coefficients = static_cast<Index>(model.coefficients().size());
   if (model.parameters.size() != coefficients) {
-    return bad_data(fmt::format("the model of the robot has {} parameters, and its equations have {} coefficients",
+    return bad_data(fmt::format("the robot model has {} parameters, but its equations have {} coefficients",
                                 model.parameters.size(), coefficients),
                     "identify it again");
   }
   if (!(model.delay >= 0.0 && model.delay <= kLongestDelay)) {
-    return bad_data(fmt::format("the motors act {:g} s after the torque is recorded, and an observer can follow from "
-                                "0 to {:g} s",
-                                model.delay, kLongestDelay),
-                    "take inverse dynamics, which know the whole recording, or check the delay of the model");
+    return bad_data(
+        fmt::format("the motors act {:g} s after the recorded torque; an observer supports a delay of 0 to {:g} s",
+                    model.delay, kLongestDelay),
+        "use inverse dynamics, which use the whole recording, or check the delay of the model");
   }
   return MomentumObserver(model, gain, sample_time);
 }

@@ -25,10 +25,10 @@ Result<ObservedForces> observe_force(const DynamicModel& model, const Matrix& po
                                      const EncoderMomentumObserver::Options& options, double sample_time) {
   const Index n = model.mechanism->joints();
   if (position.cols() != n || torque.cols() != n || position.rows() != torque.rows()) {
-    return bad_data(fmt::format("positions of {} joints at {} samples and torques of {} at {} are not those of a robot "
-                                "of {} joint{}",
+    return bad_data(fmt::format("positions of {} joints at {} samples and torques of {} joints at {} samples do not "
+                                "match a robot of {} joint{}",
                                 position.cols(), position.rows(), torque.cols(), torque.rows(), n, n == 1 ? "" : "s"),
-                    "give joint and torque channels of every joint");
+                    "give joint and torque channels for every joint");
   }
   MBK_TRY(check_finite("joint", position));
   MBK_TRY(check_finite("torque", torque));

@@ -73,7 +73,7 @@ Result<void> check_joints(const JointLimits& limits, const Vector2d& theta) {
   if (worst.left() >= -kRounding) return {};
   return bad_usage(fmt::format("{} is {:.2f}°, {:.3g}° {} its limit {:.4g}°", worst.quantity, degrees(worst.value),
                                -degrees(worst.left()), worst.upper ? "above" : "below", degrees(worst.limit)),
-                   "choose a place inside the workspace; 'mbk robot workspace' draws it");
+                   "choose a position inside the workspace; 'mbk robot workspace' draws it");
 }
 
 Result<Vector2d> check_hand(const Geometry& geometry, const Vector2d& hand) {
@@ -96,21 +96,21 @@ std::vector<Vector2d> joint_space_corners(const JointLimits& limits) {
 
 Result<std::vector<Vector2d>> boundary(const Geometry& geometry, int points) {
   if (!(geometry.d1 > 0.0 && geometry.d2 > 0.0 && std::isfinite(geometry.d1) && std::isfinite(geometry.d2))) {
-    return bad_usage(fmt::format("links of {:g} m and {:g} m are not both positive", geometry.d1, geometry.d2),
+    return bad_usage(fmt::format("the link lengths {:g} m and {:g} m are not both positive", geometry.d1, geometry.d2),
                      "give both lengths");
   }
-  if (points < 3) return bad_usage(fmt::format("{} points are no outline", points), "ask for at least 3");
+  if (points < 3) return bad_usage(fmt::format("{} points are too few for an outline", points), "request at least 3");
   const std::vector<Vector2d> corners = joint_space_corners(geometry.limits);
   if (corners.size() < 3) {
-    return bad_usage("the limits of the joints leave no area to move in", "check each limit's sign and unit");
+    return bad_usage("the joint limits leave no workspace", "check the sign and unit of each limit");
   }
   double length = 0.0;
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const double difference = corners[k][0] - corners[k][1];
     if (std::abs(difference) > kRightAngle + kRounding) {
       return bad_usage(
-          fmt::format("the limits let θ₁ − θ₂ be {:.4g}°, beyond 90°, where the links fold over", degrees(difference)),
-          "one outline then does not bound the workspace: narrow the limits");
+          fmt::format("the limits allow θ₁ − θ₂ = {:.4g}°, beyond 90°, where the links fold over", degrees(difference)),
+          "narrow the limits: one outline then does not bound the workspace");
     }
     length += (corners[(k + 1) % corners.size()] - corners[k]).norm();
   }

@@ -73,8 +73,8 @@ void read_values(const config::Section& drive, const robot::Mechanism& mechanism
       }
       if (joints.empty() || !drive.has(key)) continue;
       if (!(into.terms.*term.requested)) {
-        drive.reject(key, fmt::format("\"{}\" is not among the terms of the drives", term.word),
-                     fmt::format("add it to terms in [drive], or take {} out", key));
+        drive.reject(key, fmt::format("\"{}\" is not among the drive terms", term.word),
+                     fmt::format("add it to terms in [drive], or remove {}", key));
         continue;
       }
       const bool resists = term.requested == &DriveTerms::motor_inertia || term.requested == &DriveTerms::viscous ||

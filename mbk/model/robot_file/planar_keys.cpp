@@ -17,14 +17,14 @@ robot::PlanarRobot read_planar_robot(const config::Section& s) {
   robot.inertia = {alpha[0], alpha[1], alpha[2]};
   constexpr double kRounding = 1e-9;
   if (alpha[0] < 0.0 || alpha[2] < 0.0 || alpha[1] * alpha[1] > (4.0 + kRounding) * alpha[0] * alpha[2]) {
-    s.reject("alpha_kg_m2", "no two links have this inertia",
-             "the first and the third are not negative, the second is at most twice the root of their product");
+    s.reject("alpha_kg_m2", "this inertia is physically impossible for two links",
+             "make the first and third non-negative, and the second at most twice the square root of their product");
   }
 
   robot::JointLimits& limits = robot.geometry.limits;
   const auto range = [&](const char* key, double& low, double& high) {
     const Vector2d both = s.vector2(key, {low, high});
-    if (!(both[0] < both[1])) s.reject(key, "the first is not below the second", "write [low, high]");
+    if (!(both[0] < both[1])) s.reject(key, "the first value is not below the second", "write [low, high]");
     low = both[0];
     high = both[1];
   };
@@ -32,7 +32,7 @@ robot::PlanarRobot read_planar_robot(const config::Section& s) {
   range("theta2_deg", limits.theta2_low, limits.theta2_high);
   limits.smallest_opening = s.number("smallest_opening_deg", limits.smallest_opening);
   if (robot::joint_space_corners(limits).size() < 3) {
-    s.reject("smallest_opening_deg", "the limits of the joints leave no area to move in",
+    s.reject("smallest_opening_deg", "the joint limits leave no workspace",
              "check the sign and unit of theta1_deg, theta2_deg and smallest_opening_deg");
     limits = {};
   }

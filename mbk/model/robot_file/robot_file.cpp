@@ -36,7 +36,8 @@ constexpr std::size_t kLargestUrdf = 10'000'000;
 Result<std::string> text_of(const std::filesystem::path& file) {
   auto text = config::read_text_file(file, kLargestUrdf);
   if (!text) return text;
-  if (text->size() > kLargestUrdf) return bad_data("larger than 10 MB", "this is no URDF of a robot", file.string());
+  if (text->size() > kLargestUrdf)
+    return bad_data("the file is larger than 10 MB", "check the name: a robot URDF is smaller", file.string());
   return text;
 }
 
@@ -61,7 +62,7 @@ struct Bodies {
 
 /// One number for both joints, because the drives share it.
 double shared(const Section& s, const char* key, double first, double second) {
-  if (first != second) s.reject(key, "the two joints differ", "write the same for both");
+  if (first != second) s.reject(key, "the two joints differ", "write the same value for both");
   return first;
 }
 
@@ -84,7 +85,7 @@ Bodies read_planar(const Section& s, DriveTerms& terms) {
       shared(s, "stribeck_velocity_rad_per_s", friction[0].stribeck_velocity, friction[1].stribeck_velocity);
   const auto check_term = [&](const char* key, bool requested, const char* word) {
     if (!requested && s.has(key)) {
-      s.reject(key, fmt::format("\"{}\" is not among the terms of the drives", word), "add it to terms in [drive]");
+      s.reject(key, fmt::format("\"{}\" is not among the drive terms", word), "add it to terms in [drive]");
     }
     return s.has(key);
   };
@@ -105,13 +106,14 @@ Bodies read_planar(const Section& s, DriveTerms& terms) {
 
 Bodies read_one_axis(const Section& s) {
   if (!s.has("slides")) {
-    s.reject("slides", "whether the drive slides or turns is not said", "write slides = true or slides = false");
+    s.reject("slides", "the type of the drive, sliding or turning, is missing",
+             "write slides = true or slides = false");
   }
   robot::SingleJoint::Options options;
   options.slides = s.flag("slides", true);
   const char* limits = options.slides ? "limits_mm" : "limits_deg";
   const Eigen::Vector2d range = s.vector2(limits, {options.low, options.high});
-  if (!(range[0] < range[1])) s.reject(limits, "the first is not below the second", "write [low, high]");
+  if (!(range[0] < range[1])) s.reject(limits, "the first value is not below the second", "write [low, high]");
   options.low = range[0];
   options.high = range[1];
   const auto inertia = s.optional_number(options.slides ? "mass_kg" : "inertia_kg_m2", config::above(0));
@@ -132,7 +134,7 @@ SerialChain::Options read_chain_options(const Section& s) {
   using Axis = SerialChain::Axis;
   options.hand_axes = s.choices<Axis>("hand_axes", {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}, options.hand_axes);
   if (options.hand_axes.empty() || options.hand_axes.size() > 2) {
-    s.reject("hand_axes", "the hand is measured along one or two axes", R"(write two of "x", "y", "z")");
+    s.reject("hand_axes", "the hand must be measured along one or two axes", R"(write two of "x", "y", "z")");
     options.hand_axes = SerialChain::Options().hand_axes;
   }
   return options;
@@ -197,7 +199,7 @@ Result<RobotDescription> described(const config::Document& document, const FindU
     if (kind == Kind::planar) return read_planar(s, terms);
     if (kind == Kind::one_axis) return read_one_axis(s);
     const std::string name = s.required_text("file");
-    if (name.empty()) return tl::unexpected(s.error("file", "no URDF is named", "write file = \"robot.urdf\""));
+    if (name.empty()) return tl::unexpected(s.error("file", "the URDF file is missing", "write file = \"robot.urdf\""));
     auto urdf = MBK_TRY(find_urdf(name));
     auto read = read_urdf(s, urdf);
     description.urdf = std::move(urdf.text);

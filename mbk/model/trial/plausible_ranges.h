@@ -44,11 +44,11 @@ inline constexpr auto kHandRanges = std::to_array<PlausibleRange>({
      "Tsuji et al. 1995, Perreault et al. 2004 (Exp Brain Res 157:507): 3-60 N·s/m; springs with bearings 1 N·s/m"},
     {PlausibleQuantity::stiffness, "N/m", 12.0, 120.0, 4000.0, "mean singular value of K",
      "Mussa-Ivaldi et al. 1985 (J Neurosci 5:2732), Gomi & Kawato 1997 (Biol Cybern 76:163), Dyck 2013: 15-1000 N/m; "
-     "co-contraction 3-7 times that of rest"},
+     "3-7 times the resting value with co-contraction"},
     {PlausibleQuantity::frequency, "Hz", 0.25, 1.5, 12.0, "sqrt(K/M)/2π of the mean singular values",
      "from the same models: 0.7-4 Hz; spring rigs up to 6.3 Hz"},
     {PlausibleQuantity::position, "m", 0.0, 0.3, 5.0, "distance of the mean position from the origin of its frame",
-     "reach of the arm 0.7 m and of robots 2 m, the origin of the frame within the laboratory"},
+     "arm reach 0.7 m, robot reach 2 m, origin of the frame within the laboratory"},
     {PlausibleQuantity::motion, "m", 5e-5, 5e-3, 0.25, "standard deviation of the position, axis by axis",
      "perturbations of 1-20 mm (the five sources above); free reaches up to 0.6 m have 0.2 m"},
     {PlausibleQuantity::speed, "m/s", 3e-4, 0.05, 6.0, "speed that one sample in a thousand exceeds, axis by axis",
@@ -56,7 +56,7 @@ inline constexpr auto kHandRanges = std::to_array<PlausibleRange>({
     {PlausibleQuantity::force, "N", 0.01, 1.5, 250.0, "standard deviation of the force, axis by axis",
      "perturbations of 0.3-50 N; noise of load cells from 0.01 N; maximal push about 300 N"},
     {PlausibleQuantity::rate, "Hz", 40.0, 1000.0, 1e5, "sampling rate",
-     "a limb answers up to about 10 Hz, a robot is controlled at 100 Hz to 10 kHz"},
+     "a limb responds up to about 10 Hz; robots are controlled at 100 Hz to 10 kHz"},
 });
 
 /// One joint, from a finger to a hip.
@@ -67,10 +67,10 @@ inline constexpr auto kJointRanges = std::to_array<PlausibleRange>({
      "Biomed Eng 18:55) to the leg about the hip"},
     {PlausibleQuantity::damping, "N·m·s/rad", 2e-4, 0.5, 40.0, "B", "the same"},
     {PlausibleQuantity::stiffness, "N·m/rad", 0.05, 30.0, 1500.0, "K",
-     "the same; a contracted ankle reaches some hundred N·m/rad"},
+     "the same; a contracted ankle reaches several hundred N·m/rad"},
     {PlausibleQuantity::frequency, "Hz", 0.25, 5.0, 40.0, "sqrt(K/M)/2π",
-     "from the same models: elbow 1-4 Hz, ankle 5-20 Hz, finger more"},
-    {PlausibleQuantity::position, "rad", 0.0, 0.5, 6.4, "mean angle", "no joint turns by more than once"},
+     "from the same models: elbow 1-4 Hz, ankle 5-20 Hz, finger higher"},
+    {PlausibleQuantity::position, "rad", 0.0, 0.5, 6.4, "mean angle", "no joint turns by more than one revolution"},
     {PlausibleQuantity::motion, "rad", 2e-4, 0.02, 0.8, "standard deviation of the angle",
      "perturbations of 0.2-10°; isokinetic movement over 100° has 0.5 rad"},
     {PlausibleQuantity::speed, "rad/s", 1e-3, 1.0, 35.0, "speed that one sample in a thousand exceeds",
@@ -78,7 +78,7 @@ inline constexpr auto kJointRanges = std::to_array<PlausibleRange>({
     {PlausibleQuantity::force, "N·m", 1e-3, 1.5, 300.0, "standard deviation of the torque",
      "perturbations 0.01-20 N·m; maximal contraction of the knee about 250 N·m"},
     {PlausibleQuantity::rate, "Hz", 40.0, 1000.0, 1e5, "sampling rate",
-     "a joint answers up to about 20 Hz, a machine is controlled at 100 Hz to 10 kHz"},
+     "a joint responds up to about 20 Hz; machines are controlled at 100 Hz to 10 kHz"},
 });
 
 }  // namespace mbk

@@ -22,7 +22,7 @@ std::vector<Choice> lengths(const robot::Geometry& geometry) {
 /// Whether the inertia leaves the links some of their own, wherever they are.
 Result<void> check_links(const robot::OneAxisInertia& inertia, const AxisVector<1>& motor) {
   if (const double link = inertia.mass - motor[0]; !(link > 0.0 && std::isfinite(link))) {
-    return bad_usage(fmt::format("inertia {:g} of the machine is not above zero", link));
+    return bad_usage(fmt::format("inertia {:g} of the machine is not positive", link));
   }
   return {};
 }
@@ -30,11 +30,10 @@ Result<void> check_links(const robot::OneAxisInertia& inertia, const AxisVector<
 Result<void> check_links(const robot::Inertia& inertia, const AxisVector<2>& motors) {
   const double links1 = inertia.alpha1 - motors[0], links2 = inertia.alpha3 - motors[1];
   if (!(links1 > 0.0 && links2 > 0.0 && links1 * links2 > 0.25 * inertia.alpha2 * inertia.alpha2)) {
-    return bad_usage(
-        fmt::format("alpha = {:g}, {:g}, {:g} kg·m² with {:g} and {:g} kg·m² of it in the motors is no inertia in "
-                    "every posture",
-                    inertia.alpha1, inertia.alpha2, inertia.alpha3, motors[0], motors[1]),
-        "alpha1·alpha3 must be above alpha2²/4");
+    return bad_usage(fmt::format("alpha = {:g}, {:g}, {:g} kg·m², of which {:g} and {:g} kg·m² are in the motors, is "
+                                 "not positive definite in every posture",
+                                 inertia.alpha1, inertia.alpha2, inertia.alpha3, motors[0], motors[1]),
+                     "make alpha1·alpha3 larger than alpha2²/4");
   }
   return {};
 }

@@ -19,8 +19,8 @@ Result<Scenario> find_scenario(const std::string& name_or_file, const std::strin
     auto read = config::read_text_file(name_or_file, kLargest);
     std::error_code code;
     if (!read && !std::filesystem::exists(name_or_file, code)) {
-      return bad_data("no such file, and no ready scenario of that name", "'mbk simulate --list' names the ready ones",
-                      name_or_file);
+      return bad_data("there is no such file and no built-in scenario of that name",
+                      "list the built-in scenarios with 'mbk simulate --list'", name_or_file);
     }
     if (!read) return tl::unexpected(read.error());
     text = std::move(*read);
@@ -29,7 +29,8 @@ Result<Scenario> find_scenario(const std::string& name_or_file, const std::strin
   for (Scenario& one : scenarios) {
     if (trial.empty() || one.name == trial) return std::move(one);
   }
-  return bad_usage(fmt::format("there is no trial '{}' in {}", trial, name_or_file), "see the [[trial]] names in it");
+  return bad_usage(fmt::format("{1} has no trial '{0}'", trial, name_or_file),
+                   "use the name of one of its [[trial]] tables");
 }
 
 }  // namespace mbk::laboratory

@@ -15,8 +15,8 @@ Result<ScenarioText> read_scenario_text(const std::string& argument) {
   }
   std::error_code error;
   if (!std::filesystem::exists(argument, error)) {
-    return bad_data("no such file, and no ready scenario of that name", "'mbk simulate --list' names the ready ones",
-                    argument);
+    return bad_data("there is no such file and no built-in scenario of that name",
+                    "list the built-in scenarios with 'mbk simulate --list'", argument);
   }
   auto text = read_text(argument);
   if (!text) return tl::unexpected(text.error());
@@ -39,8 +39,8 @@ Result<Scenario> find_trial(const std::vector<Scenario>& scenarios, const std::s
   if (found != scenarios.end()) return *found;
   std::string known;
   for (const Scenario& one : scenarios) known += (known.empty() ? "" : ", ") + one.name;
-  return bad_usage(fmt::format("there is no trial '{}' in {}", name, scenarios.front().protocol),
-                   known.empty() ? "it has no [[trial]]" : "there are: " + known);
+  return bad_usage(fmt::format("{1} has no trial '{0}'", name, scenarios.front().protocol),
+                   known.empty() ? "it has no [[trial]]" : "use one of: " + known);
 }
 
 }  // namespace mbk::laboratory

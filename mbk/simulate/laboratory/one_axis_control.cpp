@@ -11,12 +11,12 @@ Result<OneAxisControl> OneAxisControl::create(const OneAxisMode& mode, const per
                                               double sample_time) {
   const auto* servo = std::get_if<ServoMode>(&mode);
   if ((servo != nullptr) != (schedule.quantity() == Quantity::position)) {
-    return bad_usage("control and perturbation speak of different quantities",
-                     "let both be of positions, or both of torques");
+    return bad_usage("control and perturbation refer to different quantities",
+                     "use positions for both or torques for both");
   }
   if (servo != nullptr &&
       !(servo->proportional >= 0.0 && servo->derivative >= 0.0 && servo->velocity_cutoff.value > 0.0)) {
-    return bad_usage("the servo's gains must not be negative, its velocity cutoff must be above zero");
+    return bad_usage("a servo gain is negative, or its velocity cutoff is not positive");
   }
   return OneAxisControl(mode, schedule, home[0], sample_time);
 }

@@ -8,14 +8,14 @@ namespace mbk::laboratory {
 
 Result<PacketLine> PacketLine::create(const PacketLineOptions& options, double sample_time, std::uint64_t seed,
                                       std::uint32_t stream) {
-  if (!(sample_time > 0.0)) return bad_usage(fmt::format("sample time {:g} s is not above zero", sample_time));
+  if (!(sample_time > 0.0)) return bad_usage(fmt::format("sample time {:g} s is not positive", sample_time));
   for (const double time : {options.delay, options.jitter}) {
     if (!(time >= 0.0 && time <= kLongestDelay)) {
-      return bad_usage(fmt::format("delay or jitter of {:g} s is not from 0 to {:g} s", time, kLongestDelay));
+      return bad_usage(fmt::format("delay or jitter of {:g} s is not within 0 to {:g} s", time, kLongestDelay));
     }
   }
   if (!(options.loss >= 0.0 && options.loss <= 1.0)) {
-    return bad_usage(fmt::format("a loss of {:g} is not a share from 0 to 1", options.loss));
+    return bad_usage(fmt::format("a loss of {:g} is not a fraction from 0 to 1", options.loss));
   }
   return PacketLine(options, std::lround(options.delay / sample_time), std::lround(options.jitter / sample_time),
                     numeric::Random(seed, stream));

@@ -26,9 +26,10 @@ using robot::HandVector;
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
 
 Result<void> check(const PrescribedMotionOptions& o) {
-  if (o.protocol == Protocol::free) return bad_usage("protocol free moves nothing", "take sinusoidal or underdamped");
+  if (o.protocol == Protocol::free)
+    return bad_usage("protocol free prescribes no motion", "use sinusoidal or underdamped");
   const Index axes = o.limb.axes();
-  if (axes != 1 && axes != 2) return bad_usage(fmt::format("a limb with {} axes: 1 or 2 are possible", axes));
+  if (axes != 1 && axes != 2) return bad_usage(fmt::format("a limb cannot have {} axes; 1 or 2 are supported", axes));
   for (const Matrix* matrix : {&o.limb.M, &o.limb.B, &o.limb.K}) {
     if (matrix->rows() != axes || matrix->cols() != axes || !matrix->allFinite()) {
       return bad_usage(fmt::format("M, B and K must be finite {0}×{0} matrices", axes));
@@ -43,7 +44,7 @@ Result<void> check(const PrescribedMotionOptions& o) {
   const std::pair<const char*, double> positive[] = {
       {"radius", o.radius}, {"moving-in time", o.moving_in}, {"duration", o.sinusoidal_duration}, {"tail", o.tail}};
   for (const auto& [name, value] : positive) {
-    if (!(value > 0.0 && std::isfinite(value))) return bad_usage(fmt::format("{} {} is not above 0", name, value));
+    if (!(value > 0.0 && std::isfinite(value))) return bad_usage(fmt::format("{} {} is not positive", name, value));
   }
   return {};
 }
@@ -54,11 +55,11 @@ Result<void> check(const PrescribedMotionSensors& s) {
                                                   {"coloured force noise", s.coloured_force_noise},
                                                   {"acceleration noise", s.acceleration_noise}};
   for (const auto& [name, value] : parts) {
-    if (!(value >= 0.0 && std::isfinite(value))) return bad_usage(fmt::format("{} {} is below 0", name, value));
+    if (!(value >= 0.0 && std::isfinite(value))) return bad_usage(fmt::format("{} {} is negative", name, value));
   }
   const double bandwidth = s.coloured_force_bandwidth.value;
   if (!(bandwidth > 0.0 && std::isfinite(bandwidth))) {
-    return bad_usage(fmt::format("bandwidth {} Hz of the coloured force noise is not above 0", bandwidth));
+    return bad_usage(fmt::format("bandwidth {} Hz of the coloured force noise is not positive", bandwidth));
   }
   return {};
 }
@@ -183,7 +184,7 @@ std::vector<Event> PrescribedMotion::events() const {
 
 Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& options, Hertz rate) {
   if (!(rate.value > 0.0 && std::isfinite(rate.value))) {
-    return bad_usage(fmt::format("sample rate {} Hz is not above 0", rate.value));
+    return bad_usage(fmt::format("sample rate {} Hz is not positive", rate.value));
   }
   MBK_TRY(check(options.sensors));
   const auto motion = MBK_TRY(PrescribedMotion::create(options));

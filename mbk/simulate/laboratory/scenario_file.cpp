@@ -129,7 +129,7 @@ std::optional<participant::Reaching::Options> read_reaching(const Section& s, co
                                                             const Vector2d& home) {
   const auto* plan = std::get_if<perturbation::ReachPlan>(&perturbation.kind);
   if (plan == nullptr) {
-    if (s.given()) s.reject("", "the perturbation is not one of reaches", "give it kind = \"servo_displacement\"");
+    if (s.given()) s.reject("", "the perturbation does not use reaches", "set kind = \"servo_displacement\"");
     return std::nullopt;
   }
   const perturbation::ReachSchedule::Options& r = plan->reaches;
@@ -180,7 +180,7 @@ RigPlan read_rig(const Section& s, const Vector2d& home) {
     rig.equilibrium = s.vector2("equilibrium_mm", home);
   } else {
     for (const char* key : {"stiffness_N_per_m", "equilibrium_mm"}) {
-      if (s.has(key)) s.reject(key, "the springs decide it", "leave it out, or leave the springs out");
+      if (s.has(key)) s.reject(key, "the springs determine this value", "remove this value or the springs");
     }
   }
   return rig;
@@ -206,7 +206,7 @@ participant::ToneRobot::Options read_tone(const Section& s, const Vector2d& home
 participant::OneAxisJoint::Options read_joint(const Section& s) {
   participant::OneAxisJoint::Options joint;
   if (s.required_text("kind") != "joint") {
-    s.reject("kind", "a one-axis machine holds a joint", "write kind = \"joint\", or take a planar robot");
+    s.reject("kind", "a one-axis machine measures a joint", "write kind = \"joint\", or use a planar robot");
   }
   joint.inertia = s.number("inertia_kg_m2", joint.inertia, above(0));
   joint.viscosity = s.number("viscosity_Nms_per_rad", joint.viscosity, at_least(0));

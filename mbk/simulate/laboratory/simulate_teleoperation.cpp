@@ -70,16 +70,16 @@ Packet packet(const ClosedLoop<1>& loop) {
 
 Result<void> check(const TeleoperationSetup& setup, const std::array<Robot, 2>& robots) {
   if (!(setup.sample_time > 0.0 && std::isfinite(setup.sample_time))) {
-    return bad_usage(fmt::format("sample time {:g} s is not above zero", setup.sample_time));
+    return bad_usage(fmt::format("sample time {:g} s is not positive", setup.sample_time));
   }
   if (!(setup.duration >= setup.sample_time && std::isfinite(setup.duration))) {
-    return bad_usage(fmt::format("a duration of {:g} s has no sample", setup.duration));
+    return bad_usage(fmt::format("a duration of {:g} s contains no sample", setup.duration));
   }
   if (!std::isfinite(setup.kick)) return bad_usage("the kick is not finite");
   for (const Robot& robot : robots) {
     if (robot.mass > 0.0 && robot.damping >= 0.0) continue;
     return bad_usage(fmt::format("a robot of {:g} kg and {:g} N·s/m cannot be simulated", robot.mass, robot.damping),
-                     "give master and slave a mass_kg above zero and a damping_N_s_per_m that is not negative");
+                     "give master and slave a positive mass_kg and a non-negative damping_N_s_per_m");
   }
   return {};
 }
@@ -307,7 +307,7 @@ double duration_to_show(const WorstTerminations& worst) {
 Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::optional<double> a,
                                          const std::function<void(double)>& progress) {
   if (!design.is_architecture()) {
-    return bad_usage("a two-port that is given as such has no robots to simulate", "write an [architecture]");
+    return bad_usage("a design given as [two_port] has no robots to simulate", "write an [architecture]");
   }
   const teleop::SimulationPlan& plan = design.simulation;
   TeleoperationSetup setup;
@@ -332,7 +332,7 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
   if (auto passive = sampled(0.0)) {
     simulation.sampled = std::move(*passive);
   } else {
-    simulation.notes.push_back("no criterion with sampling: " + passive.error().message);
+    simulation.notes.push_back("the sampled-data criterion was not evaluated: " + passive.error().message);
   }
   if (a && simulation.sampled) {
     simulation.sampled_with_operator = MBK_TRY(sampled(*a));
@@ -351,10 +351,10 @@ Result<TeleoperationSimulation> simulate(const teleop::Design& design, std::opti
     if (worst) {
       simulation.runs.push_back(std::move(*worst));
     } else {
-      simulation.notes.push_back(fmt::format(
-          "{}: none is constructed, because a pole decides, or only frequencies above {:.4g} rad/s, which a controller "
-          "of {:g} Hz does not show",
-          what, highest_shown(plan.sample_time).value, 1.0 / plan.sample_time));
+      simulation.notes.push_back(
+          fmt::format("{}: none was constructed, because only a pole or frequencies above {:.4g} rad/s violate the "
+                      "condition, which a controller of {:g} Hz cannot reproduce",
+                      what, highest_shown(plan.sample_time).value, 1.0 / plan.sample_time));
     }
     return {};
   };

@@ -16,9 +16,8 @@ SimulatedDevice::SimulatedDevice(const Scenario& scenario, std::unique_ptr<parti
 Result<std::unique_ptr<SimulatedDevice>> SimulatedDevice::create(const Scenario& scenario) {
   const auto* trial = std::get_if<PlanarTrial>(&scenario.trial);
   if (trial == nullptr) {
-    return bad_usage("a one-axis machine cannot be run as an experiment yet",
-                     "take a planar robot; 'mbk simulate' "
-                     "makes recordings of one-axis machines");
+    return bad_usage("a one-axis machine cannot run as an experiment yet",
+                     "use a planar robot, or record a one-axis machine with 'mbk simulate'");
   }
   auto load = MBK_TRY(make_load(scenario, *trial));
   const double sample_time = 1.0 / scenario.rate.value;

@@ -175,7 +175,7 @@ template <int Axes>
 Result<Performance> perform(const Experiment<Axes>& experiment, participant::Load<Axes>& load) {
   using Control = std::conditional_t<Axes == 1, OneAxisControl, control::TrialControl>;
   if (!(experiment.rate.value > 0.0 && std::isfinite(experiment.rate.value))) {
-    return bad_usage(fmt::format("sample rate {:g} Hz is not above 0", experiment.rate.value));
+    return bad_usage(fmt::format("sample rate {:g} Hz is not positive", experiment.rate.value));
   }
   const double sample_time = 1.0 / experiment.rate.value;
   const GeometryOf<Axes>& geometry = experiment.robot.robot.geometry;
@@ -195,12 +195,12 @@ Result<Performance> perform(const Experiment<Axes>& experiment, participant::Loa
     const double t = loop.time(), interval = sensors.next_interval();
     const TrueState<Axes>& state = loop.hold(command.torque(t, sensors.encoders(loop.motor_angle())), interval);
     if (!state.position.allFinite() || !state.force_hand_on_robot.allFinite()) {
-      return bad_data(fmt::format("the motion is not finite any more at {:.3f} s", t),
+      return bad_data(fmt::format("the motion is no longer finite at {:.3f} s", t),
                       "lower the gains, or raise robot.steps_per_tick", "simulation");
     }
     if (auto ok = check_joints(geometry, state.theta); !ok) {
       return bad_data(fmt::format("the hand leaves the workspace at {:.3f} s: {}", t, ok.error().message),
-                      "perturb it less, or choose another home", "simulation");
+                      "reduce the perturbation, or choose another home", "simulation");
     }
     const Sample<Axes> sample = {sensors.read(state), command.reference(t)};
     recording.time[i] = sample.time;

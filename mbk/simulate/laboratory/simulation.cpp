@@ -51,7 +51,7 @@ Result<std::shared_ptr<const protocol::Simulation>> read_simulation(const config
 Result<Scenario> scenario_of(const protocol::Trial& trial) {
   const auto* simulation = dynamic_cast<const ScenarioSimulation*>(trial.simulation.get());
   if (simulation == nullptr) {
-    return bad_usage("the trial has no scenario to simulate", "hand laboratory::read_simulation to read_experiment");
+    return bad_usage("the trial has no scenario to simulate", "pass laboratory::read_simulation to read_experiment");
   }
   return simulation->scenario(trial);
 }

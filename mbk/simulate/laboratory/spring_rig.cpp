@@ -8,7 +8,7 @@ namespace mbk::laboratory {
 
 Result<SpringRig> SpringRig::create(std::vector<Spring> springs, double mass, const Eigen::Matrix2d& damping,
                                     double disc_zero, const Eigen::Vector2d& rest) {
-  if (!(mass >= 0.0 && std::isfinite(mass))) return bad_usage(fmt::format("mass {:g} kg is below zero", mass));
+  if (!(mass >= 0.0 && std::isfinite(mass))) return bad_usage(fmt::format("mass {:g} kg is negative", mass));
   if (!damping.allFinite()) return bad_usage("the damping of the rig is not finite");
   auto array = MBK_TRY(calibration::SpringArray::create(std::move(springs)));
   const auto equilibrium = MBK_TRY(calibration::equilibrium(array, rest));

@@ -30,8 +30,8 @@ Result<void> check(const StrainGaugeOptions& o) {
     return ok;
   }
   if (o.converter_bits != 0 && (o.converter_bits < 2 || o.converter_bits > 24)) {
-    return bad_usage(fmt::format("{} bits of the strain gauge's converter are not 2 to 24", o.converter_bits),
-                     "0 leaves the converter out");
+    return bad_usage(fmt::format("{} bits of the strain gauge's converter are not within 2 to 24", o.converter_bits),
+                     "use 2 to 24, or 0 for no converter");
   }
   return {};
 }

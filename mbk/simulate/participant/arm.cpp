@@ -53,9 +53,9 @@ Result<void> check_target(const ArmOptions& options) {
   const double length = arm->geometry.upper_arm + arm->geometry.forearm;
   const double distance = (target - arm->geometry.shoulder).norm();
   if (distance <= 0.95 * length) return {};
-  return bad_usage(
-      fmt::format("the target of the reach is {:.3g} m from the shoulder of an arm of {:.3g} m", distance, length),
-      "move the shoulder, or shorten the reach");
+  return bad_usage(fmt::format("the target of the reach is {:.3g} m from the shoulder, but the arm is {:.3g} m long",
+                               distance, length),
+                   "move the shoulder, or shorten the reach");
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ ArmOptions rigid_arm_options() {
 
 Result<TwoLinkArm::Options> participant_limb(int participant) {
   if (participant < 1 || participant > 6) {
-    return bad_usage(fmt::format("participant {} is not one of the six, 1 to 6", participant));
+    return bad_usage(fmt::format("participant {} does not exist; choose 1 to 6", participant));
   }
   const HandImpedance& hand = kParticipants[static_cast<std::size_t>(participant - 1)];
   TwoLinkArm::Options options;
@@ -112,7 +112,7 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
       return tl::unexpected(ok.error());
     }
     if (!std::isfinite(time) || (k > 0 && !(time > options.stiffness_schedule[k - 1].time))) {
-      return bad_usage("times of a stiffness schedule must rise");
+      return bad_usage("the times of a stiffness schedule do not increase");
     }
   }
   std::optional<Departures> departures;
@@ -123,8 +123,8 @@ Result<Arm> Arm::create(const ArmOptions& options, double sample_time) {
   std::optional<Reaching> reaching;
   if (options.reaching) {
     if (options.controller.position_gain > 0.0 || options.departures) {
-      return bad_usage("an arm that reaches cannot also hold a place, or have departures about one",
-                       "leave out correction.position_gain and departures");
+      return bad_usage("an arm that reaches cannot also hold a position or have departures about one",
+                       "remove correction.position_gain and departures");
     }
     MBK_TRY(check_target(options));
     reaching = MBK_TRY(Reaching::create(*options.reaching, options.seed, kReachingStream));

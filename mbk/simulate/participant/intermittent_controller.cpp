@@ -38,7 +38,7 @@ Result<IntermittentController> IntermittentController::create(const Options& opt
     return tl::unexpected(ok.error());
   }
   if (!options.position.allFinite() || !options.force.allFinite()) {
-    return bad_usage("the position and the force that a controller holds must be finite");
+    return bad_usage("the held position or force of the controller is not finite");
   }
   if (options.ramp > options.interval) {
     return bad_usage(fmt::format("a correction takes {:g} s, longer than the {:g} s between decisions", options.ramp,

@@ -7,7 +7,7 @@ namespace mbk::participant {
 Result<LinearLimb> LinearLimb::create(const impedance::Model& model) {
   if (model.axes() != 2 || model.B.rows() != 2 || model.K.rows() != 2 || model.M.cols() != 2 || model.B.cols() != 2 ||
       model.K.cols() != 2 || model.x0.size() != 2) {
-    return bad_usage("a limb at the hand of a planar robot has 2×2 matrices M, B and K and two coordinates x0");
+    return bad_usage("a limb at the hand of a planar robot needs 2×2 matrices M, B and K and two coordinates x0");
   }
   if (!impedance::stacked(model).allFinite()) return bad_usage("M, B, K and x0 of a limb must be finite");
   const Eigen::Matrix2d M = model.M;

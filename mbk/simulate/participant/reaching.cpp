@@ -16,18 +16,18 @@ constexpr double kMin = 0.7, kMax = 1.3;
 Result<void> check(const Reaching::Options& o) {
   if (auto ok = above_zero({{"interval of the reaches", o.interval, "s"},
                             {"duration of a reach", o.duration, "s"},
-                            {"duration of the way back", o.way_back, "s"},
+                            {"duration of the return", o.way_back, "s"},
                             {"length of a reach", o.reach.norm(), "m"}});
       !ok) {
     return ok;
   }
   if (auto ok = not_negative({{"time of the first reach", o.first, "s"},
-                              {"latest beginning of a reach", o.latest, "s"},
+                              {"latest start of a reach", o.latest, "s"},
                               {"spread of the duration", o.duration_spread, ""},
                               {"spread of the length", o.length_spread, ""},
                               {"bend", o.bend, "m"},
-                              {"spread of the end", o.end_spread, "m"},
-                              {"stay at the target", o.stay, "s"},
+                              {"spread of the end point", o.end_spread, "m"},
+                              {"dwell at the target", o.stay, "s"},
                               {"carried mass", o.carried_mass, "kg"}});
       !ok) {
     return ok;
@@ -36,10 +36,10 @@ Result<void> check(const Reaching::Options& o) {
   if (o.reaches < 0) return bad_usage(fmt::format("{} reaches", o.reaches));
   const double longest = o.latest + kMax * o.duration + o.stay + o.way_back;
   if (longest > o.interval) {
-    return bad_usage(fmt::format("a reach of {:g} s with its way back may last {:g} s, longer than the interval of "
-                                 "{:g} s",
-                                 o.duration, longest, o.interval),
-                     "lengthen the interval, or shorten stay and way back");
+    return bad_usage(
+        fmt::format("a reach of {:g} s including its return may last {:g} s, longer than the interval of {:g} s",
+                    o.duration, longest, o.interval),
+        "lengthen the interval, or shorten the dwell and the return");
   }
   return {};
 }

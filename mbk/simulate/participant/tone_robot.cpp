@@ -17,17 +17,17 @@ Result<ToneRobot> ToneRobot::create(const Options& options) {
       !ok) {
     return tl::unexpected(ok.error());
   }
-  if (auto ok = above_zero({{"speed over which rigidity turns round", options.rigidity_speed, "m/s"},
+  if (auto ok = above_zero({{"speed over which rigidity changes sign", options.rigidity_speed, "m/s"},
                             {"largest force", options.largest_force, "N"}});
       !ok) {
     return tl::unexpected(ok.error());
   }
   if (!(options.release_force > 0.0)) {
-    return bad_usage(fmt::format("release force {:g} N is not above zero", options.release_force));
+    return bad_usage(fmt::format("release force {:g} N is not positive", options.release_force));
   }
   if (!options.stiffness.allFinite() || !options.damping.allFinite() || !options.rest.allFinite() ||
       !std::isfinite(options.stretch_angle)) {
-    return bad_usage("stiffness, damping, rest and stretch angle of the device must be finite");
+    return bad_usage("stiffness, damping, rest or stretch angle of the device is not finite");
   }
   return ToneRobot(options);
 }

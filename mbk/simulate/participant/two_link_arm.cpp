@@ -22,7 +22,7 @@ Result<void> within_reach(const ArmGeometry& geometry, const Vector2d& hand) {
 
 Result<void> check(const ArmGeometry& geometry) {
   if (!geometry.shoulder.allFinite() || !std::isfinite(geometry.rotation)) {
-    return bad_usage("the place and the rotation of the shoulder must be finite");
+    return bad_usage("the position or rotation of the shoulder is not finite");
   }
   return above_zero({{"upper arm", geometry.upper_arm, "m"}, {"forearm", geometry.forearm, "m"}});
 }
@@ -45,10 +45,10 @@ Result<ChainInertia> ChainInertia::from_matrix(const Matrix2d& I_q, double elbow
   }
   const double cosine = std::cos(elbow_angle);
   if (std::abs(cosine) < 0.05) {
-    return bad_usage(fmt::format("an inertia at {:.3g} rad of the elbow says nothing about other postures: "
-                                 "|cos q2| {:.3g} is below 0.05",
+    return bad_usage(fmt::format("the inertia at elbow angle {:.3g} rad does not determine that of other postures: "
+                                 "|cos q2| = {:.3g} is below 0.05",
                                  elbow_angle, std::abs(cosine)),
-                     "give the inertia at a posture with the elbow farther from a right angle");
+                     "give the inertia in a posture with the elbow farther from a right angle");
   }
   ChainInertia chain;
   chain.c = I_q(1, 1);
@@ -61,9 +61,9 @@ Result<ChainInertia> ChainInertia::from_matrix(const Matrix2d& I_q, double elbow
   // det I = c (a − c) − b² cos² q₂
   if (!(chain.c > 0.0 && chain.c * (chain.a - chain.c) > std::pow(chain.b * largest_cosine, 2))) {
     return bad_usage(fmt::format("the joint inertia gives a, b, c = {:.4g}, {:.4g}, {:.4g} kg·m², which is not "
-                                 "positive definite {:.2g} rad of the elbow away",
+                                 "positive definite {:.2g} rad of elbow rotation away",
                                  chain.a, chain.b, chain.c, kElbowRange),
-                     "c (a - c) must be above (b cos q2)²");
+                     "make c (a - c) larger than (b cos q2)²");
   }
   return chain;
 }
@@ -71,7 +71,7 @@ Result<ChainInertia> ChainInertia::from_matrix(const Matrix2d& I_q, double elbow
 Result<JointParameters> joint_parameters(const ArmGeometry& geometry, const impedance::Model& hand) {
   if (hand.axes() != 2 || hand.M.cols() != 2 || hand.B.rows() != 2 || hand.B.cols() != 2 || hand.K.rows() != 2 ||
       hand.K.cols() != 2 || hand.x0.size() != 2) {
-    return bad_usage("the hand of an arm of two links has 2×2 matrices M, B and K and two coordinates x0");
+    return bad_usage("the hand of a two-link arm needs 2×2 matrices M, B and K and two coordinates x0");
   }
   if (!impedance::stacked(hand).allFinite()) return bad_usage("M, B, K and x0 of a hand must be finite");
   MBK_TRY(check(geometry));
