@@ -19,11 +19,11 @@ Result<void> check_counts(const ReachSchedule::Options& o) {
   if (o.repetitions < 1)
     return bad_usage(fmt::format("{} repetitions are too few: at least 1 is needed", o.repetitions));
   if (o.undisturbed_first < ReachSchedule::kMinUndisturbedFirst) {
-    return bad_usage(fmt::format("{} unperturbed reaches at the beginning are fewer than {}", o.undisturbed_first,
+    return bad_usage(fmt::format("{} undisturbed reaches at the beginning are fewer than {}", o.undisturbed_first,
                                  ReachSchedule::kMinUndisturbedFirst),
                      "add more: they are used to predict the perturbed reaches");
   }
-  if (o.undisturbed_between < 0) return bad_usage(fmt::format("{} unperturbed reaches", o.undisturbed_between));
+  if (o.undisturbed_between < 0) return bad_usage(fmt::format("{} undisturbed reaches", o.undisturbed_between));
   const int most = ReachSchedule::kMaxReaches;
   if (o.undisturbed_first > most || o.undisturbed_between > most || o.repetitions > most / o.directions ||
       o.directions * o.repetitions + o.undisturbed_first + o.undisturbed_between > most) {
