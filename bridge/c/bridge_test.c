@@ -1,4 +1,4 @@
-/* The C header against the bytes of vectors.txt and the answers of rules.txt.   usage: bridge_test FOLDER */
+/* Tests the C header against the bytes of vectors.txt and the reactions of rules.txt.   usage: bridge_test FOLDER */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,25 +77,25 @@ static void check_vector(const char* kind) {
   if (strcmp(kind, "command") == 0) {
     command = read_command();
     size = hex(expected);
-    expect(mbk_pack_command(&command, bytes) == size && memcmp(bytes, expected, size) == 0, "packed otherwise");
+    expect(mbk_pack_command(&command, bytes) == size && memcmp(bytes, expected, size) == 0, "packed bytes differ");
     memset(&command, 0x55, sizeof(command));
-    expect(mbk_unpack_command(expected, size, &command) == MBK_BELIEVED, "not believed");
+    expect(mbk_unpack_command(expected, size, &command) == MBK_BELIEVED, "rejected");
     mbk_pack_command(&command, bytes);
-    expect(memcmp(bytes, expected, size) == 0, "unpacked otherwise");
+    expect(memcmp(bytes, expected, size) == 0, "unpacked values differ");
   } else if (strcmp(kind, "state") == 0) {
     state = read_state();
     size = hex(expected);
-    expect(mbk_pack_state(&state, bytes) == size && memcmp(bytes, expected, size) == 0, "packed otherwise");
+    expect(mbk_pack_state(&state, bytes) == size && memcmp(bytes, expected, size) == 0, "packed bytes differ");
     memset(&state, 0x55, sizeof(state));
-    expect(mbk_unpack_state(expected, size, &state) == MBK_BELIEVED, "not believed");
-    expect(mbk_pack_state(&state, bytes) == size && memcmp(bytes, expected, size) == 0, "unpacked otherwise");
+    expect(mbk_unpack_state(expected, size, &state) == MBK_BELIEVED, "rejected");
+    expect(mbk_pack_state(&state, bytes) == size && memcmp(bytes, expected, size) == 0, "unpacked values differ");
   } else {
     const int is_command = strcmp(word(), "command") == 0;
     const char* why = word();
     mbk_refusal refusal;
     size = hex(expected);
     refusal = is_command ? mbk_unpack_command(expected, size, &command) : mbk_unpack_state(expected, size, &state);
-    expect(strcmp(whys[refusal], why) == 0, "refused for another reason, or believed");
+    expect(strcmp(whys[refusal], why) == 0, "accepted, or rejected for a different reason");
   }
 }
 
@@ -113,7 +113,7 @@ static void check_take(int damaged) {
   if (damaged) bytes[MBK_COMMAND_BYTES - 1] ^= 0x80;
   event = mbk_bridge_take(&bridge, bytes, sizeof(bytes), sender, now);
   word(); /* -> */
-  expect(strcmp(events[event], word()) == 0, "another event");
+  expect(strcmp(events[event], word()) == 0, "the event differs");
 }
 
 static void check_drive(void) {
@@ -128,7 +128,7 @@ static void check_drive(void) {
   second = number();
   expect((drive.enabled != 0) == enabled && drive.command[0] == first && drive.command[1] == second &&
              drive.sequence == whole(),
-         "driven otherwise");
+         "the motor command differs");
 }
 
 static void check_state(void) {
@@ -144,17 +144,17 @@ static void check_state(void) {
   sample.stop_pressed = stop;
   size = mbk_bridge_state(&bridge, &sample, bytes);
   if (strcmp(flags, "none") == 0) {
-    expect(size == 0, "a state for nobody");
+    expect(size == 0, "a state was sent without a receiver");
     return;
   }
-  expect(mbk_unpack_state(bytes, size, &came) == MBK_BELIEVED, "no state");
-  expect(came.version == bridge.version && came.flags == atoi(flags), "other flags");
+  expect(mbk_unpack_state(bytes, size, &came) == MBK_BELIEVED, "the state is invalid");
+  expect(came.version == bridge.version && came.flags == atoi(flags), "the flags differ");
   expect(came.session == whole() && came.rejected == whole() && came.sequence == whole() && came.answered == whole(),
-         "another state");
+         "the state differs");
   expect(came.time_s == 1.5 && came.encoder[1] == 2.0 && came.force[0] == 3.0 && came.acceleration[1] == 6.0,
-         "another sample");
+         "the sample differs");
   expect(came.measured[1] == (came.version == 2 ? 8.0 : 0.0) && came.fault == (came.version == 2 ? 9u : 0u),
-         "other drives");
+         "the drive values differ");
 }
 
 static void check_rule(const char* kind) {

@@ -1,8 +1,8 @@
-/* The loop of a robot behind mbk: two wheels of 0.07 kg·m², each with a motor, here simulated.
+/* Loop of a robot connected to mbk: two simulated wheels of 0.07 kg·m², each with a motor.
  *   cc -std=c99 -O2 example_robot.c -o example_robot && ./example_robot [PORT]
- * Put your hardware into the four functions below `the hardware`; the loop stays as it is. On a microcontroller the
- * timer interrupt takes the place of clock_nanosleep, and its network library that of the socket. SIGUSR1 presses the
- * stop button and releases it again; Ctrl-C ends the program, with the motors off. */
+ * Replace the four functions below `the hardware` with your own; keep the loop unchanged. On a microcontroller, use a
+ * timer interrupt instead of clock_nanosleep and the network library instead of the socket. SIGUSR1 presses and
+ * releases the stop button; Ctrl-C switches the motors off and ends the program. */
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -41,7 +41,7 @@ static int read_stop_button(void) {
   return button;
 }
 
-/* Torque of the motors in N·m; without `enabled` their power stage is off. */
+/* Motor torque in N·m; the power stage is off unless `enabled` is set. */
 static void drive_motors(const mbk_drive* drive) {
   wheels.motors_on = drive->enabled;
   wheels.torque[0] = drive->command[0];
@@ -49,7 +49,7 @@ static void drive_motors(const mbk_drive* drive) {
   wheels.obeyed = drive->sequence;
 }
 
-/* Every field from the hardware as it is now: whether the motors are on is what the drives say. */
+/* Reads every field from the hardware; motors_on must come from the drives. */
 static void read_robot(double time_s, mbk_sample* sample) {
   int k;
   memset(sample, 0, sizeof(*sample));
@@ -64,7 +64,7 @@ static void read_robot(double time_s, mbk_sample* sample) {
   }
 }
 
-/* Only a simulation needs it: one period of J q̈ = τ − b q̇. */
+/* Needed only by the simulation: one period of J q̈ = τ − b q̇. */
 static void move(void) {
   int k;
   for (k = 0; k < 2; ++k) {
@@ -82,10 +82,10 @@ static int open_socket(int port) {
   const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
   memset(&address, 0, sizeof(address));
   address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK); /* INADDR_ANY where mbk runs on another machine */
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK); /* INADDR_ANY if mbk runs on another computer */
   address.sin_port = htons((uint16_t)port);
   if (descriptor < 0 || bind(descriptor, (struct sockaddr*)&address, size) != 0) {
-    perror("example_robot: the socket");
+    perror("example_robot: the socket cannot be opened");
     exit(1);
   }
   fcntl(descriptor, F_SETFL, O_NONBLOCK);
@@ -139,19 +139,19 @@ int main(int argc, char** argv) {
     next_tick(&tick);
     clock_gettime(CLOCK_MONOTONIC, &now);
 
-    /* 1. whatever has come */
+    /* 1. received datagrams */
     while ((size = recvfrom(network, bytes, sizeof(bytes), 0, (struct sockaddr*)&from, &from_size)) >= 0) {
       const uint64_t sender = ((uint64_t)from.sin_addr.s_addr << 16) | from.sin_port;
       if (mbk_bridge_take(&bridge, bytes, (size_t)size, sender, microseconds(&now)) == MBK_GREETED) master = from;
       from_size = sizeof(from);
     }
 
-    /* 2. the motors, at every tick: this is where the watchdog and the stop button switch them off */
+    /* 2. motors, at every tick: here the watchdog and the stop button switch them off */
     drive = mbk_bridge_drive(&bridge, microseconds(&now), read_stop_button());
     drive_motors(&drive);
     move();
 
-    /* 3. what is true now */
+    /* 3. current state */
     read_robot(1e-6 * (double)microseconds(&now), &sample);
     size = (ssize_t)mbk_bridge_state(&bridge, &sample, bytes);
     if (size > 0) sendto(network, bytes, (size_t)size, 0, (struct sockaddr*)&master, sizeof(master));

@@ -1,12 +1,12 @@
-/* A robot of your own behind mbk, in C99: the two datagrams, and the rules that a robot keeps. Copy this file; it needs
- * nothing but a C compiler with 64-bit doubles, allocates nothing and calls no operating system. C++ reads it too.
+/* Connects your own robot to mbk, in C99: the two datagrams and the rules that a robot must follow. Copy this file. It
+ * needs only a C compiler with 64-bit doubles, allocates no memory and makes no system calls. It also compiles as C++.
  *
- *   mbk_bridge_take    what has come from the network: is it believed, and what does it ask for
- *   mbk_bridge_drive   what the motors shall do now: watchdog, stop button and greeting are in it
- *   mbk_bridge_state   what the robot says, as bytes for the network
+ *   mbk_bridge_take    processes a received datagram: accepts or rejects it, and stores its command
+ *   mbk_bridge_drive   returns the command for the motors, after watchdog, stop button and greeting
+ *   mbk_bridge_state   packs the state of the robot as bytes for the network
  *
- * example_robot.c calls them in the loop of a robot. docs/guide/your_own_robot.md says how to go on from there, and
- * docs/guide/devices.md which byte means what. Call them from one thread. */
+ * example_robot.c calls them in the loop of a robot. docs/guide/own_robot.md explains the next steps and lists every
+ * byte. Call the functions from one thread. */
 #ifndef MBK_BRIDGE_H
 #define MBK_BRIDGE_H
 
@@ -22,16 +22,16 @@ typedef char mbk_a_double_has_64_bits[sizeof(double) == 8 ? 1 : -1];
 
 #define MBK_COMMAND_BYTES 44u
 #define MBK_STATE_BYTES_1 92u
-#define MBK_STATE_BYTES_2 112u /* room enough for a state of any version */
+#define MBK_STATE_BYTES_2 112u /* also the largest state of any version */
 
-/* ---- what the datagrams hold */
+/* ---- contents of the datagrams */
 
 enum { MBK_COMMAND_VERSION = 1, MBK_NEWEST_STATE_VERSION = 2 };
 
 enum {                   /* flags of a command */
        MBK_ENABLED = 1,  /* motors on */
-       MBK_GREETING = 2, /* a session begins: motors off, an answer is awaited */
-       MBK_LOCK_STEP = 4 /* in a greeting: a simulation shall wait for each command */
+       MBK_GREETING = 2, /* starts a session: motors off, mbk waits for a reply */
+       MBK_LOCK_STEP = 4 /* in a greeting: a simulation must wait for each command */
 };
 
 enum { /* flags of a state */
@@ -40,26 +40,26 @@ enum { /* flags of a state */
        MBK_HAS_FORCE = 4,        /* a force sensor is fitted */
        MBK_HAS_ACCELERATION = 8, /* an accelerometer is fitted */
        MBK_WATCHDOG_EXPIRED = 16,
-       MBK_DRIVES_MEASURE = 32 /* version 2: `measured` is meant */
+       MBK_DRIVES_MEASURE = 32 /* version 2: `measured` is valid */
 };
 
-/* From mbk. */
+/* Sent by mbk. */
 typedef struct mbk_command {
   uint16_t flags;
   uint32_t session;     /* chosen by mbk at each start, not 0 */
-  uint32_t watchdog_ms; /* without a command for so long the motors have to go off */
-  uint64_t sequence;    /* from 1, the greeting's */
-  double command[2];    /* to motors 1 and 2, in the robot's unit */
+  uint32_t watchdog_ms; /* motors must switch off after this time without a command */
+  uint64_t sequence;    /* starts at 1 with the greeting */
+  double command[2];    /* for motors 1 and 2, in the robot's unit */
 } mbk_command;
 
-/* To mbk. */
+/* Sent to mbk. */
 typedef struct mbk_state {
   uint16_t version; /* 1 or 2 */
   uint16_t flags;
   uint32_t session;       /* of the last greeting */
-  uint32_t rejected;      /* datagrams that the robot has not believed */
-  uint64_t sequence;      /* of this sample, one more with each */
-  uint64_t answered;      /* sequence of the command that the drives obey */
+  uint32_t rejected;      /* number of datagrams that the robot rejected */
+  uint64_t sequence;      /* of this sample, incremented by 1 for each */
+  uint64_t answered;      /* sequence of the command that the drives execute */
   double time_s;          /* of this sample, on the robot's clock */
   double encoder[2];      /* counts, or angles in rad */
   double force[2];        /* reading of the force sensor; 0 without one */
@@ -68,7 +68,7 @@ typedef struct mbk_state {
   uint32_t fault;         /* version 2: the robot's own fault code; 0: none */
 } mbk_state;
 
-/* Whether a datagram is one. */
+/* Whether a datagram is valid. */
 typedef enum mbk_refusal {
   MBK_BELIEVED = 0,
   MBK_WRONG_LENGTH,
@@ -77,9 +77,9 @@ typedef enum mbk_refusal {
   MBK_WRONG_CHECKSUM
 } mbk_refusal;
 
-/* ---- bytes: low byte first on every machine */
+/* ---- bytes: little-endian on every machine */
 
-/* CRC-32 as of zlib, polynomial 0xEDB88320. */
+/* CRC-32 as in zlib, polynomial 0xEDB88320. */
 static inline uint32_t mbk_crc32(const uint8_t* bytes, size_t size) {
   static const uint32_t table[16] = {0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
                                      0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
@@ -125,7 +125,7 @@ static inline void mbk_get_pair(const uint8_t** at, double pair[2]) {
   }
 }
 
-/* Also where the compiler takes every number for finite (-ffast-math). */
+/* Correct even if the compiler assumes that every number is finite (-ffast-math). */
 static inline int mbk_is_finite(double value) {
   uint64_t bits;
   memcpy(&bits, &value, 8);
@@ -137,7 +137,7 @@ static inline size_t mbk_seal(uint8_t* bytes, uint8_t* at) {
   return (size_t)(at - bytes);
 }
 
-/* What can be said before a field is read; `lengths` are those of version 1, 2, … */
+/* Checks a datagram before its fields are read; `lengths` of versions 1, 2, … */
 static inline mbk_refusal mbk_look_at(const uint8_t* bytes, size_t size, const char* magic, const size_t* lengths,
                                       size_t versions, uint16_t* version) {
   const uint8_t* at = bytes + 4;
@@ -152,7 +152,7 @@ static inline mbk_refusal mbk_look_at(const uint8_t* bytes, size_t size, const c
 
 /* ---- the two datagrams */
 
-/* `command` is meant only where MBK_BELIEVED is returned. Its numbers need not be finite. */
+/* `command` is valid only if MBK_BELIEVED is returned. Its numbers may be non-finite. */
 static inline mbk_refusal mbk_unpack_command(const uint8_t* bytes, size_t size, mbk_command* command) {
   static const size_t lengths[1] = {MBK_COMMAND_BYTES};
   uint16_t version = 0;
@@ -167,7 +167,7 @@ static inline mbk_refusal mbk_unpack_command(const uint8_t* bytes, size_t size, 
   return MBK_BELIEVED;
 }
 
-/* `bytes` has room for MBK_STATE_BYTES_2. Returns how many of them to send. */
+/* `bytes` must have room for MBK_STATE_BYTES_2. Returns the number of bytes to send. */
 static inline size_t mbk_pack_state(const mbk_state* state, uint8_t* bytes) {
   const uint16_t version = state->version >= MBK_NEWEST_STATE_VERSION ? MBK_NEWEST_STATE_VERSION : 1;
   const uint16_t flags = (uint16_t)(version == 1 ? state->flags & ~MBK_DRIVES_MEASURE : state->flags);
@@ -192,7 +192,8 @@ static inline size_t mbk_pack_state(const mbk_state* state, uint8_t* bytes) {
   return mbk_seal(bytes, at);
 }
 
-/* The other two, for programs that command a robot or look at what goes by. `bytes` has room for MBK_COMMAND_BYTES. */
+/* The reverse functions, for programs that command a robot or monitor the traffic. `bytes` must have room for
+ * MBK_COMMAND_BYTES. */
 static inline size_t mbk_pack_command(const mbk_command* command, uint8_t* bytes) {
   uint8_t* at = bytes + 4;
   memcpy(bytes, "MBKC", 4);
@@ -230,60 +231,60 @@ static inline mbk_refusal mbk_unpack_state(const uint8_t* bytes, size_t size, mb
   return MBK_BELIEVED;
 }
 
-/* ---- the rules of a robot */
+/* ---- rules for a robot */
 
-/* What a robot remembers between two calls. Written by the functions below; to be read by anyone. */
+/* State of the bridge between calls. Written by the functions below; you may read it. */
 typedef struct mbk_bridge {
   uint16_t version;     /* of the states that it sends: 1 or 2 */
-  int awake;            /* somebody is there to send states to: `master` */
-  int enabled;          /* the newest command asks for the motors */
-  int watchdog_expired; /* they stay off until the next greeting */
-  int lock_step;        /* asked for in the greeting; only a simulation can wait */
+  int awake;            /* `master` is connected and receives states */
+  int enabled;          /* the newest command enables the motors */
+  int watchdog_expired; /* motors stay off until the next greeting */
+  int lock_step;        /* requested in the greeting; only a simulation can wait */
   uint32_t session, watchdog_ms, rejected;
-  uint64_t master;   /* who greeted last */
+  uint64_t master;   /* sender of the last greeting */
   uint64_t newest;   /* sequence of the newest command */
   uint64_t sequence; /* of the last state */
-  uint64_t heard_us; /* when the newest command came */
-  double command[2]; /* that it asks for */
+  uint64_t heard_us; /* time of the newest command */
+  double command[2]; /* of the newest command */
 } mbk_bridge;
 
-/* What has come. */
+/* Result of a received datagram. */
 typedef enum mbk_event {
-  MBK_REJECTED = 0, /* not believed, and counted */
-  MBK_GREETED,      /* a session begins: send states to the sender from now on; motors off */
+  MBK_REJECTED = 0, /* invalid or not permitted; counted */
+  MBK_GREETED,      /* starts a session: send states to this sender from now on; motors off */
   MBK_COMMANDED,    /* a new command */
-  MBK_REPEATED /* the newest command or the greeting once more: changes nothing; in lock-step, send the same again */
+  MBK_REPEATED      /* copy of the newest command or greeting: no effect; in lock-step, send the same state again */
 } mbk_event;
 
-/* What the motors shall do now. */
+/* Command for the motors. */
 typedef struct mbk_drive {
   int enabled;       /* 0: motors off */
-  double command[2]; /* 0 where they are off */
-  uint64_t sequence; /* of the command that this is: goes back in mbk_sample once the drives obey it */
+  double command[2]; /* 0 if the motors are off */
+  uint64_t sequence; /* of this command; return it in mbk_sample once the drives execute it */
 } mbk_drive;
 
-/* What the robot measures and knows of itself, read from the hardware: report the truth, not what was commanded. */
+/* Measurements and status of the robot, read from the hardware: report what is true, not what was commanded. */
 typedef struct mbk_sample {
-  double time_s;     /* of this sample; runs on with each */
+  double time_s;     /* of this sample; increases with each */
   double encoder[2]; /* counts, or angles in rad */
   double force[2], acceleration[2];
-  int has_force, has_acceleration; /* the sensors are there now */
+  int has_force, has_acceleration; /* the sensors are present now */
   int stop_pressed;
-  int motors_on;   /* as the drives say */
-  uint64_t obeyed; /* mbk_drive.sequence of what the drives do now */
+  int motors_on;   /* as the drives report */
+  uint64_t obeyed; /* mbk_drive.sequence that the drives execute now */
   int drives_measure;
   double measured[2]; /* version 2: from the currents, in the unit of the command */
-  uint32_t fault;     /* version 2: a code of your own; 0: none */
+  uint32_t fault;     /* version 2: your own fault code; 0: none */
 } mbk_sample;
 
-#define MBK_FORGET_US 10000000u /* so long after the last command the robot stops sending */
+#define MBK_FORGET_US 10000000u /* the robot stops sending this long after the last command */
 
 static inline void mbk_bridge_begin(mbk_bridge* bridge, uint16_t state_version) {
   memset(bridge, 0, sizeof(*bridge));
   bridge->version = state_version;
 }
 
-/* A greeting: from anyone while the motors are off; while they are on it is refused. */
+/* A greeting: accepted from any sender while the motors are off, rejected while they are on. */
 static inline mbk_event mbk_bridge_greet(mbk_bridge* bridge, const mbk_command* came, uint64_t sender,
                                          uint64_t now_us) {
   if (bridge->awake && sender == bridge->master && came->session == bridge->session) return MBK_REPEATED;
@@ -303,8 +304,8 @@ static inline mbk_event mbk_bridge_greet(mbk_bridge* bridge, const mbk_command* 
   return MBK_GREETED;
 }
 
-/* A datagram has come from `sender`, any number that names an address and a port, at `now_us` on a clock that only runs
- * forward. */
+/* Processes a datagram from `sender`, a number that identifies address and port, received at `now_us` on a monotonic
+ * clock. */
 static inline mbk_event mbk_bridge_take(mbk_bridge* bridge, const uint8_t* bytes, size_t size, uint64_t sender,
                                         uint64_t now_us) {
   mbk_command came;
@@ -328,7 +329,7 @@ static inline mbk_event mbk_bridge_take(mbk_bridge* bridge, const uint8_t* bytes
   return MBK_COMMANDED;
 }
 
-/* What the motors shall do at `now_us`: call it at each tick, whether or not anything has come. */
+/* Command for the motors at `now_us`. Call it at every tick, even if no datagram was received. */
 static inline mbk_drive mbk_bridge_drive(mbk_bridge* bridge, uint64_t now_us, int stop_pressed) {
   mbk_drive drive;
   const uint64_t silent_us = now_us - bridge->heard_us;
@@ -341,7 +342,8 @@ static inline mbk_drive mbk_bridge_drive(mbk_bridge* bridge, uint64_t now_us, in
   return drive;
 }
 
-/* A state for `master`. `bytes` has room for MBK_STATE_BYTES_2. Returns how many of them to send; 0: nobody listens. */
+/* A state for `master`. `bytes` must have room for MBK_STATE_BYTES_2. Returns the number of bytes to send; 0: no
+ * receiver. */
 static inline size_t mbk_bridge_state(mbk_bridge* bridge, const mbk_sample* sample, uint8_t* bytes) {
   mbk_state state;
   if (!bridge->awake) return 0;

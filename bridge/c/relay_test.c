@@ -1,5 +1,5 @@
-/* A robot whose hardware is another robot behind UDP, in lock-step: all four directions of the header in one program.
- *   usage: relay_test PORT      of the other robot, on this machine */
+/* A robot whose hardware is another robot behind UDP, in lock-step: uses all four functions of the header in one
+ * program. usage: relay_test PORT      of the other robot, on this machine */
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -35,7 +35,7 @@ static int open_socket(int* port) {
 static int robot;
 static struct sockaddr_in robot_address;
 
-/* The state with which the other robot answers; asked again where it gets lost. */
+/* The reply of the other robot; repeats the command if it is lost. */
 static mbk_state ask(const mbk_command* command) {
   uint8_t bytes[MBK_STATE_BYTES_2];
   mbk_state state;
@@ -50,7 +50,7 @@ static mbk_state ask(const mbk_command* command) {
       }
     }
   }
-  fprintf(stderr, "relay_test: the other robot does not answer\n");
+  fprintf(stderr, "relay_test: the other robot does not reply\n");
   exit(1);
 }
 

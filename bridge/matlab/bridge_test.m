@@ -1,8 +1,8 @@
-% The MATLAB functions against the bytes of vectors.txt and the answers of rules.txt: octave-cli bridge_test.m
+% Tests the MATLAB functions against the bytes of vectors.txt and the reactions of rules.txt: octave-cli bridge_test.m
 addpath(fileparts(mfilename('fullpath')));
 
 function value = whole(text)
-  % Digit by digit: a double holds 53 bits.
+  % Digit by digit, because a double has only 53 bits.
   value = uint64(0);
   for digit = text
     value = value * 10 + uint64(digit - '0');
@@ -128,12 +128,12 @@ end
 printf('%d lines, %d failures\n', steps, failures);
 assert(failures == 0 && steps > 90);
 
-% the check value of the standard, and lengths that four do not divide
+% the check value of the standard, and lengths that are not multiples of four
 for known = {'', 0; 'a', 3904355907; 'ab', 2659403885; 'abc', 891568578; '123456789', 3421780262}'
   assert(mbk_crc32(reshape(uint8(known{1}), 1, [])), uint32(known{2}));
 end
 
-% the whole step, as a block calls it
+% the whole step, as a Simulink block calls it
 step_sample = mbk_sample();
 step_sample.motors_on = true;
 [enabled, command, datagram, count] = mbk_robot_step(zeros(1, 44, 'uint8'), 0, step_sample, 0);

@@ -1,7 +1,7 @@
 function [bridge, bytes] = mbk_bridge_state(bridge, sample)
 %MBK_BRIDGE_STATE  The bytes to send to bridge.master.
 %   [bridge, bytes] = mbk_bridge_state(bridge, sample)   sample: of mbk_sample.
-%   Where bridge.awake is false nobody listens: do not send them.
+%   Do not send the bytes if bridge.awake is false: there is no receiver.
 %#codegen
 if bridge.awake
   bridge.sequence = bridge.sequence + 1;

@@ -1,9 +1,9 @@
 function [bridge, event] = mbk_bridge_take(bridge, bytes, sender, now_s)
-%MBK_BRIDGE_TAKE  A datagram has come: is it believed, and what does it ask for?
+%MBK_BRIDGE_TAKE  Processes a received datagram: accepts or rejects it, and stores its command.
 %   [bridge, event] = mbk_bridge_take(bridge, bytes, sender, now_s)
-%   sender: any number that names an address and a port; now_s: of a clock that only runs forward.
-%   event: 0 rejected and counted; 1 greeted: a session begins, send states to the sender, motors off; 2 commanded;
-%   3 repeated: the newest command or the greeting once more, which changes nothing (in lock-step: answer again).
+%   sender: a number that identifies address and port; now_s: time on a monotonic clock.
+%   event: 0 rejected and counted; 1 greeted: starts a session, send states to this sender, motors off; 2 commanded;
+%   3 repeated: copy of the newest command or greeting, no effect (in lock-step: reply again).
 %#codegen
 [why, came] = mbk_unpack_command(bytes);
 if why ~= 0 || ~all(isfinite(came.command))
@@ -12,7 +12,7 @@ elseif bitand(came.flags, uint16(2)) ~= 0
   if bridge.awake && sender == bridge.master && came.session == bridge.session
     event = 3;
   elseif (bridge.enabled && ~bridge.watchdog_expired) || came.session == 0
-    event = 0;  % while the motors are on nobody else is obeyed
+    event = 0;  % greetings are rejected while the motors are on
   else
     event = 1;
     bridge.awake = true;

@@ -1,7 +1,7 @@
 function crc = mbk_crc32(bytes)
-%MBK_CRC32  CRC-32 as of zlib, polynomial 0xEDB88320.
+%MBK_CRC32  CRC-32 as in zlib, polynomial 0xEDB88320.
 %   crc = mbk_crc32(bytes)   bytes: row of uint8.   crc: uint32
-%   Four bytes at a time, low byte first: each by its own column of the table.
+%   Processes four bytes at a time, little-endian, each with its own column of the table.
 %#codegen
 persistent table
 if isempty(table)

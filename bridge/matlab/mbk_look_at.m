@@ -1,7 +1,7 @@
 function [why, head] = mbk_look_at(bytes, magic, lengths)
-%MBK_LOOK_AT  Whether a datagram is one, and what every datagram begins with.
-%   why: 0 believed, 1 wrong length, 2 wrong magic, 3 wrong version, 4 wrong checksum.   lengths: of version 1, 2, …
-%   head: version, flags and session; of a datagram that is not believed version 1 and zeros.
+%MBK_LOOK_AT  Checks a datagram and reads its head.
+%   why: 0 valid, 1 wrong length, 2 wrong magic, 3 wrong version, 4 wrong checksum.   lengths: of versions 1, 2, …
+%   head: version, flags and session; version 1 and zeros if the datagram is invalid.
 %#codegen
 head = struct('version', uint16(1), 'flags', uint16(0), 'session', uint32(0));
 why = 0;

@@ -2,12 +2,12 @@ function bytes = mbk_pack_state(state)
 %MBK_PACK_STATE  A state for mbk as the bytes of a datagram: 92 of version 1, 112 of version 2.
 %   bytes = mbk_pack_state(state)   row of uint8.   state: version, flags (1 stop pressed, 2 motors on, 4 force sensor
 %   fitted, 8 accelerometer fitted, 16 watchdog expired, 32 drives measure), session, rejected, sequence, answered,
-%   time_s, encoder(1:2), force(1:2), acceleration(1:2), and of version 2 measured(1:2), fault.
-%   Low byte first, as Simulink's targets and QUARC's have their numbers.
+%   time_s, encoder(1:2), force(1:2), acceleration(1:2), and in version 2 measured(1:2), fault.
+%   Little-endian, like the targets of Simulink and QUARC.
 %#codegen
 flags = uint16(state.flags);
 if state.version < 2
-  flags = bitand(flags, uint16(31));  % drives measure: version 2 alone
+  flags = bitand(flags, uint16(31));  % drives measure: version 2 only
 end
 body = [uint8('MBKS'), typecast(uint16(state.version), 'uint8'), typecast(flags, 'uint8'), ...
         typecast(uint32(state.session), 'uint8'), typecast(uint32(state.rejected), 'uint8'), ...

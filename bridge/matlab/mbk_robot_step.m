@@ -1,11 +1,11 @@
 function [drive_enabled, drive_command, datagram, count] = mbk_robot_step(received, received_count, sample, now_s)
-%MBK_ROBOT_STEP  A robot's whole step: for a MATLAB Function block in Simulink, once in each millisecond.
+%MBK_ROBOT_STEP  One complete step of a robot: for a MATLAB Function block in Simulink, once per millisecond.
 %   [drive_enabled, drive_command, datagram, count] = mbk_robot_step(received, received_count, sample, now_s)
-%   received: uint8, what the UDP or stream block received; received_count: how many bytes of it are new, 0: none.
-%   sample: as mbk_sample gives it, read from the hardware; its field obeyed is filled in here.
-%   now_s: of a clock that only runs forward.
-%   drive_enabled, drive_command(1:2): to the drives. datagram(1:count): to the UDP or stream block; count 0: send none.
-%   Blocks know one sender: let them receive from mbk's address alone (local_port in [device]).
+%   received: uint8, output of the UDP or stream block; received_count: number of new bytes in it, 0: none.
+%   sample: as returned by mbk_sample, filled from the hardware; this function sets its field obeyed.
+%   now_s: time on a monotonic clock.
+%   drive_enabled, drive_command(1:2): for the drives. datagram(1:count): for the UDP or stream block; count 0: none.
+%   Blocks support one sender: set them to receive only from the address of mbk (local_port in [device]).
 %   States are of version 2: 112 bytes.
 %#codegen
 persistent bridge

@@ -1,8 +1,8 @@
 function [why, command] = mbk_unpack_command(bytes)
 %MBK_UNPACK_COMMAND  A command of mbk from the bytes of a datagram.
-%   [why, command] = mbk_unpack_command(bytes)   bytes: row of uint8, all that has come.   why: as of mbk_look_at.
-%   command, where it is believed: flags (1 motors on, 2 greeting, 4 lock-step), session, watchdog_ms, sequence, and
-%   command(1:2) to the motors in the robot's unit, which need not be finite.
+%   [why, command] = mbk_unpack_command(bytes)   bytes: row of uint8, all received bytes.   why: as in mbk_look_at.
+%   command, if it is valid: flags (1 motors on, 2 greeting, 4 lock-step), session, watchdog_ms, sequence, and
+%   command(1:2) for the motors in the robot's unit, which may be non-finite.
 %#codegen
 [why, head] = mbk_look_at(bytes, uint8('MBKC'), 44);
 command = struct('flags', head.flags, 'session', head.session, 'watchdog_ms', uint32(0), 'sequence', uint64(0), ...

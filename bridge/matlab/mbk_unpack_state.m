@@ -1,6 +1,6 @@
 function [why, state] = mbk_unpack_state(bytes)
 %MBK_UNPACK_STATE  A robot's state from the bytes of a datagram, for programs that command a robot themselves.
-%   [why, state] = mbk_unpack_state(bytes)   why: as of mbk_look_at.   state: as mbk_pack_state takes it.
+%   [why, state] = mbk_unpack_state(bytes)   why: as in mbk_look_at.   state: as mbk_pack_state expects it.
 %#codegen
 [why, head] = mbk_look_at(bytes, uint8('MBKS'), [92 112]);
 state = struct('version', head.version, 'flags', head.flags, 'session', head.session, 'rejected', uint32(0), ...

@@ -1,5 +1,5 @@
-% A robot whose hardware is another robot, in lock-step, with its bytes on standard input and output: what
-% python/relay_test.py runs, which has the sockets.   octave-cli relay_test.m
+% A robot whose hardware is another robot, in lock-step, with its bytes on standard input and output. It is run by
+% python/relay_test.py, which owns the sockets.   octave-cli relay_test.m
 addpath(fileparts(mfilename('fullpath')));
 
 function send(bytes, flag)

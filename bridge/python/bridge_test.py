@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The Python module against the bytes of vectors.txt and the answers of rules.txt."""
+"""Tests the Python module against the bytes of vectors.txt and the reactions of rules.txt."""
 import pathlib
 import unittest
 
@@ -40,7 +40,7 @@ class Vectors(unittest.TestCase):
 
 
 class Rules(unittest.TestCase):
-    def test_a_robot_answers_so(self):
+    def test_a_robot_reacts_as_in_the_rules(self):
         bridge, drive, stop, steps = None, None, False, 0
         for place, words in lines("rules.txt"):
             kind, expected = words[0], words[words.index("->") + 1:] if "->" in words else []

@@ -1,9 +1,9 @@
-"""The loop of a robot behind mbk: two wheels of 0.07 kg·m², each with a motor, here simulated.
+"""Loop of a robot connected to mbk: two simulated wheels of 0.07 kg·m², each with a motor.
 
 usage: example_robot.py [PORT]
-Put your hardware into the class Wheels; the loop stays as it is. SIGUSR1 presses the stop button and releases it again;
-Ctrl-C ends the program, with the motors off. Python's pauses are now and then longer than a watchdog: it is for slow
-robots and to try things, and where it lags behind, the motors go off.
+Replace the class Wheels with your own hardware; keep the loop unchanged. SIGUSR1 presses and releases the stop button;
+Ctrl-C switches the motors off and ends the program. Python sometimes pauses for longer than a watchdog time, and the
+motors then switch off: use it for slow robots and for trials.
 """
 import signal
 import socket
@@ -26,16 +26,16 @@ class Wheels:
         self.button = not self.button
 
     def drive_motors(self, drive):
-        """Torque of the motors in N·m; without `enabled` their power stage is off."""
+        """Motor torque in N·m; the power stage is off unless `enabled` is set."""
         self.drive = drive
 
     def read(self, time_s):
-        """Every field from the hardware as it is now: whether the motors are on is what the drives say."""
+        """Reads every field from the hardware; motors_on must come from the drives."""
         return Sample(time_s=time_s, encoder=tuple(self.angle), stop_pressed=self.button, motors_on=self.drive.enabled,
                       obeyed=self.drive.sequence, drives_measure=True, measured=self.drive.command)
 
     def move(self):
-        """Only a simulation needs it: one period of J q̈ = τ − b q̇."""
+        """Needed only by the simulation: one period of J q̈ = τ − b q̇."""
         for k in range(2):
             self.speed[k] += PERIOD_S * (self.drive.command[k] - 0.1 * self.speed[k]) / 0.07
             self.angle[k] += PERIOD_S * self.speed[k]
@@ -47,17 +47,17 @@ def serve(robot, network):
         tick += PERIOD_S
         time.sleep(max(0.0, tick - time.monotonic()))
         now = time.monotonic()
-        try:  # 1. whatever has come
+        try:  # 1. received datagrams
             while True:
                 data, sender = network.recvfrom(200)
                 if bridge.take(data, sender, now) is Event.GREETED:
                     master = sender
         except BlockingIOError:
             pass
-        # 2. the motors, at every tick: this is where the watchdog and the stop button switch them off
+        # 2. motors, at every tick: here the watchdog and the stop button switch them off
         robot.drive_motors(bridge.drive(now, robot.button))
         robot.move()
-        # 3. what is true now
+        # 3. current state
         data = bridge.state(robot.read(now))
         if data is not None:
             network.sendto(data, master)
@@ -65,7 +65,7 @@ def serve(robot, network):
 
 def main():
     robot, network = Wheels(), socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    network.bind(("127.0.0.1", int(sys.argv[1]) if len(sys.argv) > 1 else 25000))  # "" where mbk runs elsewhere
+    network.bind(("127.0.0.1", int(sys.argv[1]) if len(sys.argv) > 1 else 25000))  # "" if mbk runs on another computer
     network.setblocking(False)
     signal.signal(signal.SIGUSR1, robot.press)
     signal.signal(signal.SIGTERM, signal.default_int_handler)

@@ -1,9 +1,8 @@
-"""A robot of your own behind mbk, in Python: the two datagrams, and the rules that a robot keeps.
+"""Connects your own robot to mbk, in Python: the two datagrams and the rules that a robot must follow.
 
-Copy this file; it needs the standard library alone. `Bridge.take` judges what has come from the network, `Bridge.drive`
-says what the motors shall do now, `Bridge.state` gives the bytes that the robot sends. example_robot.py calls them in
-the loop of a robot; docs/guide/your_own_robot.md says how to go on from there, docs/guide/devices.md which byte means
-what.
+Copy this file; it needs only the standard library. `Bridge.take` processes a received datagram, `Bridge.drive` returns
+the command for the motors, `Bridge.state` returns the bytes that the robot sends. example_robot.py calls them in the
+loop of a robot; docs/guide/own_robot.md explains the next steps and lists every byte.
 """
 import dataclasses
 import enum
@@ -13,7 +12,7 @@ import zlib
 
 COMMAND_VERSION, NEWEST_STATE_VERSION = 1, 2
 COMMAND_BYTES, STATE_BYTES = 44, {1: 92, 2: 112}
-FORGET_S = 10.0  # so long after the last command the robot stops sending
+FORGET_S = 10.0  # the robot stops sending this long after the last command
 
 _COMMAND = struct.Struct("<4sHHIIQ2d")
 _STATE = {1: struct.Struct("<4sHHIIQQd2d2d2d"), 2: struct.Struct("<4sHHIIQQd2d2d2d2dI")}
@@ -22,8 +21,8 @@ _CHECKSUM = struct.Struct("<I")
 
 class CommandFlag(enum.IntFlag):
     ENABLED = 1  # motors on
-    GREETING = 2  # a session begins: motors off, an answer is awaited
-    LOCK_STEP = 4  # in a greeting: a simulation shall wait for each command
+    GREETING = 2  # starts a session: motors off, mbk waits for a reply
+    LOCK_STEP = 4  # in a greeting: a simulation must wait for each command
 
 
 class StateFlag(enum.IntFlag):
@@ -32,26 +31,26 @@ class StateFlag(enum.IntFlag):
     HAS_FORCE = 4  # a force sensor is fitted
     HAS_ACCELERATION = 8  # an accelerometer is fitted
     WATCHDOG_EXPIRED = 16
-    DRIVES_MEASURE = 32  # version 2: `measured` is meant
+    DRIVES_MEASURE = 32  # version 2: `measured` is valid
 
 
 class Refused(ValueError):
-    """A datagram is not believed; `why` is "length", "magic", "version" or "checksum"."""
+    """A datagram is invalid; `why` is "length", "magic", "version" or "checksum"."""
 
     def __init__(self, why):
-        super().__init__(f"not believed: {why}")
+        super().__init__(f"invalid datagram: {why}")
         self.why = why
 
 
 @dataclasses.dataclass
 class Command:
-    """From mbk."""
+    """Sent by mbk."""
 
     flags: int = 0
     session: int = 0  # chosen by mbk at each start, not 0
-    watchdog_ms: int = 0  # without a command for so long the motors have to go off
-    sequence: int = 0  # from 1, the greeting's
-    command: tuple = (0.0, 0.0)  # to motors 1 and 2, in the robot's unit
+    watchdog_ms: int = 0  # motors must switch off after this time without a command
+    sequence: int = 0  # starts at 1 with the greeting
+    command: tuple = (0.0, 0.0)  # for motors 1 and 2, in the robot's unit
 
     def pack(self):
         return _sealed(_COMMAND.pack(b"MBKC", COMMAND_VERSION, self.flags, self.session, self.watchdog_ms,
@@ -59,7 +58,7 @@ class Command:
 
     @staticmethod
     def unpack(data):
-        """@raises Refused. The numbers need not be finite."""
+        """@raises Refused. The numbers may be non-finite."""
         _look_at(data, b"MBKC", {1: COMMAND_BYTES})
         _, _, flags, session, watchdog_ms, sequence, *command = _COMMAND.unpack(data[:-4])
         return Command(flags, session, watchdog_ms, sequence, tuple(command))
@@ -67,14 +66,14 @@ class Command:
 
 @dataclasses.dataclass
 class State:
-    """To mbk."""
+    """Sent to mbk."""
 
     version: int = 1  # 1 or 2
     flags: int = 0
     session: int = 0  # of the last greeting
-    rejected: int = 0  # datagrams that the robot has not believed
-    sequence: int = 0  # of this sample, one more with each
-    answered: int = 0  # sequence of the command that the drives obey
+    rejected: int = 0  # number of datagrams that the robot rejected
+    sequence: int = 0  # of this sample, incremented by 1 for each
+    answered: int = 0  # sequence of the command that the drives execute
     time_s: float = 0.0  # of this sample, on the robot's clock
     encoder: tuple = (0.0, 0.0)  # counts, or angles in rad
     force: tuple = (0.0, 0.0)  # reading of the force sensor; 0 without one
@@ -92,7 +91,7 @@ class State:
 
     @staticmethod
     def unpack(data):
-        """@raises Refused. The numbers need not be finite."""
+        """@raises Refused. The numbers may be non-finite."""
         version = _look_at(data, b"MBKS", STATE_BYTES)
         _, _, flags, session, rejected, sequence, answered, time_s, *rest = _STATE[version].unpack(data[:-4])
         measured, fault = (tuple(rest[6:8]), rest[8]) if version == 2 else ((0.0, 0.0), 0)
@@ -121,46 +120,47 @@ def _look_at(data, magic, lengths):
 
 
 class Event(enum.Enum):
-    """What has come."""
+    """Result of a received datagram."""
 
-    REJECTED = "rejected"  # not believed, and counted
-    GREETED = "greeted"  # a session begins: send states to the sender from now on; motors off
+    REJECTED = "rejected"  # invalid or not permitted; counted
+    GREETED = "greeted"  # starts a session: send states to this sender from now on; motors off
     COMMANDED = "commanded"  # a new command
-    REPEATED = "repeated"  # the newest command or the greeting once more: changes nothing; in lock-step, answer again
+    REPEATED = "repeated"  # copy of the newest command or greeting: no effect; in lock-step, reply again
 
 
 @dataclasses.dataclass
 class Drive:
-    """What the motors shall do now."""
+    """Command for the motors."""
 
     enabled: bool  # False: motors off
-    command: tuple  # 0 where they are off
-    sequence: int  # of the command that this is: goes back in Sample.obeyed once the drives obey it
+    command: tuple  # 0 if the motors are off
+    sequence: int  # of this command; return it in Sample.obeyed once the drives execute it
 
 
 @dataclasses.dataclass
 class Sample:
-    """What the robot measures and knows of itself, read from the hardware: the truth, not what was commanded."""
+    """Measurements and status of the robot, read from the hardware: what is true, not what was commanded."""
 
-    time_s: float = 0.0  # of this sample; runs on with each
+    time_s: float = 0.0  # of this sample; increases with each
     encoder: tuple = (0.0, 0.0)  # counts, or angles in rad
     force: tuple = (0.0, 0.0)
     acceleration: tuple = (0.0, 0.0)
-    has_force: bool = False  # the sensors are there now
+    has_force: bool = False  # the sensors are present now
     has_acceleration: bool = False
     stop_pressed: bool = False
-    motors_on: bool = False  # as the drives say
-    obeyed: int = 0  # Drive.sequence of what the drives do now
+    motors_on: bool = False  # as the drives report
+    obeyed: int = 0  # Drive.sequence that the drives execute now
     drives_measure: bool = False
     measured: tuple = (0.0, 0.0)  # version 2: from the currents, in the unit of the command
-    fault: int = 0  # version 2: a code of your own; 0: none
+    fault: int = 0  # version 2: your own fault code; 0: none
 
 
 class Bridge:
-    """The rules of a robot. Times are seconds of a clock that only runs forward (time.monotonic).
+    """Rules for a robot. Times are in seconds on a monotonic clock (time.monotonic).
 
-    To be read: `awake` (somebody is there to send states to), `master` (who greeted last), `lock_step` (asked for in
-    the greeting; only a simulation can wait), `watchdog_expired` (the motors stay off until the next greeting).
+    You may read: `awake` (`master` is connected and receives states), `master` (sender of the last greeting),
+    `lock_step` (requested in the greeting; only a simulation can wait), `watchdog_expired` (motors stay off until the
+    next greeting).
     """
 
     def __init__(self, state_version=1):
@@ -171,7 +171,7 @@ class Bridge:
         self._sequence, self._heard_s = 0, 0.0
 
     def take(self, data, sender, now_s):
-        """A datagram has come from `sender`, what socket.recvfrom gives."""
+        """Processes a datagram from `sender`, as socket.recvfrom returns it."""
         try:
             came = Command.unpack(data)
         except Refused:
@@ -200,7 +200,7 @@ class Bridge:
         return Drive(enabled, self._asked.command if enabled else (0.0, 0.0), self._asked.sequence)
 
     def state(self, sample):
-        """The bytes to send to `master`; None: nobody listens."""
+        """The bytes to send to `master`; None: no receiver."""
         if not self.awake:
             return None
         self._sequence += 1
@@ -212,7 +212,7 @@ class Bridge:
                      sample.fault).pack()
 
     def _greet(self, came, sender, now_s):
-        """From anyone while the motors are off; while they are on it is refused."""
+        """Accepted from any sender while the motors are off, rejected while they are on."""
         if self.awake and sender == self.master and came.session == self._asked.session:
             return Event.REPEATED
         if (self._asked.flags & CommandFlag.ENABLED and not self.watchdog_expired) or came.session == 0:

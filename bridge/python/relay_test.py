@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A robot whose hardware is another robot behind UDP, in lock-step: all four directions of a bridge in one program.
+"""A robot whose hardware is another robot behind UDP, in lock-step: uses all four pack and unpack functions.
 
 usage: relay_test.py PORT [COMMAND...]
-With a COMMAND the bridge is that program: it gets on its standard input what has come, as a u32 of its length, a u32 of
-the sender and the bytes, and answers with a u32 of a length and the bytes to send; 'robot' datagrams go the same way
-through it (matlab/relay_test.m).
+With a COMMAND the bridge is that program: it receives each datagram on its standard input as u32 length, u32 sender and
+the bytes, and replies with u32 length and the bytes to send; 'robot' datagrams pass through it in the same way
+(matlab/relay_test.m).
 """
 import socket
 import struct
@@ -26,7 +26,7 @@ class Robot:
         self.network.settimeout(LONGEST_S)
 
     def ask(self, data):
-        """The state with which it answers; asked again where it gets lost."""
+        """The reply of the robot; repeats the command if it is lost."""
         command = Command.unpack(data)
         for _ in range(20):
             self.network.send(data)
@@ -46,7 +46,7 @@ class PythonRelay:
         self.robot, self.bridge, self.answer, self.sequence = robot, Bridge(), b"", 0
 
     def take(self, data, sender):
-        """What to send back."""
+        """The bytes to send back."""
         event = self.bridge.take(data, sender, time.monotonic())
         if event in (Event.GREETED, Event.COMMANDED):
             drive = self.bridge.drive(time.monotonic())
@@ -64,7 +64,7 @@ class PythonRelay:
 
 
 class ProgramRelay:
-    """Between two messages for mbk the program may ask the robot: a length with the highest bit set."""
+    """Between two messages for mbk the program may query the robot: a length with the highest bit set."""
 
     def __init__(self, robot, command):
         self.robot, self.senders = robot, {}
