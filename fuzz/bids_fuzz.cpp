@@ -7,7 +7,7 @@
 namespace mbk::fuzz {
 namespace {
 
-constexpr char kBetween = '\x1e';  ///< the texts of a recording
+constexpr char kBetween = '\x1e';  ///< texts of a recording
 
 }  // namespace
 

@@ -20,7 +20,7 @@ std::vector<std::string> seeds() {
                  n.texts(C3d::kEvent, "LABELS", {"GO"}) + n.texts(C3d::kEvent, "CONTEXTS", {"Left"}) +
                  n.parameter(C3d::kEvent, "TIMES", 4, {2, 1}, n.real(0) + n.real(3.25));
   files.push_back(full.bytes());
-  C3d contradictory = small_c3d(84, false);  // which the size of the file settles
+  C3d contradictory = small_c3d(84, false);  // resolved by the size of the file
   contradictory.format = "UNSIGNED";
   contradictory.analog_offset = {40000, -3, 32768};
   contradictory.records = n.words(C3d::kPoint, "DATA_START", {2}) + n.words(C3d::kPoint, "FRAMES", {65535}) +

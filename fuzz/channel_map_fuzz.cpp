@@ -6,7 +6,7 @@
 namespace mbk::fuzz {
 namespace {
 
-/// A table, a file of rates and units, and a matrix: everything that a map can point into.
+/// A table, a file of rates and units, and a matrix: everything that a map can refer to.
 std::vector<recording::Contents> files() {
   recording::Contents table;
   table.table = true;

@@ -1,4 +1,4 @@
-// Added to a target that libFuzzer drives: PROGRAM --write-seeds=FOLDER writes the seeds in place of fuzzing.
+// Added to a target that libFuzzer drives: PROGRAM --write-seeds=FOLDER writes the seeds instead of fuzzing.
 
 #include <cstdio>
 #include <cstdlib>

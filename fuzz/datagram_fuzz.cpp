@@ -11,7 +11,7 @@ std::string text_of(const Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// What is believed is made of exactly these bytes, but for flags that nobody has given a meaning yet.
+/// An accepted datagram consists of exactly these bytes, except for undefined flags.
 template <class Datagram>
 void check(std::span<const std::byte> bytes) {
   Datagram datagram;
@@ -19,9 +19,9 @@ void check(std::span<const std::byte> bytes) {
   const auto again = drivers::encode(datagram);
   constexpr std::size_t kFlags = 6, kBehindFlags = 8, kChecksum = 4;
   require(again.size() == bytes.size(), "a datagram has its length");
-  require(std::equal(again.begin(), again.begin() + kFlags, bytes.begin()), "magic and version come back");
+  require(std::equal(again.begin(), again.begin() + kFlags, bytes.begin()), "magic and version are preserved");
   require(std::equal(again.begin() + kBehindFlags, again.end() - kChecksum, bytes.begin() + kBehindFlags),
-          "the numbers come back");
+          "the numbers are preserved");
 }
 
 }  // namespace

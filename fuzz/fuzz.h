@@ -1,6 +1,6 @@
 #pragma once
 
-// What every fuzz target shares. A target is a file <name>_fuzz.cpp with LLVMFuzzerTestOneInput and, better, `seeds`.
+// Shared by all fuzz targets. A target is a file <name>_fuzz.cpp with LLVMFuzzerTestOneInput and preferably `seeds`.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,21 +15,21 @@
 
 namespace mbk::fuzz {
 
-/// Valid small inputs to begin from. A target without a definition of its own begins from nothing.
+/// Small valid inputs to start from. A target without its own definition starts without inputs.
 std::vector<std::string> seeds();
 
-/// A recording of two axes with metadata and an event, to be written in any format.
+/// A recording of two axes with metadata and an event, for writing in any format.
 Recording small_recording();
 
-/// Says what does not hold, and aborts.
+/// Prints the violated condition and aborts.
 void require(bool holds, std::string_view what);
 
 /// A line for people: not empty, UTF-8, no control characters.
 void require_line(std::string_view line, std::string_view what);
 void require_error(const Error& error);
 
-/// What must hold of whatever a decoder made of so many bytes: an error is one line; contents are bounded by the input,
-/// and so is what `assemble` makes of them, by itself and with a map.
+/// Checks the result of a decoder for an input of this size: an error is one line; contents are bounded by the input,
+/// and so is the result of `assemble`, automatically and with a map.
 void check_decoded(Result<recording::Contents> decoded, std::size_t input_size);
 
 inline std::span<const std::byte> bytes_of(const std::uint8_t* data, std::size_t size) {
@@ -39,7 +39,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Writes seeds() to files 0, 1, 2, … of a folder, which it makes. False where it could not.
+/// Writes seeds() to files 0, 1, 2, … of a folder, which it creates. False on failure.
 bool write_seeds(const std::string& folder);
 
 }  // namespace mbk::fuzz

@@ -1,4 +1,4 @@
-// Any bytes whatever are read as HDF5 or refused: within the memory that was allowed, and in one line.
+// Any bytes are read as HDF5 or rejected with a one-line error, within the permitted memory.
 
 #include "fuzz/fuzz.h"
 #include "fuzz/hdf5_seeds.h"
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto root = mbk::hdf5::read(mbk::fuzz::bytes_of(data, size), {.bytes = mbk::recording::largest_claim(size)});
   if (!root) {
     mbk::fuzz::require_error(root.error());
-    mbk::fuzz::require(root.error().kind == mbk::ErrorKind::data, "the file is to blame");
+    mbk::fuzz::require(root.error().kind == mbk::ErrorKind::data, "the error names the file");
   }
   return 0;
 }

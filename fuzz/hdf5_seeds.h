@@ -1,6 +1,6 @@
 #pragma once
 
-// HDF5 files with what no writer of ours writes: tables, arrays in elements, LZF, links to links.
+// HDF5 files with features that mbk does not write: tables, arrays in elements, LZF, links to links.
 
 #include <cstdint>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mbk::fuzz {
 
-/// A little-endian number of so many bytes.
+/// A little-endian number with the given number of bytes.
 inline std::string field(std::uint64_t value, int bytes) {
   std::string text;
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i & 0xFFu);
@@ -51,8 +51,7 @@ inline std::string hdf5_of_others() {
                             link_to("again", 1, field(4, 2) + "/log") + link_to("self", 1, field(5, 2) + "/self") +
                             link_to("far", 64, field(7, 2) + "\0a.h5\0/x\0"s) + link_to("up", 0, field(kRoot, 8));
   const std::string table = space(4) + message(3, row) + message(8, "\3\1"s + field(kData, 8) + field(4 * 28, 8));
-  const std::string chunk =
-      "\x07" + field(0x3FF0'0000'0000'0000, 8) + "\xE0\x0F\x07"s;  // 8 bytes, then 22 of them again
+  const std::string chunk = "\x07" + field(0x3FF0'0000'0000'0000, 8) + "\xE0\x0F\x07"s;  // 8 bytes, then 22 repeated
   const std::string packed =
       space(4) + message(3, real) + message(11, "\2\1"s + field(32000, 2) + field(0, 2) + field(0, 2) + field(0, 2)) +
       message(8, "\4\2\2\2\1\4\x08\1"s + field(chunk.size(), 8) + field(0, 4) + field(kData + 112, 8));

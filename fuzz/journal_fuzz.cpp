@@ -1,5 +1,5 @@
-// Journals of sessions, damaged in any way: read in bounded time and memory, in numbers that rise, each tick once; and
-// a second time with checksums that are right, so that damage gets beyond them.
+// Damaged journals of sessions: read in bounded time and memory, with increasing tick numbers, each tick once; and a
+// second time with corrected checksums, so that damage passes them.
 
 #include <unistd.h>
 #include <zlib.h>
@@ -47,7 +47,7 @@ std::string written_journal() {
   return bytes;
 }
 
-/// The sum of what stands in front of a head's checksum, and of the payload.
+/// The checksum of a head up to its checksum field, and of the payload.
 template <class Head>
 void mend(std::string& bytes, std::size_t at) {
   Head head;
@@ -60,7 +60,7 @@ void mend(std::string& bytes, std::size_t at) {
   std::memcpy(bytes.data() + at, &head, sizeof(head));
 }
 
-/// From the end, so that a head within a payload is mended before that payload's sum is made.
+/// From the end, so that a head within a payload is corrected before the checksum of that payload.
 std::string with_right_checksums(std::string bytes) {
   const std::string_view mark(BlockHead::kMark.data(), BlockHead::kMark.size());
   for (std::size_t end = bytes.size(); end >= sizeof(BlockHead1); --end) {
@@ -90,15 +90,15 @@ std::string format1_journal() {
 void check(std::string_view bytes) {
   const auto read = journal::decode(std::as_bytes(std::span(bytes.data(), bytes.size())));
   if (!read) return require_error(read.error());
-  require(read->ticks.size() <= bytes.size() / sizeof(Tick), "there are no more ticks than fit");
+  require(read->ticks.size() <= bytes.size() / sizeof(Tick), "there are not more ticks than fit");
   std::uint64_t next = 0;
   for (const Tick& tick : read->ticks) {
-    require(tick.number >= next, "numbers rise");
+    require(tick.number >= next, "numbers increase");
     next = tick.number + 1;
   }
-  require(read->damage.bytes <= bytes.size(), "no more is damaged than there is");
-  require(read->damage.any() || !read->incomplete() || read->ending, "what is incomplete is said");
-  for (const std::string& sentence : read->damage.sentences()) require_line(sentence, "what is said of the damage");
+  require(read->damage.bytes <= bytes.size(), "not more bytes are damaged than exist");
+  require(read->damage.any() || !read->incomplete() || read->ending, "an incomplete journal is reported");
+  for (const std::string& sentence : read->damage.sentences()) require_line(sentence, "the description of the damage");
   const auto recording = journal::to_recording(*read);
   if (!recording) return require_error(recording.error());
   const auto rows = static_cast<std::size_t>(recording->samples());

@@ -47,8 +47,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::require_error(read.error());
     return 0;
   }
-  fuzz::require(!read->empty(), "a file holds a result");
-  const auto stored = result::results_from_json(fuzz::text_of(data, size));  // may say that its passivity is none
+  fuzz::require(!read->empty(), "a file contains a result");
+  const auto stored = result::results_from_json(fuzz::text_of(data, size));  // may state that there is no passivity
   if (!stored) fuzz::require_error(stored.error());
   if (stored) fuzz::require(stored->size() == read->size(), "both readers find the same results");
   for (const Identification& one : *read) {

@@ -2,9 +2,9 @@
 #include "mbk/files/kinarm/kinarm_exam.h"
 #include "mbk/files/kinarm/test_exam.h"
 
-// The bytes of an archive are protected by checksums, which no change would survive. So an input is the members of an
-// archive, each as the number of its name, its length in two bytes and its bytes; an input that begins as an archive
-// does is one.
+// Checksums protect the bytes of an archive, so every change would be rejected. An input therefore consists of the
+// members of an archive, each as number of its name, length in two bytes and bytes; an input that begins like an
+// archive is read as one.
 
 namespace mbk::fuzz {
 namespace {
@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::require_error(exam.error());
     return 0;
   }
-  fuzz::require(!exam->trials().empty(), "an exam holds trials");
+  fuzz::require(!exam->trials().empty(), "an exam contains trials");
   for (const recording::TrialName& trial : exam->trials()) {
     fuzz::require_line(trial.name, "the name of a trial");
     fuzz::require_line(trial.description, "the description of a trial");

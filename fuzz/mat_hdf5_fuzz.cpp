@@ -1,4 +1,4 @@
-// Any HDF5 file, of MATLAB or not, becomes a recording or is refused in one line.
+// Any HDF5 file, from MATLAB or not, becomes a recording or is rejected with a one-line error.
 
 #include "fuzz/fuzz.h"
 #include "fuzz/hdf5_seeds.h"

@@ -5,8 +5,8 @@
 namespace mbk::fuzz {
 namespace {
 
-/// Behind this letter stands a variable that is compressed first: a change to a compressed one only breaks its
-/// checksum.
+/// After this letter follows a variable that is compressed by the target: changing a compressed one would only break
+/// its checksum.
 constexpr char kCompress = 'Z';
 
 std::string file_of(std::string_view input) {

@@ -26,7 +26,7 @@ std::vector<std::string> seeds() {
 }  // namespace mbk::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace mbk::recording;  // NOLINT(google-build-using-namespace): that is what is tried
+  using namespace mbk::recording;  // NOLINT(google-build-using-namespace): this is under test
   const auto bytes = mbk::fuzz::bytes_of(data, size);
   if (looks_like_npy(bytes)) mbk::fuzz::check_decoded(decode_npy(bytes), size);
   if (!ZipArchive::looks_like_zip(bytes)) return 0;

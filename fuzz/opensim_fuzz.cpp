@@ -34,7 +34,7 @@ std::vector<std::string> seeds() {
 }  // namespace mbk::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace mbk::recording;  // NOLINT(google-build-using-namespace): that is what is tried
+  using namespace mbk::recording;  // NOLINT(google-build-using-namespace): this is under test
   const auto bytes = mbk::fuzz::bytes_of(data, size);
   const auto text = mbk::fuzz::text_of(data, size);
   if (looks_like_opensim(text)) mbk::fuzz::check_decoded(decode_opensim(bytes), size);

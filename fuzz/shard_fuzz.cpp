@@ -1,5 +1,5 @@
-// Shards of jobs, damaged in any way: read in bounded memory, to an error or to the end; and a second time with
-// checksums that are right. The same bytes as the values that a process gives.
+// Damaged shards of jobs: read in bounded memory, up to an error or the end; and a second time with corrected
+// checksums. The same bytes are also read as the values that a process returns.
 
 #include <unistd.h>
 #include <zlib.h>
@@ -24,7 +24,7 @@ fs::path file() {
   return fs::temp_directory_path() / ("mbk_shard_fuzz_" + std::to_string(::getpid()));
 }
 
-/// Record after record, as far as their lengths lead.
+/// One record after another, as far as their lengths allow.
 std::string with_right_checksums(std::string bytes) {
   for (std::size_t at = kMagicBytes; at + kHeadBytes <= bytes.size();) {
     std::uint32_t size = 0;
@@ -49,7 +49,7 @@ void check(std::string_view bytes) {
     if (!record) return require_error(record.error());
     if (!*record) break;
     read += kHeadBytes + (*record)->payload.size();
-    require(read + kMagicBytes <= bytes.size(), "no more is read than there is");
+    require(read + kMagicBytes <= bytes.size(), "not more is read than exists");
     if ((*record)->kind == batch::RecordKind::header) {
       if (const auto header = batch::shard_header_from((*record)->payload); !header) require_error(header.error());
     }
@@ -66,7 +66,7 @@ struct Values {
 void check_values(std::string_view bytes) {
   Values values;
   const bool whole = batch::from_bytes(bytes, values);
-  require(values.named.size() <= bytes.size() && values.matrix.size() <= std::ssize(bytes), "no more than there is");
+  require(values.named.size() <= bytes.size() && values.matrix.size() <= std::ssize(bytes), "not more than exists");
   if (!whole) return;
   Values again;
   require(batch::from_bytes(batch::to_bytes(values), again), "what is read can be written and read again");

@@ -1,5 +1,5 @@
-// A fuzz target without libFuzzer: changes the seeds at random, the same way in every run. No coverage guides it.
-//   PROGRAM RUNS [SEED]      that many inputs; exit 0 where all of them pass
+// A fuzz target without libFuzzer: changes the seeds at random, identically in every run, without coverage guidance.
+//   PROGRAM RUNS [SEED]      number of inputs; exit 0 if all of them pass
 //   PROGRAM --input FILE     one input, to reproduce a finding
 
 #include <unistd.h>
@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kLongest = 16384;
 constexpr const char* kFinding = "finding.bin";
 
-std::string input;  // what is being tried; the handler below writes it down
+std::string input;  // the current input; the handler below saves it
 
 void keep_input(int signal) {
   if (std::FILE* file = std::fopen(kFinding, "wb")) {

@@ -7,7 +7,7 @@
 namespace mbk::fuzz {
 namespace {
 
-/// Asks for a few keys of every type, whether or not they are there.
+/// Reads a few keys of every type, present or not.
 void read_everything(const config::Document& document) {
   const config::Section root = document.root();
   const double number = root.number("duration_s", 1.0, config::above(0.0));

@@ -1,5 +1,5 @@
-/* A robot whose hardware is another robot behind UDP, in lock-step: uses all four functions of the header in one
- * program. usage: relay_test PORT      of the other robot, on this machine */
+/* A robot whose hardware is another robot behind UDP, in lock-step: uses all four pack and unpack functions.
+ *   usage: relay_test PORT      PORT of the other robot, on this computer */
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
 #include <netinet/in.h>

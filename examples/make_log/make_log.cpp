@@ -1,4 +1,4 @@
-// make_log --out FILE: a recording whose M, B, K and x0 are known, to try mbk on.
+// make_log --out FILE: writes a recording with known M, B, K and x0, for trying mbk.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,8 +15,8 @@ using namespace mbk;
 
 constexpr Hertz kRate{1000.0};  // of the published logs
 constexpr char kHelp[] =
-    "Writes a synthetic trial at 1 kHz as .mat, .h5 or .csv, and prints the truth behind it.\n"
-    "A MAT file of two axes holds the 19-row matrix 'logs': row 1 time, 2-3 hand, 10-11 force of the hand on the "
+    "Writes a synthetic trial at 1 kHz as .mat, .h5 or .csv, and prints the true values.\n"
+    "A MAT file of two axes contains the 19-row matrix 'logs': row 1 time, 2-3 hand, 10-11 force of the hand on the "
     "robot,\n"
     "12-13 reference, 18-19 acceleration; every other row is NaN. One axis: time, position, reaction, reference, "
     "acceleration.\n"
@@ -53,14 +53,15 @@ int main(int argc, char** argv) {
   std::string path;
   bool one_axis = false, overwrite = false;
   CLI::App app{kHelp};
-  app.add_option("--protocol", options.protocol, "how the hand is moved")
+  app.add_option("--protocol", options.protocol, "motion of the hand")
       ->transform(CLI::CheckedTransformer(protocols))
       ->option_text("sinusoidal|underdamped")
       ->required();
-  app.add_option("--seed", options.seed, "of phases, pulses and noise")->option_text("N [1]");
-  app.add_option("--force-noise", options.sensors.force_noise, "white, standard deviation")->option_text("N [0.02]");
+  app.add_option("--seed", options.seed, "random seed of phases, pulses and noise")->option_text("N [1]");
+  app.add_option("--force-noise", options.sensors.force_noise, "standard deviation of the white force noise")
+      ->option_text("N [0.02]");
   app.add_option("--coloured-force-noise", options.sensors.coloured_force_noise,
-                 "below 1.5 Hz, standard deviation: what a person adds")
+                 "standard deviation of the force noise below 1.5 Hz, as of a person")
       ->option_text("N [0]");
   app.add_option("--position-quantum", options.sensors.position_quantum, "resolution of the position")
       ->option_text("M [2e-6]");
@@ -82,7 +83,7 @@ int main(int argc, char** argv) {
   const auto made = laboratory::record_prescribed_motion(options, kRate);
   if (!made) return report(made.error());
   if (const auto saved = recording::write(*made, path, *format, overwrite); !saved) return report(saved.error());
-  fmt::print("{}: {}, seed {}, {:.3f} s; the truth:\n", path, made->metadata.at("protocol"), options.seed,
+  fmt::print("{}: {}, seed {}, {:.3f} s; true values:\n", path, made->metadata.at("protocol"), options.seed,
              made->time[made->samples() - 1]);
   print_truth(options.limb);
   return 0;

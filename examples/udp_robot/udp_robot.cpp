@@ -1,4 +1,4 @@
-// mbk_udp_robot SCENARIO: a simulated robot with a participant at its handle, reached by UDP as a real one would be.
+// mbk_udp_robot SCENARIO: a simulated robot with a participant at its handle, connected by UDP like a real robot.
 #include "mbk/experiment/drivers/udp_robot.h"
 
 #include <fmt/format.h>
@@ -17,9 +17,9 @@ namespace {
 using namespace mbk;
 
 constexpr char kHelp[] =
-    "A simulated robot that is reached by UDP, to try 'mbk run' and your own programs on.\n"
-    "It runs at its own clock of 1 kHz; where [device] says lock_step = true it waits for each command.\n"
-    "SIGUSR1 presses its stop button and releases it again; Ctrl-C ends it.\n"
+    "A simulated robot connected by UDP, for trying 'mbk run' and your own programs.\n"
+    "It runs on its own 1 kHz clock; with lock_step = true in [device] it waits for each command.\n"
+    "SIGUSR1 presses and releases its stop button; Ctrl-C ends it.\n"
     "Example: mbk_udp_robot rigid_sinusoidal_6N --port 25000";
 
 std::atomic<bool> over{false}, stop_button{false};
@@ -40,7 +40,7 @@ int run(const std::string& name, const std::string& trial, const std::string& ad
   if (!served) return report(served.error());
   fmt::print("listening at UDP {}\n", served->local().text());
   std::fflush(stdout);
-  (void)realtime::prepare_thread();  // as a robot's own program has to; where that is refused it is held up more often
+  (void)realtime::prepare_thread();  // a robot program must do this too; without permission it is delayed more often
   served->serve(over, stop_button);
   return 0;
 }
@@ -54,10 +54,10 @@ int main(int argc, char** argv) {
   CLI::App app(kHelp, "mbk_udp_robot");
   std::string name, trial, address = "127.0.0.1";
   std::uint16_t port = 25000;
-  app.add_option("SCENARIO", name, "a .toml file, or the name of a ready one")->required();
-  app.add_option("--trial", trial, "this [[trial]] of the file; the first without it");
-  app.add_option("--address", address, "of the network where it listens; 0.0.0.0 for all (127.0.0.1)");
-  app.add_option("--port", port, "where it listens; 0 for any that is free (25000)");
+  app.add_option("SCENARIO", name, ".toml file or name of a built-in scenario")->required();
+  app.add_option("--trial", trial, "name of the [[trial]] to use (default: the first)");
+  app.add_option("--address", address, "IP address to listen on; 0.0.0.0 for all (default: 127.0.0.1)");
+  app.add_option("--port", port, "UDP port to listen on; 0 for any free port (default: 25000)");
   CLI11_PARSE(app, argc, argv);
   return run(name, trial, address, port);
 }

@@ -1,4 +1,4 @@
-// Position with encoder noise → smooth position, velocity and acceleration, by the filters of Dyck (2013, §3.5.1).
+// Position with encoder noise → smooth position, velocity and acceleration, with the filters of Dyck (2013, §3.5.1).
 //   usage: filter_a_signal
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ int report(const mbk::Error& error) {
 }  // namespace
 
 int main() {
-  // 20 s at 1 kHz: 10 mm at 0.8 Hz, and 20 µm of white noise as from a coarse encoder.
+  // 20 s at 1 kHz: 10 mm at 0.8 Hz, and 20 µm of white noise, as from a coarse encoder.
   const mbk::Hertz rate(1000.0);
   const double amplitude = 0.010, noise = 20e-6, omega = 2.0 * std::numbers::pi * 0.8;  // [m], [m], [rad/s]
   const mbk::Index samples = 20000;
@@ -30,7 +30,7 @@ int main() {
     position(i, 0) = amplitude * std::sin(omega * static_cast<double>(i) / rate.value) + noise * random.normal();
   }
 
-  // A polynomial of order 6 through 101 samples at a time, and its derivatives at their centre.
+  // A polynomial of order 6 through 101 samples, and its derivatives at the centre.
   const mbk::dsp::SavitzkyGolay smoothing{6, 101};
   const auto cutoff = mbk::dsp::savitzky_golay_cutoff(smoothing, rate);
   if (!cutoff) return report(cutoff.error());
@@ -51,7 +51,7 @@ int main() {
     // Row i belongs to sample i + 50. The truth: the d-th derivative of A sin ωt is A ωᵈ sin(ωt + dπ/2).
     const double scale = amplitude * std::pow(omega, derivative);
     double squares = 0.0;
-    const mbk::Index edge = 500;  // half a second at each end, where a zero-phase filter knows one side only
+    const mbk::Index edge = 500;  // half a second at each end, where a zero-phase filter has data on one side only
     for (mbk::Index i = edge; i < filtered->rows() - edge; ++i) {
       const double t = static_cast<double>(i + smoothing.half_window()) / rate.value;
       const double truth = scale * std::sin(omega * t + derivative * std::numbers::pi / 2.0);

@@ -1,4 +1,4 @@
-// Is a model of a limb passive, from which frequency on, and with how much to spare?
+// Is a limb model passive, above which frequency, and with what margin?
 //   usage: judge_a_model
 #include <cstdio>
 
@@ -23,7 +23,8 @@ mbk::Matrix matrix(double xx, double xy, double yx, double yy) {
 }  // namespace
 
 int main() {
-  // Participant 1 of Dyck (2013), relaxed: symmetric parts of tables 3.3 and 3.5, and a stiffness with some curl.
+  // Participant 1 of Dyck (2013), relaxed: symmetric parts of tables 3.3 and 3.5, and a stiffness with an antisymmetric
+  // part.
   mbk::impedance::Model limb;
   limb.M = matrix(1.326, -0.935, -0.935, 1.883);  // [kg]
   limb.B = matrix(5.76, -2.14, -2.14, 10.56);     // [N·s/m]
@@ -34,7 +35,7 @@ int main() {
   std::printf("stiffness from %.1f to %.1f N/m, antisymmetry %.1f %%\n", stiffness.lambda_min, stiffness.lambda_max,
               mbk::impedance::antisymmetry_percent(limb.K));
 
-  // In a band: the least damping that any direction and phase meets, in closed form.
+  // In a band: the smallest damping in any direction and phase, in closed form.
   for (const double hz : {0.1, 0.2, 1.0}) {
     const double omega = mbk::RadPerSec(mbk::Hertz(hz)).value;
     std::printf("passivity index at %.1f Hz  %6.2f N.s/m\n", hz, mbk::impedance::passivity_index(limb, omega).value);
@@ -42,14 +43,14 @@ int main() {
   const auto below = mbk::impedance::nonpassive_below(limb);
   if (below) std::printf("active below %.2f Hz\n", *below);
 
-  // Over all frequencies: decided in fractions, without a grid and without rounding.
+  // Over all frequencies: decided in exact fractions, without a grid or rounding.
   for (const bool symmetric : {false, true}) {
     const mbk::Matrix K = symmetric ? mbk::impedance::symmetric_part(limb.K) : limb.K;
     const auto Z = mbk::lti::RationalMatrix::impedance(limb.M, limb.B, K);
     if (!Z) return report(Z.error());
     const auto decided = mbk::lti::positive_real(*Z);
     if (!decided) return report(decided.error());
-    std::printf("%s: %s\n", symmetric ? "its symmetric part" : "the model",
+    std::printf("%s: %s\n", symmetric ? "the symmetric part" : "the model",
                 decided->holds() ? "passive" : "not passive");
     for (const mbk::lti::ConditionOutcome& condition : decided->conditions) {
       if (!condition.holds()) std::printf("  %s\n", condition.line().c_str());

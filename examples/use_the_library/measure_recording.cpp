@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Every digit, so that the numbers can be compared with others.
+/// Prints every digit, so that the numbers can be compared.
 void print(const char* name, const mbk::Matrix& matrix) {
   std::printf("%s", name);
   for (mbk::Index row = 0; row < matrix.rows(); ++row) {
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto recording = mbk::recording::read(argv[1], {});
-  if (!recording) return report(recording.error());  // an error is a value: nothing is thrown
+  if (!recording) return report(recording.error());  // an error is returned, not thrown
   const auto measured = mbk::measurement::measure(std::vector{*recording}, {});
   if (!measured) return report(measured.error());
   const mbk::Identification& identification = measured->identification;

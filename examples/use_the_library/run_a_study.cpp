@@ -1,5 +1,5 @@
 // An experiment of two trials on the simulated robot: planned, performed behind the safety gate, recorded and measured;
-// what was measured poorly is done once more.   usage: run_a_study FOLDER
+// a poor measurement is repeated once.   usage: run_a_study FOLDER
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// What `mbk run` takes as a file. The second trial lays its keys over the rest.
+/// The contents of an experiment file for `mbk run`. The keys of the second trial override the rest.
 constexpr const char* kExperiment = R"(
 [person]
 number = 7                      # a number, never a name
@@ -42,7 +42,7 @@ int report(const mbk::Error& error) {
   return 1;
 }
 
-/// Is told what happens, and decides what comes next.
+/// Receives the results and decides what comes next.
 class Conductor : public mbk::session::Operator {
  public:
   mbk::Result<void> judged(const mbk::session::Performed& performed) override {
@@ -62,7 +62,7 @@ class Conductor : public mbk::session::Operator {
       repeated_ = performed.attempt.index;
       return mbk::session::Next::repeat;
     }
-    return Operator::next(session, performed);  // ends after a stop, else goes on
+    return Operator::next(session, performed);  // ends after a stop, otherwise continues
   }
 
  private:
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   const auto trials = mbk::protocol::read_experiment(kExperiment, "two_places.toml", mbk::laboratory::read_simulation);
   if (!trials) return report(trials.error());
 
-  // Each trial is planned once; a plan that breaks a limit of the gate is refused here, before anything moves.
+  // Each trial is planned once; a plan that exceeds a limit of the gate is refused here, before anything moves.
   const std::filesystem::path folder = argv[1];
   const auto experiment = mbk::session::plan_experiment(*trials, folder / "p07.h5", "two_places.toml");
   if (!experiment) return report(experiment.error());
@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
                 rehearsal->handle_force, plan.limits.handle_force);
   }
 
-  mbk::session::Session session({.virtual_clock = true});  // without it in real time
+  mbk::session::Session session({.virtual_clock = true});  // without it, in real time
   Conductor conductor;
   const mbk::session::Conclusion conclusion = mbk::session::conduct(*experiment, session, conductor);
   if (conclusion.failure) return report(*conclusion.failure);

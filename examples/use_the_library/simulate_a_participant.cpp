@@ -1,4 +1,4 @@
-// A simulated trial with a participant of one's own, and how near the measurement comes to the truth.
+// Simulates a trial with your own participant and compares the measurement with the true values.
 //   usage: simulate_a_participant
 #include <cstdio>
 #include <variant>
@@ -17,21 +17,21 @@ int report(const mbk::Error& error) {
 }  // namespace
 
 int main() {
-  // A ready scenario is where to begin; what is not changed here stays as it stands in its file.
+  // Start from a built-in scenario; everything not changed here keeps the value in its file.
   const mbk::laboratory::ReadyScenario* const ready = mbk::laboratory::find_ready_scenario("relaxed_sinusoidal");
   if (ready == nullptr) return 1;
   auto scenarios = mbk::laboratory::read_scenarios(ready->text, "relaxed_sinusoidal.toml");
   if (!scenarios) return report(scenarios.error());
   mbk::laboratory::Scenario scenario = scenarios->front();
 
-  // Participant 5 of the thesis holds the handle, and trembles a little more: 0.2 N of slow force noise.
+  // Participant 5 of the thesis holds the handle, with 0.2 N of slow force noise.
   auto arm = mbk::participant::participant_options(5);
   if (!arm) return report(arm.error());
   arm->remnant.floor = 0.2;  // [N]
   auto& trial = std::get<mbk::laboratory::PlanarTrial>(scenario.trial);
   auto& shown = std::get<mbk::participant::ArmOptions>(trial.load);
   auto& limb = std::get<mbk::participant::TwoLinkArm::Options>(arm->limb);
-  limb.geometry = std::get<mbk::participant::TwoLinkArm::Options>(shown.limb).geometry;  // it sits where the other sat
+  limb.geometry = std::get<mbk::participant::TwoLinkArm::Options>(shown.limb).geometry;  // same seat as in the scenario
   trial.load = *arm;
 
   const auto performance = mbk::laboratory::simulate(scenario);
@@ -40,7 +40,7 @@ int main() {
               static_cast<double>(performance->recording.samples()) / scenario.rate.value,
               performance->energy_absorbed);
 
-  // Nothing that measures reads the truth, which lies in the recording's metadata.
+  // The true values are in the metadata of the recording; the measurement does not read them.
   mbk::measurement::Options options;
   options.identify.handle_mass = 0.194;  // [kg], between sensor and hand
   const auto measured = mbk::measurement::measure(std::vector{performance->recording}, options);
