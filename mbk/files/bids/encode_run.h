@@ -15,20 +15,19 @@ namespace mbk::recording {
 
 /// A file of a data set.
 struct BidsFile {
-  std::string path;  ///< from the folder of the data set on
+  std::string path;  ///< relative to the folder of the data set
   std::string text;
-  bool of_run;  ///< it is this recording's own; others may be there already and are given back with one line more
+  bool of_run;  ///< it belongs to this recording only; shared files are returned with one more line
 };
 
-/// What of a recording is not written, since it may tell who the participant is, in words.
+/// Items of a recording that are not written because they may identify the participant.
 [[nodiscard]] std::vector<std::string> withheld_from_bids(const Recording& recording);
 
-/// A recording as files of a BIDS data set (Motion, 1.11), in the order in which they are to be written: that with the
-/// numbers is the last. Numbers, time, events and metadata come back to the last bit. Time stands as a channel of type
-/// LATENCY, but where the file held none. Angles stay in rad. What may tell who the participant is is left out, and an
-/// age from 89 on is "89+".
-/// @param existing  gives the text of a file that is there already, or nothing
-/// @fails  data: a table that is there already is none.
+/// A recording as files of a BIDS data set (Motion, 1.11), in writing order: the file with the numbers is last.
+/// Numbers, time, events and metadata are restored exactly. Time is a channel of type LATENCY, unless the file had
+/// none. Angles stay in rad. Items that may identify the participant are omitted; an age of 89 and above is "89+".
+/// @param existing  returns the text of an existing file, or nothing
+/// @fails  data: an existing table is malformed.
 [[nodiscard]] Result<std::vector<BidsFile>> encode_bids(
     const Recording& recording, const BidsName& name,
     const std::function<std::optional<std::string>(const std::string& path)>& existing);

@@ -9,11 +9,11 @@
 
 namespace mbk::recording {
 
-/// What the name of a recording in a BIDS data set says: "sub-07_ses-2_task-reach_tracksys-robot_run-1".
+/// The name of a recording in a BIDS data set: "sub-07_ses-2_task-reach_tracksys-robot_run-1".
 struct BidsName {
   std::vector<std::pair<std::string, std::string>> entities;  ///< in the order of the standard
 
-  /// "07" of "sub"; "" where the name does not say it.
+  /// "07" of "sub"; "" if it is not in the name.
   [[nodiscard]] std::string_view label(std::string_view entity) const;
   /// "sub-07_ses-2_task-reach_tracksys-robot_run-1".
   [[nodiscard]] std::string text() const;
@@ -23,10 +23,10 @@ struct BidsName {
   [[nodiscard]] std::string session_folder() const;
 };
 
-/// Reads "sub-07_task-reach", with or without ses, tracksys, acq and run, in any order. Where no tracking system is
-/// named it is "robot".
-/// @fails  usage: participant or task is missing; an entity is unknown or named twice; a label is not of letters and
-///         digits, or a run not of digits.
+/// Reads "sub-07_task-reach", with or without ses, tracksys, acq and run, in any order. The default tracking system is
+/// "robot".
+/// @fails  usage: participant or task is missing; an entity is unknown or named twice; a label contains other
+/// characters than letters and digits, or a run other than digits.
 [[nodiscard]] Result<BidsName> parse_bids_name(std::string_view text);
 
 }  // namespace mbk::recording

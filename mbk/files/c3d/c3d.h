@@ -10,7 +10,7 @@
 
 namespace mbk::recording {
 
-/// Whether the file begins as a C3D file does.
+/// Whether the file has a C3D signature.
 [[nodiscard]] bool looks_like_c3d(std::span<const std::byte> file);
 
 /// Reads a C3D file (The C3D File Format, User Guide, Motion Lab Systems, 2008 and c3d.org): written on Intel, DEC or
@@ -18,9 +18,9 @@ namespace mbk::recording {
 ///
 /// A point gives the arrays LABEL.x, LABEL.y and LABEL.z in POINT:UNITS, or in the units of its type (ANGLES and
 /// ANGLE_UNITS, …); they are NaN where the point is marked invalid. An analog channel gives the array LABEL with
-/// (stored − OFFSET)·SCALE·GEN_SCALE in its ANALOG:UNITS. Labels that are missing become point_7 or analog_7, and those
-/// that repeat LABEL#1, LABEL#2, …. Arrays know their rate. Events come from the header and from the groups EVENT and
-/// EVENTS, on a clock that is 0 at the first frame of the file. Contents::notes says what is unusual.
+/// (stored − OFFSET)·SCALE·GEN_SCALE in its ANALOG:UNITS. Missing labels become point_7 or analog_7; repeated ones
+/// become LABEL#1, LABEL#2, …. Arrays have their rate. Events come from the header and from the groups EVENT and
+/// EVENTS, on a clock that is 0 at the first frame of the file. Contents::notes lists anything unusual.
 ///
 /// Arrays whose scale is 0, or differs between header and parameters, have an obstacle instead of values.
 ///
@@ -28,18 +28,17 @@ namespace mbk::recording {
 /// last frame.
 [[nodiscard]] Result<Contents> decode_c3d(std::span<const std::byte> file);
 
-/// The parameters of a C3D file alone. They refer to its bytes; those before the data are enough.
-/// @fails  data: an unknown processor; a damaged parameter section, or one that goes on behind the bytes that are
-/// there.
+/// Only the parameters of a C3D file. They refer to its bytes; those before the data suffice.
+/// @fails  data: an unknown processor; a damaged parameter section, or one that extends beyond the given bytes.
 [[nodiscard]] Result<C3dParameters> decode_c3d_parameters(std::span<const std::byte> file);
 
-/// How much a C3D file holds; the bytes before its data are enough.
+/// Extent of a C3D file; the bytes before its data suffice.
 struct C3dLength {
   std::uint64_t frames = 0;
-  double rate_hz = 0.0;  ///< of the frames; 0 where it is not said
+  double rate_hz = 0.0;  ///< of the frames; 0 if not stated
 };
 /// @param size  [bytes] of the whole file
-/// @fails  data: as decode_c3d, but that the data need not be there.
+/// @fails  data: as decode_c3d, but the data may be missing.
 [[nodiscard]] Result<C3dLength> decode_c3d_length(std::span<const std::byte> file, std::uint64_t size);
 
 }  // namespace mbk::recording

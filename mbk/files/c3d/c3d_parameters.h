@@ -20,17 +20,17 @@ constexpr std::size_t c3d_header_word(std::size_t k) {
   return 2 * (k - 1);
 }
 
-/// What helps where its bytes contradict themselves.
+/// Remedy for contradictory bytes.
 inline constexpr std::string_view kC3dRemedy =
     "the file is damaged or cut short: copy it again from where it was recorded";
-/// What to do about a file that its program wrote wrong.
+/// Remedy for a file that its program wrote incorrectly.
 inline constexpr std::string_view kC3dWriteAgain = "write the file again with the program that recorded it";
 
-/// What wrote the numbers of a C3D file; the value is that of the file's fourth parameter byte.
+/// The processor that wrote the numbers of a C3D file; values as in the fourth parameter byte.
 enum class C3dProcessor : std::uint8_t { intel = 84, dec = 85, sgi = 86 };
 
-/// Bytes of a C3D file and how numbers stand in them: little-endian IEEE (Intel), little-endian words with VAX
-/// F-floats (DEC), big-endian IEEE (SGI). Offsets are the caller's to check.
+/// Bytes of a C3D file and their number format: little-endian IEEE (Intel), little-endian words with VAX
+/// F-floats (DEC), big-endian IEEE (SGI). The caller checks offsets.
 struct C3dBytes {
   ByteView view;
   C3dProcessor processor = C3dProcessor::intel;
@@ -49,19 +49,19 @@ struct C3dParameter {
   enum class Type : std::int8_t { text = -1, byte = 1, word = 2, real = 4 };
 
   Type type = Type::byte;
-  std::vector<std::uint8_t> dimensions;  ///< the first runs fastest; none for a single value
-  C3dBytes data;                         ///< as long as type and dimensions say
+  std::vector<std::uint8_t> dimensions;  ///< the first varies fastest; none for a single value
+  C3dBytes data;                         ///< length according to type and dimensions
 };
 
 /// The parameter section of a C3D file. Its parameters refer to the file's bytes.
 class C3dParameters {
  public:
-  /// Groups and parameters are called by their names in capitals; the first of a name counts. Reads the records of the
+  /// Names of groups and parameters are in capitals; the first of several equal names is used. Reads the records of the
   /// section at `begin` up to the terminator, the last record, or `end`.
-  /// @fails  data: a record reaches beyond the file or does not lead forward; an unknown type; too many dimensions.
+  /// @fails  data: a record extends beyond the file or does not point forward; an unknown type; too many dimensions.
   [[nodiscard]] static Result<C3dParameters> read(const C3dBytes& file, std::size_t begin, std::size_t end);
 
-  /// Where the section is in the file [bytes].
+  /// Position of the section in the file [bytes].
   [[nodiscard]] std::size_t begin() const { return begin_; }
   [[nodiscard]] std::size_t end() const { return end_; }
   /// Whether the records ended before `end`.
@@ -69,9 +69,9 @@ class C3dParameters {
 
   [[nodiscard]] const C3dParameter* find(std::string_view group, std::string_view name) const;
 
-  /// The first value; nothing where there is none or it is text. Words are counted from 0 to 65535.
+  /// The first value; nothing if there is none or it is text. Words are 0 to 65535.
   [[nodiscard]] std::optional<double> number(std::string_view group, std::string_view name) const;
-  /// The values of NAME, then of NAME2, NAME3, … as far as they go; empty where NAME is missing or text.
+  /// The values of NAME, then of NAME2, NAME3, … while they exist; empty if NAME is missing or text.
   [[nodiscard]] std::vector<double> numbers(std::string_view group, std::string_view name,
                                             bool unsigned_words = false) const;
   /// The texts of NAME, NAME2, NAME3, … in printable UTF-8 without spaces around them.

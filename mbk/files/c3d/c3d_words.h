@@ -14,7 +14,7 @@ struct C3dStored {
   bool words = false, offset_is_word = false;
 };
 
-/// Whether the words of a channel and its OFFSET are unsigned: as ANALOG:FORMAT says (`said`), unless
+/// Whether the words of a channel and its OFFSET are unsigned: as ANALOG:FORMAT states (`said`), unless
 /// - values are farther from OFFSET than half the range of a word and, read the other way, are not, with an OFFSET that
 ///   is usual for that (near mid-range if unsigned, slightly below 0 if signed), or
 /// - values jump by half the range between two samples and, read the other way, form a smooth signal.

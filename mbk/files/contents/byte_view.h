@@ -12,7 +12,7 @@
 
 namespace mbk::recording {
 
-/// Bytes of a file with their byte order. Offsets are the caller's to check with `holds`.
+/// Bytes of a file with their byte order. The caller checks offsets with `holds`.
 struct ByteView {
   std::span<const std::byte> bytes;
   bool swapped = false;  ///< the file's byte order is not this processor's
@@ -26,7 +26,7 @@ struct ByteView {
   }
   [[nodiscard]] std::string text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
-  /// What a field of fixed width says: its text up to the first NUL.
+  /// The text of a fixed-width field up to the first NUL.
   [[nodiscard]] std::string padded_text() const { return text().c_str(); }
 
   template <class Value>

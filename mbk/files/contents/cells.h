@@ -19,7 +19,7 @@ namespace mbk::recording {
 /// A number at the front of a text.
 struct NumberAhead {
   double value = 0.0;
-  std::size_t length = 0;  ///< characters that it takes; 0 where the text does not begin with such a number
+  std::size_t length = 0;  ///< number of characters; 0 if the text does not begin with such a number
 };
 
 /// The number of digits, with at most a sign and a point and no more of them than 64 bits hold, with which a text
@@ -27,15 +27,15 @@ struct NumberAhead {
 /// @param end  of what can be read, which may reach beyond the text: eight characters are looked at together
 [[nodiscard, gnu::always_inline]] inline NumberAhead plain_number_ahead(const char* begin, const char* end);
 
-/// Digits with at most a sign and a point, no more of them than 64 bits hold. Nothing where a cell holds anything else.
+/// Digits with at most a sign and a point, at most what 64 bits hold. Nothing for any other cell.
 [[nodiscard]] inline std::optional<double> plain_number(std::string_view cell) {
   const NumberAhead ahead = plain_number_ahead(cell.data(), cell.data() + cell.size());
   if (ahead.length == 0 || ahead.length != cell.size()) return std::nullopt;
   return ahead.value;
 }
 
-/// Any number with a decimal point, in quotes or not; NaN where the cell is empty or says so ("nan", "-nan(ind)",
-/// "1.#QNAN"); nothing where it is not a number.
+/// Any number with a decimal point, in quotes or not; NaN if the cell is empty or NaN ("nan", "-nan(ind)", "1.#QNAN");
+/// nothing if it is not a number.
 [[nodiscard]] std::optional<double> general_number(std::string_view cell);
 
 /// The same, of a cell that is likely to be plain.
@@ -60,8 +60,8 @@ struct CommaNumber {
 /// T; 2024/03/01 and 01.03.2024 are dates too); "3:15:30 PM", and then "3/1/2024 3:15:30 PM", in which the month goes
 /// first.
 struct Instant {
-  std::optional<std::int64_t> day;  ///< since 1970-01-01; nothing where the cell holds no date
-  double seconds;                   ///< since midnight, of universal time where the cell says a time zone
+  std::optional<std::int64_t> day;  ///< since 1970-01-01; nothing if the cell contains no date
+  double seconds;                   ///< since midnight, in universal time if the cell has a time zone
 };
 [[nodiscard]] std::optional<Instant> instant(std::string_view cell);
 

@@ -7,13 +7,13 @@
 
 namespace mbk::recording {
 
-/// A column of so many samples is long: not all of it has to be in memory at a time.
+/// Number of samples above which a column need not be entirely in memory.
 inline constexpr Index kLong = 1 << 20;
 
 /// A file without a name, in TMPDIR or else /var/tmp, that holds the numbers of long columns. Their memory becomes a
-/// private view of that file: whoever reads them finds them where they stood, and the system may take the memory of
-/// unchanged numbers for other things until they are read. The file is gone with its last view. Where it cannot be made
-/// or the disk is full, numbers stay in memory.
+/// private view of that file: readers find them at the same address, and the system may reuse the memory of unchanged
+/// numbers until they are read. The file disappears with its last view. If it cannot be created or the disk is full,
+/// numbers stay in memory.
 class DiskPages {
  public:
   DiskPages() = default;
@@ -24,12 +24,12 @@ class DiskPages {
   ~DiskPages();
 
   /// Takes the whole pages among `count` numbers.
-  /// @returns  how many numbers it is done with; the next ones are to be given from there on
+  /// @returns  number of numbers taken; continue from there
   Index take(double* first, Index count);
   /// Takes the signals of a trial.
   void take(PreparedTrial& trial);
 
-  /// Numbers that come piece by piece and go to the file at once, without having been where they are to stand.
+  /// Numbers that arrive in pieces and go directly to the file, without first being at their final address.
   struct Coming {
     double* first = nullptr;  ///< where they are to stand
     Index count = 0;          ///< as many as can come

@@ -16,7 +16,7 @@
 
 namespace mbk::recording {
 
-/// Gives bytes back to where they came from.
+/// Returns bytes to their allocator.
 struct FreeBytes {
   std::size_t mapped = 0;  ///< bytes; 0 where they are of the heap
   void operator()(std::byte* bytes) const;
@@ -36,20 +36,20 @@ struct Buffer {
 /// Largest file that is read: 8 GiB.
 inline constexpr std::uint64_t kLargestFile = std::uint64_t{8} << 30;
 
-/// The most memory [bytes] that contents of so many bytes may claim. Deflate cannot expand by more than 1032.
+/// Maximum memory [bytes] that contents of this size may claim. Deflate cannot expand by more than 1032.
 [[nodiscard]] constexpr std::uint64_t largest_claim(std::uint64_t bytes) {
   return 1100 * bytes + (1 << 20);
 }
 
-/// The same of an archive, which is unpacked whole before anything can be said of it: what expands by more than 50 to
-/// more than 512 MiB holds no recording, since its samples would hardly ever change.
+/// The same for an archive, which is unpacked completely before it is examined: data that expand by more than 50 to
+/// more than 512 MiB are not a recording, because their samples would hardly change.
 [[nodiscard]] constexpr std::uint64_t largest_unpacked(std::uint64_t bytes) {
   constexpr std::uint64_t kAnyway = std::uint64_t{512} << 20;
   return std::min(largest_claim(bytes), std::max(kAnyway, 50 * bytes));
 }
 
-/// A file that is read from its begin to its end, of which only the part that is worked on is in memory. The bytes
-/// stand one behind the other, as if all of them were there.
+/// A file that is read sequentially, with only the current part in memory. The bytes are contiguous, as if all of them
+/// were present.
 class FileInPassing {
  public:
   static constexpr std::size_t kPiece = std::size_t{4} << 20;  ///< that is read at a time
@@ -66,7 +66,7 @@ class FileInPassing {
   /// Reads one piece more.
   /// @fails  data: the file cannot be read, or became shorter
   [[nodiscard]] Result<void> read_on();
-  /// The bytes before that place are needed no more, but for the first piece.
+  /// Releases the bytes before that position, except for the first piece.
   void forget(std::size_t before);
 
  private:
@@ -85,7 +85,7 @@ class FileInPassing {
   std::future<Result<void>> ahead_;  ///< of the piece behind what was read
 };
 
-/// A regular file that is opened once, whatever is read of it. For one thread at a time.
+/// A regular file that is opened only once. For one thread at a time.
 class OpenFile {
  public:
   static constexpr std::size_t kBegin = std::size_t{64} << 10;
@@ -115,7 +115,7 @@ class OpenFile {
   /// 64 hexadecimal digits, of bytes that were read to the end; "" before.
   [[nodiscard]] const std::string& sha256();
 
-  /// Closes the file until it is read again: for whoever holds hundreds of them.
+  /// Closes the file until it is read again: for callers with hundreds of files.
   void rest();
 
  private:

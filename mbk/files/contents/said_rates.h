@@ -9,20 +9,20 @@
 
 namespace mbk::recording {
 
-/// A sample rate that a file says beside its signals.
+/// A sample rate stated in a file beside its signals.
 struct SaidRate {
-  std::string scope;  ///< group or structure whose signals it holds for, as the names of arrays begin: "trial"; "": all
+  std::string scope;   ///< group or structure to which it applies, as the prefix of array names: "trial"; "": all
   std::string source;  ///< for messages: "'trial.fs'", "attribute 'rate' of 'trial'"
   double hz = 0.0;
 };
 
-/// The sample rate [Hz] that a number says by its name: "fs", "sampling_rate", "SampleRate_kHz"; "dt", "sample_time"
-/// [s] where they can be nothing but seconds (50 Hz to 100 kHz). Nothing where the name says something else.
-/// @param unit  what the file says of the number: "Hz", "kHz", "s", "ms", or ""
+/// The sample rate [Hz] given by a number with such a name: "fs", "sampling_rate", "SampleRate_kHz"; "dt",
+/// "sample_time" [s] if they can only be seconds (50 Hz to 100 kHz). Nothing for other names.
+/// @param unit  unit of the number in the file: "Hz", "kHz", "s", "ms", or ""
 [[nodiscard]] std::optional<double> rate_called(std::string_view name, double number, std::string_view unit);
 
-/// Gives every array without a rate the one that is said nearest to it: in `said`, or by a variable of one number. Two
-/// rates of one place that differ are not taken. A note says which were.
+/// Gives every array without a rate the one stated nearest to it: in `said`, or in a variable of one number. Two
+/// different rates in one place are not used. A note reports the rates.
 void give_rates(Contents& contents, std::vector<SaidRate> said = {});
 
 }  // namespace mbk::recording

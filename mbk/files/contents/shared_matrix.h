@@ -8,8 +8,8 @@
 
 namespace mbk::recording {
 
-/// A matrix in memory of its own, or where its numbers stand already: in the bytes of a file, which it keeps alive. A
-/// copy has memory of its own.
+/// A matrix with its own memory, or a view of numbers in the bytes of a file, which it keeps alive. A copy has its own
+/// memory.
 class SharedMatrix : public Eigen::Map<Matrix> {
   using Map = Eigen::Map<Matrix>;
 

@@ -20,7 +20,7 @@ struct Filters {
     std::uint32_t element_size;  ///< of shuffle
   };
   std::vector<Step> steps;  ///< in the order of writing
-  std::string unread;       ///< of what is not read: "packed by filter 32001"
+  std::string unread;       ///< of unsupported filters: "compressed with filter 32001"
 };
 
 /// A filter pipeline message (specification, IV.A.2.l).

@@ -10,10 +10,10 @@
 
 namespace mbk::hdf5 {
 
-/// What reading a file may cost.
+/// Limits on the cost of reading a file.
 struct ReadLimits {
   std::uint64_t bytes = 0;  ///< of memory for the tree, and of one buffer beside it; work is bounded by a multiple
-  std::uint64_t available = std::numeric_limits<std::uint64_t>::max();  ///< memory that there is; beyond it is refused
+  std::uint64_t available = std::numeric_limits<std::uint64_t>::max();  ///< available memory; more is refused
   int objects = 100'000;                                                ///< groups, datasets and attributes
   int depth = 16;                                                       ///< groups within groups
 };
@@ -27,9 +27,9 @@ struct ReadLimits {
 /// type, as groups of their columns) are read; every other value, a link to another file and a link from a group to one
 /// that contains it is `Unread`. So is a dataset that is damaged or of which a part was never written, with
 /// Unread::damaged, and nothing else of the file is lost by it; a group that is damaged says so in Group::damage.
-/// Every size is checked against the bytes before it is believed. Safe to call from several threads.
-/// @fails  data: the file is shorter than it says, or left open by its writer; its root is damaged; the limits are
-///         passed. `where` is the path of the object.
+/// Every size is checked against the bytes before it is used. Safe to call from several threads.
+/// @fails  data: the file is shorter than it states, or was not closed by its writer; its root is damaged; the limits
+/// are exceeded. `where` is the path of the object.
 [[nodiscard]] Result<Group> read(std::span<const std::byte> file, const ReadLimits& limits);
 
 }  // namespace mbk::hdf5

@@ -29,13 +29,13 @@ struct References {
   std::vector<std::string> paths;
 };
 
-/// Something that this library does not read, in words: "of an opaque type", "packed by filter 32001".
+/// Description of something that this library does not read: "of an opaque type", "compressed with filter 32001".
 struct Unread {
   std::string what;
-  bool damaged = false;  ///< its bytes contradict themselves, or are missing: `what` says how, as a sentence
+  bool damaged = false;  ///< its bytes are contradictory or missing: `what` describes how, as a sentence
 };
 
-/// What a dataset or an attribute holds.
+/// Contents of a dataset or an attribute.
 struct Value {
   std::vector<std::uint64_t> shape;  ///< slowest dimension first, as HDF5 counts; empty: a single value
   std::variant<Numbers, Texts, References, Unread> data;
@@ -53,13 +53,13 @@ struct Dataset {
   Attributes attributes;
 };
 
-/// A folder of a file, with everything in it; or a table, a dataset of a compound type, whose columns stand in it.
+/// A folder of a file with its contents; or a table (a dataset of a compound type) with its columns.
 struct Group {
   Attributes attributes;
   std::map<std::string, Dataset> datasets;
   std::map<std::string, Group> groups;
   std::vector<std::string> columns = {};  ///< of a table: their names in the order of the file; empty for a folder
-  std::string damage = {};                ///< why something of it may be missing, as a sentence; "" where it is sound
+  std::string damage = {};                ///< why parts of it may be missing, as a sentence; "" if it is intact
 };
 
 }  // namespace mbk::hdf5

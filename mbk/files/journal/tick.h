@@ -6,7 +6,7 @@
 
 namespace mbk::journal {
 
-/// Everything about one tick of a session, as it happened. Base frame, SI units.
+/// All data of one tick of a session. Base frame, SI units.
 struct Tick {
   std::uint64_t number = 0;              ///< from 0, in the trial; a gap: ticks that were dropped
   double time = 0.0;                     ///< since the trial's first tick, by the loop's clock [s]
@@ -15,16 +15,16 @@ struct Tick {
   std::array<double, 2> joint{};         ///< as measured [rad]
   std::array<double, 2> force{};         ///< of the hand on the robot, as measured [N]
   std::array<double, 2> acceleration{};  ///< as measured [m/s²]
-  std::array<double, 2> reference{};     ///< place of the hand [m], or force [N]
-  std::array<double, 2> asked{};         ///< torque that the controller wanted [N·m]
-  std::array<double, 2> torque{};        ///< torque that the gate let pass [N·m]
+  std::array<double, 2> reference{};     ///< hand position [m], or force [N]
+  std::array<double, 2> asked{};         ///< torque requested by the controller [N·m]
+  std::array<double, 2> torque{};        ///< torque after the safety gate [N·m]
   std::uint64_t sequence = 0;            ///< of the robot's sample
-  float compute = 0.0F;                  ///< that the tick before took [s]
+  float compute = 0.0F;                  ///< duration of the previous tick [s]
   std::uint8_t phase = 0;                ///< control::Phase
   std::uint8_t reason = 0;               ///< safety::Reason
   std::uint8_t enabled : 1 = 0;          ///< drives on
-  std::uint8_t triggered : 1 = 0;        ///< a hand that reaches passed the trigger
-  std::uint8_t cut = 0;                  ///< the controller asked for more than its limits
+  std::uint8_t triggered : 1 = 0;        ///< a reaching hand passed the trigger
+  std::uint8_t cut = 0;                  ///< the controller requested more than its limits
 
   [[nodiscard]] bool perturbing() const { return perturbation_time >= 0.0; }
 };

@@ -10,40 +10,40 @@
 
 namespace mbk::recording {
 
-/// What stands behind a GROUP:NAME of an exam.
+/// The value of a GROUP:NAME of an exam.
 struct ExamValue {
   bool is_text = false;
   std::vector<std::string> texts;  ///< printable
   std::vector<double> numbers;
 };
 
-/// The parameters of an exam or of a trial, by group and name in capitals. The first of a name counts.
+/// The parameters of an exam or of a trial, by group and name in capitals. The first of several equal names is used.
 class ExamParameters {
  public:
-  /// Groups whose USED is 0 are left out.
+  /// Groups whose USED is 0 are omitted.
   [[nodiscard]] static ExamParameters of(const C3dParameters& parameters);
 
   void add(std::string_view group, std::string_view name, ExamValue value);
-  /// Takes over what `others` have and these do not.
+  /// Adds the parameters of `others` that these lack.
   void add(const ExamParameters& others);
-  /// Takes groups out whose USED is 0.
+  /// Removes groups whose USED is 0.
   void drop_unused();
 
-  /// Takes out what the file of an exam says of signals that it does not hold, and its name.
+  /// Removes statements about signals that are not in the file, and the name of the file.
   void remove_signals();
 
   [[nodiscard]] const ExamValue* find(std::string_view group, std::string_view name) const;
-  /// The first number; nothing where there is none.
+  /// The first number, if any.
   [[nodiscard]] std::optional<double> number(std::string_view group, std::string_view name) const;
-  /// The first text; "" where there is none.
+  /// The first text; "" if there is none.
   [[nodiscard]] std::string text(std::string_view group, std::string_view name) const;
 
-  /// Texts that may say who the person is, as GROUP:NAME; those that are empty are not among them.
+  /// Non-empty texts that may identify the participant, as GROUP:NAME.
   [[nodiscard]] std::vector<std::string> personal_texts() const;
 
-  /// Puts everything that cannot say who the person is into `metadata`, as GROUP_NAME, and names what stays in the file
-  /// in a note. Numbers are taken unless group or name speak of a person; texts only from groups that describe robot,
-  /// task and trial, since anything can stand in a text.
+  /// Copies everything that cannot identify the participant into `metadata`, as GROUP_NAME, and lists the rest in a
+  /// note. Numbers are copied unless group or name refer to a person; texts only from groups that describe robot, task
+  /// and trial, because a text can contain anything.
   void describe(std::map<std::string, std::string>& metadata, std::vector<std::string>& notes) const;
 
  private:

@@ -24,7 +24,7 @@ struct ExamSignal {
   Vector values;
 };
 
-/// A trial as it stands in the exam, before anything is computed from it.
+/// A trial as stored in the exam, before anything is computed from it.
 struct ExamTrial {
   std::vector<ExamSignal> signals;
   std::vector<Event> events;
@@ -35,31 +35,31 @@ struct ExamTrial {
   [[nodiscard]] const ExamSignal* find(std::string_view name) const;
 };
 
-/// Joins the parts of a trial that the recorder split: the events of a part come later by the frames before it.
-/// Signals that not every part has are dropped, with a note.
+/// Joins the parts of a trial that the recorder split and shifts the events of a part by the preceding frames. Signals
+/// that are not in every part are dropped, with a note.
 /// @fails  data: parts of different rates.
 [[nodiscard]] Result<ExamTrial> join_parts(std::vector<ExamTrial> parts);
 
-/// Puts right what is known to be wrong or stored otherwise, with a note each: positions of the left arm under the name
-/// of the right, torques of old recorders that are wrong; gives units the names that they have here.
+/// Corrects known errors, with a note each: left-arm positions named as right-arm positions, wrong torques of old
+/// recorders; converts unit names to those of mbk.
 void correct(ExamTrial& trial);
 
-/// The arms of which joints were recorded.
+/// The arms whose joints were recorded.
 [[nodiscard]] std::vector<Arm> arms_of(const ExamTrial& trial);
 
-/// The hand of an arm by the geometry of the robot. Signals that are empty could not be computed.
+/// The hand of an arm from the geometry of the robot. Empty signals could not be computed.
 struct HandOfArm {
   HandSignal position, velocity, acceleration, commanded;
-  bool trusted = false;  ///< what was recorded of the hand does not contradict it
+  bool trusted = false;  ///< the recorded hand position does not contradict it
 };
 
-/// Computes the hand and compares it with what was recorded of it.   @param notes  what was found; what is missing
+/// Computes the hand and compares it with the recorded position.   @param notes  receives findings and missing inputs
 [[nodiscard]] HandOfArm hand_of(Arm arm, const ExamTrial& trial, std::vector<std::string>& notes);
 
-/// What the trial says of the sign of the force sensor; empty vectors where it holds no force.
+/// Evidence of the trial for the sign of the force sensor; empty vectors without force.
 [[nodiscard]] ForceEvidence evidence_of(Arm arm, const ExamTrial& trial, const HandOfArm& hand);
 
-/// "Right_FS_ForceX" and "Right_FS_ForceY" where both are there, in newtons and as long as the joints.
+/// "Right_FS_ForceX" and "Right_FS_ForceY" if both exist, in newtons and as long as the joints.
 [[nodiscard]] bool has_force(Arm arm, const ExamTrial& trial);
 
 /// The names of the signals that hand_of and evidence_of need of an arm.

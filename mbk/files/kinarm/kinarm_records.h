@@ -15,12 +15,12 @@
 namespace mbk::recording {
 
 // The binary members of a `.kinarm` exam: little-endian; a string is the count of its UTF-16 code units in 32 bits,
-// then these. Every count is checked against the bytes that are there before anything is allocated.
+// then these. Every count is checked against the available bytes before memory is allocated.
 
 /// header.bin
 struct KinarmHeader {
   std::int64_t frames = 0;
-  std::int64_t events = 0, video_frames = 0;  ///< that examevents.bin and videoack.bin hold
+  std::int64_t events = 0, video_frames = 0;  ///< counts in examevents.bin and videoack.bin
   double rate_hz = 0.0;
   std::vector<std::string> kinematics, positions;  ///< labels
 };
@@ -31,7 +31,7 @@ struct KinarmSignal {
   Vector values;  ///< f32 as doubles; of a status the 32 bits as a whole number
 };
 
-/// Whether a signal is the status of a force sensor: an f32 of which only the bits mean something.
+/// Whether a signal is the status of a force sensor: an f32 in which only the bits are meaningful.
 [[nodiscard]] bool is_status(std::string_view label);
 
 /// LABEL.position
@@ -53,7 +53,7 @@ struct KinarmPosition {
 /// examevents.bin: times are [s] from the first frame of the trial.   @fails  as above
 [[nodiscard]] Result<std::vector<Event>> read_kinarm_events(std::span<const std::byte> bytes);
 
-/// videoack.bin: how long after it was sent each video frame was acknowledged [s].   @fails  as above
+/// videoack.bin: delay between sending and acknowledgement of each video frame [s].   @fails  as above
 [[nodiscard]] Result<Vector> read_kinarm_video_delays(std::span<const std::byte> bytes);
 
 }  // namespace mbk::recording
