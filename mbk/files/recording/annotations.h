@@ -9,9 +9,9 @@
 
 namespace mbk::recording {
 
-// What is said about a recording, beside its channels, stands in a MAT file as two structures:
+// Information about a recording apart from its channels is stored in a MAT file as two structures:
 //   metadata            one field of text for each key; `unit_<channel>` is the SI unit of a channel
-//                       that is not the one that its place in the file implies (reference_x in N),
+//                       that differs from the one implied by its place in the file (reference_x in N),
 //                       `joint_of_<channel>` the name of the joint that a channel belongs to
 //   events              fields `time` [s] and `value`, N×1, and `name`, a cell array N×1 of texts
 
@@ -22,11 +22,11 @@ namespace mbk::recording {
 [[nodiscard]] std::string joint_key(std::string_view channel);
 
 /// Moves the texts `metadata.KEY` into `metadata`, and `events.time`, `.name`, `.value` into `events` where they are N
-/// numbers, N texts, N numbers; an `events` of another shape stays as it is. Every other text becomes a note, and so do
-/// several lines of one entry.
+/// numbers, N texts, N numbers; an `events` of another shape is unchanged. Every other text, and every entry of several
+/// lines, is reported in a note.
 void take_annotations(Contents& contents);
 
-/// What is said of metadata that had several lines in the file: everything here is one line.
+/// The note on metadata with several lines in the file, which are joined into one.
 [[nodiscard]] std::string several_lines_note(std::string_view key, std::size_t lines);
 
 inline constexpr std::size_t kLongestMatlabName = 63;  ///< characters
@@ -41,8 +41,8 @@ inline constexpr std::size_t kLongestMatlabName = 63;  ///< characters
 /// @fails  data: a unit that another entry contradicts.
 [[nodiscard]] Result<std::map<std::string, std::string>> metadata_with_units(const Recording& recording);
 
-/// What stands as `metadata` in a MAT file.
-/// @fails  as metadata_with_units; data: a key that cannot be the name of a MATLAB field.
+/// The structure `metadata` of a MAT file.
+/// @fails  as metadata_with_units; data: a key that is not a valid MATLAB field name.
 [[nodiscard]] Result<std::map<std::string, std::string>> metadata_to_write(const Recording& recording);
 
 }  // namespace mbk::recording

@@ -13,15 +13,16 @@ namespace mbk::recording {
 /// A channel that mbk knows: one row of the channel table of the documentation.
 struct ChannelKind {
   std::string_view name;
-  std::string_view alias;               ///< "x" and "xr" are aliases of two kinds: of one axis and of two
-  std::span<const Dimension> measures;  ///< what it may measure; where there are several, the file must say; none: any
-  std::string_view frame;               ///< "base", "joint" or ""
-  int axes;                             ///< 1 or 2: the kind of experiment it belongs to; 0: both
-  int logs_row;                         ///< 1-based row of the 19-row `logs` matrix; 0: it has none
-  bool first_unless_said = false;       ///< of several measures, the first one where nothing was said: joints turn
-  bool only_if_asked = false;           ///< not taken by its name alone: things of any kind are called input and output
+  std::string_view alias;  ///< "x" and "xr" are aliases of two kinds: of one axis and of two
+  std::span<const Dimension>
+      measures;                    ///< possible quantities; if there are several, the file must state which; none: any
+  std::string_view frame;          ///< "base", "joint" or ""
+  int axes;                        ///< 1 or 2: the kind of experiment it belongs to; 0: both
+  int logs_row;                    ///< 1-based row of the 19-row `logs` matrix; 0: it has none
+  bool first_unless_said = false;  ///< of several quantities, the first is the default: joints turn
+  bool only_if_asked = false;      ///< not recognised by name alone: input and output are ambiguous names
 
-  /// SI unit, or "" where several are possible, nothing was said and none goes without saying.
+  /// SI unit, or "" if several are possible and there is no default.
   [[nodiscard]] std::string_view default_unit() const {
     return measures.size() == 1 || first_unless_said ? si_unit(measures.front()) : std::string_view();
   }
@@ -34,33 +35,32 @@ inline constexpr int kMaxJoints = 8;
 /// Every kind, time first, in the order of the documentation.
 [[nodiscard]] std::span<const ChannelKind> channel_kinds();
 
-/// The channels in the order of the documentation, those of other names behind them by their names: the order in which
-/// files are written, whatever was read.
+/// The channels in the order of the documentation, then other names alphabetically: the order in which files are
+/// written.
 [[nodiscard]] std::vector<const Channel*> in_order(const std::vector<Channel>& channels);
 
-/// The kinds that a name or alias can mean: none, one, or two ("x", "xr"). Case does not count, except in names of one
+/// The kinds that a name or alias can mean: none, one, or two ("x", "xr"). Case is ignored, except in names of one
 /// letter and in Vx and Vy: vx is a velocity.
 [[nodiscard]] std::vector<const ChannelKind*> kinds_called(std::string_view name);
 
-/// The known name or alias that looks most like `name`.
+/// The known name or alias most similar to `name`.
 [[nodiscard]] std::string_view nearest_channel_name(std::string_view name);
 
-/// 1 or 2, from the names that mean only one thing: `F` means one axis, `y` or `Fx` two; two where none
-/// speaks.
+/// 1 or 2, from unambiguous names: `F` means one axis, `y` or `Fx` two; two by default.
 [[nodiscard]] int axes_of(std::span<const std::vector<const ChannelKind*>> meanings);
 
-/// The one of `kinds` that belongs to so many axes, or nullptr.
+/// The one of `kinds` for this number of axes, or nullptr.
 [[nodiscard]] const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes);
 
-/// Whether a column's name says that it holds a current: "i1 [A]", "motor_mA", "current_1", "Iq". A "current_torque"
+/// Whether a column name denotes a current: "i1 [A]", "motor_mA", "current_1", "Iq". A "current_torque"
 /// does not.
 [[nodiscard]] bool names_a_current(std::string_view name);
 
 /// A column name taken apart: "hand_x_mm", "hand_x [mm]", "hand_x (mm)", "hand_x in mm", "hand_x mm" and "hand_x/mm"
 /// are hand_x in mm.
 struct ColumnName {
-  std::vector<const ChannelKind*> kinds;  ///< empty: not a name that mbk knows
-  const Unit* unit = nullptr;             ///< nullptr: the name says none
+  std::vector<const ChannelKind*> kinds;  ///< empty: unknown name
+  const Unit* unit = nullptr;             ///< nullptr: no unit in the name
 };
 [[nodiscard]] ColumnName parse_column_name(std::string_view name);
 

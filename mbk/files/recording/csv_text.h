@@ -30,7 +30,7 @@ class CsvText {
   [[nodiscard]] bool is_complete() const { return so_far_.size() == size_; }
   /// The last character of a line end: a line feed, or in a text without any a carriage return.
   [[nodiscard]] char line_end() const { return line_end_; }
-  /// Whether there is more than before.
+  /// Whether more text was read.
   bool read_on() {
     if (is_complete() || !status_) return false;
     status_ = file_->read_on();
@@ -59,14 +59,14 @@ class CsvText {
   return first != line.npos && (line[first] == '#' || line[first] == '%');
 }
 
-/// Walks through the lines. Those before the last two need not stay in memory.
+/// Iterates over the lines. Those before the last two need not stay in memory.
 class CsvLines {
  public:
   explicit CsvLines(CsvText& text) : text_(text) {
     if (text.so_far().starts_with("\xEF\xBB\xBF")) begin_ = 3;
   }
 
-  /// The next that is neither empty nor a comment.
+  /// The next line that is neither empty nor a comment.
   std::optional<CsvLine> next() {
     return next([](const CsvLine&) {});
   }
@@ -110,9 +110,9 @@ class CsvLines {
 };
 
 inline constexpr std::size_t kMaxCsvColumns = 10'000, kMaxCells = kMaxCsvColumns + 2;  ///< cells that are looked at
-inline constexpr char kBlanks = ' ';  ///< the separator of cells between which stand any blanks and tabs
+inline constexpr char kBlanks = ' ';  ///< separator of cells that are separated by any blanks and tabs
 
-/// Calls use(cell) for each cell until it returns false. Quotes mean nothing.
+/// Calls use(cell) for each cell until it returns false. Quotes have no meaning.
 template <class Use>
 void for_each_cell(std::string_view line, char separator, Use use) {
   if (separator == kBlanks) {
@@ -135,19 +135,19 @@ void for_each_cell(std::string_view line, char separator, Use use) {
 /// @param most  cells that are given at most
 [[nodiscard]] std::vector<std::string_view> quoted_cells(std::string_view line, char separator, std::size_t most);
 
-/// What stands before the rows of a table.
+/// The lines before the rows of a table.
 struct CsvHead {
   char separator = ',';
-  std::size_t first_row = 0;       ///< number of the line; 0 where no line holds numbers
-  std::vector<std::string> names;  ///< of the columns, as they stand; empty where there is no header
+  std::size_t first_row = 0;       ///< line number; 0 if no line contains numbers
+  std::vector<std::string> names;  ///< of the columns, as written; empty without a header
   std::size_t header_line = 0;     ///< its number
-  std::vector<std::string> units;  ///< of the columns, where a line says them
+  std::vector<std::string> units;  ///< of the columns, if a line gives them
   std::vector<CsvLine> above;      ///< lines of text and comments above all of this
   std::vector<std::string> notes;
 };
 
 /// Finds the table in a text: its separator, its names, its units, its first row.
-/// @fails  data: two readings are possible, or what stands above the table may be part of it; the text cannot be read.
+/// @fails  data: two readings are possible, or lines above the table may be part of it; the text cannot be read.
 [[nodiscard]] Result<CsvHead> find_table(CsvText& text);
 
 }  // namespace mbk::recording

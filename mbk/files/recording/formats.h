@@ -14,22 +14,22 @@ namespace mbk::recording {
 
 class OpenTrials;
 
-/// A format that mbk reads. Whatever names formats is written from these rows: which decoder a file goes to, --help,
-/// error messages, the files that a folder is searched for, and the table of `mbk info --formats`.
+/// A format that mbk reads. These rows define the decoder of a file, --help, error messages, the files searched for in
+/// a folder, and the table of `mbk info --formats`.
 struct FileFormat {
   std::string_view name;                       ///< "C3D"
-  std::string_view extensions;                 ///< ".sto .mot": what such files are usually called; the content decides
+  std::string_view extensions;                 ///< ".sto .mot": usual extensions; the content decides
   std::string_view about;                      ///< versions, and the programs that write it
-  bool (*looks_like)(OpenFile& file);          ///< by its content; nullptr: it is no file but a folder
-  Result<Contents> (*decode)(OpenFile& file);  ///< nullptr where a file holds several records
+  bool (*looks_like)(OpenFile& file);          ///< detects it by content; nullptr: a folder, not a file
+  Result<Contents> (*decode)(OpenFile& file);  ///< nullptr if a file holds several records
   Result<std::shared_ptr<const OpenTrials>> (*open)(OpenFile& file) = nullptr;  ///< of such a file
 };
 
 /// In the order in which they are tried.
 [[nodiscard]] std::span<const FileFormat> file_formats();
 
-/// The first format that the content looks like.
-/// @fails  data: none; the message says what the file looks like and what can be done.
+/// The first format that matches the content.
+/// @fails  data: none matches; the message says what the file resembles and what to do.
 [[nodiscard]] Result<const FileFormat*> format_of(OpenFile& file);
 
 /// ".h5", ".mat", …: each once, in the order of the rows.

@@ -25,20 +25,20 @@ void for_each_member(Group& group, const Use& use) {
   }
 }
 
-/// Takes numbers out of the tree as a matrix of that many rows and columns, column by column: the tree keeps none, so
-/// that a large recording is not in memory twice.
+/// Takes numbers out of the tree as a matrix of that many rows and columns, column by column: they are removed from the
+/// tree, so that a large recording is not in memory twice.
 [[nodiscard]] SharedMatrix take_columns(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
 
 /// The same, row by row.
 [[nodiscard]] SharedMatrix take_rows(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
 
-/// What the numbers leave, row by row, for a matrix that take_rows gives.
+/// The integer remainders, row by row, for a matrix from take_rows.
 [[nodiscard]] Rests take_rests(hdf5::Numbers& numbers, std::uint64_t rows, std::uint64_t columns);
 
-/// The text of an attribute that holds one, in UTF-8 without control characters; "" where there is none.
+/// The text of an attribute, in UTF-8 without control characters; "" if there is none.
 [[nodiscard]] std::string text_attribute(const hdf5::Attributes& attributes, std::string_view name);
 
-/// The group at a path as references give it ("/#refs#/a"), or nullptr.
+/// The group at a path in the form of references ("/#refs#/a"), or nullptr.
 [[nodiscard]] hdf5::Group* find_group(hdf5::Group& root, std::string_view path);
 
 /// The dataset at such a path, or nullptr.
@@ -47,7 +47,7 @@ void for_each_member(Group& group, const Use& use) {
 inline constexpr std::string_view kCopyAgain =
     "the file is damaged or cut short: copy it again from where it was recorded";
 
-/// What is said of a part of a file that was left because it is damaged.
+/// The note on a damaged part of a file that was ignored.
 [[nodiscard]] std::string lost_note(std::string_view what, std::string_view why);
 
 }  // namespace mbk::recording

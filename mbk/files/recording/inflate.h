@@ -9,9 +9,10 @@
 namespace mbk::recording {
 
 /// Inflates one zlib stream (RFC 1950) that must hold exactly what its first eight bytes claim.
-/// Memory grows with what really comes out, never with the claim alone.
+/// Memory grows with the actual output, never with the claim alone.
 /// @param claimed_size  from the first 8 inflated bytes: the whole inflated size, at least 8
-/// @fails  the stream is broken or ends early; its Adler checksum is wrong; more or less comes out than claimed; bytes
+/// @fails  the stream is broken or truncated; its Adler checksum is wrong; the output is longer or shorter than
+/// claimed; bytes
 ///         follow it; the claim is above largest_claim.
 [[nodiscard]] Result<Buffer> inflate_exactly(
     std::span<const std::byte> stream,

@@ -11,17 +11,17 @@
 
 namespace mbk::recording {
 
-/// Gives the arrays of a file that names joints (Array::joint) the channels of a robot: the robot's first joint becomes
-/// joint_1 and torque_1, and so on. Other joints of the file are no channels.
+/// Assigns the arrays of a file that names joints (Array::joint) to the channels of a robot: the robot's first joint
+/// becomes joint_1 and torque_1, and so on. Other joints of the file do not become channels.
 /// @param joints  names of the robot's joints, in its order; none: nothing is changed
-/// @param clock  name of the stream that is meant where several have a joint
-/// @returns a note on what was done; "" where nothing was
-/// @fails  data: the file lacks a joint (both lists are named), or has one twice.
+/// @param clock  name of the stream to use if several have a joint
+/// @returns a note on the assignment; "" if there was none
+/// @fails  data: the file lacks a joint (the message gives both lists), or has one twice.
 [[nodiscard]] Result<std::string> match_joints(Contents& contents, std::span<const std::string> joints,
                                                std::string_view clock);
 
 /// Whether a channel that was named joint_k, torque_k, … may be that of the robot's k-th joint.
-/// @param named  what the file calls the joint, or else the column
+/// @param named  name of the joint in the file, or else of the column
 /// @param source  the same for messages
 /// @fails  data: `named` names another joint of the robot.
 [[nodiscard]] Result<void> check_joint(const ChannelKind& kind, std::span<const std::string> joints,

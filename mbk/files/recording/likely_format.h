@@ -9,19 +9,19 @@
 
 namespace mbk::recording {
 
-/// A format that is known by its first bytes and not read.
+/// A format that is recognised by its first bytes but not supported.
 struct LikelyFormat {
   std::string_view what;     ///< "an Excel workbook"
-  std::string_view way_out;  ///< how its data can be had: "save the sheet as CSV (File > Save As)"
+  std::string_view way_out;  ///< how to obtain its data: "save the sheet as CSV (File > Save As)"
 };
 
-/// How Octave's text format begins.
+/// First line of Octave's text format.
 inline constexpr std::string_view kOctaveText = "# Created by Octave";
 
-/// What a file most likely is that no reader takes, by its content alone; nothing where the content says nothing.
+/// The likely format of an unsupported file, by its content only; nothing if unknown.
 [[nodiscard]] std::optional<LikelyFormat> likely_format(std::span<const std::byte> file);
 
-/// That a file is such, and what to do.
+/// Error for such a file, with a remedy.
 [[nodiscard]] tl::unexpected<Error> not_read(const LikelyFormat& format);
 
 }  // namespace mbk::recording

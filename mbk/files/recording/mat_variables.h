@@ -10,7 +10,7 @@
 
 namespace mbk::recording {
 
-inline constexpr std::size_t kMatHeaderText = 116;  ///< bytes with which a MAT-file of level 5 or 7.3 says what it is
+inline constexpr std::size_t kMatHeaderText = 116;  ///< bytes of the header text of a MAT-file of level 5 or 7.3
 
 /// A variable of MATLAB, or a field of a structure.
 struct MatVariable {
@@ -24,11 +24,11 @@ struct MatVariable {
 /// `events` of a MAT file: time, name, value.
 [[nodiscard]] MatVariable::Structure structure_of(const std::vector<Event>& events);
 
-/// What a MAT file holds of a recording, whatever its version: the 19×N matrix `logs` where every channel has a row in
-/// it, and otherwise (one axis) one column for each channel, and `time`. Rows of `logs` that have no channel are NaN,
-/// so that nobody takes them for measured zeros; a channel that is NaN throughout would be taken for such a row, and
-/// makes columns of all. Metadata and events stand beside it as structures (annotations.h), where there are any.
-/// @fails  what metadata_to_write refuses; a channel whose name cannot be that of a variable.
+/// The variables of a recording in a MAT file of any version: the 19×N matrix `logs` if every channel has a row in it,
+/// otherwise (one axis) one column per channel, and `time`. Rows of `logs` without a channel are NaN, so that they are
+/// not mistaken for measured zeros; a channel that is NaN throughout would look like such a row, so all channels are
+/// then written as columns. Metadata and events, if any, are added as structures (annotations.h).
+/// @fails  as metadata_to_write; a channel name that is not a valid variable name.
 [[nodiscard]] Result<std::vector<MatVariable>> mat_variables(const Recording& recording);
 
 }  // namespace mbk::recording

@@ -7,10 +7,10 @@
 
 namespace mbk::recording {
 
-/// What FILEs stand for, in the order in which they were typed: a folder for the recordings that lie in it, a pattern
-/// (* ? [a-z]) for the files that fit, both in natural order; a BIDS data set, a file and what is in memory for itself.
-/// A name that is there is never taken for a pattern.
-/// @fails  data: the folder holds no recording, or cannot be read; no file fits the pattern.
+/// Expands FILE arguments in the given order: a folder to its recordings, a pattern (* ? [a-z]) to the matching files,
+/// both in natural order; a BIDS data set, a file and a recording in memory stay as they are. An existing name is never
+/// read as a pattern.
+/// @fails  data: the folder contains no recording, or cannot be read; no file matches the pattern.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> named_files(const std::vector<std::filesystem::path>& typed);
 
 }  // namespace mbk::recording

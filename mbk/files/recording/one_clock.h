@@ -10,27 +10,26 @@
 
 namespace mbk::recording {
 
-/// A signal of a file that has several clocks, and the clock that its samples have.
+/// A signal of a file with several clocks, and the clock of its samples.
 struct ClockedSignal {
   std::string_view channel;  ///< for messages
   const Clock* clock;
-  Vector* values;  ///< one for each stamp of the clock; afterwards one for each that is kept of the common clock
+  Vector* values;  ///< one per stamp of the clock; afterwards one per stamp of the common clock
 };
 
-/// The part of a clock that all signals cover.
+/// The part of a clock covered by all signals.
 struct CommonClock {
-  Vector time;                     ///< [s], stamps of the chosen clock as they are
-  std::vector<std::string> notes;  ///< one sentence each: what was interpolated, left out, or folds down
+  Vector time;                     ///< [s], unchanged stamps of the chosen clock
+  std::vector<std::string> notes;  ///< one sentence each: interpolated, omitted or aliased data
 };
 
-/// Puts signals of several streams on the stamps of one of them. Signals of that stream, and of those with
-/// the same stamps, keep their samples to the bit;
-/// those of the others are interpolated linearly between their two nearest samples in time. Stamps outside what every
-/// stream covers are left out, and where a stream has no samples for longer than kLongestBridge of its median
-/// intervals, its values are NaN: nothing is made up over a gap. Where all signals are of the chosen stream, its stamps
-/// are not touched, whatever they are.
-/// @fails  data: there are several streams, and the stamps of one run backward, repeat or are no numbers; the
-///         streams do not overlap; a signal has another number of samples than its clock has stamps.
+/// Converts signals of several streams to the stamps of one of them. Signals of that stream, and of streams with the
+/// same stamps, keep their samples exactly; others are interpolated linearly between their two nearest samples in time.
+/// Stamps that not every stream covers are omitted. Where a stream has no samples for longer than kLongestBridge median
+/// intervals, its values are NaN: gaps are not filled. If all signals belong to the chosen stream, its stamps are
+/// unchanged.
+/// @fails  data: there are several streams, and the stamps of one run backward, repeat or are NaN; the streams do not
+/// overlap; the number of samples of a signal differs from the number of stamps of its clock.
 [[nodiscard]] Result<CommonClock> put_on_clock(const Clock& chosen, std::span<const ClockedSignal> signals);
 
 /// Whether the samples of both were taken at the same times, to the bit: they need no common clock.

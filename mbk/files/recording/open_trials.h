@@ -25,7 +25,7 @@ class OpenTrials {
   virtual ~OpenTrials() = default;
 
   [[nodiscard]] virtual const std::vector<TrialName>& trials() const = 0;
-  /// @param needs_arm  an arm must be named where there are two
+  /// @param needs_arm  an arm must be selected if there are two
   /// @fails  usage: options.trial or options.arm do not fit. data: as the reader of the format.
   [[nodiscard]] virtual Result<Decoded> decode(const std::filesystem::path& file, const ReadOptions& options,
                                                bool needs_arm) const = 0;
@@ -36,7 +36,7 @@ class OpenTrials {
 [[nodiscard]] Result<std::shared_ptr<const OpenTrials>> exam_trials(std::shared_ptr<const Buffer> file,
                                                                     std::string sha256);
 
-/// The records of a file that was decoded at once; it lists no trials where it holds one.
+/// The records of a file that was decoded at once; it lists no trials if there is only one.
 /// @param records  at least one    @param sha256  of the file
 [[nodiscard]] std::shared_ptr<const OpenTrials> decoded_trials(std::vector<NamedContents> records, std::string sha256);
 

@@ -16,11 +16,11 @@
 
 namespace mbk::recording {
 
-/// A file or folder that was opened once for a command: its bytes, its hash, its format, the trials that it holds.
-/// Whatever is read of it opens nothing anew. May be used by several threads.
+/// A file or folder that was opened once for a command: its bytes, its hash, its format, its trials. Reading from it
+/// does not open it again. May be used by several threads.
 class RecordingFile;
 
-/// Codes of `read`'s errors: a sound file of which no channel, or only the time, is recognised; a time that cannot be
+/// Codes of `read`'s errors: an intact file in which no channel, or only the time, is recognised; a time that cannot be
 /// in seconds.
 inline constexpr std::string_view kNothingRecognised = "nothing-recognised", kUnbelievableTime = "unbelievable-time";
 
@@ -32,11 +32,11 @@ inline constexpr std::string_view kNothingRecognised = "nothing-recognised", kUn
 ///
 /// is all that is needed.
 struct ReadOptions {
-  /// Which column or variable of the file is which channel, in which unit and with which sign: what --channels says
-  /// (channel_map.h reads that text). Empty: the file is recognised by its names.
+  /// Which column or variable of the file is which channel, in which unit and with which sign: as in --channels (parsed
+  /// by channel_map.h). Empty: the file is recognised by its names.
   std::vector<ChannelSource> channels;
 
-  /// Channels that are taken by the name that they have in the file, beside those of `channels`. Empty: all that are
+  /// Channels that are used under their name in the file, in addition to `channels`. Empty: all that are
   /// recognised if there is no map, and none if there is one.
   std::vector<std::string> requested;
 
@@ -48,22 +48,22 @@ struct ReadOptions {
   /// plane. 0: as the channels of the file show.
   int axes = 0;
 
-  /// Take a measured channel that is held, or that lacks samples, at its own samples (`at_own_samples`). For whoever
-  /// computes something of the recording; false keeps every value as recorded.
+  /// Use a measured channel that is held, or that lacks samples, at its own samples (`at_own_samples`), for
+  /// computations; false keeps every value as recorded.
   bool own_samples = false;
 
-  /// Channels that may be commands, beside torques and `input`. A command that is held is exact, so it is not treated
-  /// as a measurement that was updated too seldom.
+  /// Channels that may be commands, beside torques and `input`. A held command is exact, so it is not treated as a
+  /// measurement with too low an update rate.
   std::vector<std::string> commands;
 
   /// Accept rows without time and rate and count them, as for loads on a force sensor. false: that is an error.
   bool untimed = false;
 
-  /// The variable of a MAT file, if several could be meant. "": the only one.
+  /// The variable of a MAT file, if there are several candidates. "": the only one.
   std::string variable;
 
   /// The stream or topic whose time stamps the recording has, if channels come from several; the others are
-  /// interpolated linearly. "": all channels must come from one, and nothing is put on another clock.
+  /// interpolated linearly. "": all channels must come from one, and nothing is converted to another clock.
   std::string clock;
 
   /// The record, if a file or folder holds several (`trials_of` lists them). "": its only one.
@@ -77,18 +77,18 @@ struct ReadOptions {
   std::string arm;
 };
 
-/// Opens a recording: any format of `file_formats()`, which the content decides, never the name of the file.
-/// @fails  data: the file cannot be read or is of no known format.
+/// Opens a recording: any format of `file_formats()`, detected by content, never by file name.
+/// @fails  data: the file cannot be read or its format is unknown.
 [[nodiscard]] Result<std::shared_ptr<const RecordingFile>> open(const std::filesystem::path& file);
 
-/// The records of a file or folder that can hold several: a KINARM exam, a BIDS data set. None where it is of a format
-/// that holds one.
+/// The records of a file or folder that can hold several: a KINARM exam, a BIDS data set. None if the format holds only
+/// one.
 [[nodiscard]] const std::vector<TrialName>& trials_of(const RecordingFile& file);
 
-/// The same for a channel map, which may leave a dimension of an array over (slices.h): each of its indices is a trial.
+/// The same for a channel map, which may leave one array dimension free (slices.h): each index of it is a trial.
 [[nodiscard]] std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& options);
 
-/// Closes the file until it is read: for whoever holds hundreds of them.
+/// Closes the file until it is read: for callers with hundreds of files.
 void rest(const RecordingFile& file);
 
 /// Reads one record of a file as a recording.
@@ -97,32 +97,31 @@ void rest(const RecordingFile& file);
 /// variables that carry the names of the channel table ("hand_x", "Fx", "hand_x_mm", "time [ms]"). With a map, a number
 /// is a column of a table or tall matrix, or a row of a wide one (the signals run along the longer side); anything else
 /// is a column or variable name or "structure.field". A matrix is never transposed silently.
-/// A map that leaves out the time leaves it to its own name, or to row 1 of a logs matrix.
-/// Rows of `logs` that are NaN throughout were not recorded and are no channels.
-/// Recording::notes says what was ignored.
+/// If a map omits the time, it is found by its name, or in row 1 of a logs matrix. Rows of `logs` that are NaN
+/// throughout were not recorded and do not become channels. Recording::notes lists ignored data.
 ///
-/// @fails  data: the file cannot be read, is damaged or of another format; nothing is recognised (the message lists
-/// what there is); no time and no rate; a named source is not there; lengths differ.
-///         usage: a rate that contradicts the time by more than 0.1 %; several matrices could be
-///         meant; axes is not 0, 1 or 2.
+/// @fails  data: the file cannot be read, is damaged or of another format; nothing is recognised (the message lists the
+/// contents); no time and no rate; a named source does not exist; lengths differ.
+///         usage: a rate that contradicts the time by more than 0.1 %; several matrices are candidates; axes is not 0,
+///         1 or 2.
 [[nodiscard]] Result<Recording> read(const RecordingFile& file, const ReadOptions& options);
-/// The same of a file that nobody else needs open.
+/// The same for a file that is not used otherwise.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options);
 
-/// What the file holds under its own names, whether or not any of it is recognised as a channel.
-/// @param options  of which `trial` and `arm` count
+/// The contents of the file under its own names, whether or not they are recognised as channels.
+/// @param options  only `trial` and `arm` are used
 /// @fails  data: the file is damaged.
 [[nodiscard]] Result<FileContents> list_contents(const RecordingFile& file, const ReadOptions& options = {});
 
-/// The same with all numbers, as they stand: for a file of which nothing is recognised, and which is to be copied.
+/// The same with all numbers unchanged: for copying a file in which nothing is recognised.
 /// @param options  as of list_contents
 /// @fails  as list_contents
 [[nodiscard]] Result<Contents> read_contents(const RecordingFile& file, const ReadOptions& options = {});
 
 /// Reads the numbered parts of one record (log_1.mat, log_2.mat, …, log_10.mat), in the order of their numbers, and
 /// joins them. A pause between two parts is kept: inspect reports it as a gap.
-/// @fails  usage: no parts, or a name without a number at its end. data: names of different records; a number missing
-/// or twice; different channels or units; time that does not run on from part to part.
+/// @fails  usage: no parts, or a name without a number at its end. data: names of different records; a missing or
+/// repeated number; different channels or units; time that is not continuous across parts.
 [[nodiscard]] Result<Recording> read_parts(std::vector<std::filesystem::path> parts, const ReadOptions& options);
 
 }  // namespace mbk::recording

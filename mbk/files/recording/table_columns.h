@@ -8,15 +8,15 @@
 
 namespace mbk::recording {
 
-/// The columns of a table that is read row by row. Those of a long one are written to a file while rows come, so that
-/// only the last of these are in memory.
+/// The columns of a table that is read row by row. Those of a long table are written to a file while rows arrive, so
+/// that only the last rows are in memory.
 class TableColumns {
  public:
   TableColumns() = default;
-  /// @param columns  at least one    @param rows  as many as are expected; there may be more
+  /// @param columns  at least one    @param rows  expected number; there may be more
   void expect(Index columns, Index rows);
 
-  /// The row that is worked on: the numbers before are complete.
+  /// The current row: the numbers before it are complete.
   [[nodiscard]] Index rows() const { return rows_; }
   [[nodiscard]] double& operator[](std::size_t column) { return places_[column][rows_ - begin_]; }
   void next_row() {
@@ -25,7 +25,7 @@ class TableColumns {
   }
   /// The complete rows of a column, to be read.
   [[nodiscard]] Eigen::Ref<const Vector> column(std::size_t column);
-  /// The same, of which nothing is left here.
+  /// The same, moved out.
   [[nodiscard]] Vector take(std::size_t column);
 
  private:
@@ -33,7 +33,7 @@ class TableColumns {
   void go_on();
   void begin_block();
   void write_block();
-  /// All complete rows stand in `numbers_`, in memory or as their file.
+  /// All complete rows are in `numbers_`, in memory or in their file.
   void settle();
   void wait();
 

@@ -10,19 +10,19 @@
 
 namespace mbk::recording {
 
-/// The unit in which a number counts time since 1970 ("s", "ms", "us", "ns": the years 2001 to 2096), or nullptr.
+/// The unit of a number that counts time since 1970 ("s", "ms", "us", "ns": the years 2001 to 2096), or nullptr.
 [[nodiscard]] const Unit* unit_since_1970(double stamp);
 
-/// Gives the array its meaning that is the time by another name than "time" or "t" ("timestamp", "tout", "Elapsed
-/// Time", "Zeit", "__time", "rosbagTimestamp(ns)", …), with the unit that its name or, since 1970, its size says. A
-/// file with an array called "time" or with clocks stays as it is.
+/// Recognises the time under a name other than "time" or "t" ("timestamp", "tout", "Elapsed
+/// Time", "Zeit", "__time", "rosbagTimestamp(ns)", …), with the unit given by its name or, for times since 1970, by its
+/// size. A file with an array called "time" or with clocks is unchanged.
 /// @fails  data: two arrays have such names, and different times.
 [[nodiscard]] Result<void> name_time(Contents& contents);
 
-/// Arrays whose names speak of time and which run on: "t_robot", "sensor.stamp".
+/// Increasing arrays whose names suggest time: "t_robot", "sensor.stamp".
 [[nodiscard]] std::vector<const Array*> possible_times(const Contents& contents);
 
-/// What such arrays say that differ from the time that was taken by more than a sample and their own rounding.
+/// Notes on such arrays that differ from the time in use by more than a sample and their rounding.
 [[nodiscard]] std::vector<std::string> other_times(const Contents& contents, const Array& time, const Unit* unit);
 
 }  // namespace mbk::recording

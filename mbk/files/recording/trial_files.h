@@ -10,11 +10,11 @@
 
 namespace mbk::recording {
 
-/// Stands in the name of a file to write for the name of each trial.
+/// Placeholder for the trial name in the name of an output file.
 inline constexpr std::string_view kTrialPlace = "{trial}";
 
-/// The files that the trials of a recording are written to: `pattern` with the name of each trial in the place of
-/// {trial}. Of a name whatever cannot stand in that of a file (a slash, blanks, control characters) becomes "_".
+/// The files that the trials of a recording are written to: `pattern` with {trial} replaced by the name of each trial.
+/// Characters that a file name cannot contain (a slash, blanks, control characters) become "_".
 /// @param trials  names of the trials; one with the name "" is a file that holds one record
 /// @fails  usage: several trials and no {trial} in the last part of the name; {trial} and one record that has no name;
 ///         two trials would go to one file.

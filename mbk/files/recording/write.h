@@ -28,24 +28,23 @@ enum class Format {
 /// "MAT v5", "MAT v7.3", "HDF5", "CSV".
 [[nodiscard]] std::string_view text(Format format);
 
-/// The format that the end of a file's name says, or that `name` says ("mat", "mat5", "mat73", "hdf5", "csv").
-/// @fails  usage: neither says one that is known; those that are known are named.
+/// The format given by the extension of a file, or by `name` ("mat", "mat5", "mat73", "hdf5", "csv").
+/// @fails  usage: neither gives a known format; the message lists the known ones.
 [[nodiscard]] Result<Format> format_of(const std::filesystem::path& file, std::string_view name = "");
 
-/// What such a file has no place for, in words; nothing where everything comes back.
+/// Data that such a file cannot store, one sentence each; none if everything is restored.
 [[nodiscard]] std::vector<std::string> lost_in(const Recording& recording, Format format);
 
-/// The frames among them: channels whose frame is another than their name implies.
+/// The frames among them: channels whose frame differs from the one implied by their name.
 [[nodiscard]] std::vector<std::string> lost_frames(const Recording& recording, std::string_view format);
 
 /// @fails  data: no samples or channels; a channel twice or of another length; a text that is not one line.
 [[nodiscard]] Result<void> check_writable(const Recording& recording);
 
-/// Writes a recording. The file appears whole or not at all (write_file), and equal recordings give equal bytes,
-/// whatever the order of their channels. What was measured on a person is for the file's owner alone, unless `readers`
-/// says otherwise.
-/// @fails  usage: the file is there and `overwrite` is false. data: the recording cannot be written in this format (the
-///         message says what stands in the way); the folder cannot be written.
+/// Writes a recording. The file appears completely or not at all (write_file), and equal recordings give equal bytes,
+/// whatever the order of their channels. Only the owner of the file may read it, unless `readers` says otherwise.
+/// @fails  usage: the file exists and `overwrite` is false. data: the recording cannot be written in this format (the
+/// message gives the reason); the folder cannot be written.
 [[nodiscard]] Result<void> write(const Recording& recording, const std::filesystem::path& file, Format format,
                                  bool overwrite, Readers readers = Readers::owner);
 

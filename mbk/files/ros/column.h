@@ -9,7 +9,7 @@
 
 namespace mbk::recording {
 
-/// Numbers that come one by one, in blocks, so that nothing moves while more of them come.
+/// Numbers that arrive one by one, in blocks, so that existing numbers do not move.
 class Column {
  public:
   void add(double value) {
@@ -23,7 +23,7 @@ class Column {
   }
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// All of them; nothing is left here.
+  /// All of them, moved out.
   [[nodiscard]] Vector take() {
     Vector values(static_cast<Index>(size_));
     Index at = 0;

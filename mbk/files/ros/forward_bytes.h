@@ -11,19 +11,19 @@
 
 namespace mbk::recording {
 
-/// Bytes that are read from their begin to their end, of which only what was taken last is in memory.
+/// Bytes that are read sequentially, with only the last piece in memory.
 class ForwardBytes {
  public:
   virtual ~ForwardBytes() = default;
 
-  /// The next `count` bytes, or those that are left where the end comes first. They stand until more is taken.
+  /// The next `count` bytes, or fewer at the end. They are valid until the next call.
   /// @fails  data: they cannot be read, or cannot be unpacked
   [[nodiscard]] Result<std::span<const std::byte>> take(std::size_t count);
-  /// Leaves bytes out. False where the end comes first.
+  /// Skips bytes. False if the end comes first.
   [[nodiscard]] Result<bool> skip(std::uint64_t count);
 
-  [[nodiscard]] std::uint64_t position() const { return position_; }  ///< bytes that were taken or left out
-  /// CRC-32 (that of zlib) of what was taken or left out since `restart_crc`.
+  [[nodiscard]] std::uint64_t position() const { return position_; }  ///< bytes taken or skipped
+  /// CRC-32 (that of zlib) of the bytes taken or skipped since `restart_crc`.
   [[nodiscard]] std::uint32_t crc() const { return crc_; }
   void restart_crc() { crc_ = 0; }
 
@@ -31,7 +31,7 @@ class ForwardBytes {
   ForwardBytes() = default;
   ForwardBytes(const ForwardBytes&) = default;
   ForwardBytes& operator=(const ForwardBytes&) = default;
-  /// What `take` gives.
+  /// The result of `take`.
   [[nodiscard]] virtual Result<std::span<const std::byte>> next(std::size_t count) = 0;
 
  private:
@@ -71,15 +71,15 @@ class PartOfBytes : public ForwardBytes {
   std::uint64_t left_;
 };
 
-/// Messages that are larger are left out.
+/// Larger messages are omitted.
 inline constexpr std::uint64_t kLargestMessage = std::uint64_t{64} << 20;
-/// What to do about a damaged file.
+/// Remedy for a damaged file.
 inline constexpr std::string_view kCopyAgain = "copy the file again from where it was recorded";
 
-/// How chunks of bags and MCAP files are packed.
+/// Compression of chunks of bags and MCAP files.
 enum class Packing { none, zstd, lz4, bz2 };
 
-/// What the bytes unpack to, piece by piece: no size that anything claims is believed.
+/// The unpacked bytes, piece by piece, without relying on any stated size.
 /// @param packed  must outlive it
 [[nodiscard]] std::unique_ptr<ForwardBytes> unpacked(Packing packing, ForwardBytes& packed);
 

@@ -9,22 +9,22 @@
 
 namespace mbk::recording {
 
-/// Whether the bytes begin as an MCAP file does.
+/// Whether the bytes have an MCAP signature.
 [[nodiscard]] bool looks_like_mcap(std::span<const std::byte> begin);
 
 /// Reads an MCAP file (mcap.dev/spec): every number of the messages of ROS 1, ROS 2 and JSON as an array
-/// "topic.field.path" with the clock of its topic. It is read from begin to end, whatever its index says. A file that
-/// was cut short is read as far as it goes, with a note.
-/// @fails  data: a checksum is wrong, a chunk cannot be unpacked, a record is not what it says.
+/// "topic.field.path" with the clock of its topic. It is read sequentially, without its index. A truncated file is read
+/// as far as possible, with a note.
+/// @fails  data: a checksum is wrong, a chunk cannot be unpacked, a record is malformed.
 [[nodiscard]] Result<Contents> decode_mcap(std::span<const std::byte> file);
 
-/// The same while the file is read, of which a part is in memory; all of it is read.
+/// The same while the file is being read, with only a part of it in memory; all of it is read.
 [[nodiscard]] Result<Contents> decode_mcap(FileInPassing& file);
 
-/// The name of the metadata record by which mbk knows files that it wrote itself until version 0.1, and of the one that
-/// has their metadata.
+/// The name of the metadata record that marks files written by mbk up to version 0.1, and of the record with their
+/// metadata.
 inline constexpr std::string_view kMcapLayoutRecord = "mbk.recording", kMcapMetadataRecord = "mbk.metadata";
-/// How an MCAP file begins and ends.
+/// Magic bytes at the start and end of an MCAP file.
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
 /// The kinds of records that are read.

@@ -18,10 +18,10 @@ struct NpyField {
   bool big_endian = false;
   std::size_t offset = 0;   ///< [bytes] in the element
   std::uint64_t count = 1;  ///< numbers in each element
-  std::string type;         ///< as the file says it: "<f8", "<M8[ns]"
+  std::string type;         ///< as in the file: "<f8", "<M8[ns]"
 };
 
-/// What the header of a NumPy array says.
+/// Contents of the header of a NumPy array.
 struct NpyHeader {
   std::vector<NpyField> fields;
   bool structured = false;

@@ -14,7 +14,7 @@
 
 namespace mbk::recording {
 
-// What the readers of tables of text share that are not CSV.
+// Shared by the readers of text tables other than CSV.
 
 inline constexpr std::size_t kMaxTextColumns = 10'000;
 inline constexpr std::string_view kWriteAgain = "write it again with the program that made it";
@@ -23,20 +23,20 @@ inline constexpr std::string_view kWriteAgain = "write it again with the program
 [[nodiscard]] std::string in_lower_case(std::string_view text);
 [[nodiscard]] std::string line_place(std::size_t line);
 [[nodiscard]] bool is_blank(std::string_view cell);
-/// Whether a line holds separators and quotes alone, as a blank line that a spreadsheet saved.
+/// Whether a line contains only separators and quotes, like a blank line saved by a spreadsheet.
 [[nodiscard]] bool is_empty_row(std::string_view line);
 /// Without blanks and quotes around it, printable.
 [[nodiscard]] std::string label_of(std::string_view cell);
 
 [[nodiscard]] std::string_view text_of(std::span<const std::byte> file);
 
-/// What stands between the cells of a line: a tab; a semicolon or comma where a spreadsheet saved it; or blanks.
+/// The separator of the cells of a line: a tab; a semicolon or comma from a spreadsheet; or blanks.
 [[nodiscard]] char separator_of(std::string_view line);
 [[nodiscard]] std::vector<std::string_view> cells_of(std::string_view line, char separator);
 /// The same without empty ones at the end.
 [[nodiscard]] std::vector<std::string_view> filled_cells_of(std::string_view line, char separator);
 
-/// The cells of a line that says names, which may stand in quotes and hold separators there.
+/// The cells of a line of names, which may be quoted and then contain separators.
 [[nodiscard]] std::vector<std::string> labels_of(std::string_view line, char separator);
 
 [[nodiscard]] std::optional<double> positive_number(std::string_view text);
@@ -45,19 +45,19 @@ inline constexpr std::string_view kWriteAgain = "write it again with the program
 [[nodiscard]] bool is_cut(const TextLine& line, std::size_t cells, std::size_t columns);
 [[nodiscard]] std::string note_of_cut(const TextLine& line);
 
-/// "the header says 100 rows, and there are 98", where that is so.
+/// Notes "the header states 100 rows, but there are 98" if they differ.
 void compare_counts(const std::optional<double>& said, std::size_t there, std::string_view what, Contents& contents);
 
-/// "RB#2" where a file has a second RB.
+/// "RB#2" for a second RB in a file.
 void number_repeated(std::vector<std::string>& names);
 
-/// "columns that hold vectors were left aside: …", of those with an obstacle.
+/// "columns with vectors were ignored: …", for those with an obstacle.
 void note_obstacles(std::string_view what, Contents& contents);
 
 /// Rows of numbers, each as long as there are columns.
 class TextRows {
  public:
-  /// @param bytes  of the file, which bounds how many numbers there may be
+  /// @param bytes  of the file, which bounds the number of numbers
   TextRows(std::size_t columns, std::size_t bytes);
 
   /// A row; cells that are missing at its end are NaN. With decimal commas numbers have no points.
@@ -68,7 +68,7 @@ class TextRows {
   [[nodiscard]] std::span<const double> column(std::size_t c) const { return numbers_[c]; }
   /// Why a column has no numbers.
   [[nodiscard]] const std::optional<Error>& obstacle(std::size_t c) const { return obstacles_[c]; }
-  /// Its numbers, or why there are none, as values or obstacle of an array. Nothing is left here.
+  /// Its numbers, or why there are none, as values or obstacle of an array. They are moved out.
   void give(std::size_t c, Array& array);
 
  private:
@@ -77,7 +77,7 @@ class TextRows {
   std::size_t most_;                             ///< rows
 };
 
-/// Adds a row, whatever stands for its decimal points.
+/// Adds a row with any decimal separator.
 Result<void> add_row(TextRows& rows, const TextLine& line, char separator, std::size_t columns);
 
 /// An array without numbers yet.

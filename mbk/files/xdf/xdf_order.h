@@ -6,17 +6,17 @@
 
 namespace mbk::recording {
 
-/// The order of samples by their time stamps, where a file holds groups of them out of order.
+/// The order of samples by their time stamps, if a file contains groups of them out of order.
 ///
 /// Stamps are cut into runs where an interval is off the median one by more than half of it and by more than six
-/// standard deviations of all intervals. Runs are sorted by their first stamp. Where that moves runs, they stay moved
-/// only if they fit together again: intervals between them are off by a quarter, in all, of what they were, and on
+/// standard deviations of all intervals. Runs are sorted by their first stamp. If that moves runs, the new order is
+/// kept only if they fit together: intervals between them are off by a quarter, in all, of what they were, and on
 /// average by a quarter of the length of a run; runs overlap by no more than a fifth of what intervals were off; and
-/// that is five times as far as stamps which still run backward do. Stamps that jitter, a clock that was set back and
-/// samples that are there twice do not fit, and keep the order of the file.
+/// that is five times as far as stamps which still run backward do. Jittering stamps, a clock that was set back and
+/// duplicate samples do not fit and keep the file order.
 ///
 /// @param stamps  [s], finite, of samples that were taken evenly
-/// @returns  for each place the sample of the file that belongs there; empty where nothing is to be moved
+/// @returns  for each position the index of the sample in the file; empty if the order is correct
 [[nodiscard]] std::vector<Index> order_by_stamps(const Vector& stamps);
 
 }  // namespace mbk::recording

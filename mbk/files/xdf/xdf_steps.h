@@ -6,7 +6,7 @@
 
 namespace mbk::recording {
 
-/// [1] A clock of quartz runs no faster or slower than that.
+/// [1] Maximum drift of a quartz clock.
 inline constexpr double kLargestDrift = 2e-4;
 
 /// The clock of a sender between two resets, and the offsets that the recorder measured: recorder = time + value.
@@ -22,8 +22,8 @@ struct ClockStep {
   double size = 0.0;  ///< [s], that was added to the stamps behind it
 };
 
-/// Finds steps in clock offsets, and takes them out: stamps, times and values of offsets behind a step are put on the
-/// clock from before it.
+/// Finds steps in clock offsets and removes them: stamps, times and values of offsets after a step are converted to the
+/// clock before it.
 ///
 /// Between two offsets the step is J = median(vᵢ − s·tᵢ | next eight) − median(vᵢ − s·tᵢ | last eight), where s is the
 /// median slope within these two groups. It is taken out
