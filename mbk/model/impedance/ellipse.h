@@ -16,7 +16,7 @@ namespace mbk::impedance {
 /// NaN where the symmetric part is not positive definite. @param Z 2×2
 [[nodiscard]] double antisymmetry_percent(const Matrix& Z);
 
-/// The curve that the force draws when a unit motion goes once round (Dyck 2013, eq. 3.12–3.17).
+/// The curve of the force for a unit motion around a circle (Dyck 2013, eq. 3.12–3.17).
 struct Ellipse {
   double lambda_max = 0, lambda_min = 0;  ///< eigenvalues of the symmetric part, in its unit
   double area = 0;                        ///< π λ_max λ_min; NaN where λ_min ≤ 0
@@ -34,7 +34,7 @@ struct EllipseGradient {
 
 ///   dλ = vᵀ dZ v;  dA = π(λ_max dλ_min + λ_min dλ_max);  dR = dλ_max/λ_min − R dλ_min/λ_min
 ///   dθ = ((z_xx − z_yy) dz_s − z_s (dz_xx − dz_yy))/((z_xx − z_yy)² + 4 z_s²)
-/// Not defined (division by zero) for a circle, where the orientation means nothing. @param Z 2×2
+/// Not defined (division by zero) for a circle, where the orientation is undefined. @param Z 2×2
 [[nodiscard]] EllipseGradient ellipse_gradient(const Matrix& Z);
 
 }  // namespace mbk::impedance

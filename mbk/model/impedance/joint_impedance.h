@@ -8,16 +8,17 @@
 
 namespace mbk::impedance {
 
-/// How the hand x follows two joints q at one posture.
+/// Kinematics of the hand x over two joints q at one posture.
 struct JointMap {
   Eigen::Matrix2d jacobian;                  ///< J = ∂x/∂q [m]
   std::array<Eigen::Matrix2d, 2> curvature;  ///< ∂²x_k/∂q² [m], k = x, y of the base frame; symmetric
 };
 
-/// What the angle of an elbow is measured against.
+/// Reference of the elbow angle.
 enum class ElbowAngle {
-  first_link,  ///< as of an arm: q₂ leaves the upper arm where it is
-  base,        ///< as of the robot of Dyck (2013), fig. A.1: q₁ leaves the direction of the last link as it is
+  first_link,  ///< relative to the upper arm, as in an arm
+  base,  ///< relative to the base, as in the robot of Dyck (2013), fig. A.1: q₁ does not change the direction of the
+         ///< last link
 };
 
 /// Two links in a plane, joints counted counter-clockwise. With a from shoulder (or base) to elbow, b from elbow to
@@ -28,7 +29,7 @@ enum class ElbowAngle {
 [[nodiscard]] JointMap two_link_map(const Eigen::Vector2d& shoulder, const Eigen::Vector2d& elbow,
                                     const Eigen::Vector2d& hand, ElbowAngle angle);
 
-/// The impedance of a hand as its joints have it.
+/// The impedance of a hand in joint coordinates.
 struct JointImpedance {
   Matrix M;           ///< M_q, 2×2 [kg·m²]
   Matrix B;           ///< B_q, 2×2 [N·m·s/rad]
@@ -38,10 +39,10 @@ struct JointImpedance {
 };
 
 /// M_q = JᵀMJ,  B_q = JᵀBJ,  K_q = JᵀKJ − Σ_k F_k ∂²x_k/∂q²,  F = −K(x − x₀)
-/// F is force_hand_on_robot: a hand that pushes outward is stiffer at its joints than JᵀKJ says, and one that is pushed
-/// is less so. Antisymmetric parts carry over as k_a,q = det(J) k_a. Without F the matrices keep their definiteness, so
-/// that a limb is passive in both domains or in neither. NaN where x₀ is (K singular).
-/// @param hand  with two axes    @param place  x, where the hand is [m]
+/// F is force_hand_on_robot: a hand that pushes outward is stiffer at its joints than JᵀKJ, and one that is pushed is
+/// less stiff. Antisymmetric parts carry over as k_a,q = det(J) k_a. Without F the definiteness of the matrices is
+/// preserved, so that a limb is passive in both domains or in neither. NaN if x₀ is NaN (K singular).
+/// @param hand  with two axes    @param place  x, position of the hand [m]
 [[nodiscard]] JointImpedance joint_impedance(const Model& hand, const JointMap& joints, const Eigen::Vector2d& place);
 
 }  // namespace mbk::impedance

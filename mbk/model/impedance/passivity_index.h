@@ -16,7 +16,7 @@ struct Sensitive {
   Eigen::RowVectorXd gradient;
 };
 
-/// Its standard error by the delta method; NaN, where there is no covariance, stays NaN.
+/// Its standard error by the delta method; NaN if there is no covariance.
 /// @param covariance of the stacked model
 [[nodiscard]] double standard_error(const Sensitive& quantity, const Matrix& covariance);
 
@@ -26,8 +26,8 @@ struct Sensitive {
 /// Smallest eigenvalue of the symmetric part of M (0), B (1) or K (2): dλ = vᵀ dZ v.
 [[nodiscard]] Sensitive smallest_eigenvalue(const Model& model, int matrix);
 
-/// Passivity index at one frequency, ½ λ_min(Z(jω) + Zᴴ(jω)) with Z(s) = M s + B + K/s: how much more damping than none
-/// the limb has there, in the direction and phase in which it has least [N·s/m]. In closed form
+/// Passivity index at one frequency, ½ λ_min(Z(jω) + Zᴴ(jω)) with Z(s) = M s + B + K/s: the smallest damping of the
+/// limb over direction and phase [N·s/m]. In closed form
 ///   tr(B_s)/2 − √( ((b_xx − b_yy)/2)² + b_s² + (ω m_a − k_a/ω)² ),
 /// with B_s = (B + Bᵀ)/2, and m_a, k_a the antisymmetric parts of M and K. One axis: b.
 /// Over a band its minimum is at an end, for |ω m_a − k_a/ω| is largest there. @param omega > 0 [rad/s]
@@ -43,8 +43,8 @@ struct Sensitive {
 
 /// Where the index of a model of two axes whose B_s is positive definite is positive, ω from first to second [rad/s]:
 /// |ω m_a − k_a/ω| < √det B_s. With m_a = 0 above |k_a|/√det B_s; with k_a = 0 below √det B_s/|m_a|; with
-/// D = det B_s + 4 m_a k_a from 2|k_a|/(√det B_s + √D) to (√det B_s + √D)/(2|m_a|). Beyond, motion that circles can
-/// draw energy from the model. The second is infinite where m_a = 0.
+/// D = det B_s + 4 m_a k_a from 2|k_a|/(√det B_s + √D) to (√det B_s + √D)/(2|m_a|). Beyond, circular motion can draw
+/// energy from the model. The second is infinite if m_a = 0.
 /// @returns absent with one axis, where B_s is not positive definite, or D ≤ 0: then there is no such frequency
 [[nodiscard]] std::optional<std::pair<double, double>> absorbing_in_circles(const Model& model);
 
@@ -52,7 +52,7 @@ struct Sensitive {
 /// [N·s/m]. Absent unless the symmetric parts of M and K are positive semidefinite.
 [[nodiscard]] std::optional<Sensitive> excess_of_passivity(const Model& model);
 
-/// What table 3.6 of Dyck (2013) prints in its place, λ_max(B_s)/2. It is the excess of no system: half of the
+/// The value printed in table 3.6 of Dyck (2013) instead, λ_max(B_s)/2. It is not an excess of passivity: half of the
 /// *largest* eigenvalue (docs/theory/errata.md).
 [[nodiscard]] Sensitive published_excess_of_passivity(const Model& model);
 

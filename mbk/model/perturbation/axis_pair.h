@@ -5,8 +5,8 @@
 
 namespace mbk::perturbation {
 
-/// Two axes that move at the same time. Over whole periods they are uncorrelated at every delay exactly where no line
-/// of one is a line of the other.
+/// Two axes that move at the same time. Over whole periods they are exactly uncorrelated at every delay if they have no
+/// common line.
 struct AxisPair {
   Multisine first;
   Multisine second;
@@ -16,8 +16,8 @@ struct AxisPair {
 };
 
 /// One experiment: the lines, in ascending order, go to the axes in turn (first, second, first, …), so that the axes
-/// are uncorrelated over every whole period. Each axis is measured at its own lines; amplitudes and phases stay, and
-/// `with_low_crest_phases` may follow on each axis.
+/// are uncorrelated over every whole period. Each axis is measured at its own lines; amplitudes and phases are
+/// unchanged, and `with_low_crest_phases` may follow on each axis.
 /// @fails  fewer than two lines.
 [[nodiscard]] Result<AxisPair> interleaved(const Multisine& signal);
 

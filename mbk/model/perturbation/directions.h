@@ -10,7 +10,8 @@ namespace mbk::perturbation {
 /// Unit vector at the angle 2π k/n from +x, exact along the axes, base frame.   @param n ≥ 1    @param k 0 … n − 1
 [[nodiscard]] Eigen::Vector2d direction_on_circle(int k, int n);
 
-/// Each of 0 … directions − 1 so many times, in random order (Fisher & Yates).   @param directions, repetitions ≥ 1
+/// Each of 0 … directions − 1, `repetitions` times, in random order (Fisher & Yates).   @param directions, repetitions
+/// ≥ 1
 [[nodiscard]] std::vector<int> shuffled_directions(int directions, int repetitions, numeric::Random& random);
 
 }  // namespace mbk::perturbation

@@ -8,15 +8,15 @@
 
 namespace mbk::perturbation {
 
-/// Where a function of time is largest, and its value there.
+/// Time and value of the maximum of a function.
 struct LargestValue {
   double time = 0.0;
   double value = 0.0;
 };
 
 /// The largest value of f ≥ 0 over the span of a grid. Every local maximum of the samples that comes within 1 % of the
-/// largest is refined by golden sections between its neighbours (Kiefer 1953). It is the global maximum where the grid
-/// is so fine that its samples fall short of a peak by less than 1 %: for sines, 23 to a period or more.
+/// largest is refined by golden sections between its neighbours (Kiefer 1953). It is the global maximum if the grid is
+/// fine enough for its samples to be within 1 % of every peak: for sines, at least 23 per period.
 /// @param grid    [s], ascending, not empty    @param values  f on the grid
 template <class Function>
 [[nodiscard]] LargestValue largest_value(const std::vector<double>& grid, const std::vector<double>& values,

@@ -22,7 +22,7 @@ class Multisine {
   };
 
   /// @param period  T [s]
-  /// @fails  T ≤ 0; no lines; k < 1 or above kHighestHarmonic; a harmonic stands twice; a value is not finite.
+  /// @fails  T ≤ 0; no lines; k < 1 or above kHighestHarmonic; a repeated harmonic; a value is not finite.
   [[nodiscard]] static Result<Multisine> create(double period, std::vector<Line> lines);
 
   /// Phases uniform on [0, 2π), drawn in the order of the harmonics from the given stream of the seed.

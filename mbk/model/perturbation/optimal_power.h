@@ -11,14 +11,14 @@
 
 namespace mbk::perturbation {
 
-/// M ẍ + B ẋ + K x = −F of one axis, as far as it is known before the experiment [kg, N·s/m, N/m].
+/// M ẍ + B ẋ + K x = −F of one axis, as estimated before the experiment [kg, N·s/m, N/m].
 struct NominalImpedance {
   double M = 0.0;
   double B = 0.0;
   double K = 0.0;
 };
 
-/// Which signal is limited: the position, the velocity, or the force that the nominal impedance answers with.
+/// Which signal is limited: the position, the velocity, or the response force of the nominal impedance.
 enum class LimitedSignal { position, velocity, force };
 
 [[nodiscard]] constexpr auto word_table(LimitedSignal) {
@@ -29,12 +29,12 @@ enum class LimitedSignal { position, velocity, force };
 struct OptimalPowerOptions {
   LimitedSignal limited = LimitedSignal::position;
   std::optional<NominalImpedance> nominal;  ///< needed for a limited force only
-  /// Least share of the limited power at every line, so that a model of second order can be checked between the ends of
-  /// the band. With a floor above 0 there must be three lines between the lowest and the highest.
+  /// Minimum share of the limited power at every line, so that a second-order model can be checked within the band.
+  /// With a floor above 0 there must be three lines between the lowest and the highest.
   double floor = 0.02;
 };
 
-/// How the power of the limited signal is spread over the lines, and the proof that no other way does better.
+/// Distribution of the power of the limited signal over the lines, and the proof of its optimality.
 struct OptimalPower {
   Vector shares;               ///< wₖ, sum 1, in the order of the harmonics
   Vector sensitivity;          ///< dₖ = tr(I(w)⁻¹ Iₖ); Σ wₖ dₖ = 3
@@ -51,8 +51,8 @@ struct OptimalPower {
 /// (Titterington 1976; Silvey, Titterington & Torsney 1978), which never lowers the determinant. It stops at gap ≤
 /// 1e-7, where by concavity
 ///   gap = (1 − n·floor)(maxₖ dₖ − Σⱼ vⱼ dⱼ)
-/// bounds what is missing. Without a floor this is the general equivalence theorem (Kiefer & Wolfowitz 1960): w is
-/// optimal if and only if dₖ ≤ 3 at every line, the number of parameters.
+/// bounds the gap to the optimum. Without a floor this is the general equivalence theorem (Kiefer & Wolfowitz 1960): w
+/// is optimal if and only if dₖ ≤ 3 at every line, the number of parameters.
 ///
 /// Limited position, no floor: with u = ω², det I = E[u] Var[u] under w. For a given mean the variance is largest with
 /// all power at the ends a < b; with share q at b, (a + q(b − a)) q(1 − q)(b − a)² is largest at

@@ -11,10 +11,10 @@
 namespace mbk::perturbation {
 
 struct RandomBinaryOptions {
-  double amplitude = 2.0;       ///< A [m or N] > 0; the published force is ±2 N (Dyck 2013, §4.4.2)
-  double switching_time = 0.5;  ///< the sign is drawn anew each time this has passed [s]; not published
-  bool zero_mean = false;       ///< as many +A as −A, in random order
-  double damping_ratio = kPublishedDampingRatio;             ///< ζ
+  double amplitude = 2.0;                         ///< A [m or N] > 0; the published force is ±2 N (Dyck 2013, §4.4.2)
+  double switching_time = 0.5;                    ///< switching time between draws of the sign [s]; not published
+  bool zero_mean = false;                         ///< equal numbers of +A and −A, in random order
+  double damping_ratio = kPublishedDampingRatio;  ///< ζ
   RadPerSec natural_frequency = kPublishedNaturalFrequency;  ///< ωₙ
   std::uint64_t seed = 1;
 };
@@ -27,8 +27,8 @@ class RandomBinary {
 
   /// @param duration  of the sequence [s] > 0; the last interval may be cut short by it
   /// @fails  A ≤ 0; T_s ≤ 0; ζ outside (0, 1); ωₙ ≤ 0; T_s above the duration, or below it by more than the factor
-  /// kMaxIntervals; zero mean is asked for and the duration is no even number of switching times; a value is not
-  /// finite.
+  /// kMaxIntervals; zero mean is requested and the duration is not an even multiple of the switching time; a value is
+  /// not finite.
   [[nodiscard]] static Result<RandomBinary> create(const RandomBinaryOptions& options, double duration);
 
   /// y, ẏ, ÿ at t [s]; zero before 0. After the last interval u keeps its last value. Where u switches, ÿ is that
@@ -38,7 +38,7 @@ class RandomBinary {
   /// u at t [s]: +A or −A; zero before 0.
   [[nodiscard]] double reference(double t) const;
 
-  /// Highest frequency at which the density of y, sinc²(f T_s) |G|², still is half of that at zero frequency.
+  /// Highest frequency at which the density of y, sinc²(f T_s) |G|², is half of that at zero frequency.
   [[nodiscard]] Hertz bandwidth() const;
 
   [[nodiscard]] const RandomBinaryOptions& options() const { return options_; }

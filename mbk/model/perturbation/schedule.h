@@ -22,7 +22,7 @@
 
 namespace mbk::perturbation {
 
-enum class Quantity { position, force };  ///< what a signal commands: a displacement from home, or a force
+enum class Quantity { position, force };  ///< commanded quantity: a displacement from home, or a force
 
 [[nodiscard]] constexpr auto word_table(Quantity) {
   using enum Quantity;
@@ -34,14 +34,14 @@ enum class Space { hand, joint };  ///< hand: base frame, Cartesian [m | N]; joi
 /// The unit of a commanded value: "m", "rad", "N" or "N·m".
 [[nodiscard]] std::string_view unit(Quantity quantity, Space space);
 
-/// Something that a schedule does at one instant.
+/// An event of a schedule.
 struct ScheduleEvent {
   double time = 0.0;   ///< [s] from the start of the schedule
   std::string name;    ///< "onset" or "offset" of a pulse or ramp
   double value = 0.0;  ///< its angle from +x [rad]
 };
 
-/// What a schedule demands, over its whole duration with moving in and pauses. u is the unit of its value. Peaks are
+/// Demands of a schedule over its whole duration, including moving in and pauses. u is the unit of its value. Peaks are
 /// those of the continuous signal, not of its samples.
 struct Facts {
   double peak = 0.0;                                       ///< largest |r| of both axes together [u]
@@ -53,28 +53,28 @@ struct Facts {
   double peak_acceleration_time = 0.0;                     ///< where [s]
   Eigen::Vector2d axis_peak = Eigen::Vector2d::Zero();     ///< largest |rᵢ| of each axis [u]
   Eigen::Vector2d axis_rms = Eigen::Vector2d::Zero();      ///< of each axis [u]
-  Eigen::Vector2d crest_factor = Eigen::Vector2d::Zero();  ///< axis_peak/axis_rms; 0 for an axis that rests
+  Eigen::Vector2d crest_factor = Eigen::Vector2d::Zero();  ///< axis_peak/axis_rms; 0 for an axis at rest
   Hertz lowest_frequency;                                  ///< sines: lowest line; else 0
   Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Ramps: of the
                             ///< velocity. Rest: 0
 };
 
-/// What a schedule must keep to; what is empty is not checked. u is the unit of its value.
+/// Limits of a schedule; empty ones are not checked. u is the unit of its value.
 struct Limits {
   std::optional<double> peak;          ///< of |r| [u]
   std::optional<double> speed;         ///< of |ṙ| [u/s]
   std::optional<double> acceleration;  ///< of |r̈| [u/s²]
   std::optional<Hertz> bandwidth;      ///< of Facts::highest_frequency
-  /// Whether a displacement from home [m or rad] can be reached. Asked all along the path of a position schedule; a
-  /// force schedule's path is not known beforehand, and it is not asked.
+  /// Whether a displacement from home [m or rad] can be reached. Checked along the whole path of a position schedule;
+  /// not for a force schedule, whose path is unknown beforehand.
   std::function<Result<void>(const Eigen::Vector2d& displacement)> reachable;
 };
 
-/// A two-axis signal r(t) with its facts: everything that a robot, simulated or real, is told to do in one trial. It
-/// begins at rest; after its duration sines go on, a binary sequence keeps its last value, all else rests.
+/// A two-axis signal r(t) with its facts: all commands to a simulated or real robot in one trial. It begins at rest;
+/// after its duration sines continue, a binary sequence keeps its last value, everything else rests.
 class Schedule {
  public:
-  static constexpr double kLongest = 3600.0;  ///< [s]; longer trials are several schedules
+  static constexpr double kLongest = 3600.0;  ///< [s]; split longer trials into several schedules
   static constexpr double kMaxCycles = 1e5;   ///< of the highest frequency within the duration
 
   /// One multisine for each axis, r = g(t) [s₁(t), s₂(t)], with g from 0 to 1 by minimum jerk. The periods may differ.
@@ -85,7 +85,7 @@ class Schedule {
                                                   double duration, double moving_in);
 
   /// Underdamped pulses; in Space::joint, direction +x is the first joint's.
-  /// @param tail  from the last offset to the end [s]; not below the time of the way back
+  /// @param tail  from the last offset to the end [s]; not shorter than the return
   /// @fails  as PulseSchedule::create; the tail is too short or not finite; the whole is longer than kLongest; more
   /// than kMaxCycles of the filter's bandwidth.
   [[nodiscard]] static Result<Schedule> pulses(const PulseSchedule::Options& options, Quantity quantity, double tail,
@@ -99,14 +99,14 @@ class Schedule {
                                                       Quantity quantity, double duration, Space space = Space::hand);
 
   /// Ramps and holds of the position; in Space::joint, direction +x is the first joint's.
-  /// @param tail  from the end of the last way back to the end [s]
+  /// @param tail  from the end of the last return to the end [s]
   /// @fails  as RampAndHold::create; the tail is below 0 or not finite; the whole is longer than kLongest; more than
   /// kMaxCycles of the ramps' bandwidth.
   [[nodiscard]] static Result<Schedule> ramps(const RampAndHold::Options& options, double tail,
                                               Space space = Space::hand);
 
-  /// Displacements of a hand that reaches, relative to its predicted way; position, Space::hand. What it says as a
-  /// function of time is the expected course (ReachSchedule): the person decides when a reach begins.
+  /// Displacements of a reaching hand relative to its predicted path; position, Space::hand. Its function of time is
+  /// the expected course (ReachSchedule): the participant decides when a reach begins.
   /// @param tail  from the end of the last interval to the end [s]
   /// @fails  as ReachSchedule::create; the tail is below 0 or not finite; the whole is longer than kLongest; more than
   /// kMaxCycles of the ramps' bandwidth.
@@ -119,24 +119,24 @@ class Schedule {
   [[nodiscard]] Space space() const { return space_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< [s]
 
-  /// The reaches that it displaces; null where it is none of reaches.
+  /// The reaches that it displaces; null if it has no reaches.
   [[nodiscard]] const ReachSchedule* reaches() const { return std::get_if<ReachSchedule>(&shape_); }
 
   /// r, ṙ, r̈ at t [s]: displacement from home [m or rad] or force [N or N·m]; zero before 0. Does not allocate.
   [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
 
-  /// What a recording stores as the reference at t [s], in the unit of the value: the steps behind pulses, before G, so
-  /// that each pulse has an onset and an offset; for all else, which never rests, the signal itself. Does not allocate.
+  /// The reference that a recording stores at t [s], in the unit of the value: for pulses the steps before G, so that
+  /// each pulse has an onset and an offset; otherwise the signal itself. Does not allocate.
   [[nodiscard]] Eigen::Vector2d reference(double t) const;
 
-  /// Onset and offset of every pulse or ramp, in time order; empty for all else.
+  /// Onset and offset of every pulse or ramp, in time order; otherwise empty.
   [[nodiscard]] std::vector<ScheduleEvent> events() const;
 
-  /// Found on a grid of 64 samples to the period of the highest frequency, peaks then refined. Offline: allocates.
+  /// Computed on a grid of 64 samples per period of the highest frequency, with refined peaks. Offline: allocates.
   [[nodiscard]] Facts facts() const;
 
-  /// @fails  a limit is broken, or is itself not above 0: quantity, value, limit, time and remedy are named. What
-  /// `reachable` refuses gets the time added. Offline: allocates.
+  /// @fails  a limit is exceeded, or is itself not positive; the message gives quantity, value, limit, time and remedy.
+  /// Errors of `reachable` get the time added. Offline: allocates.
   [[nodiscard]] Result<void> check(const Limits& limits) const;
 
  private:

@@ -19,10 +19,10 @@ namespace mbk::perturbation {
 /// Sums of sines, one for each axis or joint, with phases and power by a stated rule.
 struct MultisinePlan {
   enum class Phases { random, schroeder, low_crest };
-  /// Lines and phases of each axis its own, lines in turn to one and the other, or the first or second of a pair of
-  /// experiments that differ in the second axis's sign (axis_pair.h).
+  /// Separate lines and phases for each axis, lines alternating between the axes, or the first or second of a pair of
+  /// experiments that differ in the sign of the second axis (axis_pair.h).
   enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
-  /// Odd lines alone, one of each group left out (odd_grid.h), the same for all seeds.
+  /// Only odd lines, with one omitted per group (odd_grid.h), the same for all seeds.
   struct OddGrid {
     int highest = 59;
     int group = 4;
@@ -34,8 +34,8 @@ struct MultisinePlan {
   std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};
   std::optional<OddGrid> odd_grid;  ///< in place of `harmonics`
   Phases phases = Phases::random;
-  /// Of the phases; absent: the schedule's seed. Trials with another one are other realisations; a pair of orthogonal
-  /// experiments has the same.
+  /// Seed of the phases; absent: the schedule's seed. A different seed gives a different realisation; a pair of
+  /// orthogonal experiments shares it.
   std::optional<std::uint64_t> phase_seed;
   std::optional<OptimalPowerOptions> optimal_power;  ///< absent: the same at every line
   Axes axes = Axes::independent;
@@ -78,7 +78,7 @@ struct RandomBinaryPlan {
 struct RampPlan {
   Space space = Space::hand;
   RampAndHold::Options ramps;
-  double tail = 1.0;  ///< recorded after the last way back [s]
+  double tail = 1.0;  ///< recorded after the last return [s]
 };
 
 /// Servo displacements of a hand that reaches.
@@ -94,11 +94,11 @@ struct RestPlan {
 
 struct Plan {
   std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan, ReachPlan> kind = MultisinePlan{};
-  Limits limits;  ///< what the schedule must keep
+  Limits limits;  ///< limits of the schedule
 };
 
-/// The schedule that a plan gives with a seed.
-/// @fails  usage: as perturbation's; a limit is broken.
+/// The schedule of a plan with a seed.
+/// @fails  usage: as the perturbation; a limit is exceeded.
 [[nodiscard]] Result<Schedule> make_schedule(const Plan& plan, std::uint64_t seed);
 
 }  // namespace mbk::perturbation

@@ -9,7 +9,7 @@ namespace mbk::perturbation {
 inline constexpr double kPublishedDampingRatio = 0.1;         ///< ζ     (Dyck 2013, below eq. 3.5)
 inline constexpr RadPerSec kPublishedNaturalFrequency{15.0};  ///< ωₙ [s⁻¹]
 
-/// G(s) = ωₙ² / (s² + 2ζωₙ s + ωₙ²) (Dyck 2013, eq. 3.5), solved exactly where its input is constant.
+/// G(s) = ωₙ² / (s² + 2ζωₙ s + ωₙ²) (Dyck 2013, eq. 3.5), solved exactly for constant input.
 class UnderdampedFilter {
  public:
   /// @fails  ζ outside (0, 1); ωₙ ≤ 0 or not finite.
@@ -22,7 +22,7 @@ class UnderdampedFilter {
   /// @param value  y₀ [u]    @param rate  ẏ₀ [u/s]    @param input  u
   [[nodiscard]] Jet<double> response(double value, double rate, double input, double t) const;
 
-  /// Where |G|² has fallen to one half for good: f = ωₙ/2π √(1 − 2ζ² + √((1 − 2ζ²)² + 1)).
+  /// The highest frequency at which |G|² is one half: f = ωₙ/2π √(1 − 2ζ² + √((1 − 2ζ²)² + 1)).
   [[nodiscard]] Hertz bandwidth() const;
 
   /// |G(j2πf)|²

@@ -38,8 +38,8 @@ class UnderdampedPulse {
 
 /// A train of underdamped pulses in directions spaced evenly around a circle, each repeated, in random order and with
 /// random durations and pauses (Dyck 2013, §3.4 and §4.1). After a pulse the signal returns to zero on a minimum-jerk
-/// path that takes over value, velocity and acceleration, and rests there until the next one. It displaces the hand, or
-/// is a force on it: whatever the amplitude is in.
+/// path that takes over value, velocity and acceleration, and rests there until the next one. It is a displacement of
+/// the hand or a force on it, depending on the unit of the amplitude.
 class PulseSchedule {
  public:
   static constexpr int kMaxPulses = 10000;
@@ -54,24 +54,24 @@ class PulseSchedule {
     double longest_duration = 2.0;   ///< [s]
     double shortest_pause = 2.0;     ///< from the end of `quiet`, or from the previous offset, to the onset [s]
     double longest_pause = 7.0;      ///< [s]
-    double return_duration = 1.0;    ///< of the way back, from the offset [s]; not above `shortest_pause`
+    double return_duration = 1.0;    ///< duration of the return, from the offset [s]; not above `shortest_pause`
     double quiet = 16.0;             ///< before the first pause [s]
     std::uint64_t seed = 1;
   };
 
   struct Pulse {
     double onset = 0.0;                        ///< [s]
-    double offset = 0.0;                       ///< [s]; the way back begins
+    double offset = 0.0;                       ///< [s]; start of the return
     int direction = 0;                         ///< 0 … directions − 1
     double angle = 0.0;                        ///< of the pulse from +x [rad]
     Eigen::Vector2d direction_B = {1.0, 0.0};  ///< unit vector of the pulse, base frame
   };
 
-  /// @fails  a limit named at Options is not kept; a time is not finite or negative.
+  /// @fails  a limit stated in Options is violated; a time is not finite or negative.
   [[nodiscard]] static Result<PulseSchedule> create(const Options& options);
 
   /// Displacement or force and its two derivatives, at t [s]; [m or N], base frame. Exactly zero between the end of a
-  /// way back and the next onset.
+  /// return and the next onset.
   [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
 
   /// The step behind the pulse: A·direction from onset up to offset, else exactly zero [m or N], base frame.
@@ -80,7 +80,7 @@ class PulseSchedule {
   [[nodiscard]] const std::vector<Pulse>& pulses() const { return pulses_; }
   [[nodiscard]] const Options& options() const { return options_; }
 
-  /// −3 dB of G: up to there an onset excites; the spectrum of its velocity is A G(j2πf).
+  /// −3 dB of G, the excited band of an onset; the spectrum of its velocity is A G(j2πf).
   [[nodiscard]] Hertz bandwidth() const { return shape_.filter().bandwidth(); }
 
  private:

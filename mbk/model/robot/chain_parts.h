@@ -10,8 +10,8 @@
 
 namespace mbk::robot {
 
-/// A joint and the body beyond it. KDL::Joint remembers its last angle inside a const call, which two threads would
-/// race for; so the pose is made here.
+/// A joint and the body beyond it. KDL::Joint caches its last angle in a const call, a data race between threads; so
+/// the pose is computed here.
 struct ChainJoint {
   KDL::Frame origin;  ///< of the joint at the recording's zero, from the frame of the body before
   KDL::Vector axis;   ///< unit, in the frame of its body; its sign is the recording's
@@ -28,7 +28,7 @@ struct ChainJoint {
   }
 };
 
-/// All that a SerialChain knows.
+/// Data of a SerialChain.
 struct ChainParts {
   std::vector<ChainJoint> joints;
   KDL::Vector hand;     ///< from the last body, in its frame [m]

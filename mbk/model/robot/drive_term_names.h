@@ -6,13 +6,13 @@
 
 namespace mbk::robot {
 
-/// A term of the drives and the word for it on the command line and in files.
+/// A term of the drives and its name on the command line and in files.
 struct DriveTermName {
   const char* word;
   bool DriveTerms::*requested;
 };
 
-/// In the order in which they stand for each joint.
+/// In their order within each joint.
 inline constexpr std::array<DriveTermName, 6> kDriveTermNames = {{{"motor_inertia", &DriveTerms::motor_inertia},
                                                                   {"viscous", &DriveTerms::viscous},
                                                                   {"coulomb", &DriveTerms::coulomb},

@@ -23,7 +23,7 @@ struct Inertia {
   }
 
   /// C(θ, θ̇) = ½α₂ cos(θ₁ − θ₂) [[0, θ̇₂], [−θ̇₁, 0]] [N·m·s/rad]. The lower-left sign is the opposite of the printed
-  /// (A.6): only so İ − 2C is skew and the motors' work is what the links gain.
+  /// (A.6): only then is İ − 2C skew-symmetric and the work of the motors equal to the energy gained by the links.
   [[nodiscard]] Matrix2d coriolis(const Vector2d& theta, const Vector2d& theta_rate) const {
     const double c = 0.5 * alpha2 * std::cos(theta[0] - theta[1]);
     Matrix2d C;
@@ -54,8 +54,8 @@ struct PlanarRobot {
   [[nodiscard]] Vector2d motor_torque(const Vector2d& theta, const Vector2d& theta_rate,
                                       const Vector2d& theta_acceleration, const Vector2d& force_hand_on_robot) const;
 
-  /// J⁻ᵀ I J⁻¹ [kg], base frame: what the hand feels of the robot's mass at rest.
-  /// @fails  usage: |cos(θ₁ − θ₂)| < 10⁻⁶, the links lie on one line and J has no inverse.
+  /// J⁻ᵀ I J⁻¹ [kg], base frame: the apparent mass of the robot at the hand, at rest.
+  /// @fails  usage: |cos(θ₁ − θ₂)| < 10⁻⁶, the links are collinear and J has no inverse.
   [[nodiscard]] Result<Matrix2d> inertia_at_hand(const Vector2d& theta) const;
 
   /// ½ θ̇ᵀ I θ̇ [J].

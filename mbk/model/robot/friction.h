@@ -5,7 +5,7 @@ namespace mbk::robot {
 /// Friction of one joint, opposing its motion:
 ///   F_r(ω) = b ω + [f_c + (f_s − f_c) e^{−(ω/ω_s)²}] tanh(ω/ω_t)            [N·m]
 /// b viscous (Dyck 2013, eq. A.6: α₄, α₅), f_c Coulomb, f_s breakaway with the Stribeck velocity ω_s. The sign is
-/// smoothed over ω_t, so that standstill is a slow creep and the equation of motion stays solvable.
+/// smoothed over ω_t, so that standstill is a slow creep and the equation of motion remains solvable.
 struct JointFriction {
   double viscous = 0.0;             ///< b [N·m·s/rad] ≥ 0
   double coulomb = 0.0;             ///< f_c [N·m] ≥ 0

@@ -6,8 +6,7 @@
 
 namespace mbk::robot {
 
-/// What kinematics.h says of the hand in one posture and at one rate of the joints, by one sine and cosine of each
-/// angle.
+/// The quantities of kinematics.h for one posture and joint velocity, computed with one sine and cosine per angle.
 template <int Axes>
 struct HandKinematics {
   AxisVector<Axes> position;  ///< hand_position [m]

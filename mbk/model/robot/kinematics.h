@@ -41,10 +41,10 @@ struct Geometry {
 /// J̇ = dJ/dt [m/s]: ẍ = J θ̈ + J̇ θ̇.
 [[nodiscard]] Matrix2d jacobian_rate(const Geometry& geometry, const Vector2d& theta, const Vector2d& theta_rate);
 
-/// The joint angles that bring the hand to a place, on the branch that the limits allow (Dyck 2013, eq. A.4):
+/// The joint angles for a hand position, on the branch that the limits allow (Dyck 2013, eq. A.4):
 ///   θ₁ = atan2(y, x) + acos((r² + d₁² − d₂²)/(2 d₁ r)),  θ₂ = θ₁ + acos((d₁² + d₂² − r²)/(2 d₁d₂)) − 90°,  r = |p|
-/// No limit but the reach is tested here; see workspace.h.
-/// @fails  usage: the place is farther than d₁ + d₂ or nearer than |d₁ − d₂|, or not finite.
+/// Only the reach is checked here; for joint limits see workspace.h.
+/// @fails  usage: the position is farther than d₁ + d₂ or nearer than |d₁ − d₂|, or not finite.
 [[nodiscard]] Result<Vector2d> joint_angles(const Geometry& geometry, const Vector2d& hand);
 
 /// R_BS(θ₂) = [[sin θ₂, cos θ₂], [−cos θ₂, sin θ₂]] of the axes of a sensor on the last link: x_s points along it, away

@@ -18,7 +18,7 @@ using HandVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
 using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
 using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, kMaxJoints>;
 
-/// A number that the dynamics are linear in.
+/// A coefficient in which the dynamics are linear.
 struct Coefficient {
   std::string name;
   std::string unit;
@@ -39,11 +39,11 @@ struct JointRange {
   double high = 0.0;
 };
 
-/// A symmetric matrix, linear in the coefficients, that is positive definite for every robot that can exist.
+/// A symmetric matrix, linear in the coefficients, that is positive definite for every physically possible robot.
 struct PhysicalCondition {
-  std::string name;             ///< of what it is a condition: a link, or a coefficient
+  std::string name;             ///< subject of the condition: a link, or a coefficient
   Matrix A;                     ///< n²×(number of coefficients): A φ is the matrix, column by column
-  bool pseudo_inertia = false;  ///< it is the one of a rigid body (rigid_body.h)
+  bool pseudo_inertia = false;  ///< it is the condition of a rigid body (rigid_body.h)
 };
 
 /// I(q), Cᵀ(q, q̇) q̇ and g(q) in one state.
@@ -56,19 +56,19 @@ struct JointTerms {
 /// The bodies of a robot: where its hand is, and the torque of its inertia and weight, which is linear in p
 /// coefficients φ (Khosla & Kanade 1985; Dyck 2013, eq. A.5):
 ///   I(q) q̈ + C(q, q̇) q̇ + g(q) = Y(q, q̇, q̈) φ                                  [N·m, or N where a joint slides]
-/// Joint angles are those of the recording; the hand is in the base frame. What the drives add stands in
-/// drive_terms.h. Pure functions of state; those of one state do not allocate unless it is said.
+/// Joint angles are those of the recording; the hand is in the base frame. For the drives see drive_terms.h. Pure
+/// functions of state; those of one state do not allocate unless stated.
 class Mechanism {
  public:
   virtual ~Mechanism() = default;
 
   /// n, 1 … kMaxJoints.
   [[nodiscard]] virtual int joints() const = 0;
-  /// What the joint is called; "1", "2", … where nobody named it.
+  /// Name of the joint; "1", "2", … by default.
   [[nodiscard]] virtual std::string joint_name(int joint) const;
-  /// Names that a description gives all joints, in their order; none where it gives none.
+  /// Joint names of the description, in order; none if it has none.
   [[nodiscard]] virtual std::vector<std::string> joint_names() const { return {}; }
-  /// Where the joint by itself may stand; check_joints may know more.
+  /// Range of the joint alone; check_joints may be stricter.
   [[nodiscard]] virtual JointRange joint_range(int joint) const = 0;
   /// The joint's coordinate is a length.
   [[nodiscard]] virtual bool slides(int joint) const = 0;
@@ -77,9 +77,9 @@ class Mechanism {
   /// φ, p of them.
   [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;
 
-  /// What holds for the φ of any bodies that can exist; none where nothing is known of it.
+  /// Conditions for physically possible φ; none if unknown.
   [[nodiscard]] virtual std::vector<PhysicalCondition> physical_conditions() const { return {}; }
-  /// The φ that the robot's description states; empty where it states none.
+  /// The φ stated in the robot description; empty if none.
   [[nodiscard]] virtual const Vector& stated_coefficients() const;
 
   /// Y in one state, n×p.
@@ -87,7 +87,7 @@ class Mechanism {
                          Eigen::Ref<Matrix> Y) const = 0;
   /// Y of a motion: N×p for each joint. Allocates.
   [[nodiscard]] virtual std::vector<Matrix> regressors(const JointMotion& motion) const;
-  /// By differences of the regressor; a mechanism that knows better says so. Allocates unless overridden.
+  /// By differences of the regressor, unless a mechanism overrides it. Allocates unless overridden.
   [[nodiscard]] virtual JointTerms terms(const JointVector& position, const JointVector& velocity,
                                          const Vector& phi) const;
 
@@ -95,7 +95,7 @@ class Mechanism {
   [[nodiscard]] virtual HandVector hand_position(const JointVector& position) const = 0;
   /// ∂p/∂q, axes×n [m; 1 where a joint slides].
   [[nodiscard]] virtual HandJacobian jacobian(const JointVector& position) const = 0;
-  /// ∂p/∂q along the other axes of the base, in which the hand may be pushed too, n columns; no rows where none can.
+  /// ∂p/∂q along the other axes of the base, in which a force may also act, n columns; no rows if none can.
   [[nodiscard]] virtual HandJacobian jacobian_across(const JointVector& /*position*/) const {
     return HandJacobian(0, joints());
   }
@@ -106,10 +106,10 @@ class Mechanism {
   /// dJ/dt.
   [[nodiscard]] virtual HandJacobian jacobian_rate(const JointVector& position, const JointVector& velocity) const = 0;
 
-  /// Whether the robot can stand there.
-  /// @fails  data: a joint is beyond its limits (the worst is named, and by how much), or not finite.
+  /// Whether the posture is within the limits.
+  /// @fails  data: a joint is beyond its limits (the message gives the worst and by how much), or not finite.
   [[nodiscard]] virtual Result<void> check_joints(const JointVector& position) const = 0;
-  /// Joint positions spread evenly over all that the limits leave, up to `per_joint` along each joint. Allocates.
+  /// Joint positions spread evenly within the limits, up to `per_joint` along each joint. Allocates.
   [[nodiscard]] virtual std::vector<JointVector> postures(int per_joint) const = 0;
 
  protected:  // copied only as what they are

@@ -9,40 +9,40 @@
 
 namespace mbk::robot {
 
-/// What the hand does to a robot, at the joints and at the hand. NaN where it is not known.
+/// Effect of the hand on a robot, at the joints and at the hand. NaN if unknown.
 struct ObservedForce {
   JointVector joint_torque;        ///< Jᵀ F_h [N·m, or N where a joint slides]
   HandVector force_hand_on_robot;  ///< F_h = L Jᵀ F_h, L of `hand_from_joints`, base frame [N]
 };
 
-/// The force of the hand without a force sensor and without accelerations: the momentum that no motor, weight, friction
-/// or Coriolis torque accounts for (De Luca & Mattone, ICRA 2003, in the signs of dynamic_model.h). With the momentum
-/// p = I(q) q̇, motor inertias in it, ṗ = τ + Cᵀq̇ − g − d + Jᵀ F_h and d what else the drives add,
+/// The force of the hand without a force sensor and without accelerations: the momentum not explained by motors,
+/// weight, friction or Coriolis torque (De Luca & Mattone, ICRA 2003, in the signs of dynamic_model.h). With the
+/// momentum p = I(q) q̇ including motor inertias, ṗ = τ + Cᵀq̇ − g − d + Jᵀ F_h, and d the other drive torques,
 ///   r = K_I [ p(t) − p(0) − ∫₀ᵗ (τ + Cᵀq̇ − g − d + r) ds ],   so that   ṙ = K_I (Jᵀ F_h − r)
-/// and r is Jᵀ F_h behind a first-order low-pass, causal, 1/K_I late.
+/// and r is Jᵀ F_h after a causal first-order low-pass with delay 1/K_I.
 ///
 /// In discrete time the recorded torque is held from one sample to the next, as motors are driven, after the delay of
-/// the model; Cᵀq̇ − g − d goes by trapezoids; and Jᵀ F_h counts as constant over a tick:
+/// the model; Cᵀq̇ − g − d is integrated with the trapezoidal rule; and Jᵀ F_h is assumed constant over a tick:
 ///   r_k = a r_{k−1} + (1 − a) s_k/T,   a = e^{−K_I T},
 ///   s_k = p_k − p_{k−1} − T τ̄ − ½T (b_{k−1} + b_k),   b = Cᵀq̇ − g − d
-/// A constant force is met exactly, any smooth one with an error of T²; no gain makes it unstable.
+/// A constant force is estimated exactly, any smooth one with an error of order T²; it is stable for every gain.
 class MomentumObserver {
  public:
   static constexpr double kLongestDelay = 1.0;  ///< of the motors [s]
 
   /// @param gain  K_I [1/s]    @param sample_time  T [s]
-  /// @fails  usage: K_I or T is not above zero; data: the model has not as many parameters as coefficients, or a
-  /// delay that is negative (a torque that acts before it is recorded is not known in time) or above kLongestDelay.
+  /// @fails  usage: K_I or T is not above zero; data: the numbers of parameters and coefficients of the model differ,
+  /// or its delay is negative (a torque that acts before it is recorded is unknown in time) or above kLongestDelay.
   [[nodiscard]] static Result<MomentumObserver> create(const DynamicModel& model, double gain, double sample_time);
 
-  /// The next sample. The first finds r = 0. One that is not finite gives NaN, and the next is the first again; where
-  /// the posture is singular the force at the hand alone is NaN. Does not allocate where the mechanism does not.
+  /// The next sample. The first returns r = 0. A non-finite one gives NaN and restarts the observer; in a singular
+  /// posture only the force at the hand is NaN. Allocates only if the mechanism does.
   /// @param position, velocity  q [rad or m], q̇ [rad/s or m/s]
   /// @param torque  τ, of the motors from this sample to the next [N·m, or N where a joint slides]
   const ObservedForce& step(const JointVector& position, const JointVector& velocity,
                             const JointVector& torque) noexcept;
 
-  /// By which slow forces come late: a T/(1 − a) + T/2 [s], which is 1/K_I and K_I T²/12 more
+  /// Delay of slow forces: a T/(1 − a) + T/2 [s], which is 1/K_I + K_I T²/12
   [[nodiscard]] double lag() const;
 
  private:
@@ -61,14 +61,14 @@ class MomentumObserver {
   ObservedForce observed_;
 };
 
-/// The same from encoders alone. The velocity is that of VelocityEstimate, which is late; so position and torque are
-/// made late by as much, by the mean of two neighbours and the same low-pass. Otherwise each acceleration would meet
-/// a torque of another time. What remains is a force that is later: by half a tick and the low-pass.
+/// The same from encoders only. The velocity comes from VelocityEstimate, which is delayed, so position and torque are
+/// delayed equally, by the mean of two neighbours and the same low-pass. Otherwise accelerations and torques would
+/// belong to different times. The force is therefore later by half a tick and the low-pass.
 class EncoderMomentumObserver {
  public:
   struct Options {
     double gain = 60.0;            ///< K_I [1/s] > 0
-    Hertz velocity_cutoff{100.0};  ///< of the low-pass behind the differences of positions > 0
+    Hertz velocity_cutoff{100.0};  ///< of the low-pass after the position differences > 0
   };
   /// @fails  as MomentumObserver; usage: the cutoff is not above zero.
   [[nodiscard]] static Result<EncoderMomentumObserver> create(const DynamicModel& model, const Options& options,
@@ -77,7 +77,7 @@ class EncoderMomentumObserver {
   /// As MomentumObserver::step.
   const ObservedForce& step(const JointVector& position, const JointVector& torque) noexcept;
 
-  /// By which slow forces come late [s]: close to 1/K_I + 1/(2π f_c), 18.3 ms by default.
+  /// Delay of slow forces [s]: close to 1/K_I + 1/(2π f_c), 18.3 ms by default.
   [[nodiscard]] double lag() const;
 
  private:

@@ -11,7 +11,7 @@ namespace mbk::robot {
 
 /// A robot of one axis, which turns or slides,
 ///   m ẍ + F_r(ẋ) = u + F_h                                           [N·m or N]
-/// in the words of the planar robot (kinematics.h, dynamics.h), so that what moves a robot is written once for both.
+/// with the interface of the planar robot (kinematics.h, dynamics.h), so that the code that moves a robot is shared.
 /// Its hand is where its joint is: J = 1.
 struct OneAxisGeometry {
   [[nodiscard]] friend AxisVector<1> hand_position(const OneAxisGeometry& /*none*/, const AxisVector<1>& joint) {
@@ -27,7 +27,7 @@ struct OneAxisGeometry {
     return AxisMatrix<1>::Zero();
   }
 
-  /// @fails  usage: the place is not finite.
+  /// @fails  usage: the position is not finite.
   [[nodiscard]] friend Result<AxisVector<1>> joint_angles(const OneAxisGeometry& /*none*/, const AxisVector<1>& hand) {
     if (!std::isfinite(hand[0])) return bad_usage("the machine's position is not finite");
     return hand;
@@ -36,7 +36,7 @@ struct OneAxisGeometry {
 
 /// The same in every posture.
 struct OneAxisInertia {
-  double mass = 0.02;  ///< m, of what turns its moment of inertia [kg or kg·m²] > 0
+  double mass = 0.02;  ///< m, or moment of inertia for rotation [kg or kg·m²] > 0
 
   [[nodiscard]] AxisMatrix<1> matrix(const AxisVector<1>& /*joint*/) const { return AxisMatrix<1>(mass); }
   [[nodiscard]] AxisMatrix<1> coriolis(const AxisVector<1>& /*joint*/, const AxisVector<1>& /*joint_rate*/) const {

@@ -11,10 +11,10 @@ namespace mbk::robot {
 /// not horizontal, [γ₁ γ₂] with the potential energy γ₁ cos(θ₁ − φ_u) + γ₂ sin(θ₂ − φ_u), φ_u the direction that is up.
 class PlanarMechanism : public Mechanism {
  public:
-  /// Which lower-left entry of C is taken.
+  /// Which lower-left entry of C is used.
   enum class Coriolis {
-    skew,     ///< −½ α₂ cos(θ₁ − θ₂) θ̇₁: İ − 2C is skew, so that energy is kept
-    printed,  ///< +½ α₂ cos(θ₁ − θ₂) θ̇₁, as (A.6) stands in print; here only to be compared with
+    skew,     ///< −½ α₂ cos(θ₁ − θ₂) θ̇₁: İ − 2C is skew-symmetric, so that energy is conserved
+    printed,  ///< +½ α₂ cos(θ₁ − θ₂) θ̇₁, as printed in (A.6); for comparison only
   };
   struct Options {
     Geometry geometry;
@@ -28,7 +28,7 @@ class PlanarMechanism : public Mechanism {
   [[nodiscard]] bool slides(int /*joint*/) const override { return false; }
   [[nodiscard]] int hand_axes() const override { return 2; }
   [[nodiscard]] const std::vector<Coefficient>& coefficients() const override { return coefficients_; }
-  /// [α₁ ½α₂; ½α₂ α₃]: with it the kinetic energy is positive in every posture.
+  /// [α₁ ½α₂; ½α₂ α₃]: if positive definite, the kinetic energy is positive in every posture.
   [[nodiscard]] std::vector<PhysicalCondition> physical_conditions() const override;
   void regressor(const JointVector& position, const JointVector& velocity, const JointVector& acceleration,
                  Eigen::Ref<Matrix> Y) const override;

@@ -7,16 +7,16 @@
 
 namespace mbk::robot {
 
-/// A robot with the texts that it was read from, so that a result can carry them and the robot be made anew.
+/// A robot with its source texts, so that a result can store them and the robot can be recreated.
 struct RobotDescription {
-  DynamicModel model;                   ///< what `unstated` names is 0 in its parameters
+  DynamicModel model;                   ///< coefficients listed in `unstated` are 0 in its parameters
   std::string toml;                     ///< the text of its TOML file
-  std::string urdf;                     ///< the text of its URDF; empty where it has none
-  std::string source;                   ///< the file it came from, or what else it is called
-  std::vector<std::string> unstated;    ///< names of coefficients whose values the files leave open
-  std::vector<std::string> impossible;  ///< of what the files state: what no robot can have, a sentence for each
-  bool usable = true;                   ///< false: what identified it said that its numbers must not be used
-  std::vector<std::string> warnings;    ///< of what identified it, their codes
+  std::string urdf;                     ///< the text of its URDF; empty without one
+  std::string source;                   ///< its file, or another name
+  std::vector<std::string> unstated;    ///< names of coefficients without a value in the files
+  std::vector<std::string> impossible;  ///< physically impossible values in the files, one sentence each
+  bool usable = true;                   ///< false: its identification reported that the numbers must not be used
+  std::vector<std::string> warnings;    ///< warning codes of its identification
 };
 
 }  // namespace mbk::robot

@@ -13,7 +13,7 @@ namespace mbk::robot {
 struct ChainParts;
 
 /// Bodies of any serial robot, read from a URDF: revolute, continuous and prismatic joints from a base link to a tip
-/// link; what is fixed to a moving link is one body with it. Ten coefficients φ for each body, named after its link,
+/// link; links fixed to a moving link form one body with it. Ten coefficients φ for each body, named after its link,
 /// in the link's frame and about its origin, which is where URDF puts the joint:
 ///   LINK.mass m [kg], LINK.mass_x, _y, _z: m c [kg·m], LINK.inertia_xx, _xy, _xz, _yy, _yz, _zz: Ī [kg·m²]
 /// Frames, twists and wrenches are orocos-kdl's.
@@ -31,22 +31,22 @@ class SerialChain : public Mechanism {
     std::vector<int> sign;     ///< +1 or −1: the URDF's coordinate is zero + sign · the recording's; empty: +1
   };
 
-  /// A joint that moves, in the recording's coordinate.
+  /// A moving joint, in the coordinate of the recording.
   struct Joint {
     std::string name;
     std::string link;  ///< the link that it moves, which names the coefficients of its body
     bool slides = false;
-    JointRange range;       ///< infinite where it turns without end
+    JointRange range;       ///< infinite for a continuous joint
     double damping = 0.0;   ///< that the URDF states [N·m·s/rad or N·s/m]
     double friction = 0.0;  ///< that the URDF states [N·m or N]
   };
 
-  /// Joints that branch off between base and tip, or come after the tip, count as held at zero.
-  /// @fails  data: it is no URDF; a joint on the way is planar, floating or mimics another, has an axis of no length,
-  /// or limits that leave nothing; a body that moves has no `<inertial>` or a number that is not finite; not 1 …
-  /// kMaxJoints joints move; a link has two parents; several leaves and no tip_link.   usage: a link is unknown, the
-  /// tip does not hang on the base; hand_axes are not one or two different ones; zero or sign does not fit the joints;
-  /// a number is not finite.
+  /// Joints that branch off between base and tip, or follow the tip, are fixed at zero.
+  /// @fails  data: it is not a URDF; a joint on the way is planar, floating or a mimic joint, has an axis of zero
+  /// length, or limits without range; a moving body has no `<inertial>` or a non-finite number; the number of moving
+  /// joints is not 1 … kMaxJoints; a link has two parents; several leaves and no tip_link.   usage: a link is unknown,
+  /// the tip is not a descendant of the base; hand_axes are not one or two different ones; zero or sign does not fit
+  /// the joints; a number is not finite.
   [[nodiscard]] static Result<std::shared_ptr<const SerialChain>> from_urdf(std::string_view urdf,
                                                                             const Options& options);
 
@@ -54,7 +54,7 @@ class SerialChain : public Mechanism {
   ~SerialChain() override;
 
   [[nodiscard]] const std::vector<Joint>& joint_descriptions() const;
-  /// Links whose inertia no body can have, a sentence for each.
+  /// Links with a physically impossible inertia, one sentence each.
   [[nodiscard]] const std::vector<std::string>& impossible() const;
   /// Links at both ends, after defaults.
   [[nodiscard]] const std::string& base_link() const;
@@ -81,8 +81,7 @@ class SerialChain : public Mechanism {
   [[nodiscard]] std::string hand_axis_name(int axis) const override;
   [[nodiscard]] HandJacobian jacobian_rate(const JointVector& position, const JointVector& velocity) const override;
   [[nodiscard]] Result<void> check_joints(const JointVector& position) const override;
-  /// A joint that turns without end is spread over one turn; fewer along each joint where there would be more than
-  /// 50 000.
+  /// A continuous joint is spread over one turn; fewer points per joint if there would be more than 50 000.
   [[nodiscard]] std::vector<JointVector> postures(int per_joint) const override;
 
  private:

@@ -12,7 +12,7 @@ class SingleJoint : public Mechanism {
  public:
   struct Options {
     bool slides = true;
-    double low = -std::numeric_limits<double>::infinity();  ///< its limits [m or rad]; infinite where it has none
+    double low = -std::numeric_limits<double>::infinity();  ///< its limits [m or rad]; infinite if none
     double high = std::numeric_limits<double>::infinity();
   };
   explicit SingleJoint(const Options& options);

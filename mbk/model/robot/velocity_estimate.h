@@ -6,7 +6,7 @@
 
 namespace mbk::robot {
 
-/// Velocity of the joints from their measured positions: backward differences behind a first-order low-pass,
+/// Velocity of the joints from their measured positions: backward differences with a first-order low-pass,
 ///   ω ← a ω + (1 − a) Δq/T,   a = e^{−2π f_c T}                                [rad/s or m/s]
 /// The first call takes the velocity as zero. Allocation-free.
 class VelocityEstimate {

@@ -7,46 +7,46 @@
 
 namespace mbk::robot {
 
-/// How far the joints are from one of their limits.
+/// Distance of the joints from one of their limits.
 struct Margin {
   const char* quantity;  ///< "θ₁", "θ₂", "θ₁ − (θ₂ − 90°)"
   double value = 0;      ///< of the quantity [rad]
   double limit = 0;      ///< [rad]
   bool upper = false;    ///< the quantity may not exceed the limit; otherwise not fall below it
-  /// What is left before the limit; negative beyond it [rad].
+  /// Distance to the limit; negative beyond it [rad].
   [[nodiscard]] double left() const { return upper ? limit - value : value - limit; }
 };
 
 /// All five, in the order of JointLimits. Each is measured in the angle that it limits.
 [[nodiscard]] std::array<Margin, 5> margins(const JointLimits& limits, const Vector2d& theta);
 
-/// The least of them [rad]; negative where the robot cannot be.
+/// The smallest of them [rad]; negative outside the workspace.
 [[nodiscard]] double margin(const JointLimits& limits, const Vector2d& theta);
 
-/// Whether the robot can stand at θ. On the limit counts as inside, to a rounding of 10⁻⁹ rad.
-/// @fails  usage: an angle is not finite, or is beyond a limit (the worst is named, and by how many degrees).
+/// Whether the posture θ is within the limits. The limit itself is inside, with a tolerance of 10⁻⁹ rad.
+/// @fails  usage: an angle is not finite, or is beyond a limit (the message gives the worst and by how many degrees).
 [[nodiscard]] Result<void> check_joints(const JointLimits& limits, const Vector2d& theta);
 
-/// The joint angles that bring the hand to a place within the limits.
-/// @fails  usage: as joint_angles, as check_joints; the message begins with the place.
+/// The joint angles for a hand position within the limits.
+/// @fails  usage: as joint_angles, as check_joints; the message begins with the position.
 [[nodiscard]] Result<Vector2d> check_hand(const Geometry& geometry, const Vector2d& hand);
 
-/// The corners of the set of joint angles that the limits leave, anticlockwise in the plane of (θ₁, θ₂) [rad]; corners
-/// that coincide stand once. Exact: where two limits meet, both hold with equality. Empty where the limits leave
-/// nothing.
+/// The corners of the joint space within the limits, anticlockwise in the plane of (θ₁, θ₂) [rad]; coincident corners
+/// are listed once. Exact: at a corner two limits are satisfied with equality. Empty if the limits leave no joint
+/// space.
 [[nodiscard]] std::vector<Vector2d> joint_space_corners(const JointLimits& limits);
 
-/// The outline of the places that the hand can reach: the edges of the joint space, mapped by the forward kinematics.
-/// That is the outline because the map is one to one as long as |θ₁ − θ₂| ≤ 90°.
-/// @param points  along the whole outline, at least 3; every corner is one of them besides
-/// @returns  a closed line, its last point being its first, base frame [m]
-/// @fails  usage: d₁ or d₂ is not positive; the limits leave no area, or reach beyond |θ₁ − θ₂| = 90°; points < 3.
+/// The outline of the workspace of the hand: the edges of the joint space mapped by the forward kinematics. This is the
+/// outline because the map is one-to-one for |θ₁ − θ₂| ≤ 90°.
+/// @param points  along the whole outline, at least 3; every corner is added
+/// @returns  a closed line whose last point equals the first, base frame [m]
+/// @fails  usage: d₁ or d₂ is not positive; the limits leave no area, or extend beyond |θ₁ − θ₂| = 90°; points < 3.
 [[nodiscard]] Result<std::vector<Vector2d>> boundary(const Geometry& geometry, int points);
 
 /// A = ½ |Σ (x_i y_{i+1} − x_{i+1} y_i)|, by Green's theorem, of a closed line that does not cross itself.
 [[nodiscard]] double enclosed_area(const std::vector<Vector2d>& closed_line);
 
-/// Where the hand can be.
+/// The workspace of the hand.
 struct Workspace {
   Geometry geometry;
   std::vector<Vector2d> outline;  ///< closed [m], base frame
@@ -57,7 +57,7 @@ struct Workspace {
 /// @fails  as boundary.
 [[nodiscard]] Result<Workspace> workspace(const Geometry& geometry);
 
-/// The robot with its hand at one place.
+/// The robot with its hand at one position.
 struct Posture {
   Vector2d hand;                  ///< p_BH, base frame [m]
   Vector2d theta;                 ///< [rad]
@@ -67,7 +67,7 @@ struct Posture {
   Matrix2d inertia_at_hand;       ///< J⁻ᵀ I J⁻¹ [kg]
 };
 
-/// @fails  as check_hand, and where the links lie upon each other, as PlanarRobot::inertia_at_hand.
+/// @fails  as check_hand; for collinear links, as PlanarRobot::inertia_at_hand.
 [[nodiscard]] Result<Posture> posture(const PlanarRobot& robot, const Vector2d& hand);
 
 }  // namespace mbk::robot

@@ -8,7 +8,7 @@
 
 namespace mbk::robot_file {
 
-/// A term of the drives, the word for it in `terms`, and the keys of its values.
+/// A drive term, its name in `terms`, and the keys of its values.
 struct DriveTerm {
   const char* word;
   bool robot::DriveTerms::*requested;
@@ -19,15 +19,15 @@ struct DriveTerm {
 /// In the order of DriveTerms::coefficients.
 [[nodiscard]] const std::vector<DriveTerm>& drive_terms();
 
-/// ψ while it is being read: joint by joint, term by term.
+/// ψ during reading: joint by joint, term by term.
 struct DriveValues {
   robot::DriveTerms terms;
-  Vector values;             ///< ψ; 0 where it is not stated
+  Vector values;             ///< ψ; 0 if not stated
   std::vector<bool> stated;  ///< for each of ψ
 
   DriveValues(const robot::DriveTerms& requested, int joints);
 
-  /// Nothing happens where the term is not wanted.
+  /// Does nothing if the term is not requested.
   void set(bool robot::DriveTerms::*term, int joint, double value);
 };
 
@@ -37,8 +37,8 @@ struct DriveValues {
 /// smoothing_… and stribeck_velocity_… in rad_per_s, or in m_per_s where all joints slide.
 void read_velocities(const config::Section& drive, const robot::Mechanism& mechanism, robot::DriveTerms& terms);
 
-/// The values of the drives by the keys of [drive]. A value of a term that is not wanted is refused.
-/// @param except  terms whose values stand elsewhere
+/// The values of the drives by the keys of [drive]. A value of a term that is not requested is refused.
+/// @param except  terms whose values are elsewhere
 void read_values(const config::Section& drive, const robot::Mechanism& mechanism,
                  const std::vector<std::string>& except, DriveValues& into);
 

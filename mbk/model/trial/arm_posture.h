@@ -16,7 +16,7 @@ enum class ElbowSide { right, left };
   return std::to_array<Word<ElbowSide>>({{right, "right"}, {left, "left"}});
 }
 
-/// Where limb or machine stood while it was measured, as points to draw lines between.
+/// Posture of limb or machine during the measurement, as points of a polyline.
 struct ArmPosture {
   enum class Of {
     arm,    ///< shoulder, elbow, hand
@@ -25,7 +25,7 @@ struct ArmPosture {
   };
   Of of = Of::hand;
   std::vector<Eigen::Vector2d> points;  ///< base frame [m]; the hand is the last
-  std::string note;                     ///< why it is no more than that, where the recording meant to say more
+  std::string note;                     ///< why only the hand is known, if the recording has invalid data on the rest
 };
 
 [[nodiscard]] constexpr auto word_table(ArmPosture::Of) {

@@ -7,7 +7,7 @@
 
 namespace mbk {
 
-/// One number that follows from a model, with its interval by the bootstrap beside that by the delta method.
+/// A quantity derived from a model, with its bootstrap interval and its delta-method interval.
 struct BootstrapFinding {
   std::string name;  ///< "k_xx", "stiffness area", "excess of passivity"
   std::string unit;  ///< "" where it has none
@@ -16,7 +16,7 @@ struct BootstrapFinding {
   Interval delta95;     ///< delta method, from the covariance
 };
 
-/// All of them for one identification.
+/// All such quantities of one identification.
 struct BootstrapFindings {
   int replicates = 0;
   double block_s = 0, blocks = 0;

@@ -12,14 +12,14 @@ namespace mbk {
 struct ChartAxis {
   std::string label;
   std::string unit;
-  bool logarithmic = false;  ///< what is not above 0 is left out
+  bool logarithmic = false;  ///< values not above 0 are omitted
 };
 
-/// Points that belong together. A point with a value that is not finite is left out, and breaks a line.
+/// A series of points. A point with a non-finite value is omitted and interrupts the line.
 struct ChartSeries {
   enum class Drawn { line, marks };
   std::string name;
-  std::vector<double> x, y;                          ///< as long as each other, in the units of the axes
+  std::vector<double> x, y;                          ///< of equal length, in the units of the axes
   std::vector<std::pair<double, double>> intervals;  ///< of y, low and high; none, or one for each point
   Drawn drawn = Drawn::marks;
 };
@@ -29,20 +29,20 @@ struct ChartSeries {
   return std::to_array<Word<ChartSeries::Drawn>>({{line, "line"}, {marks, "marks"}});
 }
 
-/// A value that is marked across the whole chart.
+/// A value marked across the whole chart.
 struct ChartReference {
   double value = 0;
   std::string name;
 };
 
-/// A drawing of numbers, as a plain value; report/chart.h turns it into text or SVG.
+/// A chart as data; report/chart.h renders it as text or SVG.
 struct Chart {
   std::string title;
   ChartAxis x, y;
   std::vector<ChartSeries> series;
   std::vector<ChartReference> horizontal, vertical;  ///< at values of y, at values of x
   bool identity = false;                             ///< the line y = x, and both axes over the same range
-  bool equal_scale = false;                          ///< a unit of x is as long as a unit of y
+  bool equal_scale = false;                          ///< equal scales of x and y
   std::vector<std::string> notes;                    ///< sentences below the drawing
 };
 

@@ -12,15 +12,15 @@
 
 namespace mbk {
 
-/// What an interval of absorbed energy says; one that is not known says nothing.
+/// The conclusion from an interval of absorbed energy; an unknown interval allows none.
 [[nodiscard]] constexpr Verdict verdict_of(const Interval& absorbed95) {
   if (absorbed95.first > 0.0) return Verdict::passive;
   return absorbed95.second < 0.0 ? Verdict::active : Verdict::undecided;
 }
 
-/// Energy that the limb absorbed up to each instant of the whole recording. Where the clock has a gap or a value is no
-/// number the energy is not known: it stays as it was. Decimated for display, no extreme is lost; a row of NaN stands
-/// where the clock has a gap that can be seen.
+/// Energy that the limb absorbed up to each instant of the whole recording. At a clock gap or a NaN the energy is
+/// unknown and is kept constant. Decimated for display without losing extremes; a row of NaN marks a visible gap of the
+/// clock.
 struct EnergyCurve {
   Vector time;      ///< [s] from the recording's first sample
   Vector absorbed;  ///< E [J], 0 at the first sample; a sustained fall means that the limb generates
@@ -42,7 +42,7 @@ struct EnergyPart {
 /// The shortage of passivity is λ(t) = −E(t)/∫₀ᵗ v·v dτ [N·s/m or N·m·s/rad], negative for an excess (Dyck 2013,
 /// eq. 4.3). Intervals are NaN where there are too few blocks.
 struct EnergyAccount {
-  double duration = 0;    ///< of the window [s], what is not known left out
+  double duration = 0;    ///< of the window [s], without unknown parts
   double absorbed = 0;    ///< E, energy absorbed by the limb in the window [J]
   Interval absorbed95;    ///< two-sided
   double lower95 = 0;     ///< E is above it with 95 % confidence
@@ -54,18 +54,18 @@ struct EnergyAccount {
   Interval shortage_at_end95;
   double shortage_largest = 0;  ///< the largest λ(t), from where ∫ v·v has reached the first share of its end
   Interval shortage_largest95;
-  Index blocks = 0;  ///< that the intervals rest on
+  Index blocks = 0;  ///< number of blocks used for the intervals
   Verdict verdict = Verdict::undecided;
   std::string reason;  ///< of the verdict, in words
 };
 
 /// Energy at one line of a periodic perturbation, −∫ F_h·v dt of the parts of force and motion at its frequency, over
-/// whole periods. The lines add up to the energy of those periods, but for noise and what is not periodic.
+/// whole periods. The sum over the lines is the energy of those periods, except for noise and non-periodic parts.
 struct EnergyLine {
   Hertz frequency;
   double duration = 0;  ///< of those periods [s]
   double absorbed = 0;  ///< [J]
-  Interval absorbed95;  ///< 95 % for all lines at once, from how the periods differ
+  Interval absorbed95;  ///< 95 % for all lines jointly, from the differences between periods
 };
 
 /// Work of the antisymmetric stiffness k_a = (k_xy − k_yx)/2 along the path of the hand; absorbed energy is positive.
@@ -78,7 +78,7 @@ struct CurlWork {
 /// Energy that the limb exchanged with the machine in one recording.
 struct Energy {
   EnergyCurve curve;                 ///< of the whole recording
-  double from_s = 0, to_s = 0;       ///< the window: first and last sample that count
+  double from_s = 0, to_s = 0;       ///< the window: first and last analysed sample
   double left_out_s = 0;             ///< of it, where the clock has gaps, or force or velocity are not known
   double shortage_largest_at_s = 0;  ///< when [s] from the recording's first sample
   EnergyAccount account;             ///< of the window

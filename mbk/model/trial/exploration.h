@@ -18,7 +18,7 @@
 
 namespace mbk {
 
-/// What recordings may be asked.
+/// Analyses of recordings.
 enum class ExplorationPart {
   frequency_response,
   impulse_response,
@@ -38,7 +38,7 @@ enum class ExplorationPart {
                                                {servo_displacement, "servo-displacement"}});
 }
 
-/// A recording that was explored.
+/// An explored recording.
 struct ExploredRecording {
   SourceFile source;
   double duration_s = 0, rate_hz = 0;
@@ -46,8 +46,8 @@ struct ExploredRecording {
   std::string window_rule;
 };
 
-/// What recordings say of a limb without a model of it. Each part is there where it was asked for and the data allow
-/// it; why one is absent stands in the notes.
+/// Results on a limb without a model of it. A part is present if it was requested and the data allow it; the notes
+/// explain missing parts.
 struct Exploration {
   int axes = 2;
   Motion motion = Motion::translation;
@@ -59,7 +59,7 @@ struct Exploration {
   std::optional<PlateauStiffness> plateau_stiffness;
   std::optional<ReachStiffness> reach_stiffness;
   std::optional<TimeCourseEstimate> time_course;
-  std::optional<AfterOnsetEstimate> after_onset;  ///< only where it was asked for
+  std::optional<AfterOnsetEstimate> after_onset;  ///< only if requested
   std::vector<std::string> notes;
   std::vector<Warning> warnings;
   bool usable = true;

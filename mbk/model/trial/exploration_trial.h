@@ -11,15 +11,14 @@
 
 namespace mbk {
 
-/// What a signal is called, and its unit.
+/// Name and unit of a signal.
 struct SignalLabel {
   std::string name;  ///< "hand_x", "−force_x"
   std::string unit;  ///< "m", "N"; "" where the recording does not say
 };
 
-/// Evenly sampled signals as they were recorded, behind no filter: what is explored without a model of the limb.
-/// Motion of the hand and the force that answers it, so that the response from one to the other is the dynamic
-/// stiffness D = −F_h/X of the limb, K at rest.
+/// Evenly sampled, unfiltered signals for exploration without a model of the limb: motion of the hand and the response
+/// force, so that the response from one to the other is the dynamic stiffness D = −F_h/X of the limb, K at rest.
 struct ExplorationTrial {
   int axes = 2;  ///< n, 1 or 2
   Motion motion = Motion::translation;
@@ -30,13 +29,13 @@ struct ExplorationTrial {
   Matrix reference;        ///< N×n; empty where none was recorded or it never moves
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
   std::vector<SignalLabel> input_labels, output_labels;  ///< n
-  Index split = 0;  ///< rows before it identify, the others validate, where a part is held out at all
+  Index split = 0;  ///< rows before it are for identification, the others for validation, if any are held out
   Protocol protocol = Protocol::free;
   std::string protocol_rule, window_rule;  ///< why, in words
   SourceFile source;
   double recording_duration = 0;               ///< [s]
-  std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as the recording says it
-  Vector scheduling;  ///< N, of the channel that M, B and K are scheduled by; empty where none was named
+  std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as stated in the recording
+  Vector scheduling;                           ///< N, of the scheduling channel of M, B and K; empty if none was named
   SignalLabel scheduling_label;
   std::vector<Event> events;  ///< on the clock of from_s
   std::vector<std::string> notes;

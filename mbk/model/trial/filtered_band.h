@@ -6,14 +6,14 @@
 
 namespace mbk {
 
-/// Up to where the excited band passes the filter [Hz].
+/// Upper end of the excited band after the filter [Hz].
 [[nodiscard]] inline double passed_band(const Preparation& how) {
   return how.cutoff ? std::min(how.band_high, *how.cutoff).value : how.band_high.value;
 }
 
-/// Of the samples that a low-pass leaves, the first of so many holds all that they hold: at ten for each period of the
-/// cutoff, 1e-7 lies above half of their rate.
-/// @param shortest  samples of the shortest range, of which 1000 are kept, so that its ends stay where they are
+/// Decimation factor after a low-pass without loss of information: with ten samples per cutoff period, the gain at the
+/// Nyquist frequency is 1e-7.
+/// @param shortest  samples of the shortest range, of which at least 1000 are kept, so that its ends are preserved
 [[nodiscard]] inline Index enough_of(Hertz rate, Hertz cutoff, Index shortest) {
   constexpr double kRateOverCutoff = 10.0;
   constexpr Index kKept = 1000;
@@ -22,7 +22,7 @@ namespace mbk {
   return std::max<Index>(1, std::min(enough, shortest / kKept));
 }
 
-/// A filter below half of the excited band hides the inertia, and with it what damping and stiffness are.
+/// A filter below half of the excited band hides the inertia and so distorts damping and stiffness.
 [[nodiscard]] inline bool cuts_into_band(const Preparation& how) {
   constexpr double kHalf = 0.5;
   return passed_band(how) < kHalf * how.band_high.value;

@@ -11,19 +11,19 @@ namespace mbk {
 
 using Interval = std::pair<double, double>;  ///< 95 %
 
-/// An ellipse and how sure it is. Area and shape by the delta method on their logarithms; the orientation by Fieller's
-/// set (1954) of [(z_xx − z_yy)/2, z_s], which holds every angle where that vector may be zero: a round ellipse has no
-/// orientation. Then a shape of 1, and eigenvalues that are equal, are in their intervals, too.
+/// An ellipse with its uncertainty. Area and shape by the delta method on their logarithms; the orientation by
+/// Fieller's set (1954) of [(z_xx − z_yy)/2, z_s], which contains every angle if that vector may be zero: a circle has
+/// no orientation. Then the intervals also contain shape 1 and equal eigenvalues.
 struct EllipseFinding {
   Matrix symmetric;  ///< (Z + Zᵀ)/2, whose ellipse it is
   impedance::Ellipse ellipse;
   Interval area95, shape95;
-  Interval orientation95;  ///< [rad]; may reach outside [0, π), the angle being defined mod π; π wide: any angle
+  Interval orientation95;  ///< [rad]; may extend outside [0, π), as the angle is defined mod π; width π: any angle
   Interval lambda_min95, lambda_max95;
-  bool round = false;  ///< whether a circle is not refuted (χ² of 2 degrees of freedom, 5 %)
+  bool round = false;  ///< whether a circle is not rejected (χ² with 2 degrees of freedom, 5 %)
 };
 
-/// How far a matrix is from symmetric.
+/// Asymmetry of a matrix.
 struct AntisymmetryFinding {
   double value = 0;  ///< z_a = (z_xy − z_yx)/2, signed, in the matrix's unit
   Interval value95;

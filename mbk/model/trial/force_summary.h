@@ -9,16 +9,16 @@
 
 namespace mbk {
 
-/// A force that was computed, in short.
+/// Summary of a computed force.
 struct ForceSummary {
   std::vector<SourceFile> sources;
   ForceSource source = ForceSource::virtual_sensor;
-  double lag = 0;                              ///< by which slow forces come late [s]
+  double lag = 0;                              ///< delay of slow forces [s]
   std::vector<std::string> axes = {"x", "y"};  ///< of the base, along which it is
   std::string unit = "N";                      ///< of the force: N·m where the hand turns
   Vector rms, peak;                            ///< n [N]
-  Vector standard_error;  ///< n, root mean square of what the robot's coefficients leave open [N]; empty: not known
-  std::optional<ForceComparison> comparison;  ///< with a sensor, where there was one
+  Vector standard_error;  ///< n, root-mean-square uncertainty from the robot coefficients [N]; empty: unknown
+  std::optional<ForceComparison> comparison;  ///< comparison with a sensor, if there was one
   std::vector<std::string> notes;
 };
 

@@ -10,21 +10,21 @@
 
 namespace mbk {
 
-/// A response along the frequency axis and how sure it is, one entry for each frequency.
+/// A frequency response with its uncertainty, one entry per frequency.
 struct FrequencyResponse {
   Vector frequency;        ///< [Hz], rising, > 0
   Eigen::VectorXcd value;  ///< H(jω) [unit of the output per unit of the input]
   Vector phase;            ///< arg H [rad], without jumps of 2π from one frequency to the next
   Matrix relative;  ///< N×3 covariance of δH/H = δln|H| + jδφ: var ln|H|, cov(ln|H|, φ), var φ [1, rad, rad²]
-  Matrix magnitude95;       ///< N×2: ends of the 95 % interval of |H|, of whose logarithm the error is taken as normal
+  Matrix magnitude95;       ///< N×2: ends of the 95 % interval of |H|, assuming a normal error of its logarithm
   Vector phase_half_width;  ///< of the 95 % interval [rad]
   Vector real_half_width;   ///< of the 95 % interval of Re H
-  Matrix region95;          ///< N×3: half axes of the ellipse that holds H with 95 %, the longer first, and the angle
+  Matrix region95;          ///< N×3: half axes of the 95 % ellipse of H, the longer first, and the angle
                             ///< of the longer from the real axis [rad]
   [[nodiscard]] Index size() const { return frequency.size(); }
 };
 
-/// What the output of an admittance is: force → this.
+/// The output quantity of an admittance: force → this.
 enum class AdmittanceOutput { position, velocity, acceleration };
 
 [[nodiscard]] constexpr auto word_table(AdmittanceOutput) {
@@ -44,18 +44,19 @@ struct InvertedAdmittance {
   Motion motion = Motion::unknown;  ///< by the unit of the force
   FrequencyResponse impedance;      ///< force per velocity
   FrequencyResponse stiffness;      ///< force per displacement, s Z
-  /// s Z = M s² + B s + K where the model says just that: a continuous one without zeros and delay. K is absent where
-  /// the output is a velocity, B and K where it is an acceleration.
+  /// s Z = M s² + B s + K if the model has this form: continuous, without zeros and delay. K is absent if the output is
+  /// a velocity, B and K if it is an acceleration.
   std::optional<Estimate> M, B, K;
-  bool unstable = false;  ///< the admittance has zeros on the right, which are unstable poles of the impedance
+  bool unstable =
+      false;  ///< the admittance has zeros in the right half plane, which are unstable poles of the impedance
 };
 
-/// Measured output beside the simulated one.
+/// Measured and simulated output.
 struct SimulatedOutput {
-  Vector time, measured, simulated;  ///< as long as each other [s, unit of the output]
+  Vector time, measured, simulated;  ///< of equal length [s, unit of the output]
 };
 
-/// What follows from a transfer function.
+/// Results derived from a transfer function.
 struct TransferFunctionFindings {
   FrequencyResponse response;
   std::optional<InvertedAdmittance> inverse;

@@ -15,7 +15,7 @@
 
 namespace mbk {
 
-/// What the parameters may be.
+/// Structure of the parameters.
 enum class Structure {
   full,         ///< M, B, K free (eq. 3.2–3.3)
   symmetric,    ///< M and K symmetric, B free
@@ -27,10 +27,10 @@ enum class Structure {
   return std::to_array<Word<Structure>>({{full, "full"}, {symmetric, "symmetric"}, {mass_spring, "mass-spring"}});
 }
 
-/// How the parameters are found.
+/// Estimation method.
 enum class Method {
   least_squares,           ///< regression on the measured motion
-  instrumental_variables,  ///< on what the known perturbation alone makes of it
+  instrumental_variables,  ///< on the motion caused by the known perturbation
 };
 
 [[nodiscard]] constexpr auto word_table(Method) {
@@ -38,14 +38,14 @@ enum class Method {
   return std::to_array<Word<Method>>({{least_squares, "ls"}, {instrumental_variables, "iv"}});
 }
 
-/// As it stands in sentences.
+/// Its name in sentences.
 [[nodiscard]] constexpr const char* method_name(Method method) {
   return method == Method::least_squares ? "least squares" : "instrumental variables";
 }
 
-/// Which data stand behind the parameters; the fit is always judged on held-out data where there are any.
+/// Data used for the parameters; the fit is always judged on held-out data if there are any.
 enum class ParametersFrom {
-  identification,  ///< the segments that are there to identify
+  identification,  ///< the identification segments
   all,             ///< every segment (Dyck 2013, §3.6.2: parameters from 16 pulses, VAF from 8 against 8)
 };
 
@@ -58,26 +58,26 @@ enum class ParametersFrom {
 /// Moreira & Porter 2022, Am. Econ. Rev. 112: 104.7).
 inline constexpr double kStrongInstruments = 104.7;
 
-/// The largest of those that are known, and at least 0.
+/// The largest known value, and at least 0.
 [[nodiscard]] inline double largest_share(const Vector& shares) {
   double largest = 0.0;
   for (const double share : shares) largest = share > largest ? share : largest;  // a NaN is not
   return largest;
 }
 
-/// What stands behind instrumental variables, and whether it may.
+/// Strength and validity of instrumental variables.
 struct InstrumentCheck {
-  ReferenceQuantity from = ReferenceQuantity::unknown;  ///< what the reference was taken for
+  ReferenceQuantity from = ReferenceQuantity::unknown;  ///< interpretation of the reference
   Vector strength;           ///< 3n, first-stage F of ẍ, ẋ, x, each given the others; weak below kStrongInstruments
-  Vector coherent_residual;  ///< n, perturbation-coherent fraction of the residual: what follows the perturbation
-                             ///< linearly within half a second
+  Vector coherent_residual;  ///< n, perturbation-coherent fraction of the residual: the part that follows the
+                             ///< perturbation linearly within half a second
 
   [[nodiscard]] double weakest() const { return strength.minCoeff<Eigen::PropagateNaN>(); }
   [[nodiscard]] bool strong() const { return weakest() > kStrongInstruments; }
 };
 
-/// How much of the force follows the perturbation and is neither inertia nor damping nor stiffness: what the limb does
-/// in response. A part of that response looks like mechanics and stands in M, B and K, whatever the method.
+/// Share of the force that follows the perturbation and is neither inertia nor damping nor stiffness: the response of
+/// the limb. Part of that response resembles mechanics and is included in M, B and K with any method.
 struct UnmodelledResponse {
   Vector coherent;  ///< n, share of the force's variance in the residual that is linear in the past of the reference
   Vector induced;   ///< n, share of the force's variance in the residual beyond that at rest; empty: never at rest
@@ -85,17 +85,17 @@ struct UnmodelledResponse {
   [[nodiscard]] double largest() const { return std::max(largest_share(coherent), largest_share(induced)); }
 };
 
-/// What M ẍ + B ẋ + K (x − x₀) = −F takes for granted, and one recording can contradict.
+/// Assumptions of M ẍ + B ẋ + K (x − x₀) = −F that one recording can contradict.
 enum class Assumption {
-  simultaneous,        ///< force and motion are of one instant, and nothing between them yields or responds late
+  simultaneous,        ///< force and motion are simultaneous, without compliance or delay between them
   linear_stiffness,    ///< as stiff in large motion as in small
-  no_dry_friction,     ///< no force that depends on the direction of motion alone
+  no_dry_friction,     ///< no force that depends only on the direction of motion
   constant_stiffness,  ///< one stiffness for the whole recording
   constant_damping,    ///< one damping for the whole recording
   no_memory,           ///< no force that relaxes after a displacement
-  alike_both_ways,     ///< as stiff and as damped in one direction as in the opposite one
+  alike_both_ways,     ///< equal stiffness and damping in opposite directions
   fits_at_lines,       ///< M, B and K explain the force at each frequency of a periodic perturbation
-  constant_rest,       ///< one equilibrium, and a force sensor whose zero stays
+  constant_rest,       ///< one equilibrium, and a constant zero of the force sensor
   no_tremor,           ///< no rhythm of the limb's own
 };
 
@@ -113,23 +113,22 @@ enum class Assumption {
                                           {no_tremor, "no-tremor"}});
 }
 
-/// What the data say of one assumption.
+/// Test of one assumption.
 struct AssumptionTest {
   Assumption assumption;
-  double p_value = 1;  ///< chance of such data where the assumption holds
-  /// What contradicts it, as large as it was found: the force late by [s]; stiffness at the motion's amplitude more
-  /// than at none, as a share; dry friction [N or N·m]; standard deviation of the stiffness or damping over time, as
-  /// a share; force of the memory, or of what is even, as a share of that of the stiffness; residual at the lines that
-  /// no scatter explains, as a share of the force;
-  /// drift of the force over the data behind the parameters [N or N·m]; standard deviation of the tremor's force [N or
+  double p_value = 1;  ///< p-value under the assumption
+  /// Estimated size of the deviation: delay of the force [s]; increase of stiffness with the amplitude of motion, as a
+  /// share; dry friction [N or N·m]; standard deviation of the stiffness or damping over time, as a share; force of
+  /// memory, or of the even part, as a share of the stiffness force; residual at the lines beyond scatter, as a share
+  /// of the force; drift of the force over the data used [N or N·m]; standard deviation of the tremor's force [N or
   /// N·m].
   double size = 0;
   double frequency_hz = 0;  ///< of a tremor
-  double shift = 0;  ///< what M, B or K change by when it is modelled too, in half widths of their 95 % intervals
+  double shift = 0;         ///< change of M, B or K if it is also modelled, in half-widths of their 95 % intervals
   bool contradicted = false;
 };
 
-/// Where the handle's mass that was subtracted comes from.
+/// Source of the subtracted handle mass.
 enum class HandleMassSource { none, option, recording };
 
 [[nodiscard]] constexpr auto word_table(HandleMassSource) {
@@ -139,23 +138,24 @@ enum class HandleMassSource { none, option, recording };
 
 /// How well the model explains the force, axis by axis.
 struct Fit {
-  Vector vaf;            ///< [%], on held-out data where there are any (eq. 3.10)
-  Vector rmse;           ///< [N], on the same data; a constant error counts
-  Vector vaf_in_sample;  ///< [%], on the data that made the parameters of this check
+  Vector vaf;            ///< [%], on held-out data if there are any (eq. 3.10)
+  Vector rmse;           ///< [N], on the same data, including a constant error
+  Vector vaf_in_sample;  ///< [%], on the data used for the parameters of this check
   bool held_out = true;  ///< false: no data were held out, and vaf is in-sample
 };
 
-/// Did the perturbation ask enough of the limb?
+/// Whether the perturbation was sufficient.
 struct Excitation {
-  int rank = 0;              ///< of the regressors
-  double condition = 0;      ///< of the centred regressors, each scaled to unit length
-  double motion_ratio = 1;   ///< smallest over largest standard deviation of position over directions; 1 axis: 1
-  double motion = 0;         ///< largest standard deviation of position [m]
-  double inertia_share = 0;  ///< of the force's variance: what only the inertial term can explain, smallest direction
-  double duration = 0;       ///< [s] of data behind the parameters
+  int rank = 0;             ///< of the regressors
+  double condition = 0;     ///< of the centred regressors, each scaled to unit length
+  double motion_ratio = 1;  ///< smallest over largest standard deviation of position over directions; 1 axis: 1
+  double motion = 0;        ///< largest standard deviation of position [m]
+  double inertia_share =
+      0;                ///< share of the force variance that only the inertial term can explain, smallest direction
+  double duration = 0;  ///< [s] of data used for the parameters
 };
 
-/// §3.5.4 of Dyck 2013: the same fit on every n-th row, at 100 Hz or half the rate of the rows, whichever is less.
+/// §3.5.4 of Dyck 2013: the same fit on every nth row, at 100 Hz or half the rate of the rows, whichever is lower.
 struct DecimationCheck {
   double rate_hz = 0;  ///< after decimation
   impedance::Model model;
@@ -185,44 +185,41 @@ struct Units {
   return name.starts_with('m') ? units.inertia : (name.starts_with('b') ? units.damping : units.stiffness);
 }
 
-/// Where two methods find different models in the same rows: the parameter whose difference exceeds the standard error
-/// of least squares most clearly, in terms of the difference's own standard error, which counts that both methods saw
-/// the same noise. A difference that is certain but small beside the interval of least squares changes nothing; in a
-/// stiff loop there is always one.
+/// Difference between two methods on the same rows: the parameter whose difference exceeds the standard error of least
+/// squares most clearly, in units of the standard error of the difference, which includes the common noise. A
+/// significant difference that is small compared with the least-squares interval is ignored; in a stiff loop there is
+/// always one.
 struct Disagreement {
   std::string parameter;      ///< as in Identification::parameters
   double difference = 0;      ///< instrumental variables less least squares
   double standard_error = 0;  ///< of that difference
   double least_squares = 0;   ///< the parameter itself, by least squares
-  /// Least squares is off by more than its own standard error says, with 99 % confidence for all of M, B and K
-  /// together.
+  /// The error of least squares exceeds its own standard error, with 99 % confidence jointly for all of M, B and K.
   bool significant = false;
 };
 
-/// The same fit on data drawn again and again from blocks of the rows: how the numbers would have come out in other
-/// experiments of the same kind.
+/// Bootstrap of the fit over blocks of rows: the variation of the results in repeated experiments of the same kind.
 struct Replicates {
   Matrix models;       ///< (3n²+n)×B, stacked as in impedance/model.h
-  double block_s = 0;  ///< [s] of a block; a whole perturbation where that is shorter
-  double blocks = 0;   ///< that the data hold beside each other
+  double block_s = 0;  ///< [s] of a block; a whole perturbation if that is shorter
+  double blocks = 0;   ///< number of disjoint blocks in the data
   std::uint64_t seed = 1;
 };
 
-/// An impedance, how certain it is, how well it fits, and whether it may be used. n is the number of axes, 1 or 2.
+/// An impedance with its uncertainty, its fit, and whether it is usable. n is the number of axes, 1 or 2.
 struct Identification {
   /// M ẍ + B ẋ + K (x − x₀) = −F: M [kg], B [N·s/m], K [N/m], x₀ [m], or their rotational units (`units_of(motion)`).
   /// Every number is NaN if the regressors could not be distinguished; `usable` is then false.
   impedance::Model model;
 
-  /// Of `parameters`, in their order, 3n² + n square. Holds for coloured residuals (Newey & West), widened so that
-  /// ±1.96 standard errors are a 95 % interval at this length of data.
+  /// Covariance of `parameters`, in their order, 3n² + n square. Valid for coloured residuals (Newey & West), widened
+  /// so that ±1.96 standard errors are a 95 % interval at this length of data.
   Matrix covariance;
 
   /// Names of the rows of `covariance`: m_xx m_xy m_yx m_yy b_… k_… x0 y0; with one axis m b k x0.
   std::vector<std::string> parameters;
 
-  /// The model behind `fit`, from the data that are there to identify and nothing else. Equals `model` unless the
-  /// parameters were made from all data.
+  /// The model behind `fit`, from the identification data only. Equals `model` unless the parameters are from all data.
   impedance::Model judged;
 
   /// √ of the diagonal of `covariance`, in the shape of the model.
@@ -232,32 +229,32 @@ struct Identification {
   /// robot.
   std::optional<impedance::Model> standard_error_of_robot;
 
-  /// How the model was found, and why that way in words; the rule is empty if the method was asked for.
+  /// Estimation method, with the reason in words; the reason is empty if the method was requested.
   Method method = Method::least_squares;
   std::string method_rule;
 
   /// Strength and validity of the instruments. Only with instrumental variables.
   std::optional<InstrumentCheck> instrument;
 
-  /// What follows the perturbation and is neither inertia nor damping nor stiffness. Only if the reference is known.
+  /// Response to the perturbation other than inertia, damping and stiffness. Only if the reference is known.
   std::optional<UnmodelledResponse> response;
 
   /// One test for each assumption of the model that these data can contradict.
   std::vector<AssumptionTest> assumptions;
 
-  /// The bootstrap's models. Absent unless one was asked for.
+  /// Models of the bootstrap. Absent unless requested.
   std::optional<Replicates> replicates;
 
   Structure structure = Structure::full;
 
-  /// Reach of the residual's autocovariance in the standard errors [s].
+  /// Length of the residual autocovariance used in the standard errors [s].
   double hac_lag_s = 0;
 
   /// What was subtracted from the diagonal of M [kg], and where it comes from.
   double handle_mass = 0;
   HandleMassSource handle_mass_from = HandleMassSource::none;
 
-  /// Which data made the parameters. Absent: a stored result does not say.
+  /// Data used for the parameters. Absent: not stated in a stored result.
   std::optional<ParametersFrom> parameters_from;
 
   /// How well the model explains the force, on held-out data if there are any.
@@ -266,10 +263,10 @@ struct Identification {
   /// Whether the perturbation moved the limb enough, and in enough directions.
   Excitation excitation;
 
-  /// The same fit on fewer rows. Absent unless it was asked for.
+  /// The same fit on fewer rows. Absent unless requested.
   std::optional<DecimationCheck> decimation;
 
-  /// Number of rows behind the parameters.
+  /// Number of rows used for the parameters.
   Index samples = 0;
 
   /// How each pooled trial was prepared and under which conditions it was recorded, in their order.
@@ -283,10 +280,10 @@ struct Identification {
   int axes = 2;
   Motion motion = Motion::translation;
 
-  /// What the reader said of the recordings.
+  /// Notes of the reader on the recordings.
   std::vector<std::string> notes;
 
-  /// Why the answer needs care. Scripts test `code`; `message` is for people.
+  /// Reasons for caution. Scripts test `code`; `message` is for the user.
   std::vector<Warning> warnings;
 
   /// false: the numbers must not be used; `warnings` says why. A command then exits with 4.

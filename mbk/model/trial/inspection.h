@@ -9,7 +9,7 @@
 namespace mbk {
 
 /// An interval of more than 1.5 times the median one. Where the clock jitters by more than 2 %: of more than 1.2 times,
-/// and all stamps behind it stay later by half an interval or more, as behind a lost sample.
+/// and all later stamps are shifted by half an interval or more, as after a lost sample.
 struct Gap {
   Index sample = 0;     ///< the last sample before it
   double time = 0.0;    ///< of that sample [s]
@@ -23,7 +23,7 @@ struct NonFinite {
   Index first = 0;  ///< sample
 };
 
-/// Samples that follow each other and are NaN in every channel: what a session lost.
+/// Consecutive samples that are NaN in every channel: losses of a session.
 struct MissingSamples {
   Index first = 0;  ///< sample
   Index count = 0;
@@ -33,24 +33,24 @@ struct MissingSamples {
 struct ChannelFacts {
   std::string name;
   std::string unit;
-  double min = 0.0;  ///< of the finite values; NaN where there is none
+  double min = 0.0;  ///< of the finite values; NaN if there is none
   double max = 0.0;
   bool constant = false;          ///< one value throughout
-  bool clipped = false;           ///< a force, reaction, acceleration or torque that rests at its extremes
+  bool clipped = false;           ///< a force, reaction, acceleration or torque that saturates at its extremes
   double clipped_fraction = 0.0;  ///< of the samples: those in long runs at the extremes
-  double update_hz = 0.0;         ///< how often it was measured; NaN where the recording has no rate
-  Updates updates = {};           ///< how, where that is not once a sample
-  std::string stale;              ///< the same as a sentence; "" where every sample is a measurement
+  double update_hz = 0.0;         ///< its update rate; NaN if the recording has no rate
+  Updates updates = {};           ///< type of repetition, if it was not measured at every sample
+  std::string stale;              ///< the same as a sentence; "" if every sample is a measurement
 };
 
-/// Facts about a recording; nothing is judged or repaired. Intervals that are not positive or not finite count as
-/// duplicated, backward or non-finite time and stay out of the interval statistics.
+/// Facts about a recording, without judgement or repair. Intervals that are not positive or not finite are counted as
+/// duplicated, backward or non-finite time and excluded from the interval statistics.
 struct Inspection {
   Index samples = 0;
   double duration = 0.0;  ///< last time − first time [s]
-  double rate_hz = 0.0;   ///< 1 / mean interval where time runs on without a gap, else 1 / median; NaN: < 2 samples
+  double rate_hz = 0.0;   ///< 1 / mean interval if time has no gap, otherwise 1 / median; NaN: < 2 samples
 
-  double interval_min = 0.0;  ///< [s]; the four are NaN where no interval is positive
+  double interval_min = 0.0;  ///< [s]; all four are NaN if no interval is positive
   double interval_median = 0.0;
   double interval_max = 0.0;
   double interval_standard_deviation = 0.0;

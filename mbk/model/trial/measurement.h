@@ -14,8 +14,8 @@
 
 namespace mbk {
 
-/// What `measure` found for one recording, or for several that were pooled. Only `identification` is always there; an
-/// optional part is absent if it was not asked for or cannot be known from the recording.
+/// Result of `measure` for one recording, or for several pooled ones. Only `identification` is always present; an
+/// optional part is absent if it was not requested or cannot be determined from the recording.
 struct Measurement {
   /// M, B, K and x₀ with their covariance, fit and warnings, and whether they may be used.
   Identification identification;
@@ -23,18 +23,18 @@ struct Measurement {
   /// Ellipses of M, B and K with intervals. Absent with one axis.
   std::optional<Findings> findings;
 
-  /// The other method on the same rows: least squares beside instrumental variables, or the reverse. Absent if no
-  /// reference was recorded.
+  /// The other method on the same rows: least squares if the result uses instrumental variables, or the reverse. Absent
+  /// if no reference was recorded.
   std::optional<Identification> alternative;
 
   /// The parameter in which the two methods differ most clearly, and whether that is significant (99 %).
   std::optional<Disagreement> disagreement;
 
-  /// Intervals from data drawn again and again. Absent unless `identify.bootstrap` is above 0.
+  /// Bootstrap intervals. Absent unless `identify.bootstrap` is above 0.
   std::optional<BootstrapFindings> bootstrap;
 
-  /// The nearest model that a limb of masses, dampers and springs can have: symmetric M and K, none of M, B and K with
-  /// a negative direction. For simulation; the identification remains the estimate.
+  /// The closest model realisable with masses, dampers and springs: symmetric M and K, and M, B and K without a
+  /// negative direction. For simulation; the identification remains the estimate.
   std::optional<ConsistentFit> consistent;
 
   /// Two statements: whether the hand delivered energy in this trial, and at which frequencies the model can. Absent if
@@ -44,8 +44,8 @@ struct Measurement {
   /// The same at shoulder and elbow. Absent unless `joint_domain` was set.
   std::optional<JointDomain> joints;
 
-  /// If the force was computed from motor torques and a sensor recorded it too: how well both agree, and the model that
-  /// the sensor gives.
+  /// If the force was computed from motor torques and a sensor recorded it too: their agreement, and the model from the
+  /// sensor.
   std::optional<ForceComparison> force_comparison;
   std::optional<Identification> by_sensor;
 

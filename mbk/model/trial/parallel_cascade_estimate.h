@@ -10,11 +10,11 @@
 
 namespace mbk {
 
-/// What the force does later than the limb itself can.
+/// Type of delayed response in the force.
 enum class DelayedResponse {
-  none,              ///< nothing that predicts the force
-  reflex,            ///< it answers stretch in one direction
-  both_directions,   ///< it answers motion in both directions alike: linear, and no sign of a reflex
+  none,              ///< no predictor of the force
+  reflex,            ///< responds to stretch in one direction
+  both_directions,   ///< responds equally to motion in both directions: linear, no evidence of a reflex
   not_identifiable,  ///< too short or too poor a recording
 };
 
@@ -30,14 +30,14 @@ enum class DelayedResponse {
 struct StretchCandidate {
   Vector direction;      ///< n, unit vector; empty: both directions alike
   double vaf = 0;        ///< [%], cross-validated on the rows that were fitted, mean over the axes
-  double vaf_error = 0;  ///< [%], standard error of what it is better than the one that was chosen
+  double vaf_error = 0;  ///< [%], standard error of its difference from the selected one
 };
 
 /// Intrinsic and reflex part of the force of one axis.
 struct PathShares {
-  ExplainedForce intrinsic_alone;              ///< a limb without reflex, fitted by itself
+  ExplainedForce intrinsic_alone;              ///< a limb without reflex, fitted alone
   ExplainedForce both;                         ///< the two paths together
-  ExplainedForce intrinsic_path, reflex_path;  ///< each of the two by itself; they overlap and need not add up
+  ExplainedForce intrinsic_path, reflex_path;  ///< each path alone; they overlap and need not add up
 };
 
 /// A value and half of its 95 % interval.
@@ -45,42 +45,42 @@ struct Margin {
   double value = 0, half_width = 0;
 };
 
-/// The reflex as a second-order low-pass behind a delay, G ω²/(s² + 2ζωs + ω²) e^{−s d}, fitted to its response.
+/// The reflex as a second-order low-pass with a delay, G ω²/(s² + 2ζωs + ω²) e^{−s d}, fitted to its response.
 struct SecondOrderReflex {
   std::vector<Margin> gain;  ///< n, G [N·s/m]
   Margin delay;              ///< d [s]
   Margin frequency;          ///< ω/2π [Hz]
   Margin damping;            ///< ζ
-  double p_value = 1;        ///< of the response being no more than that
+  double p_value = 1;        ///< VAF of the response by this model
 };
 
-/// Force as the sum of an intrinsic path, linear in motion, and a reflex path, which answers stretch in one direction
-/// after a delay:
+/// Force as the sum of an intrinsic path, linear in motion, and a reflex path, which responds to stretch in one
+/// direction after a delay:
 ///   −F_h(t) = Σ_l h(l) x(t − l) T + Σ_l g(l) N(v⁺(t − l)) T + c,   v⁺ = max(eᵀẋ, 0)
 struct ParallelCascadeEstimate {
   int axes = 1;
   double sample_time = 0;    ///< T [s]
-  bool instruments = false;  ///< the reference stood for the motion
-  bool held_out = false;     ///< shares are of rows that were not fitted
+  bool instruments = false;  ///< the reference was used as instrument
+  bool held_out = false;     ///< shares are for held-out rows
   DelayedResponse found = DelayedResponse::none;
   std::string why;                           ///< in words
-  double p_value = 1;                        ///< of stretch in both directions being answered alike
+  double p_value = 1;                        ///< p-value of equal responses to stretch in both directions
   double intrinsic_vaf = 0;                  ///< [%], cross-validated, without a delayed response
-  std::vector<StretchCandidate> candidates;  ///< in falling order of vaf
+  std::vector<StretchCandidate> candidates;  ///< in decreasing order of vaf
   Vector intrinsic_lag;                      ///< [s]
   Matrix intrinsic, intrinsic_half_width;    ///< (2L+1)×n², as in ImpulseResponseEstimate
   // Only where a reflex was found:
   Vector direction;                      ///< e, n
-  double delay = 0;                      ///< first lag at which a response shows [s]
+  double delay = 0;                      ///< first lag with a visible response [s]
   double delay_low = 0, delay_high = 0;  ///< lags that the data do not exclude as the first [s]
-  bool delay_at_limit = false;           ///< the earliest that was tried: it may be less
+  bool delay_at_limit = false;           ///< the earliest tried: the true value may be smaller
   double memory = 0;                     ///< last lag [s]
   Vector reflex_lag;                     ///< [s]
   Matrix reflex, reflex_half_width;      ///< lags×n, g [N/m]
   Index reflex_rank = 0;                 ///< directions kept
   std::vector<Margin> gain;        ///< n, Σ g T over all lags that were tried: force for a steady stretch [N·s/m]
   Margin gain_along;               ///< eᵀ gain: positive resists the stretch
-  bool gain_identifiable = false;  ///< its interval is narrower than it
+  bool gain_identifiable = false;  ///< its interval is smaller than its value
   std::optional<SecondOrderReflex> second_order;  ///< absent where no such response could be fitted
   Vector nonlinearity;                            ///< N(v) = Σ c_k (v/s)^k, k = 1 …, with s = speed_scale
   double speed_scale = 1;                         ///< [m/s], the largest that was seen

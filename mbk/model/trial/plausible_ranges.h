@@ -7,7 +7,7 @@
 
 namespace mbk {
 
-/// What a measurement of a limb is held against.
+/// Quantities of a limb that are checked for plausibility.
 enum class PlausibleQuantity { inertia, damping, stiffness, frequency, position, motion, speed, force, rate };
 
 [[nodiscard]] constexpr auto word_table(PlausibleQuantity) {
@@ -23,20 +23,20 @@ enum class PlausibleQuantity { inertia, damping, stiffness, frequency, position,
                                                  {rate, "rate"}});
 }
 
-/// Where a quantity of a limb lies, and what it usually is. SI units and radians.
+/// Plausible range and typical value of a quantity. SI units and radians.
 struct PlausibleRange {
   PlausibleQuantity quantity;
   const char* unit;
   double low;      ///< 0: no limit
-  double typical;  ///< between them, on a logarithmic scale: which of several explanations is likelier
+  double typical;  ///< within the range, on a logarithmic scale; used to rank explanations
   double high;
-  const char* what;    ///< how it is formed
-  const char* source;  ///< where the limits come from
+  const char* what;    ///< definition of the quantity
+  const char* source;  ///< source of the limits
 };
 
-/// A hand at a robot, or what takes its place: springs with a payload. Published endpoint impedances of arms are
-/// 0.5–3 kg, 3–60 N·s/m and 15–1000 N/m; limits stand well outside them, so that a soft or a braced arm, a child's or
-/// an athlete's, stays within.
+/// A hand at a robot, or its replacement: springs with a payload. Published endpoint impedances of arms are
+/// 0.5–3 kg, 3–60 N·s/m and 15–1000 N/m; the limits are well outside these values, so that they include a soft or
+/// braced arm, of a child or an athlete.
 inline constexpr auto kHandRanges = std::to_array<PlausibleRange>({
     {PlausibleQuantity::inertia, "kg", 0.2, 1.6, 8.0, "mean singular value of M",
      "Tsuji et al. 1995 (Biol Cybern 72:475), Dyck 2013: 0.5-3 kg; payloads of spring rigs from 0.29 kg"},

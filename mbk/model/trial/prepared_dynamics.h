@@ -9,11 +9,11 @@
 
 namespace mbk {
 
-/// What stands for the motion without its noise, where a robot's dynamics are found by instruments.
+/// Instrument for the motion in the identification of robot dynamics.
 enum class InstrumentMotion {
   none,
-  joint_reference,  ///< what the joints were told to do
-  hand_reference,   ///< what the hand was told to do, through the kinematics
+  joint_reference,  ///< the commanded joint motion
+  hand_reference,   ///< the commanded hand motion, through the kinematics
   smoothed,         ///< the measured motion, low-passed to the band of the torque
 };
 
@@ -25,21 +25,21 @@ enum class InstrumentMotion {
                                                 {smoothed, "smoothed motion"}});
 }
 
-/// Motor torques beside what a robot's dynamics say they are made of, all filtered alike: τ = W θ.
+/// Motor torques and the regressors of the robot dynamics, equally filtered: τ = W θ.
 struct PreparedDynamics {
   double sample_time = 0;           ///< [s] between rows
   Vector time;                      ///< N, [s] from the recording's first sample
   Matrix torque;                    ///< N×n, of the motors [N·m, or N where a joint slides]
   Matrix torque_rate;               ///< N×n [N·m/s]
   std::vector<Matrix> regressors;   ///< W, N×p for each joint
-  std::vector<Matrix> instruments;  ///< the same of `instrument_motion`; empty where there is none
-  /// The same of the motion up to where its acceleration sinks into noise, which predicts the torque better where the
-  /// band is wide; empty where no instruments were asked for.
+  std::vector<Matrix> instruments;  ///< the same for `instrument_motion`; empty if there is none
+  /// The same for the motion up to the frequency where its acceleration disappears in noise, which predicts the torque
+  /// better in a wide band; empty without instruments.
   std::vector<Matrix> smoothed;
   double smoothed_cutoff = 0;  ///< [Hz]
   InstrumentMotion instrument_motion = InstrumentMotion::none;
-  double motion_cutoff = 0;       ///< [Hz] of the smoothed motion, where that is it
-  std::vector<bool> stands;       ///< n: the joint did not move beyond the steps of its encoder
+  double motion_cutoff = 0;       ///< [Hz] of the smoothed motion, if that is the instrument
+  std::vector<bool> stands;       ///< n: the joint did not move more than its encoder resolution
   std::vector<Segment> segments;  ///< in order of time
   Preparation preparation;
   std::vector<SourceFile> sources;

@@ -13,28 +13,28 @@
 
 namespace mbk {
 
-/// What moves, which decides the units of M, B and K.
+/// Type of motion, which determines the units of M, B and K.
 enum class Motion {
   translation,  ///< m and N: kg, N·s/m, N/m
   rotation,     ///< rad and N·m: kg·m², N·m·s/rad, N·m/rad
-  unknown,      ///< one axis whose file says neither
+  unknown,      ///< one axis, unit not stated in the file
 };
 
-/// What a segment of samples is for.
+/// Purpose of a segment of samples.
 enum class Purpose { identification, validation };
 
 /// Rows [begin, end) of a PreparedTrial, consecutive in time; a perturbation or a part of one.
 struct Segment {
   Index begin = 0, end = 0;
   Purpose purpose = Purpose::identification;
-  Index first_sample = 0;  ///< of the recording: what row `begin` was made around
+  Index first_sample = 0;  ///< sample of the recording that corresponds to row `begin`
   [[nodiscard]] Index size() const { return end - begin; }
 };
 
 /// Order of the zero-phase low-pass (Dyck 2013 §3.5.1).
 inline constexpr int kLowpassOrder = 5;
 
-/// Where ẍ comes from.
+/// Source of ẍ.
 enum class AccelerationSource { derivative, sensor };
 
 [[nodiscard]] constexpr auto word_table(AccelerationSource) {
@@ -42,11 +42,11 @@ enum class AccelerationSource { derivative, sensor };
   return std::to_array<Word<AccelerationSource>>({{sensor, "sensor"}, {derivative, "derivative"}});
 }
 
-/// Where the force at the hand comes from.
+/// Source of the force at the hand.
 enum class ForceSource {
   sensor,          ///< measured
   virtual_sensor,  ///< from motion, torques and a model of the robot, not causal (Dyck 2013, §5.2.2, method 1)
-  observer,        ///< from the same, as it could be had while the robot runs
+  observer,        ///< from the same, causal, as available in real time
 };
 
 [[nodiscard]] constexpr auto word_table(ForceSource) {
@@ -59,23 +59,23 @@ struct Preparation {
   Mode mode = Mode::default_mode;
   Procedure procedure = Procedure::chapter3;  ///< meaningful in reference mode
   Protocol protocol = Protocol::free;
-  std::string protocol_rule;      ///< why that protocol, in words
-  std::string window_rule;        ///< which samples count, in words
-  double from_s = 0, to_s = 0;    ///< [s] from the recording's first sample: first and last sample that count
+  std::string protocol_rule;      ///< reason for that protocol, in words
+  std::string window_rule;        ///< analysed samples, in words
+  double from_s = 0, to_s = 0;    ///< [s] from the recording's first sample: first and last analysed sample
   std::optional<double> split_s;  ///< [s] where identification ends and validation begins
-  int perturbations = 1;          ///< segments that were cut out
+  int perturbations = 1;          ///< number of extracted segments
   int smoothing_order = 6;        ///< Savitzky–Golay N
   int smoothing_window = 101;     ///< Savitzky–Golay W [samples]
   std::optional<Hertz> cutoff;    ///< zero-phase Butterworth low-pass of kLowpassOrder; none = not applied
-  std::string cutoff_rule;        ///< how the cutoff came about, in words
+  std::string cutoff_rule;        ///< reason for the cutoff, in words
   Hertz band_low, band_high;      ///< excited band that the filters let through
   bool acceleration_from_sensor = false;
   ForceSource force_source = ForceSource::sensor;
   bool cut_before_filter = true;
-  Index every = 1;  ///< of the filtered samples, the first of so many is kept
+  Index every = 1;  ///< decimation: every Nth filtered sample is kept
 };
 
-/// What the perturbation reference is, by the unit of its channel.
+/// Quantity of the perturbation reference, from the unit of its channel.
 enum class ReferenceQuantity { position, force, unknown };
 
 [[nodiscard]] constexpr auto word_table(ReferenceQuantity) {
@@ -83,14 +83,14 @@ enum class ReferenceQuantity { position, force, unknown };
   return std::to_array<Word<ReferenceQuantity>>({{position, "position"}, {force, "force"}, {unknown, "unknown"}});
 }
 
-/// Who was measured, and how, as the recording says it; empty where it does not. What recordings share that are
-/// averaged or pooled.
+/// Participant and condition as stated in the recording; empty if not stated. Recordings that are averaged or pooled
+/// must agree in these.
 struct TrialConditions {
   std::string participant, condition, posture;
 };
 
-/// Evenly sampled signals, filtered alike, ready for a fit. SI units or radians, base frame. Where the low-pass leaves
-/// nothing between them, only every so many samples of the recording are here.
+/// Evenly sampled signals, equally filtered, ready for a fit. SI units or radians, base frame. Decimated if the
+/// low-pass permits it without loss.
 struct PreparedTrial {
   int axes = 2;  ///< n, 1 or 2
   Motion motion = Motion::translation;
@@ -100,23 +100,23 @@ struct PreparedTrial {
   Matrix position;             ///< N×n, x [m]
   Matrix velocity;             ///< N×n, ẋ [m/s]
   Matrix acceleration;         ///< N×n, ẍ [m/s²]
-  Matrix force_hand_on_robot;  ///< N×n, F_h [N]: what the limb exerts on the machine
+  Matrix force_hand_on_robot;  ///< N×n, F_h [N]: force of the limb on the machine
   Matrix
-      force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ by the p coefficients of the robot; empty where F_h does not rest on any
+      force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ by the p coefficients of the robot; empty if F_h does not depend on them
   Matrix robot_covariance;  ///< p×p, of those coefficients
   Matrix reference;         ///< N×n, unfiltered; empty where none was recorded
-  Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless asked for
+  Matrix reference_motion;  ///< N×3n, [r̈ ṙ r] of the reference, filtered like the position; empty unless requested
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
-  std::vector<Segment> segments;  ///< in order of time; rows outside them do not count
-  /// n, variance of F_h [N²] while the reference rests before its displacements, filtered alike; empty where it is
-  /// never seen at rest. What the limb adds on its own account is no less while it is perturbed.
+  std::vector<Segment> segments;  ///< in order of time; rows outside them are ignored
+  /// n, variance of F_h [N²] while the reference rests before its displacements, equally filtered; empty if it never
+  /// rests. A lower bound of the limb's own force variance during the perturbation.
   Vector force_variance_at_rest;
   Preparation preparation;
-  std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as the recording says it
+  std::optional<double> recorded_handle_mass;  ///< [kg] beyond the force sensor, as stated in the recording
   TrialConditions conditions;
   std::vector<SourceFile> sources;
   double recording_duration = 0;   ///< [s]
-  std::vector<std::string> notes;  ///< what the reader said of the recording
+  std::vector<std::string> notes;  ///< notes of the reader
   std::vector<Warning> warnings;   ///< about the recording and its preparation
 };
 

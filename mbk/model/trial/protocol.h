@@ -4,14 +4,14 @@
 
 namespace mbk {
 
-/// How the limb was perturbed; it decides which samples count.
+/// Type of perturbation; it determines the analysed samples.
 enum class Protocol {
   sinusoidal,   ///< the reference varies continuously: a multisine, or any other sustained perturbation
-  underdamped,  ///< the reference is constant but for steps: pulses, each cut out by itself
+  underdamped,  ///< a piecewise-constant reference: pulses, each extracted separately
   free,         ///< no reference: the whole recording
 };
 
-/// `reference` reproduces the published procedure sample for sample; `default_mode` is mbk's own.
+/// `reference` reproduces the published procedure sample by sample; `default_mode` is mbk's own.
 enum class Mode { default_mode, reference };
 
 /// The two published procedures (Dyck 2013): chapter 3 takes the acceleration from the position, W = 101, 5 Hz;

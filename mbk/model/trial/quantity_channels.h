@@ -10,7 +10,7 @@ namespace mbk {
 
 /// The channels of one quantity that a trial measures.
 struct QuantityChannels {
-  const char* one_axis;              ///< where there is one axis; null: the plane alone has it
+  const char* one_axis;              ///< for one axis; null: exists only in the plane
   std::array<const char*, 2> plane;  ///< of x and y, or of joint 1 and 2
   const char* unit;                  ///< in the plane
   const char* frame;                 ///< in the plane
@@ -23,14 +23,14 @@ struct QuantityChannels {
 
 inline constexpr QuantityChannels kPositionChannels = {"position", {"hand_x", "hand_y"}, "m", "base"};
 inline constexpr QuantityChannels kForceChannels = {"reaction", {"force_x", "force_y"}, "N", "base"};
-/// In N where a force is commanded.
+/// In N if a force is commanded.
 inline constexpr QuantityChannels kReferenceChannels = {"reference", {"reference_x", "reference_y"}, "m", "base"};
 inline constexpr QuantityChannels kAccelerationChannels = {
     "acceleration", {"acceleration_x", "acceleration_y"}, "m/s2", "base"};
 inline constexpr QuantityChannels kJointChannels = {nullptr, {"joint_1", "joint_2"}, "rad", "joint"};
 inline constexpr QuantityChannels kTorqueChannels = {nullptr, {"torque_1", "torque_2"}, "N.m", "joint"};
 
-/// The channels of a quantity where they stand in the recording; nothing where one is missing.   @param axes 1 or 2
+/// References to the channels of a quantity in the recording; nothing if one is missing.   @param axes 1 or 2
 [[nodiscard]] inline Columns channels_of(const Recording& recording, const QuantityChannels& quantity, int axes) {
   Columns columns;
   for (Index axis = 0; axis < axes; ++axis) {
@@ -41,7 +41,7 @@ inline constexpr QuantityChannels kTorqueChannels = {nullptr, {"torque_1", "torq
   return columns;
 }
 
-/// The same as a copy.
+/// The same, copied.
 [[nodiscard]] inline Matrix recorded(const Recording& recording, const QuantityChannels& quantity, int axes) {
   const Columns columns = channels_of(recording, quantity, axes);
   return columns.middle_rows(0, columns.rows());

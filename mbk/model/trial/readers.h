@@ -4,7 +4,7 @@
 
 namespace mbk {
 
-/// Who may read a file that holds what was measured on a person.
+/// Who may read a file with data of a person.
 enum class Readers {
   owner,  ///< 0600
   group,  ///< 0640
@@ -16,7 +16,7 @@ enum class Readers {
   return std::to_array<Word<Readers>>({{owner, "owner"}, {group, "group"}, {all, "all"}});
 }
 
-/// The permissions of such a file, whatever the umask.
+/// The permissions of such a file, independent of the umask.
 [[nodiscard]] constexpr unsigned permissions(Readers readers) {
   return readers == Readers::owner ? 0600 : readers == Readers::group ? 0640 : 0644;
 }

@@ -10,11 +10,11 @@
 
 namespace mbk {
 
-/// Where a number of ours comes from, beside one that a source printed.
+/// Origin of a reproduced number that is compared with a printed one.
 enum class Provenance {
   recomputed,       ///< from other printed numbers, by the formula
-  simulated,        ///< the mechanism, by a simulated robot, participant or rig: alike in form, not in value
-  not_recoverable,  ///< what it rests on was never published
+  simulated,        ///< the mechanism, with a simulated robot, participant or rig: similar in form, not in value
+  not_recoverable,  ///< its inputs were never published
 };
 
 [[nodiscard]] constexpr auto word_table(Provenance) {
@@ -23,14 +23,14 @@ enum class Provenance {
       {{recomputed, "recomputed"}, {simulated, "simulated"}, {not_recoverable, "not recoverable"}});
 }
 
-/// How a number of ours stands to the printed one.
+/// Agreement of a reproduced number with the printed one.
 enum class Agreement {
-  not_compared,     ///< one of the two is missing or is words, or ours is simulated and need not be the same
-  within_rounding,  ///< what the rounding of the numbers that ours rests on leaves open reaches the printed one's
-  round_trip,       ///< as within_rounding, but ours was computed from that printed number itself: the formulas undo
-                    ///< each other, and nothing is known of the source
-  erratum,          ///< it does not, and the source is at fault: the table names the erratum
-  differs,          ///< it does not, and nothing explains it
+  not_compared,     ///< one of the two is missing or text, or the reproduced one is simulated and need not agree
+  within_rounding,  ///< the printed number is within the rounding of the inputs
+  round_trip,  ///< as within_rounding, but computed from that printed number itself: the formulas cancel, so this is no
+               ///< check of the source
+  erratum,     ///< it disagrees because of an error in the source: the table names the erratum
+  differs,     ///< it disagrees without explanation
 };
 
 [[nodiscard]] constexpr auto word_table(Agreement) {
@@ -42,24 +42,25 @@ enum class Agreement {
                                          {differs, "differs"}});
 }
 
-/// Agreements that have another name since mbk.reproduction/1: "was" in JSON, for one version.
+/// Agreements renamed since mbk.reproduction/1: "was" in JSON, for one version.
 [[nodiscard]] constexpr auto former_word_table(Agreement) {
   using enum Agreement;
   return std::to_array<Word<Agreement>>({{erratum, "slip"}, {round_trip, "within rounding"}});
 }
 
-/// One cell of a table: numbers, or words where there is no number.
+/// One cell of a table: numbers or text.
 struct ReproducedCell {
-  std::string printed;                             ///< as it stands in print, every digit; empty: nothing is printed
-  std::optional<double> printed_value;             ///< absent where words are printed
-  double rounding = 0;                             ///< half a unit of the last printed digit
-  std::optional<double> ours;                      ///< absent where ours is words or cannot be had
-  std::string words;                               ///< ours, where it is no number
-  std::optional<double> spread;                    ///< standard deviation or error of ours, as the table says
-  std::optional<std::pair<double, double>> range;  ///< what the rounding of the inputs leaves ours, low and high
+  std::string printed;                  ///< as printed, every digit; empty: nothing is printed
+  std::optional<double> printed_value;  ///< absent if text is printed
+  double rounding = 0;                  ///< half a unit of the last printed digit
+  std::optional<double> ours;           ///< absent if the reproduced value is text or not available
+  std::string words;                    ///< the reproduced value, if it is not a number
+  std::optional<double> spread;         ///< standard deviation or error of the reproduced value, as stated by the table
+  std::optional<std::pair<double, double>>
+      range;  ///< range of the reproduced value within the rounding of the inputs, low and high
   Agreement agreement = Agreement::not_compared;
 
-  /// Ours − printed, where both are numbers.
+  /// Reproduced − printed, if both are numbers.
   [[nodiscard]] std::optional<double> difference() const {
     if (!ours || !printed_value) return {};
     return *ours - *printed_value;
@@ -69,7 +70,7 @@ struct ReproducedCell {
 struct ReproducedColumn {
   std::string name;
   std::string unit;  ///< may be empty
-  int decimals = 2;  ///< with which ours is shown where nothing is printed
+  int decimals = 2;  ///< number of decimals if nothing is printed
 };
 
 struct ReproducedRow {
@@ -77,28 +78,28 @@ struct ReproducedRow {
   std::vector<ReproducedCell> cells;  ///< one for each column
 };
 
-/// A table of the source and ours, cell by cell.
+/// A printed and a reproduced table, cell by cell.
 struct ReproducedTable {
-  std::string id;  ///< by which printed cells are found: "3.6"; with a suffix where an exhibit has several
+  std::string id;  ///< key of the printed cells: "3.6"; with a suffix if an exhibit has several
   std::string title;
   Provenance provenance = Provenance::recomputed;
   std::string what_rows_are;  ///< "participant"
   std::string spread_is;      ///< "standard error over four trials"; empty: no cell has one
   std::vector<ReproducedColumn> columns;
   std::vector<ReproducedRow> rows;
-  std::string erratum;  ///< id of the erratum that explains cells that differ; empty: none does
+  std::string erratum;  ///< id of the erratum that explains differing cells; empty: none
 };
 
 /// One item of the source, reproduced: a table, a figure, an erratum, a question or a piece of future work.
 struct Exhibit {
   enum class Kind { table, figure, erratum, question, future_work };
   std::string id;     ///< "table-3.6", "figure-4.3", "erratum-1", "question-2", "future-work-4"
-  std::string title;  ///< in words of our own
+  std::string title;  ///< title in our words
   Kind kind = Kind::table;
   int chapter = 0;  ///< 3 to 6; 0: an appendix
   Provenance provenance = Provenance::recomputed;
-  std::vector<std::string> text;      ///< paragraphs: how ours came about, what to see, why it cannot be had
-  std::vector<std::string> commands;  ///< that make ours, as they are typed
+  std::vector<std::string> text;      ///< paragraphs: method, findings, or why it is not available
+  std::vector<std::string> commands;  ///< commands that reproduce it, as typed
   std::vector<ReproducedTable> tables;
   std::vector<Chart> charts;
   std::vector<std::string> related;  ///< ids of other exhibits
@@ -113,12 +114,12 @@ struct Exhibit {
                                              {future_work, "future work"}});
 }
 
-/// What of a source was reproduced.
+/// The reproduced parts of a source.
 struct Reproduction {
-  std::string source;  ///< what it is a reproduction of
+  std::string source;  ///< the reproduced source
   std::vector<Exhibit> exhibits;
 
-  /// How many printed numbers and words stand so to ours. Each has one agreement, so that these add up to printed().
+  /// Number of printed cells with this agreement. Each has one agreement, so these add up to printed().
   [[nodiscard]] int count(Agreement agreement) const {
     return count_printed(
         [&](const ReproducedTable&, const ReproducedCell& cell) { return cell.agreement == agreement; });
@@ -128,7 +129,7 @@ struct Reproduction {
     return count_printed([](const ReproducedTable&, const ReproducedCell&) { return true; });
   }
 
-  /// How many of the printed ones stand beside simulated numbers, with which none is compared.
+  /// Number of printed cells beside simulated numbers, which are not compared.
   [[nodiscard]] int beside_simulated() const {
     return count_printed(
         [](const ReproducedTable& table, const ReproducedCell&) { return table.provenance == Provenance::simulated; });

@@ -8,8 +8,8 @@
 
 namespace mbk {
 
-/// The numbers of a signal, in memory of their own or where they stand already: in an array of whoever measures it.
-/// They are read as those of a Vector, and never written: copies share them.
+/// The numbers of a signal, in their own memory or in an array of the caller. They are read like those of a Vector and
+/// never written: copies share them.
 class Samples : public Eigen::Map<const Vector> {
   using Map = Eigen::Map<const Vector>;
 
@@ -19,7 +19,7 @@ class Samples : public Eigen::Map<const Vector> {
       : Map(nullptr, 0), own_(std::make_shared<const Vector>(std::move(values))) {
     stand_at(own_->data(), own_->size());
   }
-  /// @param at  `count` numbers that stay as they are    @param keeper  whatever owns them
+  /// @param at  `count` numbers that do not change    @param keeper  whatever owns them
   Samples(const double* at, Index count, std::shared_ptr<const void> keeper)
       : Map(at, count), keeper_(std::move(keeper)) {}
   Samples(const Samples& other) noexcept : Map(other.data(), other.size()), own_(other.own_), keeper_(other.keeper_) {}
@@ -39,7 +39,7 @@ class Samples : public Eigen::Map<const Vector> {
   void stand_at(const double* at, Index count) { new (static_cast<Map*>(this)) Map(at, count); }
 
   std::shared_ptr<const Vector> own_;
-  std::shared_ptr<const void> keeper_;  ///< of numbers that stand elsewhere
+  std::shared_ptr<const void> keeper_;  ///< of numbers stored elsewhere
 };
 
 }  // namespace mbk

@@ -11,7 +11,7 @@
 
 namespace mbk {
 
-/// Why a calibration needs care.
+/// Reasons for caution with a calibration.
 enum class SensorWarningCode {
   few_loads,
   one_sided_loads,
@@ -60,32 +60,33 @@ struct SensorAxis {
   std::string name;                                     ///< "x" or "y", of force_x and voltage_x
   double zero_voltage = 0.0, zero_voltage_error = 0.0;  ///< V₀, voltage of no force, and its standard error [V]
   double intercept = 0.0, intercept_error = 0.0;        ///< force at 0 V on every axis, −(S V₀)ᵢ [N]
-  double r_squared = 0.0;            ///< share of the voltage's variance within its runs that the loads explain
+  double r_squared = 0.0;            ///< share of the voltage variance within runs explained by the loads
   double rmse = 0.0;                 ///< of F − S (V − V₀) [N]
-  ForceOnVoltage published;          ///< this axis by itself, the other way round
+  ForceOnVoltage published;          ///< this axis alone, in the inverse direction
   double full_scale = 0.0;           ///< largest |load| [N]
-  Index loads = 0;                   ///< different loads on this axis, or the intervals into which they were put
+  Index loads = 0;                   ///< number of different loads on this axis, or of the load intervals
   double nonlinearity = 0.0;         ///< largest mean deviation from the line at one load [N]
   std::optional<double> hysteresis;  ///< largest difference between loading and unloading at one load [N]
-  std::optional<double> noise;       ///< standard deviation at constant load [V]; absent where no load repeats
-  std::optional<double> step;        ///< smallest step between voltages of the data [V]; absent where none is seen
-  std::optional<double> conversion;  ///< step of the converter as it was said, 2·range/2ᵇⁱᵗˢ [V]
-  /// The step that counts: what was said goes before what was seen.
+  std::optional<double> noise;       ///< standard deviation at constant load [V]; absent if no load repeats
+  std::optional<double> step;        ///< smallest step between voltages in the data [V]; absent if none is seen
+  std::optional<double> conversion;  ///< stated step of the converter, 2·range/2ᵇⁱᵗˢ [V]
+  /// The step to use: the stated one before the observed one.
   [[nodiscard]] std::optional<double> resolution() const { return conversion ? conversion : step; }
 };
 
 /// F = S (V − V₀) of a force sensor of one or two axes, in its own axes.
 struct SensorCalibration {
   std::vector<SourceFile> sources;
-  std::vector<SensorAxis> axes;       ///< n
-  Matrix slope, slope_error;          ///< S and its standard errors, n×n [N/V]; diagonal where no crosstalk was fitted
-  Matrix crosstalk, crosstalk_error;  ///< row j, column i: what axis j feels of a load on i [N/N]; 0×0: not fitted
-  std::optional<double> lever_arm;    ///< L₀ from the gauges to the load during the calibration [m]
-  double delay = 0.0;                 ///< by which the voltage comes after the load [s]; 0 where none is seen
-  std::vector<Vector> zero_voltages;  ///< V₀ of each run [V]; that of the last one stands in `axes`
+  std::vector<SensorAxis> axes;  ///< n
+  Matrix slope, slope_error;     ///< S and its standard errors, n×n [N/V]; diagonal without fitted crosstalk
+  Matrix crosstalk,
+      crosstalk_error;              ///< row j, column i: response of axis j to a load on axis i [N/N]; 0×0: not fitted
+  std::optional<double> lever_arm;  ///< L₀ from the gauges to the load during the calibration [m]
+  double delay = 0.0;               ///< delay of the voltage after the load [s]; 0 if none is seen
+  std::vector<Vector> zero_voltages;  ///< V₀ of each run [V]; the last one is in `axes`
   Index rows = 0;                     ///< rows of tables, or samples
-  bool continuous = false;            ///< from recordings over time; otherwise one row a load
-  double hac_lag_s = 0.0;             ///< reach of the residual's correlation in the standard errors, where continuous
+  bool continuous = false;            ///< from recordings over time; otherwise one row per load
+  double hac_lag_s = 0.0;             ///< length of the residual correlation used in the standard errors, if continuous
   std::vector<SensorWarning> warnings;
   std::vector<std::string> notes;
 };

@@ -12,17 +12,17 @@ namespace mbk {
 /// An extension spring between a screw eye on the frame and the disc on the handle.
 struct Spring {
   double stiffness = 0.0;               ///< k [N/m] > 0
-  double rest_length = 0.0;             ///< l, where the straight part of its force begins [m] ≥ 0
+  double rest_length = 0.0;             ///< l, start of the linear range of its force [m] ≥ 0
   Eigen::Vector2d anchor = {0.0, 0.0};  ///< its end on the frame, base frame [m]
   Eigen::Vector2d hole = {0.0, 0.0};    ///< its end on the disc, from the hand, at disc rotation 0 [m]
 };
 
-/// How far a spring array is from M ẍ + K (x − x₀) = −F_h within a circle about its equilibrium.
+/// Deviation of a spring array from M ẍ + K (x − x₀) = −F_h within a circle about its equilibrium.
 struct Linearisation {
   double radius = 0.0;              ///< of the circle [m]
   double largest_error = 0.0;       ///< max |F + K (x − x₀)| in it [N]
   double largest_force = 0.0;       ///< max |F| in it [N]
-  double smallest_extension = 0.0;  ///< min |R − R_i| − l_i in it, over all springs [m]; below 0 one goes slack
+  double smallest_extension = 0.0;  ///< min |R − R_i| − l_i in it, over all springs [m]; negative: a spring goes slack
   [[nodiscard]] double relative_error() const { return largest_error / largest_force; }
 };
 
@@ -32,10 +32,10 @@ struct GridField {
   Eigen::Vector2d equilibrium = {0.0, 0.0};            ///< the grid point with the smallest force [m]
   double residual = 0.0;                               ///< |F| there [N]
   Eigen::Matrix2d K = Eigen::Matrix2d::Constant(0.0);  ///< −∂F/∂x by differences of neighbours [N/m]
-  bool at_border = false;  ///< the smallest force is on the edge of the grid: nothing says that it is an equilibrium
+  bool at_border = false;  ///< the smallest force is on the edge of the grid, so it may not be an equilibrium
 };
 
-/// What a spring array does about its equilibrium, base frame.
+/// Behaviour of a spring array about its equilibrium, base frame.
 struct SpringField {
   std::vector<Spring> springs;
   double disc_rotation = 0.0;                          ///< [rad]
@@ -45,13 +45,13 @@ struct SpringField {
   Eigen::Matrix2d K = Eigen::Matrix2d::Constant(0.0);  ///< −∂F/∂x at x₀, symmetric [N/m]
   std::vector<double> lengths, tensions;               ///< of each spring at x₀ [m], [N]
   Linearisation linearisation;
-  std::optional<GridField> grid;  ///< where it was asked for
+  std::optional<GridField> grid;  ///< if requested
 };
 
 /// Springs for a target stiffness.
 struct SpringDesign {
   SpringField field;                        ///< of the springs that were found
-  std::vector<int> eyes;                    ///< of each spring: the screw eye that it hangs in, from 1
+  std::vector<int> eyes;                    ///< of each spring: number of its screw eye, from 1
   Eigen::Matrix2d target_K;                 ///< [N/m]
   Eigen::Vector2d target_equilibrium;       ///< [m]
   std::optional<double> payload;            ///< [kg]
@@ -69,24 +69,24 @@ struct SpringLine {
   Index samples = 0;
 };
 
-/// A spring whose hooks give at first:  s = s₀ + T/k + s_h (1 − exp(−T/F_h)).
+/// A spring whose hooks yield at first:  s = s₀ + T/k + s_h (1 − exp(−T/F_h)).
 struct HookFit {
   double stiffness = 0.0, stiffness_error = 0.0;    ///< k beyond the hooks, and its standard error [N/m]
   double rest = 0.0;                                ///< s₀, position at zero tension [m]
-  double deflection = 0.0, deflection_error = 0.0;  ///< s_h, by how much the hooks give in all [m]
-  double force = 0.0;                               ///< F_h, tension at which 63 % of it is spent [N]
+  double deflection = 0.0, deflection_error = 0.0;  ///< s_h, total yield of the hooks [m]
+  double force = 0.0;                               ///< F_h, tension at which 63 % of it is reached [N]
   double rmse = 0.0;                                ///< of the tension [N]
 };
 
 /// The constant of one spring from a slow stretch.
 struct SpringConstant {
   std::vector<SourceFile> sources;
-  std::string rule;                ///< how the straight part was chosen, in words
-  SpringLine straight;             ///< the answer: a line through the straight part
-  SpringLine whole;                ///< a line through everything
-  std::optional<HookFit> hooks;    ///< absent where the data show none
-  double hac_lag_s = 0.0;          ///< reach of the residual's correlation in the standard errors
-  std::vector<std::string> notes;  ///< what its user must know, in words
+  std::string rule;                ///< how the linear range was chosen, in words
+  SpringLine straight;             ///< the result: a line through the linear range
+  SpringLine whole;                ///< a line through all data
+  std::optional<HookFit> hooks;    ///< absent if the data show none
+  double hac_lag_s = 0.0;          ///< length of the residual correlation used in the standard errors
+  std::vector<std::string> notes;  ///< notes for the user, in words
   /// k of `whole` over that of `straight`, minus 1.
   [[nodiscard]] double bias_of_whole() const { return whole.stiffness / straight.stiffness - 1.0; }
 };
