@@ -6,9 +6,9 @@
 
 namespace mbk::teleop {
 
-/// What Llewellyn's conditions ask of an immittance m on s = jω, as polynomials of X = ω² > 0 with whole coefficients.
-/// `modulus`, `share` and `scale` are squares, which vanish at poles on the axis only, so that a sign is that of a
-/// numerator.
+/// Llewellyn's conditions for an immittance m on s = jω, as polynomials of X = ω² > 0 with integer coefficients.
+/// `modulus`, `share` and `scale` are squares, which vanish only at poles on the axis, so that signs are those of
+/// numerators.
 struct ConditionsOnAxis {
   std::array<Polynomial, 2> resistance, modulus;  ///< Re m_ii = resistance/modulus
   Polynomial share;                               ///< Re m₁₁ Re m₂₂ = resistance₁ resistance₂ share/scale

@@ -13,8 +13,8 @@
 
 namespace mbk::teleop {
 
-/// How small and how large a number may be other than 0. Exact answers are worked out with whole numbers whose digits
-/// multiply: a delay of 1e-30 s beside one of 5 ms takes a minute.
+/// Smallest and largest magnitude of a non-zero number. Exact results use integers whose number of digits multiplies: a
+/// delay of 1e-30 s together with one of 5 ms takes a minute.
 struct Sizes {
   double smallest = 1e-9, largest = 1e12;
   const char* unit = "in SI units";
@@ -28,7 +28,7 @@ struct Sizes {
 struct SimulatedArm {
   enum class Kind {
     relaxed,    ///< of one of the six participants of Dyck (2013), table 3.3
-    rigid,      ///< the same arm that holds its place at will
+    rigid,      ///< the same arm with voluntary position control
     impedance,  ///< a mass, a damper and a spring
   };
   Kind kind = Kind::relaxed;
@@ -42,35 +42,35 @@ struct SimulatedArm {
   return std::to_array<Word<SimulatedArm::Kind>>({{relaxed, "relaxed"}, {rigid, "rigid"}, {impedance, "impedance"}});
 }
 
-/// What `--simulate` runs in time, where the design says so. Delays are those of the design.
+/// Time-domain simulation of `--simulate`. Delays are those of the design.
 struct SimulationPlan {
   double duration = 20.0;                      ///< [s]
   double sample_time = 1e-3;                   ///< of the controllers [s]
-  double kick = 0.5;                           ///< impulse on the master that sets the motion off [N·s]
+  double kick = 0.5;                           ///< impulse on the master that starts the motion [N·s]
   double jitter = 0.0;                         ///< of each packet [s]
   double loss = 0.0;                           ///< share of the packets, 0 to 1
-  bool zero_on_loss = false;                   ///< zeros where no packet came, instead of the last one
-  std::uint64_t seed = 1;                      ///< of losses and of what arms do at random
+  bool zero_on_loss = false;                   ///< use zeros without a packet, instead of the last one
+  std::uint64_t seed = 1;                      ///< random seed of losses and arms
   std::optional<double> passivity_controller;  ///< largest damping at the master [N·s/m]
   SimulatedArm therapist, patient;             ///< at the master and at the slave
 };
 
-/// What a design file says: docs/guide/teleoperation.md has every key.
+/// Contents of a design file: docs/guide/teleoperation.md lists every key.
 struct Design {
   std::string file, name;
   std::variant<Teleoperator, TwoPort> network;
-  std::optional<FrequencyGrid> exact_delay;  ///< delays as they are, on this grid; none: by Padé, exactly
+  std::optional<FrequencyGrid> exact_delay;  ///< exact delays, on this grid; none: Padé delays, decided exactly
   Port operator_port = Port::one;
   std::optional<Rational> shortage;  ///< a of the termination at that port [N·s/m]
   SimulationPlan simulation;
 
   [[nodiscard]] bool is_architecture() const { return std::holds_alternative<Teleoperator>(network); }
 
-  /// @param parameter  of a teleoperator, to stay a variable; empty: none
+  /// @param parameter  of a teleoperator, to remain a variable; empty: none
   [[nodiscard]] PortEquations equations(std::string_view parameter = {}) const;
 };
 
-/// @fails  data, with file, line and key: what is malformed; of a two-port it names the entry.
+/// @fails  data, with file, line and key: the malformed part; for a two-port the entry.
 [[nodiscard]] Result<Design> read_design(const std::filesystem::path& file);
 [[nodiscard]] Result<Design> parse_design(std::string_view text, std::string_view file);
 

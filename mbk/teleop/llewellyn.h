@@ -6,23 +6,24 @@
 
 namespace mbk::teleop {
 
-/// Absolute stability of a two-port: with every passive termination at both ports the whole is stable. By Llewellyn's
-/// criterion (1952; theorem 4.1 of Dyck 2013), r_ij = Re m_ij(jω) and p = m₁₂ m₂₁ of any immittance matrix m:
+/// Absolute stability of a two-port: the terminated network is stable for every passive termination at both ports. By
+/// Llewellyn's criterion (1952; theorem 4.1 of Dyck 2013), r_ij = Re m_ij(jω) and p = m₁₂ m₂₁ of any immittance matrix
+/// m:
 ///   no pole has Re s > 0;  poles of m₁₁ and m₂₂ on the axis are simple, with positive residues;
 ///   r₁₁ ≥ 0,  r₂₂ ≥ 0,  2 r₁₁ r₂₂ − Re p ≥ 0,  4 r₁₁ r₂₂ (r₁₁ r₂₂ − Re p) − (Im p)² ≥ 0  for all ω > 0,
-/// the last two of which say 2 r₁₁ r₂₂ − Re p − |p| ≥ 0. Three things that the theorem does not name are needed too,
-/// and are asked for: the axis includes ∞; m₁₂ and m₂₁ have no pole on the right; and where the axis has a pole, with
-/// residues k_ij, k₁₁ k₂₂ ≥ k₁₂ k₂₁ ([[1, 2], [2, 1]]/s passes all of the above, and a spring of −3 is what port 1
-/// shows when port 2 is free to move). Everything is decided exactly, in rational arithmetic; only the
-/// frequencies and values that are returned are rounded.
+/// the last two of which are equivalent to 2 r₁₁ r₂₂ − Re p − |p| ≥ 0. Three requirements that the theorem does not
+/// state are also checked: the axis includes ∞; m₁₂ and m₂₁ have no pole in the right half plane; and if the axis has a
+/// pole, with residues k_ij, k₁₁ k₂₂ ≥ k₁₂ k₂₁ ([[1, 2], [2, 1]]/s passes all of the above, but port 1 is a spring of
+/// −3 when port 2 is free to move). Everything is decided exactly, in rational arithmetic; only the returned
+/// frequencies and values are rounded.
 /// @returns  each condition with the bands in which it is violated and the worst frequency there
 [[nodiscard]] AbsoluteStability llewellyn(const TwoPort& two_port);
 
-/// llewellyn(two_port).holds(), quicker.
+/// llewellyn(two_port).holds(), but faster.
 [[nodiscard]] bool is_absolutely_stable(const TwoPort& two_port);
 
-/// The first two lines of it alone, and the residues of what port 1 shows: all that m₁₁ − a and m₂₂ − b have in common
-/// with m, for any numbers a and b.
+/// Only its first two lines, and the residues seen at port 1: the conditions that m₁₁ − a and m₂₂ − b share with m, for
+/// any numbers a and b.
 [[nodiscard]] bool has_passive_poles(const lti::RationalMatrix& m);
 
 /// 2 r₁₁ r₂₂ − Re p − |p| over 2 |r₁₁ r₂₂| + |Re p| + |p|, from −1 to 1, with the sign of the third condition.

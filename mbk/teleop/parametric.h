@@ -46,16 +46,16 @@ struct ContentAndPart {
 };
 [[nodiscard]] ContentAndPart split_content(const ParametricPolynomial& p);
 
-/// What eliminating x from a = 0 and b = 0 gives (subresultants, Brown 1978). Neither may be zero.
+/// Result of eliminating x from a = 0 and b = 0 (subresultants, Brown 1978). Neither may be zero.
 struct Elimination {
   ParametricPolynomial common;  ///< their greatest common divisor over the fractions of k, without content
   Polynomial resultant;         ///< of k; zero if and only if `common` depends on x. Up to its sign
 };
-/// @param progress  is told how much of the work is done, from 0 to 1, as it grows with degrees and digits
+/// @param progress  receives the completed fraction, from 0 to 1, estimated from degrees and digits
 [[nodiscard]] Elimination eliminate(const ParametricPolynomial& a, const ParametricPolynomial& b,
                                     const std::function<void(double)>& progress = {});
 
-/// What an elimination of two polynomials of these sizes costs, beside another: the number of steps n and the degree D
+/// Relative cost of an elimination of two polynomials of these sizes: the number of steps n and the degree D
 /// of the coefficients make n steps of n − i coefficients of degree i D and with i D digits.
 [[nodiscard]] double elimination_cost(const ParametricPolynomial& a, const ParametricPolynomial& b);
 

@@ -6,13 +6,13 @@
 
 namespace mbk::teleop {
 
-/// The conditions of llewellyn() of a teleoperator whose delays are taken as they are, D = e^(−jωT), which no rational
-/// function is. Those on the axis are computed in double on the grid and nowhere else: what lies between two points is
-/// not seen. Those on poles are decided exactly: with |C₂ C₃| < |(1 + C₅)(1 + C₆)| the delay adds none on the right,
-/// and at 0 it is 1.
+/// The conditions of llewellyn() for a teleoperator with exact delays, D = e^(−jωT), which are not rational functions.
+/// Conditions on the axis are computed in double on the grid only: violations between two points are not detected.
+/// Conditions on poles are decided exactly: with |C₂ C₃| < |(1 + C₅)(1 + C₆)| the delay adds none in the right half
+/// plane, and at 0 it is 1.
 /// @param a  shortage of passivity of the termination at `port` [N·s/m]
 /// @param sample_time  the controllers' [s], as in Teleoperator::with_exact_delay; the poles are those without sampling
-/// @fails  not usable: the forces that are sent back and forth add poles, |C₂ C₃| ≥ |(1 + C₅)(1 + C₆)|.
+/// @fails  not usable: the exchanged forces add poles, |C₂ C₃| ≥ |(1 + C₅)(1 + C₆)|.
 [[nodiscard]] Result<AbsoluteStability> llewellyn_on_grid(const Teleoperator& teleoperator, const FrequencyGrid& grid,
                                                           Port port = Port::one, const Rational& a = 0,
                                                           double sample_time = 0.0);

@@ -10,18 +10,18 @@
 
 namespace mbk::laboratory {
 
-/// An accelerometer on the last link, at the hand (Dyck 2013, §5.1.2). Zero switches a part off. The robot moves in a
-/// horizontal plane: what gravity adds to a tilted sensor is a bias. With one axis that turns, rad/s².
+/// An accelerometer on the last link, at the hand (Dyck 2013, §5.1.2). Zero disables a part. The robot moves in a
+/// horizontal plane: gravity in a tilted sensor is a bias. For a rotating axis, rad/s².
 template <int Axes>
 struct AccelerometerOptions {
   double noise = 0.02;                                     ///< white, standard deviation of each axis [m/s²] ≥ 0
   AxisVector<Axes> bias = AxisVector<Axes>::Zero();        ///< b, in the sensor's axes [m/s²]
   AxisVector<Axes> gain_error = AxisVector<Axes>::Zero();  ///< e, 0.01 for 1 %; above −1
-  double misalignment = 0.0;  ///< δ: the sensor is turned by it from the link's axes, +: left [rad]
+  double misalignment = 0.0;  ///< δ: rotation of the sensor from the axes of the link, +: left [rad]
   Hertz bandwidth{0.0};       ///< first-order low-pass, −3 dB; 0 for none
 };
 
-/// a_read = H (1 + diag e) turn(−δ) a + b + w[k], in the sensor's axes: low-pass H, white noise w behind it. With one
+/// a_read = H (1 + diag e) turn(−δ) a + b + w[k], in the sensor's axes: low-pass H, then white noise w. With one
 /// axis turn(−δ) = cos δ.
 template <int Axes>
 class Accelerometer {
@@ -32,7 +32,7 @@ class Accelerometer {
   ///         not finite.
   [[nodiscard]] static Result<Accelerometer> create(const Options& options, double sample_time, std::uint64_t seed);
 
-  /// What the next reading adds to the true acceleration, a_read − a, in the axes of the link [m/s²].
+  /// Error of the next reading, a_read − a, in the axes of the link [m/s²].
   AxisVector<Axes> added(const AxisVector<Axes>& acceleration) noexcept;
 
  private:

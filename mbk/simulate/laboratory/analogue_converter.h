@@ -10,13 +10,13 @@ namespace mbk::laboratory {
 /// A converter of n bits and ±range: the nearest of the codes −2^(n−1) … 2^(n−1) − 1, of 2·range/2ⁿ [V] each.
 class AnalogueConverter {
  public:
-  /// @param bits  0 lets every voltage pass    @param range  > 0 [V]
+  /// @param bits  0: no converter    @param range  > 0 [V]
   AnalogueConverter(int bits, double range)
       : step_(bits == 0 ? 0.0 : std::ldexp(range, 1 - bits)), lowest_(-range), highest_(range - step_) {}
 
   struct Conversion {
     double voltage;  ///< [V]
-    bool clipped;    ///< the voltage was outside what the codes can say
+    bool clipped;    ///< the voltage was outside the range of the codes
   };
 
   [[nodiscard]] Conversion convert(double voltage) const noexcept {

@@ -19,7 +19,7 @@ class MassSpringDamper : public participant::Load<1> {
   double mass_, damping_, stiffness_;
 };
 
-/// A load of the planar handle that is led along a line without friction, p = p₀ + u x: along it the load takes
+/// A load of the planar handle guided along a line without friction, p = p₀ + u x: along it the load takes
 ///   (uᵀ Λ u) ẍ + uᵀ h
 /// and the guide takes the rest.
 class AlongLine : public participant::Load<1> {

@@ -13,36 +13,36 @@ namespace mbk::laboratory {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-/// The robot of so many axes.
+/// The robot with this number of axes.
 template <int Axes>
 using RobotOf = std::conditional_t<Axes == 1, robot::OneAxisRobot, robot::PlanarRobot>;
 template <int Axes>
 using GeometryOf = decltype(RobotOf<Axes>::geometry);
 
-/// Energies since the beginning [J]. For a rigid drive, and any load,
+/// Energies since the start [J]. For a rigid drive, and any load,
 ///   absorbed = motors − viscous − dry − (kinetic − kinetic at the beginning)
 /// and with elastic cables also − cables − elastic.
 struct EnergyLedger {
   double motors = 0.0;    ///< ∫ τ·θ̇_m dt, the work of the motors
-  double absorbed = 0.0;  ///< −∫ (F_h·v + moment θ̇₂) dt, what the load and the handle took
+  double absorbed = 0.0;  ///< −∫ (F_h·v + moment θ̇₂) dt, absorbed by load and handle
   double viscous = 0.0;   ///< lost in the viscous part of the joints' friction
   double dry = 0.0;       ///< lost in its Coulomb and Stribeck part
   double cables = 0.0;    ///< lost in the damping of the cables
 };
 
-/// Everything about one instant of a tick, exactly: what sensors would read if they were perfect. Base frame. Of a
-/// robot of one axis all is along it: rad and N·m, or m and N.
+/// The exact state at one instant of a tick, as read by perfect sensors. Base frame. For a robot of one axis everything
+/// is along it: rad and N·m, or m and N.
 template <int Axes>
 struct TrueState {
   using Values = AxisVector<Axes>;
   double time = 0.0;                            ///< [s]
   Values theta = Values::Zero();                ///< joint angles of the links [rad]
   Values theta_rate = Values::Zero();           ///< [rad/s]
-  Values motor_angle = Values::Zero();          ///< where the encoders sit; `theta` for a rigid drive [rad]
+  Values motor_angle = Values::Zero();          ///< at the encoders; `theta` for a rigid drive [rad]
   Values position = Values::Zero();             ///< of the hand [m]
   Values velocity = Values::Zero();             ///< [m/s]
   Values acceleration = Values::Zero();         ///< [m/s²]
-  Values force_hand_on_robot = Values::Zero();  ///< at the sensor, so with the handle beyond it [N]
+  Values force_hand_on_robot = Values::Zero();  ///< at the sensor, including the handle beyond it [N]
   Values motor_torque = Values::Zero();         ///< held during the tick [N·m]
   double kinetic_energy = 0.0;                  ///< of the robot up to the sensor, motors included [J]
   double elastic_energy = 0.0;                  ///< of the cables [J]
@@ -62,32 +62,32 @@ class ClosedLoop {
   using Values = AxisVector<Axes>;
   struct Options {
     RobotOf<Axes> robot;
-    std::optional<robot::ElasticDrive<Axes>> capstan;  ///< elastic drives, where given
+    std::optional<robot::ElasticDrive<Axes>> capstan;  ///< elastic drives, if given
     double handle_mass = 0.0;                          ///< m_h, beyond the force sensor [kg] ≥ 0
     int steps_per_tick = 1;                            ///< Runge–Kutta steps in each tick ≥ 1
   };
 
   /// At rest with the hand at `home` [m]. `load` must outlive the loop.
-  /// @fails  usage: home is out of reach; a mass, inertia, stiffness or friction is negative or not finite; the motors'
-  ///         inertia leaves the links none; steps_per_tick < 1.
+  /// @fails  usage: home is out of reach; a mass, inertia, stiffness or friction is negative or not finite; the inertia
+  /// of the motors leaves none for the links; steps_per_tick < 1.
   [[nodiscard]] static Result<ClosedLoop> create(const Options& options, const Values& home,
                                                  participant::Load<Axes>& load, double start_time = 0.0);
 
-  /// Angles at the encoders [rad]: what a controller may know before it decides.
+  /// Angles at the encoders [rad], available to a controller before it decides.
   [[nodiscard]] Values motor_angle() const { return state_.template segment<Axes>(kMotorAngle); }
 
-  /// Where the loop stands [s].
+  /// Current time of the loop [s].
   [[nodiscard]] double time() const { return time_; }
 
-  /// This instant before a controller decides: with the motors as they are still held.
+  /// The current instant before a controller decides, with the previous motor torque.
   [[nodiscard]] TrueState<Axes> state() const;
 
   /// Begins a tick of length T [s]: the load decides, the torque takes effect. Force and acceleration jump with the
-  /// torque; what is given is the mean of before and after, as a sensor of less bandwidth than the tick rate sees them:
+  /// torque; the mean of before and after is returned, as seen by a sensor with less bandwidth than the tick rate:
   /// either limit would be half a tick off the motion.
   const TrueState<Axes>& hold(const Values& motor_torque, double sample_time);
 
-  /// Moves on to the end of the tick. Neither torque nor load may change between `hold` and this.
+  /// Advances to the end of the tick. Neither torque nor load may change between `hold` and this.
   void advance();
 
  private:
@@ -97,7 +97,7 @@ class ClosedLoop {
 
   ClosedLoop(const Options& options, const Values& theta, participant::Load<Axes>& load, double start_time);
 
-  /// What follows from a state alone, whatever load and motors do.
+  /// Quantities that depend only on the state, not on load and motors.
   struct Mechanics {
     Values theta, rate, motor_angle, motor_rate;
     participant::HandState<Axes> hand;
@@ -119,7 +119,7 @@ class ClosedLoop {
   double sample_time_ = 0.0;
   Values torque_ = Values::Zero();
   State state_ = State::Zero();
-  State change_ = State::Zero();  ///< of the state, where `hold` has left it
+  State change_ = State::Zero();  ///< of the state after `hold`
   TrueState<Axes> true_state_;
 };
 

@@ -9,9 +9,9 @@ namespace mbk::laboratory {
 
 using robot::link_axes;
 
-/// What a sensor on the last link reads of v, turned back into the base frame with the encoder's angle θ̂₂:
+/// The reading of v by a sensor on the last link, rotated back to the base frame with the encoder angle θ̂₂:
 ///   R_BS(θ̂₂) [v_S + e_S] = turn(θ̂₂ − θ₂) v_B + R_BS(θ̂₂) e_S,   v_S = R_BS(θ₂)ᵀ v_B
-/// e_S is what the sensor adds in its axes. The right side is used, where nothing is rounded when e_S = 0 and θ̂₂ = θ₂.
+/// e_S is the sensor error in its axes. The right-hand side is used; it is free of rounding for e_S = 0 and θ̂₂ = θ₂.
 /// @param added  e_S as a function of v_S
 template <class Added>
 [[nodiscard]] AxisVector<2> read_on_link(const AxisVector<2>& v, double theta2, double measured_theta2,
@@ -20,7 +20,7 @@ template <class Added>
   return Eigen::Rotation2Dd(measured_theta2 - theta2).toRotationMatrix() * v + link_axes(measured_theta2) * e;
 }
 
-/// A machine of one axis takes its sensors along: v + e.
+/// On a machine of one axis the sensors move with it: v + e.
 template <class Added>
 [[nodiscard]] AxisVector<1> read_on_link(const AxisVector<1>& v, double /*angle*/, double /*measured_angle*/,
                                          const Added& added) {

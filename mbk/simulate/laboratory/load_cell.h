@@ -10,7 +10,7 @@
 
 namespace mbk::laboratory {
 
-/// A load cell on the last link (Dyck 2013, §3.4.1). Zero switches a part off. With one axis that turns, N·m.
+/// A load cell on the last link (Dyck 2013, §3.4.1). Zero disables a part. For a rotating axis, N·m.
 template <int Axes>
 struct LoadCellOptions {
   double white_noise = 0.02;                               ///< standard deviation of each axis [N] ≥ 0
@@ -20,12 +20,12 @@ struct LoadCellOptions {
   AxisVector<Axes> offset = AxisVector<Axes>::Zero();      ///< o [N]
   double drift_walk = 0.0;                                 ///< random walk of the offset [N/√s] ≥ 0
   AxisVector<Axes> drift_rate = AxisVector<Axes>::Zero();  ///< steady drift of the offset [N/s]
-  double delay = 0.0;                                      ///< τ, by which the amplifier's reading is late [s] ≥ 0
+  double delay = 0.0;                                      ///< τ, delay of the amplifier [s] ≥ 0
   double resolution = 0.0;                                 ///< step of the converter [N] ≥ 0; 0 for none
 };
 
 /// f_read = G f(t − τ) + o + d[k] + w[k] + c[k], in the sensor's axes and in whole steps: drift d, white noise w and
-/// coloured noise c. Between samples the force goes straight.
+/// coloured noise c. The force is interpolated linearly between samples.
 template <int Axes>
 class LoadCell {
  public:
@@ -34,7 +34,7 @@ class LoadCell {
   /// @fails  usage: a deviation or the walk is negative; the bandwidth is not above zero; a number is not finite.
   [[nodiscard]] static Result<LoadCell> create(const Options& options, double sample_time, std::uint64_t seed);
 
-  /// What the next reading adds to the true force f [N].
+  /// Error of the next reading relative to the true force f [N].
   AxisVector<Axes> added(const AxisVector<Axes>& force) noexcept;
 
   [[nodiscard]] double delay() const { return delay_; }  ///< τ [s]

@@ -6,7 +6,7 @@
 
 namespace mbk::laboratory {
 
-/// What hangs at the handle in a trial, with the scenario's seed and rate.
+/// The load at the handle in a trial, with the seed and rate of the scenario.
 /// @fails  usage: as the loads.
 template <int Axes>
 [[nodiscard]] Result<std::unique_ptr<participant::Load<Axes>>> make_load(const Scenario& scenario,

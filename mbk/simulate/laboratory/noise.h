@@ -20,7 +20,7 @@ class WhiteNoise {
   numeric::Random random_;
 };
 
-/// White noise behind a first-order low-pass, stationary from the first value (exact at the samples):
+/// White noise through a first-order low-pass, stationary from the first value (exact at the samples):
 ///   c[k+1] = a c[k] + √(1 − a²) σ n[k],  a = e^{−2π f_c T}
 /// Its correlation over m samples is a^m.
 class ColouredNoise {
@@ -52,8 +52,8 @@ class Drift {
 /// rms.
 [[nodiscard]] double quantised(double value, double quantum) noexcept;
 
-/// The streams of a seed from which the simulated sensors draw: one for each source of noise and axis, so that
-/// switching one on leaves all others as they were.
+/// The streams of a seed from which the simulated sensors draw: one per noise source and axis, so that enabling one
+/// does not change the others.
 enum class NoiseSource : std::uint32_t {
   white_force = 100,
   coloured_force = 110,

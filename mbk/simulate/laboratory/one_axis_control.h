@@ -20,12 +20,12 @@ struct ServoMode {
 
 using OneAxisMode = std::variant<ServoMode, control::ForceMode>;
 
-/// What control::TrialControl is to the planar robot: the servo or the open loop with the schedule behind it, whose
-/// first axis is the robot's. After `create` nothing allocates.
+/// The counterpart of control::TrialControl for one axis: servo or open loop with a schedule, whose first axis is used.
+/// After `create` nothing allocates.
 class OneAxisControl {
  public:
   /// @param home  about which the schedule perturbs    @param sample_time  [s] > 0
-  /// @fails  usage: mode and schedule speak of different quantities; a gain or the cutoff is out of its range.
+  /// @fails  usage: mode and schedule refer to different quantities; a gain or the cutoff is out of its range.
   [[nodiscard]] static Result<OneAxisControl> create(const OneAxisMode& mode, const perturbation::Schedule& schedule,
                                                      const robot::OneAxisGeometry& geometry, const AxisVector<1>& home,
                                                      double sample_time);
@@ -33,7 +33,7 @@ class OneAxisControl {
   /// u [N·m or N] at the time t of the schedule [s].
   [[nodiscard]] AxisVector<1> torque(double t, const AxisVector<1>& measured) noexcept;
 
-  /// What stands in the recording: the position, or the torque.
+  /// The reference in the recording: the position, or the torque.
   [[nodiscard]] AxisVector<1> reference(double t) const noexcept;
 
  private:

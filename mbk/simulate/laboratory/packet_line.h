@@ -9,13 +9,13 @@
 
 namespace mbk::laboratory {
 
-/// What one robot tells the other each tick.
+/// The packet that one robot sends to the other each tick.
 struct Packet {
   double position = 0.0, velocity = 0.0, acceleration = 0.0;  ///< of the sender's robot [m, m/s, m/s²]
   double force = 0.0;                                         ///< on the sender's robot from outside [N]
 };
 
-/// What a receiver does in a tick in which nothing newer has arrived.
+/// Reaction of a receiver in a tick without a newer packet.
 enum class OnLoss {
   hold,  ///< keeps the last packet
   zero,  ///< takes zeros
@@ -23,25 +23,25 @@ enum class OnLoss {
 
 struct PacketLineOptions {
   double delay = 0.0;   ///< [s] ≥ 0, rounded to whole ticks
-  double jitter = 0.0;  ///< each packet takes up to so much longer, evenly distributed [s] ≥ 0, in whole ticks
-  double loss = 0.0;    ///< share of the packets that never arrive, 0 to 1, each by itself
+  double jitter = 0.0;  ///< maximum additional delay of a packet, uniformly distributed [s] ≥ 0, in whole ticks
+  double loss = 0.0;    ///< probability that a packet is lost, 0 to 1, independent
   OnLoss on_loss = OnLoss::hold;
 };
 
-/// A line that carries one packet each tick, late and not always. Packets may overtake each other; one that is older
-/// than what has arrived already is of no use and is dropped. Until the first arrives there are zeros.
+/// A line that carries one packet per tick, with delay and losses. Packets may overtake each other; one that is older
+/// than the newest received packet is dropped. Before the first packet the values are zero.
 class PacketLine {
  public:
   /// @param sample_time  T [s] > 0   @param stream  of the seed: lines of one seed are independent
-  /// @fails  usage: a limit named at PacketLineOptions is not kept; the delay is longer than kLongestDelay.
+  /// @fails  usage: a limit stated in PacketLineOptions is violated; the delay is longer than kLongestDelay.
   [[nodiscard]] static Result<PacketLine> create(const PacketLineOptions& options, double sample_time,
                                                  std::uint64_t seed, std::uint32_t stream);
 
-  /// One tick: sends a packet, and gives what the receiver has. Without delay that is the packet itself.
+  /// One tick: sends a packet and returns the packet at the receiver. Without delay that is the same packet.
   Packet step(const Packet& sent);
 
   [[nodiscard]] long sent() const { return tick_; }  ///< packets so far
-  [[nodiscard]] long lost() const { return lost_; }  ///< of these, those that never arrive
+  [[nodiscard]] long lost() const { return lost_; }  ///< of these, lost packets
 
   static constexpr double kLongestDelay = 60.0;  ///< [s]
 

@@ -5,7 +5,7 @@
 
 namespace mbk::laboratory {
 
-/// What a simulated trial leaves behind.
+/// Result of a simulated trial.
 struct Performance {
   Recording recording;
   impedance::Model truth;         ///< intrinsic impedance of the load about home, mean over the trial

@@ -24,7 +24,7 @@ namespace mbk::laboratory {
 /// The y axis of `relaxed_arm` alone.
 [[nodiscard]] impedance::Model relaxed_arm_one_axis();
 
-/// What the sensors add to the truth. Zero switches a part off.
+/// Sensor errors. Zero disables a part.
 struct PrescribedMotionSensors {
   double position_quantum = 2e-6;       ///< positions are rounded to multiples of it [m]
   double force_noise = 0.02;            ///< white, standard deviation [N]
@@ -37,14 +37,14 @@ struct PrescribedMotionOptions {
   /// Sinusoidal: ten sines up to 3 Hz within a circle of 2 cm, moving in over the first seconds. Underdamped: 16 steps
   /// of 5 mm in random directions, at rest in between (Dyck 2013, §3.4).
   Protocol protocol = Protocol::sinusoidal;
-  impedance::Model limb = relaxed_arm();      ///< the truth; one or two axes, which is what is recorded
-  Vector home = Eigen::Vector2d(0.28, 0.02);  ///< where the hand starts, base frame [m]; one entry per axis
+  impedance::Model limb = relaxed_arm();      ///< the true model; one or two axes, as recorded
+  Vector home = Eigen::Vector2d(0.28, 0.02);  ///< initial hand position, base frame [m]; one entry per axis
   PrescribedMotionSensors sensors;
   std::uint64_t seed = 1;  ///< of phases, pulses and noise
 
   double period = 10.0;                                                ///< of the sinusoidal protocol's sines [s]
   std::vector<int> harmonics = {1, 4, 7, 10, 13, 16, 20, 23, 26, 29};  ///< of 1/period: 0.1 … 2.9 Hz
-  double radius = 0.01;                                                ///< of the circle that the sines fill [m]
+  double radius = 0.01;                                                ///< radius of the circle filled by the sines [m]
   double moving_in = 5.0;             ///< the sines grow from rest over this time [s]; the published window
                                       ///< begins at 12 s
   double sinusoidal_duration = 62.1;  ///< [s]; the published procedure needs 62 s
@@ -53,7 +53,7 @@ struct PrescribedMotionOptions {
   double tail = 3.0;                                 ///< recorded after the last pulse [s]
 };
 
-/// The way of the hand in closed form: position, velocity and acceleration at any time, base frame.
+/// The motion of the hand in closed form: position, velocity and acceleration at any time, base frame.
 class PrescribedMotion {
  public:
   /// With one axis, pulses go along ±x, as many as there would be in all directions.
@@ -65,8 +65,7 @@ class PrescribedMotion {
   /// x, ẋ, ẍ of the hand [m, m/s, m/s²], one entry per axis.
   [[nodiscard]] perturbation::Jet<robot::HandVector> at(double t) const;
 
-  /// What the robot is told to follow at t [m]: of sines the hand's own position there; of pulses home, displaced while
-  /// one lasts.
+  /// The reference of the robot at t [m]: for sines the hand position; for pulses home, displaced during a pulse.
   [[nodiscard]] robot::HandVector reference(double t, const robot::HandVector& position) const;
 
   [[nodiscard]] double duration() const { return duration_; }  ///< [s]
@@ -88,7 +87,7 @@ class PrescribedMotion {
   std::variant<Sines, perturbation::PulseSchedule> shape_;
 };
 
-/// A recording in which the hand follows the reference exactly and the limb answers
+/// A recording in which the hand follows the reference exactly and the limb responds with
 ///   F_h = −(M ẍ + B ẋ + K (x − x₀))                                       (Dyck 2013, eq. 3.2)
 /// so that the truth behind it is exact; then the sensors' rounding and noise. There is no loop: nothing that the
 /// limb does moves the robot, and neither bias from feedback nor loss of the motion can occur.

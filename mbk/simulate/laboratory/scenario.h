@@ -34,48 +34,48 @@ struct RigPlan {
   std::vector<Spring> springs;            ///< where there are any, the linear field is not used
 };
 
-/// Nothing at the handle.
+/// An empty handle.
 struct NoLoad {};
 
-/// What may hang at the handle of a robot of so many axes.
+/// Possible loads at the handle of a robot with this number of axes.
 template <int Axes>
 using LoadPlan =
     std::conditional_t<Axes == 1, std::variant<participant::OneAxisJoint::Options>,
                        std::variant<NoLoad, participant::ArmOptions, participant::ToneRobot::Options, RigPlan>>;
 
-/// The apparatus of a trial, and who holds it.
+/// The apparatus and the load of a trial.
 template <int Axes>
 struct SimulatedTrial {
   typename ClosedLoop<Axes>::Options robot;
   AxisVector<Axes> home = AxisVector<Axes>::Zero();
   ModeOf<Axes> control;
   LoadPlan<Axes> load;
-  std::optional<participant::GripOptions> grip;  ///< of an arm; absent: hand and handle are one
+  std::optional<participant::GripOptions> grip;  ///< of an arm; absent: the hand is rigidly attached to the handle
   SensorOptions<Axes> sensors;
 };
 using PlanarTrial = SimulatedTrial<2>;
 using OneAxisTrial = SimulatedTrial<1>;
 
-/// Everything that one simulated recording is made of.
+/// All inputs of one simulated recording.
 struct Scenario : protocol::TrialPlan {
   std::variant<PlanarTrial, OneAxisTrial> trial;
 };
 
 /// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors. The
-/// sections [session], [safety], [person] and [device] of an experiment may stand in it and are not looked at.
-/// @param file  how messages call it
-/// @fails  data: with file, line, key, value and what is allowed.
+/// sections [session], [safety], [person] and [device] of an experiment are allowed and ignored.
+/// @param file  its name in messages
+/// @fails  data: with file, line, key, value and the allowed values.
 [[nodiscard]] Result<std::vector<Scenario>> read_scenarios(std::string_view text, const std::filesystem::path& file);
 
-/// One trial out of its sections; who asks calls finish() of the document. Its name and protocol stay empty.
+/// One trial from its sections; the caller calls finish() of the document. Its name and protocol remain empty.
 [[nodiscard]] Scenario read_scenario(const config::Section& root);
 
-/// What a recording of the scenario says of it: truth_scenario, truth_trial, truth_condition, truth_seed and
-/// truth_note; and of an arm of two links what anyone in the room could measure: shoulder_x_m, shoulder_y_m,
+/// Metadata of the scenario in a recording: truth_scenario, truth_trial, truth_condition, truth_seed and
+/// truth_note; and for a two-link arm the measurable dimensions: shoulder_x_m, shoulder_y_m,
 /// upper_arm_m, forearm_m, elbow.
 [[nodiscard]] std::map<std::string, std::string> scenario_metadata(const Scenario& scenario);
 
-/// Said wherever something is shown that a participant who corrects position or force had a part in.
+/// Shown with every result of a participant with voluntary position or force control.
 inline constexpr const char* kTunedGains =
     "the gains of the participant's voluntary control are tuned, not fitted to anyone";
 
@@ -84,12 +84,13 @@ struct SimulateOptions {
   std::function<void(const TrueState<2>&)> watch;  ///< of a planar trial
 };
 
-/// Runs a scenario. The same scenario and seed give the same recording, to the bit. To what `perform` writes into the
-/// metadata comes scenario_metadata.
-/// @fails  usage: control and perturbation speak of different quantities; as perturbation::make_schedule and `perform`.
+/// Runs a scenario. The same scenario and seed give an identical recording. Adds scenario_metadata to the metadata of
+/// `perform`.
+/// @fails  usage: control and perturbation refer to different quantities; as perturbation::make_schedule and `perform`.
 [[nodiscard]] Result<Performance> simulate(const Scenario& scenario, const SimulateOptions& options = {});
 
-/// The recording without what only a simulation can know: the truth, and the scenario's name and words.
+/// The recording without data that only a simulation has: the true values, and the name and description of the
+/// scenario.
 [[nodiscard]] Recording without_truth(Recording recording);
 
 }  // namespace mbk::laboratory

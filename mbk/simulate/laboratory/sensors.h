@@ -17,10 +17,10 @@ namespace mbk::laboratory {
 /// A sensor that reads the truth.
 struct PerfectSensor {};
 
-/// The torque stands in the recording as commanded.
+/// The recording contains the commanded torque.
 struct CommandedTorque {};
 
-/// The torque is the measured current of a motor times its constant, as its user has it: k (1 + e)(τ/k + w).
+/// The torque is the measured motor current times the assumed constant: k (1 + e)(τ/k + w).
 template <int Axes>
 struct MotorCurrentOptions {
   AxisVector<Axes> torque_constant = AxisVector<Axes>::Constant(0.1);  ///< k, at the joint [N·m/A] > 0
@@ -28,11 +28,11 @@ struct MotorCurrentOptions {
   double noise = 0.0;                                                  ///< w: white, standard deviation [A] ≥ 0
 };
 
-/// How ticks come, and which times stand in the recording.
+/// Timing of the ticks, and of the times in the recording.
 struct ClockOptions {
   enum class Timestamps {
-    actual,   ///< when the tick was
-    nominal,  ///< when it should have been: the first, and then every sample time
+    actual,   ///< actual time of the tick
+    nominal,  ///< nominal time: the first tick, then every sample time
   };
   double jitter = 0.0;  ///< standard deviation of an interval [s] ≥ 0, below a third of the sample time
   Timestamps timestamps = Timestamps::actual;
@@ -47,20 +47,20 @@ using ForceSensorOptions = std::conditional_t<Axes == 1, std::variant<LoadCellOp
 /// they are in its units: rad and N·m, or m and N.
 template <int Axes>
 struct SensorOptions {
-  /// Of a count [rad] ≥ 0: 2 µm at the end of the first link, which with one axis has the length 1; 0 for perfect.
+  /// Encoder resolution [rad] ≥ 0: 2 µm at the end of the first link (length 1 with one axis); 0 for none.
   double encoder_resolution = Axes == 1 ? 2e-6 : 2e-6 / 0.254;
   ForceSensorOptions<Axes> force = LoadCellOptions<Axes>{};
   std::variant<AccelerometerOptions<Axes>, PerfectSensor> acceleration = AccelerometerOptions<Axes>{};
   std::variant<CommandedTorque, MotorCurrentOptions<Axes>> torque = CommandedTorque{};
   ClockOptions clock;
 
-  /// What reads the truth to the last bit (of a rigid drive: the encoders sit on the motors).
+  /// Exact sensors (for a rigid drive, as the encoders are on the motors).
   [[nodiscard]] static SensorOptions perfect();
 };
 
-/// All sensors of a robot. Force sensor and accelerometer sit on the last link: they read in its axes, and the reading
-/// is turned to the base frame with the encoder's θ₂ (Dyck 2013, eq. E.4). Each source of noise has a stream of the
-/// seed for itself. Nothing allocates after `create`.
+/// All sensors of a robot. Force sensor and accelerometer are on the last link: they read in its axes, and readings are
+/// rotated to the base frame with θ₂ of the encoder (Dyck 2013, eq. E.4). Each noise source has its own random stream.
+/// Nothing allocates after `create`.
 template <int Axes>
 class SensorSuite {
  public:
@@ -75,7 +75,7 @@ class SensorSuite {
   /// Joint angles as the controller sees them: the motors' angles [rad] in whole counts.
   [[nodiscard]] Values encoders(const Values& motor_angle) const noexcept;
 
-  /// How long the next tick takes [s].
+  /// Duration of the next tick [s].
   double next_interval() noexcept { return clock_.next_interval(); }
 
   /// One sample of the recording.
@@ -91,10 +91,10 @@ class SensorSuite {
   /// The next sample; once for each tick.
   Reading read(const TrueState<Axes>& state) noexcept;
 
-  /// Samples so far of which the force sensor's converter was beyond its range.
+  /// Number of samples so far with the converter of the force sensor beyond its range.
   [[nodiscard]] std::int64_t clipped_samples() const;
 
-  /// By which slow forces come late [s].
+  /// Delay of slow forces [s].
   [[nodiscard]] double force_delay() const;
 
  private:

@@ -8,14 +8,14 @@
 
 namespace mbk::laboratory {
 
-/// The planar robot of a scenario, with whoever holds its handle, as a device: it needs nothing. It moves on by one
-/// tick with each command and waits for it, whatever the clock says. As sensors between two torques read both, force
-/// and acceleration of a tick are there with the next state (Facts::force_latency = 1); with that, the same torques
-/// give the same recording as `simulate`, to the bit.
+/// The planar robot of a scenario with its load, as a device without hardware. It advances by one tick with each
+/// command and waits for it, independent of the clock. Because sensors between two torques read both, force and
+/// acceleration of a tick come with the next state (Facts::force_latency = 1); then the same torques give exactly the
+/// recording of `simulate`.
 class SimulatedDevice : public device::Device {
  public:
   /// At rest at the scenario's home.
-  /// @fails  usage: the scenario is no planar one; as ClosedLoop, SensorSuite and the loads.
+  /// @fails  usage: the scenario is not planar; as ClosedLoop, SensorSuite and the loads.
   [[nodiscard]] static Result<std::unique_ptr<SimulatedDevice>> create(const Scenario& scenario);
 
   [[nodiscard]] const device::Facts& facts() const override { return facts_; }
@@ -24,10 +24,10 @@ class SimulatedDevice : public device::Device {
   bool write(const device::Command& command) noexcept override;
   void stop() noexcept override {}
 
-  /// Where the joints' motors are in truth, whatever the encoders say [rad].
+  /// True motor positions, independent of the encoders [rad].
   [[nodiscard]] Vector2d motor_angle() const { return loop_.motor_angle(); }
 
-  /// Everything in truth at the beginning of the last tick.
+  /// True state at the beginning of the last tick.
   [[nodiscard]] const TrueState<2>& truth() const { return truth_; }
 
  private:

@@ -8,12 +8,12 @@
 
 namespace mbk::laboratory {
 
-/// The planar robot of an experiment with whoever its file describes at the handle; see protocol::ReadSimulation.
+/// The planar robot of an experiment with the load described in its file; see protocol::ReadSimulation.
 [[nodiscard]] Result<std::shared_ptr<const protocol::Simulation>> read_simulation(const config::Section& root,
                                                                                   const protocol::Trial& trial);
 
-/// What is simulated in a trial whose simulation read_simulation made: the scenario of its file, with everything that
-/// stands in both as the trial has it now.
+/// The scenario of a trial with a simulation from read_simulation: that of its file, with shared values from the
+/// current trial.
 /// @fails  usage: the trial has no such simulation.
 [[nodiscard]] Result<Scenario> scenario_of(const protocol::Trial& trial);
 

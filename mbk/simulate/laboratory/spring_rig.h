@@ -10,11 +10,11 @@ namespace mbk::laboratory {
 
 /// A payload of mass m held at the handle by an array of springs on the disc, with dampers (Dyck 2013, appendix D):
 ///   Λ = m I,   h = B ẋ − F_springs(x, θ₂)
-/// The disc turns with the last link, so that springs in its holes also exert a moment.
+/// The disc rotates with the last link, so springs in its holes also exert a moment.
 class SpringRig : public participant::Load<2> {
  public:
-  /// @param disc_zero  θ₂ at which the holes stand as they are given [rad]
-  /// @fails  usage: the mass is negative, a number is not finite; the springs hold the hand nowhere near `rest`; as
+  /// @param disc_zero  θ₂ for which the hole positions are given [rad]
+  /// @fails  usage: the mass is negative, a number is not finite; the springs have no equilibrium near `rest`; as
   ///         SpringArray::create.
   [[nodiscard]] static Result<SpringRig> create(std::vector<Spring> springs, double mass,
                                                 const Eigen::Matrix2d& damping, double disc_zero,

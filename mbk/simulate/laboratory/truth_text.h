@@ -13,7 +13,7 @@ namespace mbk::laboratory {
 [[nodiscard]] std::string exact_text(const Vector& values);
 [[nodiscard]] std::string exact_text(const Matrix& values);
 
-/// What a recording's metadata say of the truth behind it: truth_M, truth_B, truth_K, truth_x0 and
+/// The true values in the metadata of a recording: truth_M, truth_B, truth_K, truth_x0 and
 /// truth_energy_absorbed_J; and rate_hz.
 [[nodiscard]] std::map<std::string, std::string> truth_metadata(const impedance::Model& truth, Hertz rate,
                                                                 double energy_absorbed);

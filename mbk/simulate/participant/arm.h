@@ -15,27 +15,28 @@
 
 namespace mbk::participant {
 
-/// From then on the limb's own stiffness and damping are so many times what they are; before the first and after the
-/// last they stay, between two they go straight.
+/// Scale factors of the limb's stiffness and damping from this time; constant before the first and after the last,
+/// interpolated linearly between.
 struct StiffnessAt {
   double time = 0.0;            ///< [s]
   double factor = 1.0;          ///< of the stiffness, ≥ 0
   double damping_factor = 1.0;  ///< ≥ 0
 };
 
-/// Everything that tells one simulated arm from another. A relaxed and a rigid arm differ in these numbers only.
+/// All parameters of a simulated arm. A relaxed and a rigid arm differ only in these numbers.
 struct ArmOptions {
-  std::variant<TwoLinkArm::Options, impedance::Model> limb;  ///< two links, or the same impedance everywhere
+  std::variant<TwoLinkArm::Options, impedance::Model> limb;  ///< two links, or a constant impedance
   IntermittentController::Options controller;
   Cocontraction::Options cocontraction;
   Remnant<2>::Options remnant;
-  std::vector<StiffnessAt> stiffness_schedule;    ///< in order of time; empty: it does not change by itself
-  std::optional<Departures::Options> departures;  ///< what the limb has beside M, B and K
-  std::optional<Reaching::Options> reaching;      ///< the hand reaches; absent: it rests where the limb does
-  std::uint64_t seed = 1;                         ///< of the controller's errors, the remnant, a tremor and the reaches
+  std::vector<StiffnessAt> stiffness_schedule;    ///< in order of time; empty: constant
+  std::optional<Departures::Options> departures;  ///< limb forces other than M, B and K
+  std::optional<Reaching::Options>
+      reaching;            ///< reaching movements; absent: the hand stays at the limb's rest position
+  std::uint64_t seed = 1;  ///< of the controller's errors, the remnant, a tremor and the reaches
 };
 
-/// An arm that is asked to do nothing: no voluntary force, no co-contraction, a little noise.
+/// A relaxed arm: no voluntary force, no co-contraction, a little noise.
 [[nodiscard]] ArmOptions relaxed_arm_options();
 
 /// An arm that holds its hand in place "as quickly as possible" (Dyck 2013, §4.1): co-contracted, with an intermittent
@@ -45,7 +46,7 @@ struct ArmOptions {
 
 /// The passive arm of one of the six participants of Dyck (2013), relaxed: joint matrices from tables 3.3 and 3.5 as
 /// rebuilt (symmetric parts), links of 0.31 and 0.34 m, the hand 0.52 m ahead of the shoulder. The inertias of the
-/// second and the third are those of no such chain with a straight elbow, so keep these two near that posture.
+/// second and the third are not possible for such a chain with a straight elbow, so keep these two near that posture.
 /// @param participant  1 … 6
 /// @fails  usage: another number.
 [[nodiscard]] Result<TwoLinkArm::Options> participant_limb(int participant);
@@ -54,17 +55,17 @@ struct ArmOptions {
 /// @fails  as participant_limb
 [[nodiscard]] Result<ArmOptions> participant_options(int participant);
 
-/// A person's arm: a passive limb, and what the person adds to it,
+/// A person's arm: a passive limb and the person's own forces,
 ///   F_h = passive limb (stiffness and damping scaled by co-contraction) − departures + F_v + n
-/// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it. An arm that
-/// reaches moves the limb's equilibrium along x_d(t) of Reaching and exerts besides, whatever its hand really does, the
-/// force that takes limb and robot there,
+/// F_v of an intermittent controller, n a remnant. All three are decided once a tick and held over it. A reaching arm
+/// moves the limb's equilibrium along x_d(t) of Reaching and also exerts, independent of the actual motion, the
+/// feedforward force for limb and robot,
 ///   F_d = Λ(x_d) ẍ_d + h(x_d, ẋ_d) + m_c ẍ_d
 /// so that F_h = −[Λ (ẍ − ẍ_d) + D (ẋ − ẋ_d) + K (x − x_d)] + m_c ẍ_d + n of a linear limb, m_c the carried mass.
 class Arm : public Load<2> {
  public:
   /// @param sample_time  T [s] of the ticks that will follow
-  /// @fails  usage: an arm that reaches corrects its place or has departures, which are about a place of rest; as the
+  /// @fails  usage: a reaching arm has position correction or departures, which refer to a rest position; as the
   ///         parts.
   [[nodiscard]] static Result<Arm> create(const ArmOptions& options, double sample_time);
 

@@ -7,9 +7,9 @@ namespace mbk::participant {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-/// Where an arm of two links stands and how long it is. Its own axes: origin at the shoulder, x to the person's right,
-/// y forward, turned against the base frame. q₁ turns the upper arm from the arm's x axis, q₂ the forearm against the
-/// upper arm; 0 < q₂ < π keeps the elbow to the right of the line from shoulder to hand.
+/// Position and lengths of a two-link arm. Its axes: origin at the shoulder, x to the person's right, y forward,
+/// rotated relative to the base frame. q₁ turns the upper arm from the arm's x axis, q₂ the forearm against the upper
+/// arm; 0 < q₂ < π keeps the elbow to the right of the line from shoulder to hand.
 struct ArmGeometry {
   double upper_arm = 0.31;            ///< l₁ [m] > 0
   double forearm = 0.34;              ///< l₂, elbow to the middle of the grip [m] > 0
@@ -23,7 +23,7 @@ struct ArmGeometry {
 /// The elbow in the base frame [m].
 [[nodiscard]] Vector2d elbow_position(const ArmGeometry& geometry, const Vector2d& q);
 
-/// Shoulder to elbow and elbow to hand, base frame [m]: what J and J̇ are made of.
+/// Shoulder to elbow and elbow to hand, base frame [m], used for J and J̇.
 struct ArmLinks {
   Vector2d upper_arm, forearm;
 };
@@ -31,7 +31,7 @@ struct ArmLinks {
 [[nodiscard]] Matrix2d jacobian(const ArmLinks& links);
 [[nodiscard]] Matrix2d jacobian_rate(const ArmLinks& links, const Vector2d& q_rate);
 
-/// Σ_k F_k ∂²p_k/∂q² [N·m]: how a force [N] (base frame) turns with the joints. Symmetric.
+/// Σ_k F_k ∂²p_k/∂q² [N·m]: change of the joint torque of a constant force [N] (base frame) with the joints. Symmetric.
 [[nodiscard]] Matrix2d force_curvature(const ArmLinks& links, const Vector2d& force);
 
 /// J = ∂p/∂q [m]; det J = l₁l₂ sin q₂.
@@ -47,18 +47,18 @@ struct Elbow {
   [[nodiscard]] static Elbow at(double angle);  ///< [rad]
 };
 
-/// The arm with the hand at one place. Sines and cosines of q follow from the triangle of shoulder, elbow and hand.
+/// The arm with the hand at one position. Sines and cosines of q follow from the triangle of shoulder, elbow and hand.
 struct Posture {
   Vector2d q;  ///< [rad]
   Elbow elbow;
   ArmLinks links;
 };
 
-/// The posture that has the hand at a place, elbow to the right:
+/// The posture for a hand position, elbow to the right:
 ///   q₂ = acos((r² − l₁² − l₂²)/(2 l₁l₂)),  q₁ = α − atan2(l₂ sin q₂, l₁ + l₂ cos q₂)
 /// with (x, y) the hand in the arm's axes, r its distance, α = 90° − atan2(x, y) its direction, −90° ≤ α < 270°. A
-/// place out of reach gives the posture toward it whose elbow is `kSmallestElbowAngle` from straight or from folded, so
-/// that J always has an inverse; the shoulder itself, the one toward the base frame's y axis.
+/// position out of reach gives the posture towards it whose elbow is `kSmallestElbowAngle` from straight or from
+/// folded, so that J always has an inverse; the shoulder itself gives the posture towards the y axis of the base frame.
 [[nodiscard]] Posture posture(const ArmGeometry& geometry, const Vector2d& hand);
 
 /// Its q alone.

@@ -4,14 +4,14 @@
 
 namespace mbk::participant {
 
-/// How much the muscles on both sides of the joints are tensed, between 0 and 1: more where the hand is moved about,
+/// Co-contraction of the muscles on both sides of the joints, between 0 and 1, increasing with the speed of the hand:
 ///   c = min(1, c₀ + c₁ (s/v₀)²),   τ ṡ = |v| − s
 /// It multiplies stiffness by 1 + g_K c, damping by 1 + g_B c and the weight of voluntary corrections by 1 − g_w c.
 /// With c₀ = c₁ = 0 the arm is relaxed and all three are 1.
 class Cocontraction {
  public:
   struct Options {
-    double rest = 0.0;                ///< c₀, of a hand that stands still, 0 to 1
+    double rest = 0.0;                ///< c₀, of a hand at rest, 0 to 1
     double slope = 0.0;               ///< c₁ ≥ 0
     double speed = 0.03;              ///< v₀ [m/s] > 0
     double time_constant = 2.5;       ///< τ [s] > 0
@@ -21,7 +21,7 @@ class Cocontraction {
   };
 
   /// @param sample_time  T [s] > 0
-  /// @fails  usage: a limit named at Options is not kept.
+  /// @fails  usage: a limit stated in Options is violated.
   [[nodiscard]] static Result<Cocontraction> create(const Options& options, double sample_time);
 
   /// One tick with the hand at that speed [m/s].

@@ -4,16 +4,16 @@
 
 namespace mbk::participant {
 
-/// How firmly the hand holds the handle.
+/// Firmness of the grip.
 struct GripOptions {
   double stiffness = 0.0;      ///< k_g [N/m] > 0, the same in all directions
   double damping_ratio = 0.1;  ///< ζ ≥ 0, of the arm's mean inertia on k_g
 };
 
-/// An arm behind a grip that yields: handle and hand are two places, and what is measured at the handle is
+/// An arm with a compliant grip: handle and hand have different positions, and the force measured at the handle is
 ///   F_h = k_g (x_a − x) + d_g (ẋ_a − ẋ),   M ẍ_a + h(x_a, ẋ_a) = −F_h
-/// The hand's own motion is integrated over each tick in small steps along the handle's; between ticks the force
-/// belongs to where the hand is in the middle of the tick. What the arm decides it decides by its own motion.
+/// The hand motion is integrated over each tick in small steps along that of the handle; between ticks the force
+/// corresponds to the hand position in the middle of the tick. Decisions of the arm use its own motion.
 class CompliantGrip : public Load<2> {
  public:
   /// @fails  usage: the stiffness is not above zero, the damping ratio below zero, or a number not finite.

@@ -12,14 +12,14 @@
 
 namespace mbk::participant {
 
-/// Forces of a limb that are neither inertia nor damping nor stiffness, each by its own mechanism: what M ẍ + B ẋ +
-/// K (x − x₀) = −F takes for granted does not hold where one of them is there. To be added to h of LoadDynamics,
+/// Forces of a limb other than inertia, damping and stiffness, each with its own mechanism and each violating an
+/// assumption of M ẍ + B ẋ + K (x − x₀) = −F. To be added to h of LoadDynamics,
 ///   F_c v/√(|v|² + v_c²) + k₃ |x − x₀|² (x − x₀) + g (x(t − d) − x₀) − K ṙ t − A cos φ(t),   dφ = 2πf dt + √(2πw) dW
 /// dry friction, hardening, a stretch response after a delay, an equilibrium that moves at ṙ, and a tremor whose line
 /// has the width w;
 ///   + r K Σ_τ (x − x₀ − z_τ) + e K |x − x₀|,   τ ż_τ = x − x₀ − z_τ
-/// three springs behind dampers (τ = 0.1, 0.5, 1.5 s), and a stiffness that is 1 + e times as large on one side and
-/// 1 − e times on the other. All are zero by default.
+/// three springs in series with dampers (τ = 0.1, 0.5, 1.5 s), and a stiffness that is 1 + e times as large on one side
+/// and 1 − e times on the other. All are zero by default.
 class Departures {
  public:
   struct Options {
@@ -37,11 +37,11 @@ class Departures {
   };
 
   /// @param sample_time  T [s] > 0    @param rest x₀ [m]
-  /// @fails  usage: a limit named at Options is not kept.
+  /// @fails  usage: a limit stated in Options is violated.
   [[nodiscard]] static Result<Departures> create(const Options& options, const Eigen::Vector2d& rest,
                                                  double sample_time, std::uint64_t seed, std::uint32_t stream);
 
-  /// One tick with the hand there.   @param stiffness K [N/m] of the limb
+  /// One tick with this hand position.   @param stiffness K [N/m] of the limb
   void step(double t, const Eigen::Vector2d& position, const Eigen::Matrix2d& stiffness);
 
   /// In a state between ticks [N].

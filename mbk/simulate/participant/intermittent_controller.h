@@ -8,20 +8,20 @@
 
 namespace mbk::participant {
 
-/// Voluntary correction as people make it: now and then, late, in small smooth steps. At the end of each interval
+/// Human voluntary correction: intermittent, delayed, in small smooth steps. At the end of each interval
 ///   ΔF = −w (g_x K [e_x] + g_F [e_F]),   e_x = x(t − d) − x*,   e_F = F_h(t − d) − F*,   |ΔF| ≤ ΔF_max
-/// where [e] is e if |e| is above its threshold, else 0; K is the arm's stiffness now and w a weight from outside
+/// where [e] is e if |e| is above its threshold, else 0; K is the arm's stiffness now and w an external weight
 /// (co-contraction). Each component of ΔF has a random error of standard deviation ε|ΔF|. The voluntary force takes up
 /// ΔF on the minimum-jerk ramp s³(10 − 15s + 6s²), s from 0 to 1 over the ramp's duration (Flash & Hogan 1985), and
 /// leaks away: Ḟ_v = (ΔF ramp)˙ − F_v/τ.
-/// g_x alone holds a place, g_F alone a force; with both gains zero there is no voluntary control. The numbers were
+/// g_x alone holds a position, g_F alone a force; with both gains zero there is no voluntary control. The numbers were
 /// tuned so that the arm of `rigid_arm_options` behaves as in Dyck (2013), figs. 4.3–4.5; they were not fitted to
 /// anyone.
 class IntermittentController {
  public:
   struct Options {
     double interval = 0.28;                    ///< from decision to decision [s] > 0
-    double delay = 0.15;                       ///< d, from what is felt or seen to its decision [s] ≥ 0
+    double delay = 0.15;                       ///< d, from perception to decision [s] ≥ 0
     double position_gain = 0.0;                ///< g_x ≥ 0, of K times the displacement
     double position_threshold = 0.0015;        ///< [m] ≥ 0
     Eigen::Vector2d position = {0.30, -0.05};  ///< x*, base frame [m]
@@ -34,18 +34,18 @@ class IntermittentController {
     double leak = 8.0;                         ///< τ [s] > 0
   };
 
-  /// The first decision falls at a random moment of the first interval.
+  /// The first decision is at a random time of the first interval.
   /// @param sample_time  T [s] > 0; intervals are rounded to whole ticks
-  /// @fails  usage: a limit named at Options is not kept.
+  /// @fails  usage: a limit stated in Options is violated.
   [[nodiscard]] static Result<IntermittentController> create(const Options& options, double sample_time,
                                                              std::uint64_t seed, std::uint32_t stream = 0);
 
-  /// The next step takes a decision. No other looks at the stiffness.
+  /// Whether the next step takes a decision. Only then is the stiffness used.
   [[nodiscard]] bool is_to_decide() const { return to_decision_ == 0; }
 
-  /// One tick. Before the delay has passed, the errors count as zero. Does not allocate.
-  /// @param stiffness  K [N/m], any where it is not to decide   @param weight  w
-  /// @returns  F_v [N], part of what the hand exerts on the robot
+  /// One tick. Before the delay has passed, the errors are zero. Does not allocate.
+  /// @param stiffness  K [N/m], arbitrary if no decision is due   @param weight  w
+  /// @returns  F_v [N], part of the force of the hand on the robot
   const Eigen::Vector2d& step(const Eigen::Vector2d& hand, const Eigen::Vector2d& force_hand_on_robot,
                               const Eigen::Matrix2d& stiffness, double weight);
 

@@ -5,8 +5,8 @@
 
 namespace mbk::participant {
 
-/// A limb whose hand impedance is the same everywhere, M ẍ + B ẋ + K (x − x₀) = −F_h (Dyck 2013, eq. 3.2): exactly
-/// what the estimators assume. M symmetric; B and K any.
+/// A limb whose hand impedance is the same everywhere, M ẍ + B ẋ + K (x − x₀) = −F_h (Dyck 2013, eq. 3.2): exactly as
+/// assumed by the estimators. M symmetric; B and K arbitrary.
 class LinearLimb : public Load<2> {
  public:
   /// @fails  usage: not two axes, not finite, M not symmetric positive semidefinite.
@@ -18,7 +18,7 @@ class LinearLimb : public Load<2> {
     damping_scale_ = damping;
   }
 
-  /// Moves the place at which it rests [m], base frame. May change between ticks.
+  /// Sets the rest position [m], base frame. May change between ticks.
   void rest_at(const Eigen::Vector2d& place) { x0_ = place; }
 
   [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;

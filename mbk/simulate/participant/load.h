@@ -5,8 +5,8 @@
 
 namespace mbk::participant {
 
-/// Where the handle is and how it moves: with two axes the hand in the base frame, with one the robot's angle or place
-/// [rad or m].
+/// Position and motion of the handle: with two axes the hand in the base frame, with one the angle or position of the
+/// robot [rad or m].
 template <int Axes>
 struct HandState {
   AxisVector<Axes> position = AxisVector<Axes>::Zero();  ///< [m]
@@ -15,10 +15,10 @@ struct HandState {
   double rotation_rate = 0.0;                            ///< [rad/s]
 };
 
-/// What a load asks of the hand in one state: it takes the force  Λ ẍ + h  [N] from the robot, so that
+/// Dynamics of a load in one state: it takes the force  Λ ẍ + h  [N] from the robot, so that
 ///   F_h = −(Λ ẍ + h)
-/// is what it exerts on the robot, and exerts the moment `moment` on the last link. With one axis that turns, kg·m² and
-/// N·m.
+/// is the force that it exerts on the robot, and exerts the moment `moment` on the last link. With one axis that turns,
+/// kg·m² and N·m.
 template <int Axes>
 struct LoadDynamics {
   AxisMatrix<Axes> inertia = AxisMatrix<Axes>::Zero();  ///< Λ, symmetric positive semidefinite [kg]
@@ -26,24 +26,24 @@ struct LoadDynamics {
   double moment = 0.0;                                  ///< about the hand, on the last link [N·m]
 };
 
-/// Something that hangs at the handle beyond the force sensor: a limb, a joint such as ankle or elbow, a spring rig,
-/// another robot, or nothing. It decides (reflexes, voluntary control, noise) once a control tick and is a pure
-/// function of the hand's state in between. `tick` and `dynamics` do not allocate.
+/// A load at the handle beyond the force sensor: a limb, a joint such as ankle or elbow, a spring rig, another robot,
+/// or nothing. It decides (reflexes, voluntary control, noise) once per control tick and is a pure function of the hand
+/// state in between. `tick` and `dynamics` do not allocate.
 template <int Axes>
 class Load {
  public:
   virtual ~Load() = default;
 
-  /// The tick at time t [s], of length `sample_time` [s], begins. `force_on_robot` [N] is what the load exerted at the
-  /// tick before.
+  /// The tick at time t [s], of length `sample_time` [s], begins. `force_on_robot` [N] is the force of the load at the
+  /// previous tick.
   virtual void tick(double /*t*/, double /*sample_time*/, const HandState<Axes>& /*hand*/,
                     const AxisVector<Axes>& /*force_on_robot*/) {}
 
-  /// Λ, h and the moment in a state, with what the last tick decided.
+  /// Λ, h and the moment in a state, with the decisions of the last tick.
   [[nodiscard]] virtual LoadDynamics<Axes> dynamics(const HandState<Axes>& hand) const = 0;
 
-  /// The intrinsic impedance for small motions about a place, without voluntary control, reflexes or noise: the truth
-  /// that measurements are compared with. x₀ is where the load would rest.
+  /// The intrinsic impedance for small motions about a position, without voluntary control, reflexes or noise: the true
+  /// values for comparison with measurements. x₀ is the rest position of the load.
   [[nodiscard]] virtual impedance::Model impedance(const AxisVector<Axes>& hand) const = 0;
 
  protected:  // copied only as what they are

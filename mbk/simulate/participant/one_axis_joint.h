@@ -26,10 +26,10 @@ class StretchReflex {
   };
 
   /// @param sample_time  T [s] > 0
-  /// @fails  usage: a limit named at Options is not kept; ωT is not below 1.
+  /// @fails  usage: a limit stated in Options is violated; ωT is not below 1.
   [[nodiscard]] static Result<StretchReflex> create(const Options& options, double sample_time);
 
-  /// One tick with the joint at that velocity [rad/s]; u τ_r [N·m], so with the sign of the stretch, to be added to h.
+  /// One tick at this joint velocity [rad/s]; returns u τ_r [N·m], with the sign of the stretch, to be added to h.
   double step(double velocity);
 
  private:
@@ -45,7 +45,7 @@ class StretchReflex {
 
 /// A joint of one axis with its reflex and a remnant,
 ///   I θ̈ + B θ̇ + K (θ − θ₀) + u τ_r − n = −reaction
-/// the parallel cascade of Kearney et al. (1997). The defaults are an ankle's order of magnitude.
+/// the parallel cascade of Kearney et al. (1997). The defaults have the order of magnitude of an ankle.
 class OneAxisJoint : public Load<1> {
  public:
   struct Options {
@@ -59,7 +59,7 @@ class OneAxisJoint : public Load<1> {
   };
 
   /// @param sample_time  T [s] of the ticks that will follow
-  /// @fails  usage: a limit named at Options is not kept; as the parts.
+  /// @fails  usage: a limit stated in Options is violated; as the parts.
   [[nodiscard]] static Result<OneAxisJoint> create(const Options& options, double sample_time);
 
   void tick(double t, double sample_time, const HandState<1>& joint, const AxisVector<1>& reaction) override;

@@ -8,7 +8,7 @@
 
 namespace mbk::participant {
 
-/// The part of a person's force that nothing explains: noise of one axis or two, independent, each
+/// The unexplained part of a person's force: independent noise of one or two axes, each
 ///   n = (σ₀ + σ₁ |F_v|) z,   z ← a z + √(1 − a²) w,   a = e^{−2π f_c T},   w standard normal
 /// so that z has variance 1 from the first tick and is low-pass noise of first order.
 template <int Axes>
@@ -22,7 +22,7 @@ class Remnant {
   };
 
   /// @param sample_time  T [s] > 0
-  /// @fails  usage: a limit named at Options is not kept.
+  /// @fails  usage: a limit stated in Options is violated.
   [[nodiscard]] static Result<Remnant> create(const Options& options, double sample_time, std::uint64_t seed,
                                               std::uint32_t stream = 0);
 

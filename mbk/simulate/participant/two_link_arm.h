@@ -19,18 +19,18 @@ struct ChainInertia {
 
   static constexpr double kElbowRange = 0.35;  ///< 20° [rad]
 
-  /// a, b, c of the chain that has the inertia I_q at one angle of the elbow.
-  /// @fails  usage: I_q is not symmetric or not finite; |cos q₂| < 0.05, which does not show b; the chain is not
-  ///         positive definite, c (a − c) > b² cos² q₂, within kElbowRange of that angle. Inertias that were measured
-  ///         at one place need not be those of a chain in every posture.
+  /// a, b, c of the chain with the inertia I_q at one elbow angle.
+  /// @fails  usage: I_q is not symmetric or not finite; |cos q₂| < 0.05, which does not determine b; the chain is not
+  /// positive definite, c (a − c) > b² cos² q₂, within kElbowRange of that angle. Inertias measured at one position may
+  /// be impossible for a chain in other postures.
   [[nodiscard]] static Result<ChainInertia> from_matrix(const Matrix2d& I_q, double elbow_angle);
 };
 
-/// What a relaxed arm has at its joints (shoulder, elbow). The defaults give about the first participant of
-/// Dyck (2013), tables 3.3 and 3.5, with the hand 0.52 m ahead of the shoulder.
+/// Joint parameters of a relaxed arm (shoulder, elbow). The defaults are approximately those of the first participant
+/// of Dyck (2013), tables 3.3 and 3.5, with the hand 0.52 m ahead of the shoulder.
 struct JointParameters {
   Matrix2d inertia = (Matrix2d() << 0.36, 0.10, 0.10, 0.072).finished();  ///< I_q [kg·m²], symmetric
-  double elbow_angle = 1.2886;                                            ///< q₂ at which `inertia` holds [rad]
+  double elbow_angle = 1.2886;                                            ///< q₂ for which `inertia` is valid [rad]
   Matrix2d damping = (Matrix2d() << 1.45, 0.5, 0.5, 0.5).finished();      ///< D_q [N·m·s/rad]
   Matrix2d stiffness = (Matrix2d() << 11.0, 2.9, 2.9, 4.8).finished();    ///< K_q [N·m/rad], any
 };
@@ -41,17 +41,17 @@ struct JointParameters {
 /// @fails  usage: not two axes; not finite; x₀ is out of the arm's reach.
 [[nodiscard]] Result<JointParameters> joint_parameters(const ArmGeometry& geometry, const impedance::Model& hand);
 
-/// Passive mechanics of an arm of two links in the plane, at any posture:
+/// Passive mechanics of a planar two-link arm, at any posture:
 ///   I(q) q̈ + C(q, q̇) q̇ + s_D D_q q̇ + s_K K_q (q − q₀) = −Jᵀ F_h
-/// F_h the force that the hand exerts on the robot. Beyond reach the arm keeps its last possible posture
-/// (`joint_angles`). What follows from the hand's place alone is kept for the place that was asked for last, so an arm
-/// is not for two threads at once.
+/// F_h the force that the hand exerts on the robot. Out of reach the arm keeps its last possible posture
+/// (`joint_angles`). Quantities that depend only on the hand position are cached for the last position, so an arm must
+/// not be used by two threads at once.
 class TwoLinkArm : public Load<2> {
  public:
   struct Options {
     ArmGeometry geometry;
     JointParameters joints;
-    Vector2d equilibrium = {0.30, -0.05};  ///< where the hand rests, base frame [m]; gives q₀
+    Vector2d equilibrium = {0.30, -0.05};  ///< rest position of the hand, base frame [m]; determines q₀
   };
 
   /// @fails  usage: a length is not above zero; a number is not finite; the equilibrium is out of reach; as
@@ -64,7 +64,7 @@ class TwoLinkArm : public Load<2> {
     damping_scale_ = damping;
   }
 
-  /// Moves the place at which it rests [m], base frame. May change between ticks.
+  /// Sets the rest position [m], base frame. May change between ticks.
   void rest_at(const Vector2d& place) {
     options_.equilibrium = place;
     q0_ = joint_angles(options_.geometry, place);
@@ -72,9 +72,9 @@ class TwoLinkArm : public Load<2> {
 
   [[nodiscard]] LoadDynamics<2> dynamics(const HandState<2>& hand) const override;
 
-  /// Linearised about a place at which the arm is held at rest, with today's s_K and s_D:
+  /// Linearised about a position at which the arm is held at rest, with the current s_K and s_D:
   ///   M = J⁻ᵀ I J⁻¹,  B = J⁻ᵀ s_D D_q J⁻¹,  K = J⁻ᵀ (s_K K_q + Σ F_k ∂²x_k/∂q²) J⁻¹,  F = −J⁻ᵀ s_K K_q (q − q₀)
-  /// with F what the hand then exerts on the robot, and x₀ where that linear arm would rest: K (x − x₀) = −F.
+  /// with F the force of the hand on the robot there, and x₀ the rest position of the linear arm: K (x − x₀) = −F.
   [[nodiscard]] impedance::Model impedance(const Vector2d& hand) const override;
 
   /// Its K alone; does not allocate.
@@ -90,7 +90,7 @@ class TwoLinkArm : public Load<2> {
  private:
   TwoLinkArm(const Options& options, const ChainInertia& inertia)
       : options_(options), inertia_(inertia), q0_(joint_angles(options.geometry, options.equilibrium)) {}
-  /// The arm with the hand at one place.
+  /// The arm with the hand at one position.
   struct AtPlace {
     Vector2d hand = Vector2d::Constant(kNaN);
     Posture posture;
