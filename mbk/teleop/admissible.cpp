@@ -272,7 +272,7 @@ Result<AdmissibleSet> admissible_set(const PortEquations& equations, const Ratio
   AdmissibleSet set;
   set.low = lti::to_double(low);
   set.high = lti::to_double(high);
-  bool open = false;  // the last interval goes on
+  bool open = false;  // the last interval continues
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const bool before = i > 0 && inside[i - 1], after = i < inside.size() && inside[i];
     std::vector<Rational> beside;

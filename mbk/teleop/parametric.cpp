@@ -121,7 +121,7 @@ namespace {
 
 constexpr double kGrowth = 3.5;  // of a step's cost with its number: degree squared, and digits
 
-/// What the first `steps` of an elimination of n steps cost, up to a factor.
+/// Cost of the first `steps` of an elimination of n steps, up to a factor.
 double cost_of_steps(int steps, int n) {
   double cost = 0.0;
   for (int i = 1; i <= steps; ++i) cost += (n - i + 1) * std::pow(i, kGrowth);

@@ -139,7 +139,7 @@ PortEquations PortEquations::of(const TwoPort& two_port) {
 }
 
 PortEquations PortEquations::with_shortage(Port port, const Polynomial& a) const {
-  // V = V′ + a I, where V′ is what is left for the passive rest of the termination
+  // V = V′ + a I, where V′ is the effort of the passive part of the termination
   const std::size_t effort = port == Port::one ? 0 : 1;
   PortEquations result = *this;
   for (auto& row : result.rows) row[effort + 2] = row[effort + 2] + row[effort] * ParametricPolynomial({a});

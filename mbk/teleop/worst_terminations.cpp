@@ -19,7 +19,7 @@ Complex impedance(const Termination& termination, double omega) {
   return {termination.damping, termination.mass * omega - termination.stiffness / omega};
 }
 
-/// What port `first` shows when the other one is closed by z.
+/// The impedance at port `first` when the other port is terminated by z.
 Complex driving_point(const Eigen::Matrix2cd& z, Index first, Complex termination) {
   return z(first, first) - z(0, 1) * z(1, 0) / (z(1 - first, 1 - first) + termination);
 }
@@ -32,7 +32,7 @@ std::optional<double> lowest_at(const Eigen::Matrix2cd& z, Index first) {
   return other.real() * std::tan(0.5 * std::arg(p)) - other.imag();
 }
 
-/// σ/ω, of which more than a hundredth counts no more.
+/// σ/ω; values above a hundredth are treated alike.
 double per_radian(const WorstTerminations& found) {
   constexpr double kEnough = 0.01;
   return std::min(found.growth / found.frequency.value, kEnough);
@@ -77,7 +77,7 @@ class TerminationSearch {
   [[nodiscard]] std::optional<Candidate> at(double omega, Index first) const {
     const Eigen::Matrix2cd z = z_at(omega);
     if (!z.allFinite()) return std::nullopt;
-    // a port that lacks resistance by itself shows it when the other cannot move
+    // a port with negative resistance of its own shows it when the other cannot move
     constexpr double kClamp = 1e3;
     const double reactance = lowest_at(z, first).value_or(kClamp * std::abs(z(1 - first, 1 - first)));
     const Termination second = pure(reactance, omega);

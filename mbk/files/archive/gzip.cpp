@@ -34,7 +34,7 @@ tl::unexpected<Error> too_large(std::uint64_t limit) {
       "unpack it with gunzip and check its contents");
 }
 
-/// Bytes that come piece by piece.
+/// Bytes that arrive in pieces.
 class GrowingBytes {
  public:
   GrowingBytes(std::uint64_t expected, std::uint64_t limit)
@@ -91,7 +91,7 @@ Result<Buffer> gunzip(std::span<const std::byte> file) {
   z_stream stream{};
   if (inflateInit2(&stream, kGzip) != Z_OK) return bad_data("there is not enough memory to unpack the gzip file");
   const std::unique_ptr<z_stream, EndInflating> end(&stream);
-  // The trailer says the size of the last member, modulo 2³². It is believed as far as such a file can hold it.
+  // The trailer gives the size of the last member, modulo 2³². It is used up to the limit of such a file.
   const std::uint64_t limit = largest_unpacked(file.size());
   const std::uint64_t said = std::min<std::uint64_t>(ByteView{file}.at<std::uint32_t>(file.size() - 4), limit);
   MBK_TRY(check_memory(said));

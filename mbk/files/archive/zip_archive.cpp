@@ -22,7 +22,7 @@ tl::unexpected<Error> damaged(std::string_view what) {
                   "copy the file again from where it was recorded");
 }
 
-/// The archive, as minizip reads it: a place in bytes that stand in memory.
+/// The archive, as minizip reads it: a position in bytes in memory.
 struct Cursor {
   std::span<const std::byte> file;
   std::uint64_t at = 0;

@@ -20,7 +20,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr double kOldestAge = 89.0;
-/// Metadata that stand in participants.tsv, and what they are there.
+/// Metadata stored in participants.tsv, and their column names.
 constexpr auto kOfParticipants = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"age", "age of the participant in years (89+ for 89 and above)"},
      {"sex", "sex of the participant"},
@@ -71,7 +71,7 @@ void append(std::string& text, double value) {
   text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
 }
 
-/// What channels.tsv says of a channel.
+/// The description of a channel in channels.tsv.
 struct Description {
   std::string type, component, point, units, description;
 };
@@ -192,7 +192,7 @@ class Encoder {
     }
   }
 
-  /// A table with one row more, unless one begins with that key. Columns of it that nobody fills are n/a.
+  /// A table with one row more, unless one begins with that key. Its empty columns are n/a.
   static Result<std::string> with_row(const std::optional<std::string>& table, const std::vector<std::string>& columns,
                                       const std::vector<std::string>& cells, const std::string& path) {
     if (!table) {
@@ -343,7 +343,7 @@ class Encoder {
   const Recording& recording_;
   const BidsName& name_;
   const std::function<std::optional<std::string>(const std::string&)>& existing_;
-  std::optional<double> rate_;  ///< [Hz] that says the time; nothing where it stands in a channel
+  std::optional<double> rate_;  ///< [Hz] that defines the time; nothing if it is a channel
   std::vector<BidsFile> files_;
   std::map<std::string, int> types_;    ///< channels of each
   std::map<std::string, bool> points_;  ///< that are tracked

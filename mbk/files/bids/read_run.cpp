@@ -254,7 +254,7 @@ std::string without_tracking_system(const std::string& stem) {
   return kept;
 }
 
-/// Whether every part of a more general name, before its suffix, stands in that of the recording.
+/// Whether every part of a more general name, before its suffix, occurs in that of the recording.
 bool applies(std::string_view general, const std::vector<std::string_view>& parts) {
   return general.empty() || std::ranges::all_of(split(general, '_'), [&](std::string_view part) {
            return part.empty() || std::ranges::find(parts, part) != parts.end();

@@ -55,7 +55,7 @@ double value_at(const C3dParameter& parameter, std::size_t i, bool unsigned_word
   }
 }
 
-/// Type, dimensions and data of a parameter, which stand at `offset`.
+/// Type, dimensions and data of a parameter at `offset`.
 Result<C3dParameter> parameter_at(const C3dBytes& file, std::size_t offset, std::string_view name) {
   const std::string where = fmt::format("parameter {}", name);
   const auto short_of = [&] {
@@ -129,7 +129,7 @@ Result<C3dParameters> C3dParameters::read(const C3dBytes& file, std::size_t begi
     at = link + distance;
     parameters.terminated_ = false;
   }
-  for (auto& [key, parameter] : found) {  // a group's record may stand behind its parameters
+  for (auto& [key, parameter] : found) {  // a group's record may follow its parameters
     const auto group = group_names.find(key.first);
     if (group != group_names.end()) parameters.groups_[group->second].try_emplace(key.second, std::move(parameter));
   }

@@ -83,7 +83,7 @@ std::optional<double> take_clock(std::string_view& text) {
   return kHour * *hours + kMinute * *minutes + *seconds + fraction;
 }
 
-/// "Z", "+01:00", "-0530" or "+01" that is the whole text [s]; 0 where there is none.
+/// "Z", "+01:00", "-0530" or "+01" that is the whole text [s]; 0 if there is none.
 std::optional<double> zone(std::string_view text) {
   if (text.empty() || text == "Z" || text == "z") return 0.0;
   const bool west = text.starts_with('-');

@@ -96,7 +96,7 @@ void DiskPages::add(Coming& coming, const double* from, Index count) {
     failed_ = true;
     arrived(coming);
   }
-  // What stands on no whole page, or everything.
+  // Numbers that do not fill a page, or all.
   double* const to = coming.first + coming.come;
   const Index before = coming.on_disk ? static_cast<Index>((first - begin) / sizeof(double)) : count;
   std::copy_n(from, before, to);

@@ -72,7 +72,7 @@ Result<void> read_bytes(int descriptor, std::size_t from, void* to, std::size_t 
 
 using Bytes = std::unique_ptr<std::byte[], Buffer::Free>;
 
-/// In large pages where the system has them, but for the end: what is not used takes no memory.
+/// In large pages if the system has them, except at the end: unused parts take no memory.
 Bytes mapped_bytes(std::size_t n) {
   constexpr std::size_t kPage = std::size_t{2} << 20;
   const std::size_t whole = (n + kPage - 1) / kPage * kPage;  // which a system aligns
@@ -202,7 +202,7 @@ void FileInPassing::read_ahead() {
     sum->add(std::as_bytes(std::span(to, count)));
     return {};
   };
-  // With both, a system that has no thread left does it when it is asked for.
+  // With both flags, a system without a free thread runs it on demand.
   const bool several = size_ > kPiece;
   ahead_ = std::async(several ? std::launch::async | std::launch::deferred : std::launch::deferred, read);
 }

@@ -13,7 +13,7 @@ namespace mbk::recording {
 namespace {
 
 constexpr double kLowest = 1e-9, kHighest = 1e9;  ///< of a rate or a period
-constexpr double kSame = 1e-6;                    ///< relative: rates that are said twice
+constexpr double kSame = 1e-6;                    ///< relative tolerance of rates stated twice
 
 /// The small letters and digits of a name: "samplingrate" of "Sampling_Rate".
 std::string letters_of(std::string_view name) {

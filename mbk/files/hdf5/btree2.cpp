@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxDepth = 32;                    ///< levels
 constexpr std::size_t kPrefix = 4 + 1 + 1;               ///< [bytes] before the records of a node
-constexpr std::size_t kFrame = kPrefix + kChecksumSize;  ///< [bytes] of a node that are no records
+constexpr std::size_t kFrame = kPrefix + kChecksumSize;  ///< [bytes] of a node other than records
 
 /// The nodes of one level; level 0 are the leaves.
 struct Level {

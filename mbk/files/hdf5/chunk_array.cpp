@@ -33,7 +33,7 @@ struct Pages {
   }
 };
 
-/// What both kinds of arrays share: blocks of elements, cut into pages with a checksum each where they are large.
+/// Shared by both kinds of arrays: blocks of elements; large ones are split into pages with a checksum each.
 struct Array {
   File& file;
   bool packed;
@@ -62,7 +62,7 @@ struct Array {
 
   /// A data block: in one piece, or in pages.
   /// @param extra    [bytes] between the prefix and the elements, or the pages
-  /// @param written  of which pages were written; empty: the data block itself says that
+  /// @param written  which pages were written; empty: stated in the data block
   Result<void> data_block(std::uint64_t address, std::string_view signature, std::size_t extra, std::uint64_t first,
                           std::uint64_t count, Pages written) {
     const std::uint64_t per_page = std::uint64_t{1} << page_bits;
@@ -188,7 +188,7 @@ struct ExtensibleArray : Array {
     return data_blocks(in, super, first, in.take(blocks * bitmap));
   }
 
-  /// The data blocks whose addresses come next; their elements count from `first`, which moves on.
+  /// The data blocks whose addresses follow; their elements count from `first`, which is advanced.
   /// @param written  the bits of all their pages, without gaps: the room for them is rounded up for every block, but
   ///                 the library fills it from the start
   Result<void> data_blocks(Cursor& addresses, unsigned super, std::uint64_t& first, Bytes written) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned kDeflate = 1, kShuffle = 2, kFletcher32 = 3, kSzip = 4, kFirstNamed = 256, kLzf = 32000;
 
-/// Adds one filter; false where there are several of the kind.
+/// Adds one filter; false if there are several of the kind.
 bool add(Filters& filters, Filters::Kind kind, std::uint32_t element_size = 0) {
   for (const auto& step : filters.steps) {
     if (step.kind == kind) return false;
@@ -39,7 +39,7 @@ struct Interleaved {
         high(__builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31)) {}
 };
 
-/// Shuffled, the first bytes of all elements stand first, then all the second bytes. Of elements of eight bytes,
+/// In shuffled data the first bytes of all elements come first, then all second bytes. Of elements of eight bytes,
 /// sixteen at a time: planes that are four apart are interleaved, then those two apart, then neighbours.
 /// @returns how many elements are done, a multiple of sixteen
 std::size_t unshuffle_doubles(const std::byte* from, std::size_t count, std::byte* to) {

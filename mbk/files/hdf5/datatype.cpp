@@ -120,7 +120,7 @@ std::string name_of(Cursor& in, unsigned version) {
   return name;
 }
 
-/// Numbers of the type that stands inside; their names are not kept.
+/// Numbers of the inner type; their names are discarded.
 Result<Datatype> enumeration(const Header& header, Cursor& in, int depth) {
   auto type = any_type(in, depth + 1);
   if (!type) return type;
@@ -225,14 +225,14 @@ Result<Datatype> reference(const Header& header, Cursor& in) {
 
 Result<Datatype> variable_length(const Header& header, Cursor& in, int depth) {
   constexpr unsigned kText = 1;
-  const auto inner = any_type(in, depth + 1);  // of which only its end is of use
+  const auto inner = any_type(in, depth + 1);  // only its end is used
   if (!inner) return inner;
   if ((header.bits & 0x0Fu) != kText) return unread(header, "of variable-length lists");
   if (header.size != 4 + in.sizes().address + 4) return damaged("its datatype is broken");
   return text(header, Datatype::Kind::long_text);
 }
 
-/// A type that is not read, whose description takes so many bytes.
+/// An unsupported type whose description has `bytes` bytes.
 Datatype passed_over(const Header& header, Cursor& in, std::uint64_t bytes, std::string what) {
   in.skip(bytes);
   return unread(header, std::move(what));

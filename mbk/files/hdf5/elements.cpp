@@ -27,7 +27,7 @@ void copy_numbers(Bytes bytes, bool big_endian, double* out) {
   }
 }
 
-/// What doubles leave of integers of 64 bits.
+/// Remainders of 64-bit integers after conversion to double.
 template <class Number>
 void put_rests(Bytes bytes, bool big_endian, std::size_t first, const Vector& numbers, Rests& rests) {
   const bool swapped = big_endian != (std::endian::native == std::endian::big);
@@ -122,7 +122,7 @@ Result<void> Elements::allocate(std::uint64_t count) {
   if (are_texts) {
     texts_.resize(static_cast<std::size_t>(count));
   } else if (type_.kind == Kind::reference) {
-    MBK_TRY(file_.budget.keep(count, sizeof(std::string)));  // paths will stand there
+    MBK_TRY(file_.budget.keep(count, sizeof(std::string)));  // paths are inserted later
     addresses_.resize(static_cast<std::size_t>(count));
   } else {
     numbers_.resize(static_cast<Index>(count));

@@ -19,7 +19,7 @@ tl::unexpected<Error> broken() {
   return damaged("a fractal heap is broken");
 }
 
-/// The checksum of a direct block stands before its objects and is that of the whole block with zeros in its place.
+/// The checksum of a direct block precedes its objects and is that of the whole block with zeros in its place.
 bool own_checksum_is_right([[maybe_unused]] Bytes block, [[maybe_unused]] Cursor at_checksum) {
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
   return true;

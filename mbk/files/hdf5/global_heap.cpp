@@ -29,7 +29,7 @@ Result<GlobalHeap::Collection> GlobalHeap::read(File& file, std::uint64_t addres
     const std::uint64_t number = in.word();
     in.skip(6);  // references and a reserved field
     const std::uint64_t length = in.length();
-    if (number == 0) break;  // what is left is free
+    if (number == 0) break;  // the rest is free
     const Bytes object = in.take(length);
     if (!in.ok() || !objects.emplace(number, object).second) return broken_heap(address);
     MBK_TRY(file.budget.keep(1, kNodeMemory));

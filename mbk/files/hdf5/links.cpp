@@ -16,7 +16,7 @@ class LinkReader {
   explicit LinkReader(File& file) : file_(file) {}
   std::vector<Link> links;
 
-  /// A symbol table message: a B-tree of nodes whose names stand in a local heap (III.B to III.D).
+  /// A symbol table message: a B-tree of nodes whose names are in a local heap (III.B to III.D).
   Result<void> symbol_table(Cursor message) {
     const std::uint64_t tree = message.address();
     const std::uint64_t heap = message.address();
@@ -86,7 +86,7 @@ class LinkReader {
     return add(std::move(link));
   }
 
-  /// A link info message (IV.A.2.c): the links stand in a fractal heap, if there is one.
+  /// A link info message (IV.A.2.c): the links are in a fractal heap, if there is one.
   Result<void> link_info(Cursor in) {
     const int version = in.byte();
     const unsigned flags = in.byte();

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxHops = 16;  ///< soft links that lead to soft links
 
-/// Walks the links of a file, builds the tree in place, and then says where its references lead. What is damaged is
+/// Walks the links of a file, builds the tree in place, and then resolves its references. What is damaged is
 /// left with the reason in its place, and the rest is read; only a budget that is used up ends the walk.
 class Tree {
  public:
@@ -66,7 +66,7 @@ class Tree {
     return {};
   }
 
-  /// What a link leads to.
+  /// The target of a link.
   /// @param parent  address of the group that the link is in
   Result<void> object(std::uint64_t parent, const Link& link, const std::string& path, int depth, Group& place) {
     if (auto ok = reading_.file.budget.object(path.size()); !ok) return tl::unexpected(ok.error().in(path));
@@ -120,7 +120,7 @@ class Tree {
     return {};
   }
 
-  /// The address of the object at a path, or kUndefined where there is none.
+  /// The address of the object at a path, or kUndefined if there is none.
   /// @param from  address of the group that the path begins in
   std::uint64_t follow(std::string_view path, std::uint64_t from, int hops) {
     std::uint64_t at = path.starts_with('/') ? root_address_ : from;

@@ -64,7 +64,7 @@ void append(std::string& bytes, double value) {
   bytes.append(raw, sizeof raw);
 }
 
-/// First bytes of all numbers, then second bytes, …: what changes slowly comes to stand together.
+/// First bytes of all numbers, then second bytes, …: groups slowly changing bytes.
 std::string shuffled(std::string_view bytes, std::size_t size) {
   const std::size_t count = bytes.size() / size;
   std::string out(bytes.size(), '\0');

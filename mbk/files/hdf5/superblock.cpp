@@ -18,7 +18,7 @@ bool possible(std::size_t size) {
   return size == 2 || size == 4 || size == 8;
 }
 
-/// Versions 0 and 1; the cursor stands behind the version.
+/// Versions 0 and 1; the cursor is after the version.
 void read_old(Cursor& in, int version, Superblock& superblock, std::uint64_t& base, std::uint64_t& end) {
   in.skip(4);  // versions of other parts, and a reserved byte
   superblock.sizes.address = in.byte();

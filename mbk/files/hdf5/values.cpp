@@ -32,7 +32,7 @@ void store(Reading& reading, Value& place, std::optional<Group>& table, const Da
   }
 }
 
-/// Elements that stand one after the other.
+/// Contiguous elements.
 Result<void> read_plain(Reading& reading, const Dataspace& space, const Datatype& type, Bytes bytes, Value& place,
                         std::optional<Group>& table) {
   std::uint64_t size = 0;
@@ -89,7 +89,7 @@ Result<void> read_attribute(Reading& reading, Bytes message, Attributes& all) {
   return {};
 }
 
-/// An attribute info message: the attributes stand in a fractal heap, if there is one.
+/// An attribute info message: the attributes are in a fractal heap, if there is one.
 Result<void> read_dense_attributes(Reading& reading, Cursor in, Attributes& all) {
   File& file = reading.file;
   const int version = in.byte();
@@ -119,7 +119,7 @@ Result<Bytes> body_of(File& file, const ObjectHeader& header, MessageType type) 
   return message->shared ? shared_body(file, type, message->body) : message->body;
 }
 
-/// What is known of a dataset before its elements are read.
+/// Description of a dataset before its elements are read.
 struct Description {
   Datatype type;
   Dataspace space;

@@ -30,7 +30,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-/// What is not UTF-8 is replaced: a text that cannot be kept must not end a trial.
+/// Invalid UTF-8 is replaced: an invalid text must not end a trial.
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -236,7 +236,7 @@ Result<void> Writer::write_block(std::uint32_t kind, std::span<const std::byte> 
   std::memcpy(block_.data() + sizeof(head), payload.data(), payload.size());
   if (!write_at(descriptor_, block_, end_)) {
     const Error error = failure("cannot be written");
-    if (ftruncate(descriptor_, end_) != 0) return tl::unexpected(error);  // what is there is written over
+    if (ftruncate(descriptor_, end_) != 0) return tl::unexpected(error);  // existing data is overwritten
     return tl::unexpected(error);
   }
   end_ += static_cast<std::int64_t>(block_.size());

@@ -140,7 +140,7 @@ std::vector<Block> blocks_of1(Bytes bytes, Checksums& checksums) {
   return blocks;
 }
 
-/// Ticks of a block that is whole, but not one that the program writes, are not believed.
+/// Ticks of an intact block that the program does not write are rejected.
 bool numbers_rise(Bytes bytes, const Block& block) {
   std::uint64_t next = block.next_tick;
   for (std::size_t at = block.at; at < block.at + block.bytes; at += sizeof(Tick)) {

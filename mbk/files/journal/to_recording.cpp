@@ -71,7 +71,7 @@ Rows rows_of(const Journal& journal) {
   return rows;
 }
 
-/// The value of every row as a channel; with a latency, that of the tick so many ticks later, which belongs to it. The
+/// The value of every row as a channel; with a latency, the value `latency` ticks later, which belongs to it. The
 /// last rows, whose own has not come, keep the last one.
 template <class Get>
 Channel channel(const Rows& rows, const QuantityChannels& quantity, std::size_t axis, int latency, const Get& get) {

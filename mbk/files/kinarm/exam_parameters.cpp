@@ -17,7 +17,7 @@ constexpr auto kPersonal = std::to_array<std::string_view>(
     {"SUBJECT",   "PATIENT",   "PARTICIPANT", "PERSON", "NAME",   "BIRTH",   "DOB",     "OPERATOR", "EXAMINER",
      "THERAPIST", "CLINICIAN", "COMMENT",     "NOTES",  "FILE",   "ADDRESS", "PHONE",   "MAIL",     "MRN",
      "GENDER",    "SEX",       "AGE",         "HANDED", "HEIGHT", "WEIGHT",  "DIAGNOS", "STUDY",    "USER"});
-/// Groups of which texts are taken.
+/// Groups whose texts are copied.
 constexpr auto kTechnical =
     std::to_array<std::string_view>({"TRIAL", "ANALOG", "POINT", "CALIBRATION", "RIGHT_KINARM", "LEFT_KINARM",
                                      "TARGET_TABLE", "TP_TABLE", "LOAD_TABLE", "EVENTS"});
@@ -32,7 +32,7 @@ std::string capitals(std::string_view text) {
   return result;
 }
 
-/// AGE is a word of SUBJECT_AGE and not of STAGE; SUBJECT stands in SUBJECTS, too.
+/// AGE is a word of SUBJECT_AGE and not of STAGE; SUBJECT is also found in SUBJECTS.
 bool speaks_of(std::string_view name, std::string_view word) {
   for (std::size_t at = name.find(word); at != name.npos; at = name.find(word, at + 1)) {
     const auto is_letter = [&](std::size_t k) { return k < name.size() && name[k] >= 'A' && name[k] <= 'Z'; };
@@ -70,7 +70,7 @@ std::string value_text(const ExamValue& value) {
   if (value.is_text) return fmt::format("{}", fmt::join(value.texts, "; "));
   std::string text;
   for (const double number : value.numbers) {
-    const auto real = static_cast<float>(number);  // the shortest text that stands for what is stored
+    const auto real = static_cast<float>(number);  // the shortest text that represents the stored value
     text += text.empty() ? "" : " ";
     text += static_cast<double>(real) == number ? fmt::format("{}", real) : fmt::format("{:.15g}", number);
   }
@@ -115,7 +115,7 @@ void ExamParameters::drop_unused() {
 void ExamParameters::remove_signals() {
   for (const char* group : {"RIGHT_HANDX", "RIGHT_HANDY", "LEFT_HANDX", "LEFT_HANDY", "FILE_NAME"})
     groups_.erase(group);
-  // What it says of points and analog channels is of its own, which are none.
+  // Its statements on points and analog channels refer to its own, which do not exist.
   groups_.erase("POINT");
   const auto analog = groups_.find("ANALOG");
   if (analog != groups_.end()) std::erase_if(analog->second, [](const auto& value) { return value.first != "RATE"; });

@@ -49,7 +49,7 @@ std::string unit_name(const std::string& unit) {
   return unit;
 }
 
-/// Whether a version, "3.4.2.1021", comes before another. A part that is no number counts as 0.
+/// Whether a version, "3.4.2.1021", comes before another. A part that is not a number counts as 0.
 bool is_before(std::string_view version, std::array<int, 3> other) {
   for (const int known : other) {
     int own = 0;
@@ -131,7 +131,7 @@ JointMotion joints_of(Arm arm, const ExamTrial& trial, std::vector<std::string>&
   return joints;
 }
 
-/// [m] in one of the unit of a point; 0 where it is no length.
+/// [m] in one of the unit of a point; 0 if it is not a length.
 double metres_in(const std::string& unit) {
   if (unit.empty() || unit == "m") return 1.0;
   if (unit == "cm") return 1e-2;

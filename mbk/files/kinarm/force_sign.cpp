@@ -93,7 +93,7 @@ double ForceSignTest::residual(const Moments& sums, double sign, const Fit& fit)
          2.0 * fit.mass * fit.friction * sums.av + fit.friction * fit.friction * sums.vv;
 }
 
-/// The residual is convex: either the free minimum lies within the bounds, or the least stands on one of their edges.
+/// The residual is convex: either the free minimum lies within the bounds, or the minimum is on one of their edges.
 ForceSignTest::Fit ForceSignTest::best(const Moments& sums, double sign) {
   const double with_a = sums.commanded_a + sign * sums.sensor_a, with_v = sums.commanded_v + sign * sums.sensor_v;
   const auto within = [](double value, double largest) { return std::clamp(value, 0.0, largest); };

@@ -94,7 +94,7 @@ HandSignal HandGeometry::commanded_force(const JointMotion& joints) const {
 }
 
 Result<HandGeometry> geometry_of(Arm arm, const ExamParameters& parameters) {
-  // The version of a robot stands with its own arm, or with the right one where both belong to one robot.
+  // The version of a robot is stored with its own arm, or with the right one if both belong to one robot.
   const std::string own = fmt::format("{}_KINARM", capitals_of(arm));
   std::string version = parameters.text(own, "VERSION");
   if (version.empty()) version = parameters.text("RIGHT_KINARM", "VERSION");

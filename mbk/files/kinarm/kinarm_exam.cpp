@@ -35,7 +35,7 @@ struct Part {
   std::optional<double> number, task;  ///< TRIAL:TRIAL_NUM, TRIAL:TP
   double break_id = 0.0;               ///< TRIAL:BREAK_ID
   double frames = 0.0, rate_hz = 0.0;
-  std::int64_t events = -1;  ///< -1: not said
+  std::int64_t events = -1;  ///< -1: not stated
 };
 
 struct Trial {
@@ -51,7 +51,7 @@ bool everything(std::string_view /*name*/) {
   return true;
 }
 
-/// "raw/02_01_01/header.bin" → "02_01_01"; "" for what stands elsewhere.
+/// "raw/02_01_01/header.bin" → "02_01_01"; "" for other members.
 std::string_view folder_of(std::string_view member) {
   if (!member.starts_with(kRaw)) return {};
   member.remove_prefix(kRaw.size());
@@ -445,7 +445,7 @@ struct KinarmExam::Open {
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t index = count > 1 ? k * (trials.size() - 1) / (count - 1) : 0;
       const auto trial = load(trials[index], tells_of_force);
-      if (!trial) continue;  // what is wrong with a trial is said where it is read
+      if (!trial) continue;  // errors of a trial are reported when it is read
       std::vector<std::string> unsaid;
       const HandOfArm hand = hand_of(arm, *trial, unsaid);
       test.add(evidence_of(arm, *trial, hand));

@@ -45,7 +45,7 @@ struct Line {
     return row ? Slice{index, rows, columns} : Slice{index * rows, 1, rows};
   }
   [[nodiscard]] Index size() const { return (whole().length + step - 1) / step; }
-  /// Where a sample stands in the array.
+  /// Position of a sample in the array.
   [[nodiscard]] Index at(Index sample) const { return whole().begin + sample * step * whole().stride; }
   [[nodiscard]] auto samples(Index begin, Index count) const {
     return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(array->values.data() + at(begin), count,
@@ -55,7 +55,7 @@ struct Line {
   [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
 };
 
-/// A channel and where it stands in the file.
+/// A channel and its source in the file.
 struct Signal {
   const ChannelKind* kind = nullptr;
   Line line;
@@ -89,7 +89,7 @@ bool same_rate(double a_hz, double b_hz) {
   return std::abs(a_hz - b_hz) <= kRateTolerance * b_hz;
 }
 
-/// How many times `slow` goes into `fast`; 0 where it is no whole number.
+/// The ratio `fast`/`slow`; 0 if it is not an integer.
 Index whole_ratio(double fast_hz, double slow_hz) {
   const double ratio = slow_hz > 0.0 ? fast_hz / slow_hz : 0.0;
   return ratio >= 0.5 && ratio < 1e6 && same_rate(std::round(ratio) * slow_hz, fast_hz)
@@ -111,7 +111,7 @@ bool is_matrix(const Array& array) {
   return !array.is_block() && std::min(array.values.rows(), array.values.cols()) > 1;
 }
 
-/// Those of some rows that are NaN throughout: column by column, as they stand in memory.
+/// Those of some rows that are NaN throughout, checked column by column in memory order.
 std::vector<Index> not_recorded_of(std::vector<Index> rows, const SharedMatrix& values) {
   for (Index column = 0; column < values.cols() && !rows.empty(); ++column) {
     std::erase_if(rows, [&](Index row) { return !std::isnan(values(row, column)); });
@@ -163,7 +163,7 @@ std::string with_dots(std::string_view name) {
   return dotted;
 }
 
-/// The array of that name; where there is none, the only one that is a channel of that name; or the only one whose name
+/// The array of that name; otherwise the only one that is a channel of that name; or the only one whose name
 /// differs in dots and slashes alone.
 const Array* find(const Contents& contents, std::string_view name) {
   const auto exact = std::ranges::find(contents.arrays, name, &Array::name);
@@ -264,7 +264,7 @@ class Assembler {
                                                   remedy));
   }
 
-  /// What a map of the variables could look like, with names that there are: "\"time=NAME,x=pos[1],Fx=force[1]\"".
+  /// An example map with existing variable names: "\"time=NAME,x=pos[1],Fx=force[1]\"".
   [[nodiscard]] std::string example_map() const {
     std::vector<std::string> matrices, vectors;
     for (const Array& array : contents_.arrays) {
@@ -294,7 +294,7 @@ class Assembler {
         fmt::format("variable '{}'", array.name));
   }
 
-  /// The logs matrix, or nullptr where there is none.
+  /// The logs matrix, or nullptr if there is none.
   Result<const Array*> find_logs() const {
     if (contents_.table) return nullptr;
     const std::string requested = options_.variable.empty() ? "logs" : options_.variable;
@@ -303,7 +303,7 @@ class Assembler {
     if (!options_.variable.empty() && named == nullptr && !names_structure()) {
       return bad_data(fmt::format("variable '{}' does not exist; {}", options_.variable, inventory(contents_)));
     }
-    if (named != nullptr && named->is_block()) {  // one such matrix for each trial, of which slices are signals
+    if (named != nullptr && named->is_block()) {  // one such matrix per trial; its slices are signals
       if (options_.variable.empty()) return nullptr;
       return bad_data(fmt::format("--variable {} is {}", requested, shape(*named)),
                       fmt::format("name slices, as in --channels \"x={},Fx={}\"", example_slice(*named, 2),
@@ -365,7 +365,7 @@ class Assembler {
     return {};
   }
 
-  /// Whether somebody asks for such a channel: otherwise nothing of it can stand in the way.
+  /// Whether such a channel is requested; otherwise its problems are ignored.
   [[nodiscard]] bool is_requested(const ChannelKind& kind) const {
     if (kind.name == "time" || options_.requested.empty()) return !kind.only_if_asked;
     return std::ranges::any_of(options_.requested, [&](const std::string& name) {
@@ -420,7 +420,7 @@ class Assembler {
     return {};
   }
 
-  /// What neither its name nor the map makes a channel.
+  /// Notes arrays that neither name nor map assign to a channel.
   void note_aside() {
     std::erase_if(aside_, [&](const std::string& name) {
       return name.empty() || std::ranges::any_of(signals_, [&](const Signal& s) { return s.line.array->name == name; });
@@ -517,7 +517,7 @@ class Assembler {
         entry.source = whole;
         entry.unit.clear();
       }
-      // A name that means one thing only is taken as it stands, whatever the number of axes.
+      // An unambiguous name is used directly, whatever the number of axes.
       const ChannelKind* kind = meanings[i].size() == 1 ? meanings[i].front() : kind_for_axes(meanings[i], axes);
       if (kind == nullptr) {
         return bad_usage(fmt::format("unknown channel '{}'", entry.channel),
@@ -606,7 +606,7 @@ class Assembler {
     bool is_scaled;
   };
 
-  /// The longest name of `entry` that the file has, and what is to be done with its numbers.
+  /// The longest name in `entry` that the file has, and the arithmetic for its numbers.
   Result<Found> resolve(const ChannelSource& entry) {
     const std::vector<SourceReading> ways = readings(entry.source);
     for (const SourceReading& way : ways) {
@@ -622,7 +622,7 @@ class Assembler {
     return bad_usage(fmt::format("channel {} has no source", entry.channel));
   }
 
-  /// `error`, or that what stands behind the last colon is no unit, where what stands before it is there.
+  /// `error`, or an unknown-unit error if the source before the last colon exists.
   Result<Found> without_unit(const ChannelSource& entry, const Error& error) {
     const auto colon = entry.source.rfind(':');
     if (colon == entry.source.npos) return tl::unexpected(error);
@@ -670,7 +670,7 @@ class Assembler {
 
   /// The number of an array as a column, from 1.
   [[nodiscard]] Index column_of(const Array& array) const { return &array - contents_.arrays.data() + 1; }
-  /// How a map names an array of which there may be two with one name.
+  /// The source in a map for an array whose name may be repeated.
   [[nodiscard]] std::string shortest_source(const Array& array) const {
     return contents_.table ? std::to_string(column_of(array)) : array.name;
   }
@@ -679,7 +679,7 @@ class Assembler {
     return fmt::format("'{}'{}", array.name, repeated ? fmt::format(" (column {})", column_of(array)) : "");
   }
 
-  /// A name that stands twice says nothing, unless both hold the same numbers.
+  /// A repeated name is ambiguous, unless both arrays are identical.
   [[nodiscard]] Result<void> refuse_repeated(const ChannelSource& entry) const {
     std::vector<const Array*> called;
     for (const Array& array : contents_.arrays) {
@@ -788,7 +788,7 @@ class Assembler {
     return Line{array, 0, false, 1, slice_of(*array, *plan, *trial)};
   }
 
-  /// The trial that is asked for, from 1.
+  /// The requested trial, from 1.
   Result<Index> trial_of(const Array& array, const SlicePlan& plan) {
     if (!plan.trial) return Index{1};
     const auto count = static_cast<Index>(dimensions_of(array)[*plan.trial]);
@@ -840,7 +840,7 @@ class Assembler {
     return line_of(entry, *array, counted->number);
   }
 
-  /// @param asked  what asks for it: "channel x"
+  /// @param asked  the requester: "channel x"
   Result<void> refuse_damaged_source(const std::string& asked, std::string_view source) const {
     for (const auto& [name, why] : contents_.damaged) {
       if (with_dots(name) != with_dots(source)) continue;
@@ -949,7 +949,7 @@ class Assembler {
     return {};
   }
 
-  /// What may scale the numbers, and does not say how, is for the user to decide.
+  /// The user decides on attributes that may scale the numbers in an undefined way.
   static Result<void> check_scale(const Signal& signal) {
     const std::string& unapplied = signal.line.array->unapplied;
     if (unapplied.empty() || signal.is_scaled) return {};
@@ -1163,7 +1163,7 @@ class Assembler {
     }
   }
 
-  /// What doubles leave of the time, sample by sample.
+  /// Remainders of the time after conversion to double, sample by sample.
   [[nodiscard]] Rests rests_of_time() const {
     Rests rests;
     for (const Signal& signal : signals_) {
@@ -1228,7 +1228,7 @@ class Assembler {
     return {std::string(signal.kind->alias), signal.entry, std::string(unit), called_otherwise(signal), signal.joint};
   }
 
-  /// What the file calls this line, by a name or by its row in a logs matrix; nothing where it is no channel.
+  /// The name of this line in the file, or from its row in a logs matrix; nothing if it is not a channel.
   static std::vector<const ChannelKind*> kinds_in_file(const Signal& signal) {
     std::vector<const ChannelKind*> kinds;
     if (!is_matrix(*signal.line.array)) {
@@ -1258,7 +1258,7 @@ class Assembler {
     return kinds.empty() || fits ? std::string() : std::string(kinds.front()->name);
   }
 
-  /// What a kind measures, whatever the axis and the number of axes; "" for one that may be anything.
+  /// The quantity of a kind, independent of the axes; "" if arbitrary.
   static std::string_view quantity_of(const ChannelKind& kind) {
     for (const auto& [prefix, quantity] : kQuantities) {
       if (kind.name.starts_with(prefix)) return quantity;

@@ -17,7 +17,7 @@
 namespace mbk::recording {
 namespace {
 
-/// The median of the intervals above zero; 0 where there is none.
+/// The median of the positive intervals; 0 if there is none.
 double median_interval(const Vector& time) {
   std::vector<double> intervals;
   for (Index i = 1; i < time.size(); ++i) {

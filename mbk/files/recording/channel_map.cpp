@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// The number that begins `text`, "12", ".5" or "-1e-3", and what stands behind it; nothing where none begins there.
+/// The number that begins `text`, "12", ".5" or "-1e-3", and the text after it; nothing if none begins there.
 std::optional<std::pair<double, std::string_view>> leading_number(std::string_view text) {
   const std::string_view digits = text.substr(text.starts_with('-') ? 1 : 0);
   if (digits.empty() || std::string_view("0123456789.").find(digits.front()) == digits.npos) return std::nullopt;
@@ -60,7 +60,7 @@ Result<ChannelSource> parse_entry(std::string_view entry) {
     result.negate = true;
     source = trimmed(source.substr(1));
   }
-  // What is no unit may belong to a name, as in "Arm:Hand.x"; `assemble` knows the names.
+  // Text other than a unit may belong to a name, as in "Arm:Hand.x"; `assemble` knows the names.
   if (const auto colon = source.rfind(':'); colon != source.npos && find_unit(trimmed(source.substr(colon + 1)))) {
     result.unit = trimmed(source.substr(colon + 1));
     source = trimmed(source.substr(0, colon));

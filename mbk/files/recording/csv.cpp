@@ -68,7 +68,7 @@ std::optional<Event> event(std::string_view text) {
   return Event{*time, std::string(second == text.npos ? "" : text.substr(second + 1)), *value};
 }
 
-/// What our own writer says in the comments before the header (encode.h); of other files they are only comments.
+/// Metadata that mbk writes in comments before the header (encode.h); in other files they are only comments.
 void take_comments(CsvText& text, Contents& contents) {
   constexpr std::string_view kMark = "# ", kEvent = "event ";
   if (!text.so_far().starts_with(fmt::format("{}{}", kMark, kLayout))) return;
@@ -86,9 +86,9 @@ void take_comments(CsvText& text, Contents& contents) {
   }
 }
 
-/// What a column holds beside numbers.
+/// Non-numeric contents of a column.
 struct CsvColumn {
-  std::optional<Error> obstacle;  ///< its first cell that is no number
+  std::optional<Error> obstacle;  ///< its first cell that is not a number
   Index instants = 0;             ///< cells that are times of day or dates
   bool dates = false;
   std::int64_t first_day = 0;
@@ -144,7 +144,7 @@ class Table {
   }
 
  private:
-  /// What the lines above the table say of all its columns.
+  /// Statements about all columns in the lines above the table.
   void take_preamble() {
     Preamble said = read_preamble(head_.above);
     head_.above.clear();
@@ -155,7 +155,7 @@ class Table {
                        std::make_move_iterator(said.notes.end()));
   }
 
-  /// Why this text is no table: its second line, or the only one, holds none.
+  /// Why this text is not a table: its second or only line contains no number.
   static Result<void> no_numbers(const CsvText& text, CsvLines& lines, std::optional<CsvLine> line) {
     const auto second = line ? lines.next() : std::nullopt;
     if (!text.status()) return text.status();
@@ -300,7 +300,7 @@ class Table {
   /// A line, as far as it is known.
   struct Row {
     std::size_t count = 0;  ///< cells
-    bool odd = false;       ///< a cell is no number with a decimal point
+    bool odd = false;       ///< a cell is not a number with a decimal point
     bool last_is_empty = false;
   };
 

@@ -233,7 +233,7 @@ class HeadFinder {
     return best_reading(lines_);
   }
 
-  /// Whether the last lines are rows, so that the table goes on from here.
+  /// Whether the last lines are rows, so that the table continues from here.
   [[nodiscard]] bool is_settled() const {
     constexpr std::size_t kEnough = 3;
     if (all_) return true;
@@ -249,7 +249,7 @@ class HeadFinder {
     if (last == 0) return {};
     std::size_t first = last - 1;
     while (first > 0 && reading_.is_row(lines[first - 1]) && !states(lines[first - 1])) --first;
-    std::size_t above = first;  // lines that stand above the table and its header
+    std::size_t above = first;  // lines above the table and its header
     const bool stated = first > 0 && states(lines[first - 1]);
     if (first > 0 && !stated && is_header(lines[first - 1], lines[first])) {
       above = take_header(first - 1);
@@ -258,7 +258,7 @@ class HeadFinder {
       head_.header_line = lines[first].line->number;
       ++first;
     } else if (first > 0 && !stated && lines[first - 1].cells.size() > 1 && reading_.separator != kBlanks) {
-      above = take_header(first - 1);  // which does not fit: that is said where the columns are counted
+      above = take_header(first - 1);  // does not fit; reported where the columns are counted
     } else {
       take_comment(first);
     }
@@ -370,7 +370,7 @@ class HeadFinder {
     head_.notes.push_back(fmt::format("the column names were read from the comment in line {}", above->number));
   }
 
-  /// What stands above the table must be words.
+  /// Lines above the table must be text.
   Result<void> check_above(std::size_t above) {
     std::size_t lines = 0;
     for (std::size_t k = 0; k < above; ++k) {
@@ -400,7 +400,7 @@ class HeadFinder {
     return {};
   }
 
-  /// Commas that stand both between cells and for the decimal point, as "0,001,1,5".
+  /// Commas as both separator and decimal point, as in "0,001,1,5".
   [[nodiscard]] Result<void> check_headless() const {
     if (reading_.separator != ',' || reading_.width < 2 || reading_.width % 2 != 0) return {};
     bool leading_zero = false;

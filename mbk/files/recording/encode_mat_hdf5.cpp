@@ -29,7 +29,7 @@ hdf5::Dataset dataset(const std::string& text) {
   hdf5::Attributes attributes{{"MATLAB_class", hdf5::one_text("char")},
                               {"MATLAB_int_decode", one_number(2, hdf5::Stored::int32)}};
   const std::u16string units = utf16_from_utf8(text);
-  if (units.empty()) {  // its dimensions stand in its place
+  if (units.empty()) {  // its dimensions are stored instead
     attributes["MATLAB_empty"] = one_number(1, hdf5::Stored::uint8);
     return {{{2}, hdf5::Numbers{Vector::Zero(2), hdf5::Stored::uint64}}, std::move(attributes)};
   }

@@ -37,7 +37,7 @@ std::string raw(Number number) {
 std::string element(std::uint32_t type, const std::string& data) {
   const auto size = static_cast<std::uint32_t>(data.size());
   std::string bytes;
-  if (size >= 1 && size <= 4 && type != kMatrix) {  // the data stand in the tag itself
+  if (size >= 1 && size <= 4 && type != kMatrix) {  // the data are in the tag itself
     bytes = raw((size << 16) | type) + data;
   } else {
     bytes.reserve(data.size() + 16);

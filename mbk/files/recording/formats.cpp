@@ -149,7 +149,7 @@ Result<std::shared_ptr<const OpenTrials>> all_records(OpenFile& file) {
   return decoded_trials(std::move(records), file.sha256());
 }
 
-/// Text that is no table may be text of another kind, of which that is to be said rather than where it breaks off.
+/// Text that is not a table may be text of another kind, which is reported instead of the position of the error.
 Result<Contents> decode_table(OpenFile& file) {
   MBK_TRY(check_memory(file.size()));  // what its numbers take at most
   auto table = looks_like_utf16(file.begin_bytes()) ? whole<decode_csv>(file) : in_passing<decode_csv>(file);

@@ -17,7 +17,7 @@ namespace guess {
 
 enum class Quantity { time, position, force, torque, reference, acceleration, other };
 
-/// What a name speaks of.
+/// The meaning of a name.
 struct Meaning {
   Quantity quantity = Quantity::other;
   char axis = ' ';   ///< 'x', 'y', 'z', or ' ' where none is named

@@ -19,10 +19,10 @@ namespace mbk::recording {
 namespace {
 
 using hdf5::Stored;
-constexpr Index kMaxCodes = 16;  ///< of missing values, for each of which all numbers are looked at
+constexpr Index kMaxCodes = 16;  ///< number of missing values, each of which is compared with all numbers
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// What an attribute says by its name.
+/// The meaning of an attribute name.
 enum class Says {
   nothing,
   unit,
@@ -173,7 +173,7 @@ double wrap_of(Stored stored) {
   }
 }
 
-/// What netCDF puts where nothing was written (netcdf.h, NC_FILL_…); nothing of single bytes, as there.
+/// The netCDF value for unwritten elements (netcdf.h, NC_FILL_…); nothing of single bytes, as there.
 std::optional<double> netcdf_fill(Stored stored) {
   switch (stored) {
     case Stored::int16:
@@ -299,7 +299,7 @@ class Applier {
     has_conversion_ = has_conversion_ || says == Says::conversion;
   }
 
-  /// As the number would stand in the file: what is stored as float32 is compared with a float32.
+  /// The number as stored in the file: float32 data are compared with a float32.
   [[nodiscard]] double as_stored(double value) const {
     return numbers_.stored == Stored::float32 ? static_cast<double>(static_cast<float>(value)) : value;
   }
@@ -400,7 +400,7 @@ class Applier {
       }
     }
     if (applied.empty()) return;
-    if (!numbers_.rests.empty()) {  // which are no whole numbers any more
+    if (!numbers_.rests.empty()) {  // no longer integers
       notes_.add("whole numbers above 2^53 were rounded in", array_.name);
       numbers_.rests = {};
     }
@@ -408,7 +408,7 @@ class Applier {
                array_.name);
   }
 
-  /// Two units, of the attributes or of the columns, are said as both, which no channel can be in.
+  /// Two different units, of the attributes or of the columns, are both listed, which no channel accepts.
   void settle_unit() {
     std::vector<std::string> different;
     for (std::string& unit : units_) {
@@ -482,7 +482,7 @@ void hand_attributes_on(hdf5::Group& table) {
       const auto kinds = parse_column_name(table.columns[k]).kinds;
       const bool is_time = !kinds.empty() && kinds.front()->name == "time";
       if (of_numbers && count == 1 && count != table.columns.size()) {
-        // Whether one scale is that of every column is not said.
+        // It is not stated whether one scale applies to every column.
         if (is_time || leaves_as_it_is(numbers_of(one), 1.0) || leaves_as_it_is(numbers_of(one), 0.0)) continue;
         column->second.attributes.try_emplace(std::string(kUnapplied), hdf5::one_text(said(name, one)));
         continue;

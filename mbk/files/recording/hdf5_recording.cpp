@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t kLongestNumbers = 64;  ///< of an attribute that becomes metadata
 constexpr std::size_t kMaxDimensions = 8;    ///< of an array that is read
 
-/// What a value says, in one line; nothing where it is neither text nor a few numbers.
+/// A value in one line; nothing if it is neither text nor a few numbers.
 /// @param count  lines that it has in the file
 std::optional<std::string> line_of(const hdf5::Value& value, std::size_t& count) {
   if (const auto* const texts = std::get_if<hdf5::Texts>(&value.data)) {
@@ -150,7 +150,7 @@ class Decoder {
            text_attribute(attributes, "units").find(" since ") != std::string::npos;
   }
 
-  /// A number by itself can be a sample rate. Nothing else is made of it.
+  /// A single number can only be a sample rate.
   void single(const hdf5::Dataset& dataset, const std::string& path) {
     if (single_taken_.contains(path)) return;
     const double number = std::get<hdf5::Numbers>(dataset.value.data).values[0];
@@ -217,7 +217,7 @@ class Decoder {
     return path;
   }
 
-  /// mbk takes a channel in the frame of its table. What says otherwise is not believed in silence.
+  /// mbk reads a channel in the frame of its table. A different statement is reported in a note.
   void check_frame(const std::string& name, const std::string& frame) {
     const auto kinds = kinds_called(name);
     if (frame.empty() || kinds.size() != 1 || kinds.front()->frame == frame) return;
@@ -235,7 +235,7 @@ class Decoder {
     contents.notes.push_back(fmt::format("'{}' is {}; ignored", path, what));
   }
 
-  /// What the data or time stamps at a path belong to.
+  /// The owner of the data or time stamps at a path.
   struct Series {
     int clock;
     std::string channel;  ///< Array::means

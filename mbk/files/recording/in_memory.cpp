@@ -31,7 +31,7 @@ SharedMatrix shared(const InMemory::Signal& signal) {
   return {at, rows, count / std::max<Index>(rows, 1), std::move(keeper)};
 }
 
-/// What only files have.
+/// Options that only files have.
 Result<void> check_options(const ReadOptions& options) {
   const auto refused = [](const char* option) {
     return bad_usage(fmt::format("{} applies to files, not to arrays in memory", option),

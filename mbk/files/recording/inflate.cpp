@@ -14,7 +14,7 @@
 namespace mbk::recording {
 namespace {
 
-/// So much is believed at once: a stream of numbers seldom shrinks further, and then memory follows what comes out.
+/// Initial allocation: streams of numbers seldom compress further; beyond it memory follows the output.
 constexpr std::uint64_t kUsualRatio = 16;
 constexpr std::size_t kFirstGuess = std::size_t{4} << 20;
 constexpr std::size_t kLargestStep = std::size_t{1} << 30;  // zlib counts in 32 bits
@@ -104,7 +104,7 @@ Result<Buffer> inflate_exactly(
   }
 
   const auto size = static_cast<std::size_t>(claimed);
-  // What comes out and the numbers that are made of it stand side by side.
+  // The output and the numbers made from it are in memory together.
   MBK_TRY(check_memory(2 * claimed));
   if (size <= kFirstGuess + kUsualRatio * stream.size()) return inflate_at_once(stream, size);
   Buffer buffer(std::min(size, std::max(kFirstGuess, 4 * stream.size())));
@@ -117,7 +117,7 @@ Result<Buffer> inflate_exactly(
     std::memcpy(larger.data.get(), buffer.data.get(), done);
     buffer = std::move(larger);
   }
-  // One more byte of room: the checksum is only read when the stream is asked to go on.
+  // One more byte of room: the checksum is read only when more output is requested.
   std::byte beyond;
   const bool more = inflater.status == Z_OK && inflater.fill(&beyond, 1) != 0;
   if (!more && inflater.status != Z_STREAM_END) return damaged(inflater);

@@ -96,7 +96,7 @@ std::vector<Gap> gaps_of_jittering(const Vector& time, double median) {
   return gaps;
 }
 
-/// What follows from the intervals of `time` that are positive, `from` of each, as blocks.
+/// Statistics of the positive intervals of `time`, `from` of each, in blocks.
 template <class From>
 numeric::EachBlock each_interval(const Vector& time, const From& from) {
   return [&time, from](const std::function<void(std::span<const double>)>& use) {

@@ -21,7 +21,7 @@ std::string listed(std::span<const std::string> names) {
                                names.size() > count ? fmt::format(" and {} more", names.size() - count) : ""));
 }
 
-/// Whether `name` stands in `text` with no letter or digit beside it.
+/// Whether `name` occurs in `text` with no adjacent letter or digit.
 bool stands_in(std::string_view name, std::string_view text) {
   const auto is_beside = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   for (auto at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {

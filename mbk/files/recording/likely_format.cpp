@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// Bytes that stand at one place of every file of a format.
+/// Bytes at a fixed position in every file of a format.
 struct Signature {
   std::string_view bytes;
   LikelyFormat format;
@@ -179,7 +179,7 @@ std::optional<LikelyFormat> likely_format(std::span<const std::byte> file) {
   if (text.starts_with("PK\3\4")) {
     if (const auto inside = zip_of(text)) return inside;
   }
-  const bool marked = text.starts_with("\xEF\xBB\xBF");  // UTF-8 says so of itself
+  const bool marked = text.starts_with("\xEF\xBB\xBF");  // UTF-8 needs no note
   if (marked) text.remove_prefix(3);
   for (const Signature& signature : kSignatures) {
     if (text.size() > signature.at && text.substr(signature.at).starts_with(signature.bytes)) return signature.format;

@@ -142,7 +142,7 @@ class MatDecoder {
     }
   }
 
-  /// What a reference leads to, which is elsewhere in the file and may lead on.
+  /// The target of a reference, elsewhere in the file and possibly with references.
   void referred(const std::string& path, const std::string& name, int depth) {
     if (path.empty()) return;
     if (depth > kDeepest) {

@@ -149,7 +149,7 @@ struct Header {
 
 class Decoder {
  public:
-  /// @param bytes  of the file, where matrices may stand in them
+  /// @param bytes  of the file, if matrices may refer to them
   explicit Decoder(std::shared_ptr<Buffer> bytes) : bytes_(std::move(bytes)) {}
   Contents contents;
 
@@ -389,7 +389,7 @@ class Decoder {
     return {};
   }
 
-  /// Numbers that are doubles of this processor already, and so many that they would keep few other bytes in memory;
+  /// Doubles in native byte order, numerous enough to keep few other bytes in memory;
   /// nullptr where they have to be copied.
   [[nodiscard]] double* where_they_stand(const Element& real) const {
     if (!bytes_ || real.type != kDouble || real.data.swapped || 2 * real.data.size() < bytes_->size) return nullptr;
@@ -433,7 +433,7 @@ class Decoder {
   }
 
   std::string name_;               ///< of the variable at hand, for messages
-  std::shared_ptr<Buffer> bytes_;  ///< in which it stands: of the file, or inflated
+  std::shared_ptr<Buffer> bytes_;  ///< its source: the file, or inflated
 };
 
 Result<Contents> decoded(std::span<const std::byte> file, std::shared_ptr<Buffer> bytes) {

@@ -45,7 +45,7 @@ std::vector<double> curvatures(const std::vector<double>& x, const std::vector<d
   return curvature;
 }
 
-/// What became of the samples that are no measurements.
+/// Treatment of the samples that are not measurements.
 struct Filled {
   Index bridged = 0, lost = 0;
 };

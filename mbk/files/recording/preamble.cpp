@@ -96,7 +96,7 @@ constexpr auto kRateUnits = std::to_array<std::pair<std::string_view, double>>({
                                                                                 {"frames/s", 1.0},
                                                                                 {"frames per second", 1.0},
                                                                                 {"fps", 1.0}});
-/// What a sentence about a unit may hold beside it.
+/// Other words allowed in a sentence about a unit.
 constexpr auto kQuantities =
     std::to_array<std::pair<std::string_view, Dimension>>({{"angle", Dimension::angle},
                                                            {"angles", Dimension::angle},
@@ -136,7 +136,7 @@ std::string small_letters(std::string_view text) {
   return small;
 }
 
-/// What a line, or a part of it, says.
+/// The statements of a line, or of a part of it.
 struct Statement {
   std::optional<double> rate_hz;
   std::vector<const Unit*> units;
@@ -159,7 +159,7 @@ std::optional<Quantity> quantity(std::string_view text) {
   text = mbk::trimmed(text, kBlank);
   const std::size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
   std::size_t length = end;
-  // "5E" of "5 E…" is no number.
+  // "5E" of "5 E…" is not a number.
   while (length > 0 && !is_digit(text[length - 1]) && text[length - 1] != '.') --length;
   const auto value = general_number(text.substr(0, length));
   if (length == 0 || !value || !(*value > 0.0) || !std::isfinite(*value)) return std::nullopt;
@@ -191,7 +191,7 @@ std::optional<double> rate_of(std::string_view key, std::string_view value) {
   return rate && *rate >= kMin && *rate <= kMax ? rate : std::nullopt;
 }
 
-/// The units of "mm", "mm N", "(mm, N)"; none where a word of it is no unit.
+/// The units of "mm", "mm N", "(mm, N)"; none if a word is not a unit.
 std::vector<const Unit*> all_units(std::string_view text) {
   std::vector<const Unit*> units;
   if (const Unit* const whole = find_unit(mbk::trimmed(text, " \t()[]\"'."))) return {whole};
@@ -237,7 +237,7 @@ bool says_yes(std::string_view value) {
   return small == "yes" || small == "true" || small == "1" || small == "y";
 }
 
-/// What "key" and "value" say.
+/// The statement of "key" and "value".
 std::optional<Statement> statement_of(std::string_view key, std::string_view value) {
   const std::string name = squeezed(key);
   if (name.empty()) return std::nullopt;
@@ -304,7 +304,7 @@ Said said_in(std::string_view line) {
     places.push_back(end);
     begin = end + 1;
   }
-  // A comma may stand for decimals or between thousands: "1,000 Hz".
+  // A comma may be a decimal or a thousands separator: "1,000 Hz".
   const auto goes_on_with_digits = [&](std::size_t k) {
     return places[k] + 1 < line.size() && line[places[k]] == ',' && is_digit(line[places[k] + 1]) &&
            !cells[k].empty() && is_digit(cells[k].back());
@@ -335,7 +335,7 @@ Said said_in(std::string_view line) {
       if (!next.empty() && next.find_first_of("=:") == next.npos && behind == cells.end())
         continue;  // a unit that is not known, as no key is alone
     }
-    // Units of several columns stand one behind the other.
+    // Units of several columns follow each other.
     std::size_t end = last + 1;
     while (end < cells.size() && !cells[end].empty() && find_unit(mbk::trimmed(cells[end], "()[]")) != nullptr) ++end;
     if (end > last + 1) {

@@ -27,7 +27,7 @@ namespace mbk::recording {
 
 namespace {
 
-/// What `use` makes of the file; every failure names the file.
+/// The result of `use` on the file; every error names the file.
 template <class Use>
 auto with_file(const std::filesystem::path& file, const Use& use) -> decltype(use()) {
   try {
@@ -73,7 +73,7 @@ class RecordingFile {
     if (file_) file_->rest();
   }
 
-  /// @param needs_arm  an arm must be named where there are two
+  /// @param needs_arm  an arm must be selected if there are two
   [[nodiscard]] Result<Decoded> decode(const ReadOptions& options, bool needs_arm) const {
     if (!options.arm.empty() && options.arm != "right" && options.arm != "left") {
       return bad_usage(fmt::format("'{}' is not an arm", options.arm), "pass right or left");
@@ -167,7 +167,7 @@ std::vector<TrialName> trials_of(const RecordingFile& file, const ReadOptions& o
     });
   });
   if (!file.trials().empty() || !slices) return file.trials();
-  const auto decoded = file.decode(options, false);  // what is wrong is for whoever reads it
+  const auto decoded = file.decode(options, false);  // errors are reported on reading
   return decoded ? trials_of_map(decoded->contents, options.channels) : std::vector<TrialName>();
 }
 

@@ -21,7 +21,7 @@ std::optional<Index> entry_of(std::string_view text) {
   if (text == kTrialWord) return SlicedSource::kTrial;
   Index number = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  // 0 and numbers below it are none of the marks: they are out of range.
+  // 0 and negative numbers are not marks: they are out of range.
   if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
   return number >= 1 ? std::optional(number) : std::nullopt;
 }
@@ -90,7 +90,7 @@ Result<SlicePlan> plan_of(const Array& array, const SlicedSource& source) {
   std::vector<std::size_t> along, trials;
   for (std::size_t d = 0; d < sides.size(); ++d) {
     if (d >= plan.at.size()) {
-      plan.at.push_back(sides[d] == 1 ? 1 : SlicedSource::kTrial);  // what is left over
+      plan.at.push_back(sides[d] == 1 ? 1 : SlicedSource::kTrial);  // free dimensions
     }
     if (plan.at[d] == SlicedSource::kAlong) along.push_back(d);
     if (plan.at[d] == SlicedSource::kTrial) trials.push_back(d);

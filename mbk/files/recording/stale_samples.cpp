@@ -36,7 +36,7 @@ struct Run {
   double before = 0.0, after = 0.0;  ///< the changes that lead to it and away from it, with their signs
 };
 
-/// The runs of a channel that have a change on either side, and what is known of all changes.
+/// The runs of a channel with a change on either side, and statistics of all changes.
 struct Runs {
   std::vector<Run> runs;       ///< run k lies between changes k and k + 1
   std::vector<Index> changes;  ///< samples whose value is not that of the sample before
@@ -71,7 +71,7 @@ double common_size(const std::vector<double>& sizes) {
 /// Changes that follow each other, whose sizes are compared.
 constexpr std::size_t kBlock = 64;
 
-/// Block by block, whether the changes have so many sizes that they are no few steps of one or two encoders.
+/// Block by block, whether the changes have more sizes than the steps of one or two encoders.
 std::vector<bool> blocks_of_many_sizes(const std::vector<double>& sizes) {
   constexpr double kSame = 0.02;  // relative
   std::vector<bool> many;
@@ -174,9 +174,9 @@ bool has_few_values(const Runs& all) {
   return true;
 }
 
-// ---- a value that stands where nothing was measured ----
+// ---- a value that marks missing measurements ----
 
-/// What was lost while a channel stood at a value: how far the measurements beside it lie from it.
+/// Loss while a channel was at a value: distance of the adjacent measurements from it.
 struct Lost {
   double value = 0.0;
   std::vector<double> away;
@@ -235,8 +235,8 @@ std::optional<Lost> lost_at_one_value(const Runs& all) {
   return take(*frequent, [](std::size_t) { return true; });
 }
 
-/// What is lost is lost wherever the signal is. A channel that rests at a value (no contact, a dead band, the start of
-/// each reach) comes to it and leaves it from nearby.
+/// Losses are independent of the signal. A channel that rests at a value (no contact, a dead band, the start of each
+/// reach) approaches and leaves it from nearby.
 std::optional<Stale> find_placeholder(const Eigen::Ref<const Vector>& values, const Runs& all) {
   constexpr double kShare = 0.002, kRank = 0.15, kStepsApart = 2.5, kApart = 0.02;
   if (has_few_values(all)) return std::nullopt;
@@ -252,7 +252,7 @@ std::optional<Stale> find_placeholder(const Eigen::Ref<const Vector>& values, co
     high = std::max(high, one);
   }
   if (away.empty() || !(numeric::median(std::move(lost->away)) > quantile(away, kRank))) return std::nullopt;
-  // The end of a range stands for nothing only where it lies apart from what is measured.
+  // The end of a range marks missing data only if it is far from the measurements.
   const double gap = std::max(low - value, value - high);
   if (gap > 0.0 && gap < std::max(kStepsApart * all.least, kApart * (high - low))) return std::nullopt;
   Stale stale{{Staleness::placeholder, 1.0, 0.0, value}, std::vector<bool>(static_cast<std::size_t>(values.size()))};
@@ -372,7 +372,7 @@ class Repeats {
 
  private:
   static constexpr Index kShortRun = 10;
-  static constexpr std::size_t kSampled = 16;  ///< of runs of one sample, every so many is looked at
+  static constexpr std::size_t kSampled = 16;  ///< every Nth run of one sample is examined
 
   [[nodiscard]] double share(Index count) const { return static_cast<double>(count) / static_cast<double>(samples_); }
   [[nodiscard]] bool at_extreme(const Run& run) const { return run.value == all_.low || run.value == all_.high; }
@@ -446,7 +446,7 @@ class Repeats {
     for (std::size_t k = 0; k < all_.runs.size(); ++k) {
       const Run& run = all_.runs[k];
       if (!moves(k) || rests(run)) continue;
-      const Index count = run.length >= 2 ? 1 : Index{kSampled};  // single samples stand for their neighbours
+      const Index count = run.length >= 2 ? 1 : Index{kSampled};  // single samples represent their neighbours
       moving += count;
       longer += run.length >= 2 ? 1 : 0;
       stale_all += run.length - 1;

@@ -103,7 +103,7 @@ const Unit* said_unit(const Contents& contents, const Array& array) {
   return array.values.size() > 0 ? unit_since_1970(array.values.data()[0]) : nullptr;
 }
 
-/// What the other says that is not the first's time; "" where they agree.
+/// The difference of the other time from the first; "" if they agree.
 std::string difference(const Contents& contents, const Array& one, const Unit* unit, const Array& other) {
   const double scale = unit != nullptr ? unit->to_si(1.0) : 1.0;
   const Run first = run_of(one), second = run_of(other);

@@ -23,7 +23,7 @@ class Names {
  public:
   explicit Names(std::vector<std::string>& said) : said_(said) {}
 
-  /// @param wanted  a name that can be written    @param from  what it stands for, in the words of the file
+  /// @param wanted  a writable name    @param from  the name in the file
   std::string take(std::string requested, const std::string& from) {
     std::string name = requested;
     for (int k = 2; !taken_.insert(name).second; ++k) {
@@ -66,7 +66,7 @@ hdf5::Dataset dataset_of(const SharedMatrix& values) {
   return dataset;
 }
 
-/// Puts a dataset at its path; false where a group or dataset of that name stands in the way.
+/// Puts a dataset at its path; false if a group or dataset of that name exists.
 bool put(hdf5::Group& root, std::string_view path, hdf5::Dataset& dataset) {
   hdf5::Group* group = &root;
   while (true) {

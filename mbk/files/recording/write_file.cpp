@@ -101,7 +101,7 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// The name under which a file is written before it gets its own; nothing stands there.
+/// The temporary name of a file during writing; it does not exist yet.
 fs::path temporary_name(const fs::path& file) {
   fs::path name = folder_of(file) / fmt::format(".{}.{}.part", file.filename().string(), ::getpid());
   ::unlink(name.c_str());  // of a process of that number that went down

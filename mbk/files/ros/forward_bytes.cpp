@@ -20,7 +20,7 @@ tl::unexpected<Error> broken(std::string_view packing, std::string_view why) {
   return bad_data(fmt::format("a chunk compressed with {} is damaged: {}", packing, why), std::string(kCopyAgain));
 }
 
-/// What was unpacked and not yet taken, and how more of it is made.
+/// Unpacked bytes that were not yet taken, and the means to unpack more.
 class Unpacking : public ForwardBytes {
  public:
   explicit Unpacking(ForwardBytes& packed) : packed_(&packed) {}
@@ -57,7 +57,7 @@ class Unpacking : public ForwardBytes {
 
   ForwardBytes* packed_;
   std::vector<std::byte> room_;
-  std::size_t begin_ = 0, end_ = 0;  ///< of what stands in `room_`
+  std::size_t begin_ = 0, end_ = 0;  ///< of the bytes in `room_`
   bool ended_ = false;
 };
 

@@ -102,7 +102,7 @@ class Parser {
   }
 
  private:
-  /// The index of a type; it and what is within it are parsed where they are not yet.
+  /// The index of a type; it and its members are parsed if they are not yet.
   Result<int> parse(const std::string& name, std::string_view package) {
     std::string full = name;
     auto section = sections_.find(full);
@@ -133,7 +133,7 @@ class Parser {
     MessageType& type = definition_.messages[index];
     type.fields = std::move(*fields);
     for (const MessageField& field : type.fields) type.min_bytes += min_bytes_of(field);
-    // A structure of ROS 2 without members has one that nobody named.
+    // A ROS 2 structure without members has one unnamed member.
     if (definition_.dialect == Dialect::ros2 && type.fields.empty()) {
       type.fields.push_back({"structure_needs_at_least_one_member", FieldType::uint8});
       type.min_bytes = 1;

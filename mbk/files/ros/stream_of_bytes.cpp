@@ -19,7 +19,7 @@ class Cursor {
  public:
   Cursor(std::span<const std::byte> message, Dialect dialect) : bytes_(message), cdr_(dialect == Dialect::ros2) {
     if (!cdr_) return;
-    // Plain CDR: 0, then which end of a number comes first.
+    // Plain CDR: 0, then the byte order.
     const bool plain = bytes_.size() >= kCdrHeader && bytes_[0] == std::byte{0} && bytes_[1] <= std::byte{1};
     failed_ = !plain;
     swapped_ = plain && bytes_[1] == std::byte{0};
@@ -91,7 +91,7 @@ class Skipping {
     return field.count == MessageField::Count::counted ? cursor_.number<std::uint32_t>() : field.elements;
   }
 
-  /// Whether so many elements can be in what is left.
+  /// Whether the rest can contain that many elements.
   [[nodiscard]] bool can_hold(const MessageField& field, std::uint64_t count) const {
     const std::uint64_t least = min_bytes(definition_, field);
     return least == 0 || count <= cursor_.left() / least;
@@ -133,7 +133,7 @@ struct Node {
   std::uint64_t length = 0;    ///< of an array
   int column = -1;
   bool known = false;  ///< the first message made it
-  bool aside = false;  ///< what it holds is no column: header.stamp, header.frame_id, an array that is not kept
+  bool aside = false;  ///< its contents are not columns: header.stamp, header.frame_id, a discarded array
 };
 
 class StreamOfBytes : public MessageStream {
@@ -332,7 +332,7 @@ bool is_joint_array(std::string_view field) {
 }
 
 void MessageStream::set_joints(const std::vector<std::string>& names) {
-  if (std::ranges::all_of(names, &std::string::empty)) return;  // nobody named them
+  if (std::ranges::all_of(names, &std::string::empty)) return;  // unnamed
   joints_repeat = std::set(names.begin(), names.end()).size() < names.size();
   if (!joints_repeat) joints = names;
 }

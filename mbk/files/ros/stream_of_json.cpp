@@ -63,7 +63,7 @@ class StreamOfJson : public MessageStream {
   }
 
  private:
-  /// The names of the joints of this message; none where it is no JointState, or its first message named none.
+  /// The names of the joints of this message; none if it is not a JointState, or its first message named none.
   void take_names(const Json& object) {
     names_.clear();
     if (!joint_states_) return;

@@ -43,7 +43,7 @@ constexpr auto kVectors = std::to_array<VectorMeaning>({
     {"geometry_msgs/Accel", "linear", "acceleration", "m/s2"},
 });
 
-/// What all of these types call x is no channel by that name alone.
+/// The field x of these types is not a channel by that name alone.
 bool is_of_ros(std::string_view type) {
   constexpr auto kPackages =
       std::to_array<std::string_view>({"geometry_msgs/", "sensor_msgs/", "nav_msgs/", "std_msgs/", "tf2_msgs/", "tf/",
@@ -76,7 +76,7 @@ bool is_nobodys(std::string_view type, const MessageStream& messages, const Numb
   return type == kJointState && !messages.joints.empty() && column.joint.empty();
 }
 
-/// [Hz], one over the median interval; 0 where there is none.
+/// [Hz], one over the median interval; 0 if there is none.
 double rate_of(const Vector& time) {
   if (time.size() < 2) return 0.0;
   std::vector<double> intervals(static_cast<std::size_t>(time.size() - 1));
@@ -86,7 +86,7 @@ double rate_of(const Vector& time) {
   return *middle > 0.0 ? 1.0 / *middle : 0.0;
 }
 
-/// Stamps that nobody set are no times.
+/// Unset stamps are not times.
 bool has_stamps(const MessageStream& messages) {
   return messages.stamps.size() == messages.log_times.size() &&
          std::ranges::any_of(messages.stamps, [](std::int64_t stamp) { return stamp != 0; });
@@ -95,7 +95,7 @@ bool has_stamps(const MessageStream& messages) {
 /// The times of a stream, and which of its messages have one.
 struct Times {
   const std::vector<std::int64_t>* all = nullptr;
-  std::vector<std::size_t> unset = {};  ///< messages whose time is 0, which nobody set
+  std::vector<std::size_t> unset = {};  ///< messages with an unset time (0)
 
   [[nodiscard]] bool is_set(std::size_t message) const { return !std::ranges::binary_search(unset, message); }
 };
@@ -259,7 +259,7 @@ Result<void> Topics::message(std::uint32_t channel, std::uint64_t log_time, std:
     const auto time = static_cast<std::int64_t>(std::min<std::uint64_t>(log_time, kLatest));
     if (stream != nullptr && stream->messages->add(message, time)) {
       numbers += stream->messages->columns.size();
-      // A restarted node is a new publisher, but the old one does not come back.
+      // A restarted node is a new publisher, and the old one does not return.
       stream->alternates |= !stream->channels.insert(channel).second && stream->channel != channel;
       stream->channel = channel;
     } else {
@@ -375,7 +375,7 @@ void Topics::explain(const Topic& topic, const Stream& stream, Contents& content
 void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Contents& contents) {
   MessageStream& messages = *stream.messages;
   Times times = times_of(messages);
-  if (own) times.unset.clear();  // its exact times stand in the messages
+  if (own) times.unset.clear();  // its exact times are in the messages
   Vector time(std::ssize(*times.all));
   for (std::size_t k = 0; k < times.all->size(); ++k) {
     time[static_cast<Index>(k)] = static_cast<double>((*times.all)[k] - begin) / static_cast<double>(kSecond);
@@ -397,7 +397,7 @@ void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Co
     array.unit = std::move(meaning.unit);
     array.signal = true;
     array.clock = clock;
-    // The name of a field says what it is where it stands by itself in a message of one's own.
+    // In a custom message the name of a separate field determines its meaning.
     const bool by_name = !is_of_ros(type) && column.path.size() > 2 && !column.path.starts_with("time") &&
                          column.path.find_first_of(".[") == std::string::npos;
     if (own && is_of_ros(type) && meaning.channel.empty()) continue;  // it only fills the message

@@ -104,7 +104,7 @@ class ViconDecoder {
     return !is_blank(frame) && cell_number(mbk::trimmed(frame, " \t\""));
   }
 
-  /// A name stands above the first of its columns.
+  /// A name is above the first of its columns.
   static void name_columns(const std::vector<std::string>& axes, const std::vector<std::string>& groups,
                            Section& section) {
     std::string group;

@@ -72,7 +72,7 @@ class DelsysDecoder {
       labels_ = labels_of(line->text, separator_);
       if (is_delsys_header(labels_)) break;
       if (auto said = label_and_unit(line->text)) units_.insert(std::move(*said));
-      // The sensors stand above their modes, or above the names.
+      // The sensors are above their modes, or above the names.
       if (!in_lower_case(labels_.front()).starts_with("sensor mode")) sensors_ = labels_;
     }
     if (!line) return bad_data("the header has no row of names", std::string(kWriteAgain));

@@ -38,7 +38,7 @@ struct Segment {
   Style style;
   Header header;
   std::vector<std::string> labels;  ///< of the columns, without that of comments
-  bool comments = false;            ///< a column of comments stands behind them
+  bool comments = false;            ///< a column of comments follows them
   TextRows rows;
   std::optional<double> start;  ///< [s] when it was begun
   std::string started;          ///< the same, as the file says it
@@ -338,7 +338,7 @@ std::optional<double> follows(const Part& first, const Part& last, const Part& n
   const double end =
       a.has_one_x() ? last.at(0, last.end - 1) : x0_a + static_cast<double>(last.size() - 1) * dt.value_or(0.0);
   const double begin = b.has_one_x() ? next.at(0, next.begin) : x0_b;
-  if (a.has_one_x() && dt && std::abs(begin - end - *dt) < 0.5 * *dt) return last.later;  // X runs on by itself
+  if (a.has_one_x() && dt && std::abs(begin - end - *dt) < 0.5 * *dt) return last.later;  // X is continuous by itself
   if (!a.start || !b.start) return std::nullopt;
   const double apart = *b.start - *a.start, later = *b.start - *first.segment->start;
   if (a.rows.count() == 1 && b.rows.count() == 1 && a.has_one_x() && apart + begin > end) return later;
@@ -395,7 +395,7 @@ class Record {
   }
 
  private:
-  /// What says the times of some signals: a column of X, or where they begin and their interval.
+  /// The time definition of some signals: a column of X, or start and interval.
   struct Basis {
     std::optional<std::size_t> x;
     double begin = 0.0, interval = 0.0;  ///< 0: not known
@@ -520,7 +520,7 @@ class Record {
     contents_.notes.push_back(fmt::format("its channels have {} different time axes", bases_.size()));
   }
 
-  /// What the header counts.
+  /// Counts in the header.
   void compare() {
     std::size_t commented = 0;
     for (const Part& part : parts_) {

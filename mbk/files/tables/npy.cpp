@@ -238,10 +238,10 @@ class NpyDecoder {
     }
   }
 
-  /// Where the number of a row and column stands.
+  /// Position of the number of a row and column.
   static std::size_t offset(const NpyField& field, const NpyHeader& header, const Matrix& values, Index row,
                             Index column) {
-    if (field.count > 1) {  // the columns stand in each element
+    if (field.count > 1) {  // each element contains all columns
       return static_cast<std::size_t>(row) * header.element + field.offset +
              static_cast<std::size_t>(column) * field.size;
     }

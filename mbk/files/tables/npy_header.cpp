@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxFields = 10'000;
 
-/// A Python literal of those that stand in such headers.
+/// A Python literal as used in such headers.
 struct Literal {
   enum Kind { none, text, number, logical, list, dictionary };
   Kind kind = none;
@@ -147,7 +147,7 @@ std::optional<std::size_t> add_fields(const Literal& type, const std::string& pr
   std::size_t size = 0;
   for (const Literal& one : type.items) {
     if (one.kind != Literal::list || one.items.size() < 2 || one.items.size() > 3) return std::nullopt;
-    // A title may stand beside the name.
+    // A title may accompany the name.
     const Literal& called = one.items[0];
     const std::string& name =
         called.kind == Literal::list && called.items.size() == 2 ? called.items[1].words : called.words;

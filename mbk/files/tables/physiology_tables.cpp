@@ -235,7 +235,7 @@ class AcqKnowledge {
   const TimeUnit* time_ = nullptr;  ///< of the first column; nullptr where that is a channel
   std::vector<double> counts_;      ///< of samples, as the header says them
   bool is_first_digits_ = false;    ///< the first row may be the counts
-  std::size_t begin_ = 0;           ///< rows that are no samples
+  std::size_t begin_ = 0;           ///< rows that are not samples
   Contents contents_;
 };
 

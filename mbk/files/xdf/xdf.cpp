@@ -184,7 +184,7 @@ class Decoder {
     return of_sender;
   }
 
-  /// Leaves out samples of which it is not known whether they stand before or behind a step of a clock.
+  /// Omits samples that may be before or after a step of a clock.
   static void leave_out_unsure(XdfStream& stream, const std::vector<ClockStep>& steps, Vector& raw, Vector& time) {
     std::vector<Index> kept;
     Index next = 0;
@@ -381,7 +381,7 @@ class Decoder {
     contents_.notes.push_back(std::move(note));
   }
 
-  /// A text is the name of an event; of several channels it is said which.
+  /// A text is the name of an event; with several channels the channel is added.
   void take_markers(const XdfStream& stream, const Vector& time) {
     const std::size_t channels = stream.channels.size();
     std::size_t taken = 0;

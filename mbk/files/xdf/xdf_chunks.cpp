@@ -47,7 +47,7 @@ std::size_t size_of(XdfValue value) {
   return std::ranges::find(kValues, value, &ValueName::value)->size;
 }
 
-/// Bytes that are read from the first to the last. What is not there makes it fail, and everything after it.
+/// Bytes that are read sequentially. Missing bytes make this and all later reads fail.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : view_{bytes, std::endian::native == std::endian::big} {}
@@ -121,7 +121,7 @@ double take_value(Reader& reader, XdfValue value, std::int16_t& rounded) {
   return reader.take<double>();
 }
 
-/// The stamp of a sample; NaN where it has none, or one that is no time.
+/// The stamp of a sample; NaN if it has none, or an invalid one.
 double take_stamp(Reader& reader) {
   const auto size = reader.take<std::uint8_t>();
   if (size != 0 && size != kStampSize) reader.fail();

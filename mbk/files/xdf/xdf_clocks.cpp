@@ -36,7 +36,7 @@ bool last_is_corrupt(std::span<const ClockOffset> offsets, Index samples, std::o
   return std::abs(offsets.back().value - median_of(values)) > kFar * deviation;
 }
 
-/// Puts offsets that stand out of order in the file in that of their times. Where the sender's clock was set back, the
+/// Sorts offsets that are out of order in the file by their times. Where the sender's clock was set back, the
 /// value rises by as much, and they stay.
 void put_in_order(std::vector<ClockOffset>& offsets) {
   constexpr std::size_t kFarthest = 100;
@@ -111,13 +111,13 @@ Index first_sample(const Vector& raw, std::span<const ClockOffset> offsets, cons
   return largest > 1.0 ? jump : end;
 }
 
-/// Samples within so many seconds, at least 100, but no more than there are.
+/// Number of samples within this time, at least 100, but at most all.
 Index samples_of(double seconds, double nominal_hz, Index count) {
   const double samples = std::max(100.0, seconds * nominal_hz);
   return samples < static_cast<double>(count) ? std::lround(samples) : count;
 }
 
-/// The largest mean of so many values in a row.
+/// The largest mean of `count` consecutive values.
 double largest_mean(const Vector& values, Index count) {
   double sum = values.head(count).sum(), largest = std::abs(sum);
   for (Index k = count; k < values.size(); ++k) {
@@ -142,7 +142,7 @@ std::vector<Index> lasting_jumps(const Vector& time, double nominal_hz) {
   Vector changes(count - 2 * kMin);
   for (Index k = kMin; k < count - kMin; ++k) {
     const Index before = std::min(beside, k), behind = std::min(beside, count - k);
-    // What the median interval is off the mean one grows with the distance of the two groups.
+    // The deviation of the median interval from the mean grows with the distance of the two groups.
     changes[k - kMin] = (sums[k + behind] - sums[k]) / static_cast<double>(behind) -
                         (sums[k] - sums[k - before]) / static_cast<double>(before);
   }

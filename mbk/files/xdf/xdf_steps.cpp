@@ -173,7 +173,7 @@ class StepFinder {
     // Where stamps jump that far all the time, one of these jumps proves nothing.
     const bool rare = jumps_beyond(size / 2.0) <= clock_.times.size();
     if (!rare && !certain(gap, jump)) return std::nullopt;
-    // What the recorder measured may be as old as the offset before.
+    // The measurement of the recorder may be as old as the previous offset.
     const double earliest = time(std::max<Index>(0, gap - 1), gap);
     const double latest = time(gap + 1, gap) + std::max(jump.value, 0.0);
     while (cursor_ < clock_.stamps.size() && stamp(cursor_) < earliest) ++cursor_;

@@ -24,7 +24,7 @@ Jet<Eigen::Vector2d> along(const Jet<double>& r, const Eigen::Vector2d& directio
   return {r.value * direction_B, r.first * direction_B, r.second * direction_B};
 }
 
-/// Unit vector at an angle; what is rounding only is zero, so that π/2 leaves the x axis at rest.
+/// Unit vector at an angle; rounding errors are set to zero, so that π/2 leaves the x axis at rest.
 Eigen::Vector2d unit_vector(double angle) {
   const auto component = [](double value) { return std::abs(value) < 1e-15 ? 0.0 : value; };
   return {component(std::cos(angle)), component(std::sin(angle))};
@@ -171,7 +171,7 @@ std::pair<Hertz, Hertz> Schedule::band() const {
   return band;
 }
 
-/// What a pulse or binary sequence excites is G's own oscillation, whatever its switching leaves of the band.
+/// A pulse or binary sequence excites the oscillation of G, whatever its switching leaves of the band.
 Hertz Schedule::fastest() const {
   const auto* binary = std::get_if<Binary>(&shape_);
   return binary ? binary->sequence.filter().bandwidth() : band().second;

@@ -23,7 +23,7 @@ using Model = urdf::ModelInterfaceSharedPtr;
 using Link = urdf::LinkConstSharedPtr;
 using JointOfTree = urdf::JointConstSharedPtr;
 
-/// While it lives, what the URDF parser would print is kept. The parser has one place for that in the whole program, so
+/// While it exists, it captures the output of the URDF parser. The parser has one global output handler, so
 /// one reads at a time.
 class Overheard : public console_bridge::OutputHandler {
  public:
@@ -49,7 +49,7 @@ class Overheard : public console_bridge::OutputHandler {
   }
 };
 
-/// How deep elements stand in one another, at most: the parser calls itself for each level.
+/// Maximum nesting depth of elements: the parser recurses for each level.
 int depth(std::string_view xml) {
   int now = 0, most = 0;
   for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
@@ -138,7 +138,7 @@ void take_apart(const urdf::ModelInterface& model) {
 }
 
 Result<Model> parse(std::string_view urdf) {
-  constexpr int kDeepest = 1000;        // a URDF stands 4 deep
+  constexpr int kDeepest = 1000;        // a URDF is 4 levels deep
   constexpr int kMaxAttributes = 1000;  // its elements have up to six
   constexpr const char* kRemedy = "check it, for example with 'check_urdf FILE'";
   if (depth(urdf) > kDeepest) return bad_data("the file is not a URDF: elements are nested too deeply", kRemedy);

@@ -73,7 +73,7 @@ void DriveTerms::regressors(const Eigen::Ref<const Vector>& position, const Eige
   if (viscous) rows.col(term++) = velocity;
   if (coulomb || stribeck) {
     Eigen::ArrayXd sign = velocity.array().sign();
-    if (smoothing > 0.0) {  // tanh by the exponential function, of which Eigen takes several at once
+    if (smoothing > 0.0) {  // tanh by the exponential function, which Eigen vectorises
       const Eigen::ArrayXd decay = (-2.0 / smoothing * velocity.array().abs()).exp();
       sign *= (1.0 - decay) / (1.0 + decay);
     }

@@ -47,7 +47,7 @@ Result<Urdf> urdf_of(const std::filesystem::path& file) {
   return Urdf{*std::move(text), file.string()};
 }
 
-/// What a kind of robot knows of its bodies and drives before [drive] is read.
+/// Bodies and drives of a kind of robot before [drive] is read.
 struct Bodies {
   std::shared_ptr<const robot::Mechanism> mechanism;
   Vector phi;

@@ -22,7 +22,7 @@ using config::between;
 using config::Section;
 using perturbation::Quantity;
 
-/// What an experiment file says beside the scenario (protocol/experiment.h): for whoever runs it.
+/// Sections of an experiment file other than the scenario (protocol/experiment.h).
 constexpr std::array kSectionsOfExperiments = {"session", "safety", "person", "device"};
 
 /// The test location of the planar robot, where the file does not give one [m].
@@ -71,7 +71,7 @@ impedance::Model read_linear_limb(const Section& s, const Vector2d& home) {
           s.required_matrix2("stiffness_N_per_m"), s.vector2("equilibrium_mm", home)};
 }
 
-/// What a person adds to the limb; all of it is off where the file does not speak of it.
+/// Voluntary behaviour in addition to the limb; off unless given in the file.
 participant::ArmOptions read_will(const Section& s, const Vector2d& home) {
   participant::ArmOptions arm = participant::relaxed_arm_options();
   const Section c = s.section("correction");
@@ -106,7 +106,7 @@ participant::ArmOptions read_will(const Section& s, const Vector2d& home) {
   return arm;
 }
 
-/// What the limb has beside M, B and K; nothing where the file does not speak of it.
+/// Limb forces other than M, B and K; none unless given in the file.
 std::optional<participant::Departures::Options> read_departures(const Section& s) {
   if (!s.given()) return std::nullopt;
   participant::Departures::Options o;

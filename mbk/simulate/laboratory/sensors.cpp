@@ -65,7 +65,7 @@ Result<Sensor> made_of(const Options& chosen, double sample_time, std::uint64_t 
       chosen);
 }
 
-/// What a sensor on the last link, which is the last axis, reads of a vector of the base frame.
+/// The reading of a vector of the base frame by a sensor on the last link, which is the last axis.
 template <int Axes, class Sensor>
 AxisVector<Axes> read_by(Sensor& chosen, const AxisVector<Axes>& truth, const TrueState<Axes>& state,
                          const AxisVector<Axes>& measured_theta) noexcept {

@@ -17,13 +17,13 @@ Result<Performance> run(const SimulatedTrial<Axes>& trial, const Scenario& scena
   return perform(experiment, *load);
 }
 
-/// The arm at the handle, where there is one.
+/// The arm at the handle, if there is one.
 const participant::ArmOptions* arm_of(const Scenario& scenario) {
   const auto* planar = std::get_if<PlanarTrial>(&scenario.trial);
   return planar == nullptr ? nullptr : std::get_if<participant::ArmOptions>(&planar->load);
 }
 
-/// Lengths and place of an arm of two links: anyone in the room could measure them, so they are no part of the truth.
+/// Lengths and position of a two-link arm: they can be measured, so they are not part of the hidden true values.
 void add_geometry(const participant::ArmOptions& arm, std::map<std::string, std::string>& metadata) {
   const auto* limb = std::get_if<participant::TwoLinkArm::Options>(&arm.limb);
   if (limb == nullptr) return;
@@ -34,7 +34,7 @@ void add_geometry(const participant::ArmOptions& arm, std::map<std::string, std:
   metadata["elbow"] = "right";
 }
 
-/// Whether somebody in the scenario acts voluntarily.
+/// Whether the scenario includes voluntary control.
 bool has_will(const Scenario& scenario) {
   const auto* arm = arm_of(scenario);
   return arm != nullptr && (arm->controller.position_gain > 0.0 || arm->controller.force_gain > 0.0);

@@ -22,7 +22,7 @@
 namespace mbk::laboratory {
 namespace {
 
-/// What a motor makes of a reading: k x + d ẋ + m ẍ + g f.
+/// The motor command from a reading: k x + d ẋ + m ẍ + g f.
 struct Gains {
   double position = 0.0, velocity = 0.0, acceleration = 0.0, force = 0.0;
 
@@ -56,7 +56,7 @@ Robot robot(const teleop::Teleoperator& teleoperator, std::size_t which) {
   };
   const std::string name = which == 0 ? "master" : "slave";
   Robot result{value(teleoperator, name + ".m"), value(teleoperator, name + ".b"), gains(which), gains(1 - which)};
-  // the robot itself moves as it does: f − (m s + b) v is no command
+  // the robot itself moves physically: f − (m s + b) v is not a command
   result.own.force -= 1.0;
   result.own.velocity += result.damping;
   result.own.acceleration += result.mass;

@@ -17,10 +17,10 @@ namespace {
 
 using perturbation::Quantity;
 
-/// The truth is asked for at every so many ticks.
+/// The true values are sampled every N ticks.
 constexpr Index kTruthTicks = 100;
 
-/// And at every so many of a displacement's plateau.
+/// And every N ticks on the plateau of a displacement.
 constexpr Index kPlateauTicks = 10;
 
 /// Average of what an arm is while it tenses and relaxes.
@@ -60,7 +60,7 @@ impedance::Model impedance_in_motion(const participant::Load<2>& load, const Tru
   return model;
 }
 
-/// Collects the truth of the trial as it goes on.
+/// Collects the true values during the trial.
 template <int Axes>
 class Truth {
  public:
@@ -158,7 +158,7 @@ Result<void> check_joints(const robot::Geometry& geometry, const AxisVector<2>& 
   return robot::check_joints(geometry.limits, theta);
 }
 
-/// What a recording says of the apparatus; of one axis nothing.
+/// Metadata of the apparatus; none with one axis.
 void add_apparatus(const Experiment<1>& /*experiment*/, const SensorSuite<1>& /*sensors*/, Recording& /*recording*/) {}
 
 void add_apparatus(const Experiment<2>& experiment, const SensorSuite<2>& sensors, Recording& recording) {

@@ -177,7 +177,7 @@ void Arm::tick(double t, double /*sample_time*/, const HandState<2>& hand, const
   cocontraction_.step(hand.velocity.norm());
   tense(t);
   reach(t);
-  Matrix2d K = Matrix2d::Constant(kNaN);  // where nobody looks at it
+  Matrix2d K = Matrix2d::Constant(kNaN);  // where it is not used
   if (controller_.is_to_decide() || departures_) {
     K = std::visit([&](const auto& limb) { return limb.stiffness(hand.position); }, limb_);
   }

@@ -63,7 +63,7 @@ Elbow Elbow::at(double angle) {
 }
 
 Posture posture(const ArmGeometry& geometry, const Vector2d& hand) {
-  constexpr double kPi = std::numbers::pi, kAtShoulder = 1e-24;  // [m²], where there is no way to the hand
+  constexpr double kPi = std::numbers::pi, kAtShoulder = 1e-24;  // [m²], where the direction to the hand is undefined
   const double l1 = geometry.upper_arm, l2 = geometry.forearm;
   const Vector2d p = hand - geometry.shoulder;
   const double squared = p.squaredNorm();

@@ -10,7 +10,7 @@
 namespace mbk::participant {
 namespace {
 
-/// Durations and lengths stay within it: a draw far out is no reach any more.
+/// Durations and lengths are limited to it: an extreme draw is not a reach.
 constexpr double kMin = 0.7, kMax = 1.3;
 
 Result<void> check(const Reaching::Options& o) {

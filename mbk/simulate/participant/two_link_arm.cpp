@@ -10,7 +10,7 @@ namespace mbk::participant {
 namespace {
 
 Result<void> within_reach(const ArmGeometry& geometry, const Vector2d& hand) {
-  // A place within reach comes back from its own joint angles
+  // A reachable position is reproduced by its joint angles
   const double gap = (hand_position(geometry, joint_angles(geometry, hand)) - hand).norm();
   if (gap < 1e-9) return {};
   return bad_usage(
