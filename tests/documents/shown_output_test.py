@@ -33,7 +33,6 @@ SKIPPED = [
     ("mbk run examples/", "takes as long as its trials"),
     ("mbk reproduce", "takes minutes; tests/end_to_end/reproduce_test.py runs it"),
     ("mbk validate", "takes minutes; each study has a test of its own"),
-    ("servo", "sixteen trials and a file from the text"),
 ]
 
 
