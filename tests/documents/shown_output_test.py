@@ -29,7 +29,6 @@ BEFORE = {
 
 #: (part of the command, why it is not run)
 SKIPPED = [
-    ("mbk reproduce", "takes minutes; tests/end_to_end/reproduce_test.py runs it"),
     ("mbk validate", "takes minutes; each study has a test of its own"),
 ]
 
