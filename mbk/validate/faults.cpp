@@ -34,9 +34,9 @@ constexpr double kPace = 20.0;
 /// tick, and a count, are the difference [N].
 constexpr double kForceTolerance = 0.05;
 
-/// A hand that is driven the wrong way while it shall follow a position is stopped below this speed [m/s].
+/// Maximum speed of the hand before the stop if the motors are reversed in a position trial [m/s].
 constexpr double kRunawaySpeed = 0.4;
-constexpr std::string_view kWrongWay = "motors pull the wrong way";
+constexpr std::string_view kWrongWay = "motors reversed";
 
 /// The robot is found so far from the test location [m].
 constexpr double kAway = 0.015;
