@@ -28,7 +28,7 @@ struct SpoiltProgram {
   std::function<void(Said&)> say;
 };
 
-/// A way to break a rule of docs/guide/devices.md, as programs do.
+/// A way to break a rule of docs/guide/own_robot.md, as programs do.
 struct RuleBreaker {
   std::string_view name;  ///< for the command line: "believes-damaged"
   std::string_view what;  ///< what its program does

@@ -40,7 +40,7 @@ constexpr auto kRules = word_table(BridgeRule{}).size();
 
 constexpr std::array<BridgeRuleText, kRules> kTexts = {{
     {"answers a greeting", "start its program; check address, port, cable and firewall; send states to the sender"},
-    {"sends whole states: length, MBKS, version, CRC-32", "pack them as docs/guide/devices.md lists the bytes"},
+    {"sends whole states: length, MBKS, version, CRC-32", "pack the bytes as in docs/guide/own_robot.md"},
     {"its states carry the session of the greeting", "copy bytes 8-11 of the greeting into every state"},
     {"has its motors off after a greeting", "switch them off with each greeting that is accepted, flag 2 and 16 too"},
     {"answers a greeting with the greeting's number", "set byte 24 of the states to the greeting's sequence"},

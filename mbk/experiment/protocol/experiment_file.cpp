@@ -109,7 +109,7 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
       if (!root.has("robot")) {
         return tl::unexpected(root.error("device", "names a robot that no [robot] describes",
                                          "write [robot] with d1_mm, d2_mm, home_mm, alpha_kg_m2 and friction of yours; "
-                                         "docs/guide/devices.md draws them"));
+                                         "docs/guide/own_robot.md draws them"));
       }
       for (const char* key : {"d1_mm", "d2_mm", "home_mm", "theta1_deg", "theta2_deg", "alpha_kg_m2", "coulomb_Nm",
                               "viscous_Nms_per_rad"}) {
