@@ -39,7 +39,7 @@ struct RuleBreaker {
 /// At least one of each rule.
 [[nodiscard]] std::span<const RuleBreaker> rule_breakers();
 
-/// @returns  null where there is none of that name
+/// @returns  null if no rule breaker has that name
 [[nodiscard]] const RuleBreaker* find_rule_breaker(std::string_view name);
 
 /// A UdpRobot with a spoilt program.

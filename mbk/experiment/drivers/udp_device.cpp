@@ -202,7 +202,7 @@ bool UdpDevice::read(device::State& state) noexcept {
     take_all();
   }
   state = fittings_.wiring.state(newest_.raw);
-  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting is no command
+  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting does not count as a command
   state.motors = newest_.enabled ? device::Motors::on : device::Motors::off;
   state.has_force = newest_.has_force;
   state.has_acceleration = newest_.has_acceleration;

@@ -42,7 +42,8 @@ void describe(Fields<ModelReliability>& fields) {
 void describe(Fields<EffectSize>& fields) {
   fields.type("StudyEffect");
   fields.add("g", &EffectSize::g, "Hedges's g");
-  fields.add("d", &EffectSize::d, "divided by the pooled standard deviation; paired: by that of the differences");
+  fields.add("d", &EffectSize::d,
+             "divided by the pooled standard deviation; paired: by the standard deviation of the differences");
   fields.add("interval95", &EffectSize::interval95);
 }
 

@@ -78,8 +78,8 @@ class Adder::File {
     return study_.add(std::move(incoming), recordings, sha256, options_.role);
   }
 
-  /// What the operator excluded is excluded in the study too; windows stay in the recording, and whoever measures it
-  /// leaves them out. Both are said.
+  /// Recordings excluded by the operator are excluded in the study too; excluded windows stay in the recording and are
+  /// omitted when measuring. Both are reported.
   store::NewRecording to_store(std::int64_t part, const store::TrialFacts& trial, const Recording& recording) const {
     const std::string exclusions = preprocess::exclusions_text(recording);
     if (const auto warning = protocol::personal_warning("the reason of an exclusion", exclusions, false);
