@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "apps/mbk/call.h"
+#include "apps/mbk/wording.h"
 #include "mbk/base/core/requester.h"
 #include "mbk/base/core/rests.h"
 #include "mbk/base/core/version.h"
@@ -44,8 +45,18 @@ int exit_code_of(mbk::ErrorKind kind) {
   return kind == mbk::ErrorKind::data ? kBadData : kNotUsable;
 }
 
-/// An instance of _mbk.Error, whose text is the one line that the program prints.
-py::object to_python(const Error& error) {
+std::string in_python(const std::string& text) {
+  return mbk::app::in_language(mbk::app::Language::python, text);
+}
+
+std::vector<std::string> in_python(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = in_python(text);
+  return texts;
+}
+
+/// An instance of _mbk.Error, whose text is one line: "file: what; hint", with options and commands as in Python.
+py::object to_python(const Error& given) {
+  const Error error = mbk::app::in_language(mbk::app::Language::python, given);
   py::object made = py::reinterpret_borrow<py::object>(error_class)(error.line());
   made.attr("file") = error.where;
   made.attr("what") = error.message;
@@ -383,7 +394,7 @@ PYBIND11_MODULE(_mbk, m) {
           "Names, SI units and frames of what was recognised.")
       .def_property_readonly("samples", [](const InMemory& self) { return meaning_of(self).samples(); })
       .def_property_readonly("metadata", [](const InMemory& self) { return meaning_of(self).metadata; })
-      .def_property_readonly("notes", [](const InMemory& self) { return meaning_of(self).notes; })
+      .def_property_readonly("notes", [](const InMemory& self) { return in_python(meaning_of(self).notes); })
       .def_property_readonly("events",
                              [](const InMemory& self) {
                                std::vector<std::tuple<double, std::string, double>> events;
@@ -410,8 +421,16 @@ PYBIND11_MODULE(_mbk, m) {
       .def_readonly("text", &Answer::text, "What the command prints.")
       .def_readonly("exit_code", &Answer::exit_code)
       .def_property_readonly(
-          "warnings", [](const Answer& a) { return mbk::app::warnings_of(a); }, "Codes and texts.")
-      .def_readonly("messages", &Answer::messages, "What the command says beside its answer.")
+          "warnings",
+          [](const Answer& a) {
+            auto warnings = mbk::app::warnings_of(a);
+            for (auto& [code, text] : warnings) text = in_python(text);
+            return warnings;
+          },
+          "Code and text of each; the text ends with the advice.")
+      .def_property_readonly(
+          "messages", [](const Answer& a) { return in_python(a.messages); },
+          "What the program would print on standard error.")
       .def_property_readonly(
           "errors",
           [](const Answer& a) {
@@ -426,6 +445,9 @@ PYBIND11_MODULE(_mbk, m) {
         py::arg("documents") = std::vector<std::string>{}, py::arg("progress") = py::none());
   m.def("read_all", &read_files, py::arg("files"), py::arg("options") = py::dict(),
         "Every recording that the files hold.");
+  m.def(
+      "in_python", [](const std::string& text) { return in_python(text); }, py::arg("text"),
+      "A message for the command line with its options and commands as in Python.");
   m.def("describe", &mbk::app::describe_commands, "The document of 'mbk manual --json'.");
   m.def("recording_word", &mbk::app::recording_word);
   m.def("document_word", &mbk::app::document_word);
