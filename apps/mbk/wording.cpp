@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::string_view kEllipsis = "…";
 
-/// Those that an option could be called.
+/// Reserved words that could be the name of an option.
 constexpr auto kPythonKeywords = std::to_array<std::string_view>(
     {"and", "as",     "class", "def", "del",  "for",   "from",   "global", "if",    "import", "in",
      "is",  "lambda", "not",   "or",  "pass", "raise", "return", "try",    "while", "with",   "yield"});
@@ -32,10 +32,10 @@ constexpr auto kPythonKeywords = std::to_array<std::string_view>(
 /// Commands without a function in +mbk.
 constexpr auto kNotInMatlab = std::to_array<std::string_view>({"recover", "reproduce"});
 
-// ---- what there is ----
+// ---- options and commands ----
 
 struct KnownOption {
-  bool takes_value = false;     ///< in any command
+  bool takes_value = false;     ///< in at least one command
   std::set<std::string> words;  ///< fixed values
 };
 
@@ -97,7 +97,7 @@ bool is_placeholder(const std::string& text) {
          std::ranges::all_of(text, [](char c) { return is_upper(c) || c == '_' || c == '|'; });
 }
 
-/// Whether a word behind an option is its value, and not the next word of the sentence.
+/// Whether the word after an option is its value rather than the next word of the sentence.
 bool is_value(const std::string& word, const KnownOption& option) {
   if (option.words.contains(word)) return true;
   if (word.starts_with("--") || word.front() == '(' || word.front() == '\'' || word.front() == '"') return false;
@@ -107,7 +107,7 @@ bool is_value(const std::string& word, const KnownOption& option) {
   return std::ranges::any_of(word, is_upper) && std::ranges::none_of(word, is_lower);
 }
 
-/// The option of --help whose name begins at `at`: "--rate"; empty where there is none.
+/// The option of --help whose name begins at `at`: "--rate"; empty if there is none.
 std::string option_at(std::string_view text, std::size_t at) {
   if (text.substr(at, 2) != "--" || at + 2 >= text.size() || !is_lower(text[at + 2])) return "";
   if (at > 0) {
@@ -126,10 +126,10 @@ std::string option_at(std::string_view text, std::size_t at) {
 
 struct FoundValue {
   std::string value;
-  std::size_t end;  ///< behind it
+  std::size_t end;  ///< position after it
 };
 
-/// The value of an option whose name ends at `at`.   @param certain  the next word is its value, whatever it is
+/// The value of an option whose name ends at `at`.   @param certain  the next word is its value in any case
 std::optional<FoundValue> value_at(const std::string& text, std::size_t at, const KnownOption& option, bool certain) {
   if (at >= text.size() || (text[at] != ' ' && text[at] != '=')) return std::nullopt;
   const std::size_t begin = at + 1;
@@ -149,7 +149,7 @@ std::optional<FoundValue> value_at(const std::string& text, std::size_t at, cons
   return std::nullopt;
 }
 
-// ---- how a language writes it ----
+// ---- texts of a language ----
 
 std::string identifier(Language language, std::string name) {
   if (language == Language::c) return name;
@@ -170,7 +170,7 @@ std::string literal(Language language, const std::string& value) {
   return fmt::format("{0}{1}{0}", quote, value);
 }
 
-/// @param option  "--rate", of --help    @param value  nothing: it is named without one
+/// @param option  "--rate", of --help    @param value  nothing: the option is named without a value
 std::string argument(Language language, const std::string& option, const std::optional<std::string>& value) {
   if (option == "--json") return "JSON";
   if (option == "--help" || option == "--help-all") {
@@ -191,14 +191,14 @@ std::string argument(Language language, const std::string& option, const std::op
   return value ? "{\"" + name + "\", " + literal(language, *value) + "}" : "\"" + name + "\"";
 }
 
-/// What stands behind a command.
+/// Arguments of a command.
 struct Arguments {
   std::vector<std::string> texts;
   bool json = false;  ///< --json was among them
   std::optional<std::string> out;
 };
 
-/// Nothing where one of them is no option of --help.
+/// Nothing if an option is not in --help.
 std::optional<Arguments> arguments_of(Language language, const std::vector<std::string>& words) {
   Arguments found;
   for (std::size_t k = 0; k < words.size(); ++k) {
@@ -232,13 +232,13 @@ std::vector<std::string> words_in(const std::string& text) {
   return words;
 }
 
-/// A call of the command `path`; nothing where the language has none.   @param words  behind the command
+/// A call of the command `path`; nothing if the language has none.   @param words  arguments of the command
 std::optional<std::string> call_text(Language language, const std::vector<std::string>& path,
                                      const std::vector<std::string>& words) {
   std::string callee = "mbk";
   for (const std::string& part : path) {
     callee += "." + identifier(language, part);
-    if (language == Language::matlab) break;  // what is below it is an argument
+    if (language == Language::matlab) break;  // a subcommand is an argument
   }
   if (std::ranges::find(words, "--help") != words.end()) {
     if (language == Language::c) return std::nullopt;
@@ -258,7 +258,7 @@ std::optional<std::string> call_text(Language language, const std::vector<std::s
   return text;
 }
 
-/// What stands for "mbk measure FILE --pool"; nothing where that is no command.
+/// The call for "mbk measure FILE --pool"; nothing if mbk has no such command.
 std::optional<std::string> command_text(Language language, const std::string& typed) {
   const std::vector<std::string> words = words_in(typed);
   if (words.size() < 2 || words.front() != "mbk") return std::nullopt;
@@ -291,7 +291,7 @@ std::string in_language(Language language, const std::string& text) {
   while (at < text.size()) {
     if (text.compare(at, kCommand.size(), kCommand) == 0) {
       const std::size_t end = text.find('\'', at + 1);
-      const auto call =
+      const auto replaced =
           end == std::string::npos ? std::nullopt : command_text(language, text.substr(at + 1, end - at - 1));
       if (replaced) {
         made += *replaced;
@@ -306,7 +306,7 @@ std::string in_language(Language language, const std::string& text) {
     }
     const std::size_t end = at + option.size();
     const char next = end < text.size() ? text[end] : '\0';
-    if (next == ':' || (next == '\'' && at > 0 && text[at - 1] == '\'')) {  // the place of an error; a name in quotes
+    if (next == ':' || (next == '\'' && at > 0 && text[at - 1] == '\'')) {  // place of an error; name in quotes
       made += identifier(language, option.substr(2));
       at = end;
       continue;
@@ -325,7 +325,7 @@ Error in_language(Language language, const Error& error) {
   Error made = error;
   made.message = in_language(language, error.message);
   made.remedy = in_language(language, error.remedy);
-  if (error.where.starts_with("--")) made.where = in_language(language, error.where);  // else the name of a file
+  if (error.where.starts_with("--")) made.where = in_language(language, error.where);  // otherwise a file name
   return made;
 }
 

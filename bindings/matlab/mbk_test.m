@@ -224,7 +224,7 @@ untimed = table(struct('x', x, 'F', force), {});
 check_near(model_of(untimed, 'rate', 1000), numbers_of(direct.model), 'a table without time and a rate');
 check_error(@() mbk.identify(untimed, 'axes', 1), 'mbk:data', 'rate', 'a table without time');
 
-% A struct with y, u and Ts: rows or columns, names and units; what does not fit is said.
+% A struct with y, u and Ts: rows or columns, names and units; mismatches are errors.
 short = struct('y', 1000 * x', 'u', force', 'Ts', 1e-3, 'OutputName', 'x', 'InputName', 'F', 'OutputUnit', 'mm');
 check_near(model_of(short), numbers_of(direct.model), 'rows with names and a unit');
 both = struct('y', [x, recording.hand_y], 'u', [force, recording.force_y], 'Ts', 1e-3);

@@ -187,7 +187,7 @@ function signals = of_iddata(data)
 end
 
 function value = property(data, name)
-% Property of an object or struct; [] if there is none of that name.
+% Property of an object or struct; [] if it does not exist.
   try
     value = data.(name);
   catch
