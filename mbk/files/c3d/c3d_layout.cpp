@@ -153,7 +153,7 @@ class Finder {
   void find_contradiction(const C3dLayout& by_parameters, const C3dLayout& by_header, bool only_samples) {
     const auto numbers = [](const C3dLayout& shape) { return static_cast<double>(shape.channels * shape.samples); };
     if (by_parameters.real != by_header.real) {
-      contradiction_ = {"as the point scale, whose sign distinguishes reals from integers,", header_scale(),
+      contradiction_ = {"as the point scale, whose sign distinguishes reals from integers", header_scale(),
                         parameters_.number("POINT", "SCALE").value_or(0.0)};
     } else if (by_parameters.points != by_header.points) {
       contradiction_ = {"points", static_cast<double>(by_header.points), static_cast<double>(by_parameters.points)};
