@@ -22,7 +22,7 @@ constexpr std::size_t c3d_header_word(std::size_t k) {
 
 /// Remedy for contradictory bytes.
 inline constexpr std::string_view kC3dRemedy =
-    "the file is damaged or cut short: copy it again from where it was recorded";
+    "the file is damaged or truncated: copy it again from where it was recorded";
 /// Remedy for a file that its program wrote incorrectly.
 inline constexpr std::string_view kC3dWriteAgain = "write the file again with the program that recorded it";
 

@@ -14,7 +14,7 @@ constexpr std::uint64_t kObjectMemory = 512;    ///< [bytes], of a node of the t
 }  // namespace
 
 tl::unexpected<Error> damaged(std::string what) {
-  return bad_data(std::move(what), "the file is damaged or cut short: copy it again from where it was recorded");
+  return bad_data(std::move(what), "the file is damaged or truncated: copy it again from where it was recorded");
 }
 
 Budget::Budget(const ReadLimits& limits)

@@ -15,7 +15,7 @@
 namespace mbk::recording {
 namespace {
 
-constexpr std::string_view kAgain = "the exam is damaged or cut short: copy it again from where it was recorded";
+constexpr std::string_view kAgain = "the exam is damaged or truncated: copy it again from where it was recorded";
 constexpr std::size_t kWord = 4;
 
 /// Reads a member from its begin to its end. After the first failure everything reads as nothing.

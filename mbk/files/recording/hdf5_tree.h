@@ -45,7 +45,7 @@ void for_each_member(Group& group, const Use& use) {
 [[nodiscard]] hdf5::Dataset* find_dataset(hdf5::Group& root, std::string_view path);
 
 inline constexpr std::string_view kCopyAgain =
-    "the file is damaged or cut short: copy it again from where it was recorded";
+    "the file is damaged or truncated: copy it again from where it was recorded";
 
 /// The note on a damaged part of a file that was ignored.
 [[nodiscard]] std::string lost_note(std::string_view what, std::string_view why);

@@ -88,7 +88,7 @@ bool looks_like_mat_level4(std::span<const std::byte> file) {
 }
 
 Result<Contents> decode_mat_level4(std::span<const std::byte> bytes) {
-  constexpr auto kRemedy = "the file is damaged or cut short: copy it again from where it was recorded";
+  constexpr auto kRemedy = "the file is damaged or truncated: copy it again from where it was recorded";
   const ByteView file{bytes, byte_order(bytes).value_or(false)};
   Contents contents;
   contents.format = "MAT v4";

@@ -39,7 +39,7 @@ constexpr std::uint32_t kCellClass = 1, kStructClass = 2, kObjectClass = 3, kCha
                         kOpaqueClass = 17;
 
 tl::unexpected<Error> damaged(std::string what) {
-  return bad_data(std::move(what), "the file is damaged or cut short: copy it again from where it was recorded");
+  return bad_data(std::move(what), "the file is damaged or truncated: copy it again from where it was recorded");
 }
 
 struct Element {
