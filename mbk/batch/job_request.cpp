@@ -107,7 +107,7 @@ Result<JobFolder> job_of(const JobOptions& options, const JobRequest& request, c
   if (opened.job().kind != request.kind ||
       nlohmann::json::parse(opened.job().specification) != nlohmann::json::parse(request.specification)) {
     return fail(ErrorKind::usage, "there is another job in this folder",
-                "finish it, or name another folder with --job-folder", whole.string());
+                "finish that job, or name another folder with --job-folder", whole.string());
   }
   return opened;
 }
@@ -118,41 +118,44 @@ const OptionTable<JobOptions>& job_table() {
   static const auto kTable = [] {
     OptionTable<JobOptions> table;
     table.group("Many processes and machines")
-        .add(
-            {"--engine", "", "processes on this machine (local), a job array (slurm); without it: within this process"},
-            &JobOptions::kind)
+        .add({"--engine", "", "local: processes on this machine; slurm: a job array (default: within this process)"},
+             &JobOptions::kind)
         .check([](const std::string& given) -> std::string {
           if (given != "mpi") return one_of({kWordList<EngineKind>.begin(), kWordList<EngineKind>.end()}).wrong(given);
-          return "mpi is no engine any more; begin the job with local or slurm, and add workers with "
+          return "'mpi' is no longer an engine; start the job with local or slurm, and add workers with "
                  "'mpirun -n N mbk work FOLDER'";
         })
-        .add({"--tasks", "N", "processes at a time (as many as there are cores; slurm: no limit)",
+        .add({"--tasks", "N", "maximum number of processes at a time (default: number of cores; slurm: no limit)",
               whole_number(1, 100'000)},
              &JobOptions::tasks)
         .add({"--job-folder", "FOLDER",
-              "where the work is noted, on a disk that every machine sees; a job that stands there is gone on with",
+              "folder of the job, on a disk that every machine can access; an existing job in it is continued",
               not_empty()},
              &JobOptions::folder)
-        .add({"--chunk-seconds", "S", "a process does so much at a time (by measured cost)", positive()},
-             &JobOptions::chunk_s)
-        .add({"--chunk-units", "N", "the same in recordings or runs", whole_number(1, 100'000'000)},
+        .add(
+            {"--chunk-seconds", "S", "length of a chunk of work, in seconds (default: from measured cost)", positive()},
+            &JobOptions::chunk_s)
+        .add({"--chunk-units", "N", "length of a chunk of work, in recordings or runs", whole_number(1, 100'000'000)},
              &JobOptions::chunk_units)
-        .add({"--memory-mb", "MB", "of each task of Slurm (by what was measured)", whole_number(1, 10'000'000)},
+        .add({"--memory-mb", "MB", "memory of each Slurm task, in MB (default: from measured use)",
+              whole_number(1, 10'000'000)},
              &JobOptions::memory_mb)
-        .add({"--silence", "S", "a process that shows no sign of life for so long is taken for dead (300)", positive()},
+        .add({"--silence", "S",
+              "a process without a heartbeat for this time, in seconds, is considered dead (default: 300)", positive()},
              &JobOptions::silence_s)
-        .add({"--settle", "S", "so long after a task's end its file may take to come into sight (10)", positive()},
+        .add({"--settle", "S", "time to wait for the file of a finished task to appear, in seconds (default: 10)",
+              positive()},
              &JobOptions::settle_s)
-        .add({"--partition", "NAME", "of Slurm (SBATCH_PARTITION)"}, &JobOptions::partition)
-        .add({"--account", "NAME", "of Slurm (SBATCH_ACCOUNT)"}, &JobOptions::account)
+        .add({"--partition", "NAME", "Slurm partition (default: SBATCH_PARTITION)"}, &JobOptions::partition)
+        .add({"--account", "NAME", "Slurm account (default: SBATCH_ACCOUNT)"}, &JobOptions::account)
         .add({.name = "--engine-option",
               .value = "OPTION",
-              .help = "passed on to sbatch; may be repeated",
+              .help = "option for sbatch; may be repeated",
               .repeats = true},
              &JobOptions::extra)
-        .add({"--detach", "", "of Slurm: hand the tasks out and end; the same command later collects what they did"},
+        .add({"--detach", "", "with Slurm: submit the tasks and exit; the same command later collects the results"},
              &JobOptions::detach)
-        .add({"--keep-job", "", "leave the job's folder where all is done"}, &JobOptions::keep);
+        .add({"--keep-job", "", "keep the job's folder when all is done"}, &JobOptions::keep);
     return table;
   }();
   return kTable;
@@ -161,7 +164,7 @@ const OptionTable<JobOptions>& job_table() {
 Result<CarriedOut> carry_out(const JobOptions& options, const JobRequest& request, const fs::path& program,
                              std::function<Stop()> stop, std::function<void(const JobState&)> progress) {
   if (options.detach && options.kind != EngineKind::slurm) {
-    return bad_usage("--detach belongs to --engine slurm", "leave it out");
+    return bad_usage("--detach is valid only with --engine slurm", "omit it");
   }
   EngineOptions engine_of = engine_options(options, program);
   auto folder = MBK_TRY(job_of(options, request, engine_of));

@@ -18,8 +18,6 @@ from command import FINE, NOT_USABLE, Case, main, make_log, program, run, table_
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "guide" / "tasks.md").read_text(encoding="utf-8")
 
-ALL_HELP = "--help-all"  # where a command has one: what --help leaves for it
-
 
 class Newcomer:
     """Someone at a terminal. `help` and `do` are steps; `do` fails where a word was never read."""
@@ -37,8 +35,6 @@ class Newcomer:
     def read(self, command, word):
         """`word` stands in the help of `command`, which was read."""
         self.case.assertIn(command, self.texts, f"nobody has read 'mbk {' '.join(command)} --help'")
-        if not self.stands(word, command):  # it is looked for behind what fits a screen
-            self.texts[command] += self.ran(*command, ALL_HELP).out
         self.case.assertTrue(self.stands(word, command), (command, word))
 
     def stands(self, word, command):

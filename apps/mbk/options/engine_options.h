@@ -15,7 +15,7 @@ struct EngineArguments : batch::JobOptions {
   bool progress_json = false;
 };
 
-/// Adds --engine and what belongs to it.
+/// Adds --engine and the options that belong to it.
 void add_engine_options(Command command, EngineArguments& arguments);
 
 /// How a job ended: with all its shards, unless `code` says what the command is to end with.

@@ -137,7 +137,9 @@ std::vector<std::string> Option::words() const {
 }
 
 Command Command::add_command(const std::string& name, const std::string& summary) const {
-  return Command(*app_->add_subcommand(name, summary));
+  CLI::App* const below = app_->add_subcommand(name, summary);
+  if (CLI::Option* const help_all = below->get_option_no_throw(kHelpAll)) help_all->group("");
+  return Command(*below);
 }
 
 template <class T>

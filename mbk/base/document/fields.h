@@ -210,7 +210,7 @@ Json Definitions::of() {
               {"items", of<double>()},
               {"minItems", 2},
               {"maxItems", 2},
-              {"description", "Low and high end."}};
+              {"description", "Lower and upper bound."}};
     });
   } else if constexpr (std::is_same_v<T, Vector> || std::is_same_v<T, std::vector<double>>) {
     return named("Vector", [&]() -> Json { return {{"type", "array"}, {"items", of<double>()}}; });
@@ -270,7 +270,7 @@ class Fields {
     }
   };
 
-  /// @param name     in schemas and TypeScript: "Reach"; without it the type stands where it is used
+  /// @param name     in schemas and TypeScript: "Reach"; without it the type is defined where it is used
   /// @param meaning  one sentence
   void type(std::string name, std::string meaning = "") {
     name_ = std::move(name);
@@ -409,11 +409,11 @@ class Fields {
         std::move(name), {{"enum", {text}}}, [text](const T&) { return Json(text); }, std::move(meaning));
   }
 
-  /// What each document begins with: the name and version of its schema ("mbk.movement/1"), and what wrote it.
+  /// The beginning of each document: name and version of its schema ("mbk.movement/1"), and the program that wrote it.
   void header(const std::string& schema) {
     constant("schema", schema);
     add(
-        "software", [](const T&) { return software(); }, "what wrote it, as in \"mbk 0.1.0\"");
+        "software", [](const T&) { return software(); }, "program that wrote the document: \"mbk 0.1.0\"");
   }
 
   /// All fields of another described value, in this object.
