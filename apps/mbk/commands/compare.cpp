@@ -136,7 +136,7 @@ std::string text_of(const std::vector<Compared>& all, const std::vector<WidthFin
     if (widths.size() > 1) text += fmt::format("{}{}\n", k == 0 ? "" : "\n", all[k + 1].name);
     text += source_line(first, "first") + source_line(second, "second");
     text += first.usable && second.usable ? report::width_text(widths[k])
-                                          : "  no distance is shown; --json contains the numbers\n";
+                                          : "  no width is shown; --json contains the numbers\n";
   }
   return text;
 }
@@ -193,10 +193,10 @@ Action add_compare(Command app, const std::string& typed) {
       "      measures both recordings with the same options first\n"
       "  mbk compare results/ --report all.html\n"
       "      every result of a folder: side by side on a page, and each compared with the first\n\n"
-      "The distance is √(Σ ln² λ) over the eigenvalues λ of Z₁⁻¹Z₂, for the symmetric parts of M, B and K each:\n"
+      "The width is √(Σ ln² λ) over the eigenvalues λ of Z₁⁻¹Z₂, for the symmetric parts of M, B and K each:\n"
       "0 if both are equal, √2 ln 7 = 2.75 if the second is seven times the first in every direction. It does not\n"
       "depend on axes and units, nor on hand or joint coordinates. The minimum and maximum ratio of the second to\n"
-      "the first are reported with their directions from x. A matrix that is not positive definite has no distance\n"
+      "the first are reported with their directions from x. A matrix that is not positive definite has no width\n"
       "(exit code 4). Each of several results is compared with the first.");
   add_measure_options(command, *arguments);
   command.get_option("FILE").description("results of 'mbk measure --json', recordings, or folders of results");

@@ -21,7 +21,7 @@ struct FileSignal {
 /// A channel map that names and numbers of a file suggest.
 struct ChannelGuess {
   std::string map;                   ///< "time=1,x=2:mm,…"; holds what was found, even where something is missing
-  std::vector<std::string> reasons;  ///< one for each entry: "Fx = 4: called 'force_x (N)'"
+  std::vector<std::string> reasons;  ///< one for each entry: "Fx = 4: named 'force_x (N)'"
   std::vector<std::string> missing;  ///< channels without which nothing is measured: "x", "F"
 };
 

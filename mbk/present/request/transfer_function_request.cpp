@@ -75,7 +75,7 @@ Result<void> set_orders(const TransferFunctionRequest& request, identify::Transf
   fit.poles = *request.poles;
   fit.zeros = request.zeros.value_or(*request.poles - 1);
   if (fit.zeros > fit.poles) {
-    return bad_usage(fmt::format("a model with {} zeros and {} poles is not causal", fit.zeros, fit.poles),
+    return bad_usage(fmt::format("a model with {} zeros and {} poles is improper", fit.zeros, fit.poles),
                      "exchange input and output, or use fewer zeros");
   }
   return {};
