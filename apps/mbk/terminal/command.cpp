@@ -138,7 +138,8 @@ std::vector<std::string> Option::words() const {
 
 Command Command::add_command(const std::string& name, const std::string& summary) const {
   CLI::App* const below = app_->add_subcommand(name, summary);
-  if (CLI::Option* const help_all = below->get_option_no_throw(kHelpAll)) help_all->group("");
+  // The parser does not pass the name of an option that it does not list on to commands below.
+  if (app_->get_help_all_ptr() != nullptr) below->set_help_all_flag(kHelpAll)->group("");
   return Command(*below);
 }
 
