@@ -27,7 +27,7 @@ struct CompareArguments : MeasureArguments {
 
 /// One of those that are compared.
 struct Compared {
-  std::string name;  ///< of the file that was given, and which of its results where it holds several
+  std::string name;  ///< of the given file, and the number of the result if the file contains several
   result::ReportedResult found;
 };
 

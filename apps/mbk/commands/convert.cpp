@@ -79,7 +79,7 @@ int report(const ConvertArguments& arguments, const Recording& recording, const 
   return kFine;
 }
 
-/// What a command converts, and to what.
+/// The inputs and the output format of a conversion.
 struct Conversion {
   const ConvertArguments& arguments;
   recording::Format format;

@@ -170,7 +170,7 @@ class RunsElsewhere {
       const auto folder = batch::JobFolder::open(stage_folder(folder_, stage));
       if (folder) std::ignore = folder->remove();
     }
-    std::filesystem::remove(folder_, ignored);  // where nothing else stands in it
+    std::filesystem::remove(folder_, ignored);  // if it is empty
     if (!arguments_.engine.folder) std::filesystem::remove(folder_.parent_path(), ignored);
   }
 

@@ -51,7 +51,7 @@ int run(const WorkArguments& arguments) {
     if (::getppid() == 1) return kBadData;  // it is gone already
   }
   if (auto ok = folder->check_program(); !ok) return report_error(ok.error());
-  // Before anything computes: processors of different kinds then give the same digits.
+  // Before any computation: processors of different kinds then give the same digits.
   const std::string& simd_of_job = folder->job().simd;
   ::setenv("MBK_SIMD", simd_of_job.c_str(), 1);
   if (word_of(simd()) != simd_of_job) {

@@ -38,7 +38,7 @@ void add_main_options(Command command, const OptionTable<Options>& table, Into& 
   }
 }
 
-/// Adds an option that stands in no table with others.
+/// Adds a single option.
 template <class Value>
 void add_option(Command command, const OptionFacts& facts, Value& into) {
   add_table_option(command, facts, [&into](const auto& values) { option_values::set(into, values, 1.0); });

@@ -152,14 +152,14 @@ BackgroundMessages::BackgroundMessages() {
     messages().background = true;
   }
   try {
-    std::thread(write_waiting).detach();  // it may hang in its last message for ever
-  } catch (const std::system_error&) {    // no thread to be had: whoever says something waits
+    std::thread(write_waiting).detach();  // it may block in its last message for ever
+  } catch (const std::system_error&) {    // no thread available: callers write and wait
     messages().background = false;
   }
 }
 
 BackgroundMessages::~BackgroundMessages() {
-  if (!flush_messages()) return;  // what is said from now on is lost too, but holds nobody up
+  if (!flush_messages()) return;  // later messages are lost too, but block no thread
   const std::scoped_lock lock(messages().mutex);
   messages().background = false;
   messages().came.notify_all();
