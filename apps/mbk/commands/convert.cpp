@@ -193,8 +193,9 @@ Action add_convert(Command app) {
       "      writes one file for each of several trials; {trial} stands for its name (--trial selects one)\n"
       "  mbk convert other.mat other.csv\n"
       "      if no channel is recognised, every array is copied unchanged, under its own name and in its own unit\n\n"
-      "Numbers are preserved to the last bit, with units, frames, events and metadata. Nothing is resampled or\n"
-      "repaired. What was ignored in reading, or cannot be stored in the new format, is reported on standard error.");
+      "Numbers are preserved to the last bit, with units, frames, events and metadata. Nothing is\n"
+      "resampled or repaired. What was ignored in reading, or cannot be stored in the new format, is\n"
+      "reported on standard error.");
   arguments->reading.options.own_samples = false;
   add_reading_options(command, arguments->reading);
   add_sensor_options(command, arguments->sensor);

@@ -56,9 +56,10 @@ Action add_ellipse(Command app) {
       "Examples:\n"
       "  mbk ellipse result.json\n"
       "      a result written by 'mbk measure log.mat --json --out result.json'\n\n"
-      "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x, each of the symmetric part.");
+      "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x, each of the symmetric\n"
+      "part.");
   command.add_option("RESULT.json", arguments->file, "a result written by 'mbk measure --json'").required();
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1");
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.ellipse/1");
   arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }

@@ -142,8 +142,9 @@ Action add_explore(Command app, const std::string& typed) {
       "      one result for each file, computed by one process for each core; or with --engine slurm\n"
       "  mbk explore ankle.csv --channels x=2,F=3 --method welch --max-frequency 30\n"
       "  mbk explore arm.mat --input torque --output acceleration --rate 500\n\n"
-      "All FILEs are of one limb in one condition. Trials with different phases of a periodic perturbation are\n"
-      "realisations: they separate nonlinear distortion from noise, and the two axes from each other.\n\n"
+      "All FILEs are of one limb in one condition. Trials with different phases of a periodic\n"
+      "perturbation are realisations: they separate nonlinear distortion from noise, and the two axes\n"
+      "from each other.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_files_option(command, arguments->reading);

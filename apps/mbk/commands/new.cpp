@@ -24,8 +24,8 @@ Action add_new(Command app) {
       "      guesses which column is which channel, plots the first seconds, and prints the option for 'mbk measure'\n"
       "  mbk new experiment --out mine.toml\n"
       "  mbk new robot --out robot.toml\n\n"
-      "Each question shows its default in brackets. Enter accepts it, --yes accepts all defaults; answers can also be\n"
-      "piped in, one a line.");
+      "Each question shows its default in brackets. Enter accepts it, --yes accepts all defaults; answers\n"
+      "can also be piped in, one a line.");
   const Actions actions = {{"channels", add_new_channels(group)},
                            {"experiment", add_new_experiment(group)},
                            {"robot", add_new_robot(group)}};

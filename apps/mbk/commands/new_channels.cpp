@@ -111,8 +111,8 @@ Action add_new_channels(Command group) {
       "  mbk measure log.csv $(mbk new channels log.csv --yes)\n"
       "      accepts the guess; fails if there is none\n"
       "  echo time=1:ms,x=2:mm,F=5 | mbk new channels log.csv --out channels.txt\n\n"
-      "Questions and plots go to standard error, the option alone to standard output. The map is printed only after\n"
-      "the file was read with it.");
+      "Questions and plots go to standard error, the option alone to standard output. The map is printed\n"
+      "only after the file was read with it.");
   command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
       .required();
   command.add_option("--rate", arguments->rate_hz, "sample rate, in Hz, if the file contains no time")

@@ -68,12 +68,11 @@ Action add_recover(Command app) {
       "  mbk recover p07_relaxed.h5.journal\n"
       "      writes p07_relaxed.h5, then removes the journal\n"
       "  mbk recover p07_relaxed.h5.journal --out p07.mat --keep\n\n"
-      "Every block of the journal has a checksum, and its ticks are numbered. Every intact block is recovered, "
-      "wherever\n"
-      "it is. A missing tick becomes a row of NaN and is reported, here and in the recording ('ended', 'ticks_lost',\n"
-      "'gaps'; see 'mbk info'). A damaged journal is never removed.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or lost ticks (the recording contains the\n"
-      "others).");
+      "Every block of the journal has a checksum, and its ticks are numbered. Every intact block is\n"
+      "recovered, wherever it is. A missing tick becomes a row of NaN and is reported, here and in the\n"
+      "recording ('ended', 'ticks_lost', 'gaps'; see 'mbk info'). A damaged journal is never removed.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or lost ticks (the recording contains\n"
+      "the others).");
   command.add_option("JOURNAL", arguments->journal, "journal of the session: NAME.h5.journal").required();
   command.add_option("--out", arguments->out, "recording to write (default: NAME.h5)")
       .type_name("REC")

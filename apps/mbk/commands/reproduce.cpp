@@ -136,11 +136,10 @@ Action add_reproduce(Command app) {
   const Command command =
       app.add_command("reproduce", "reproduce the tables and figures of the thesis that mbk is based on");
   command.footer(
-      "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis, University of\n"
-      "Alberta, 2013), compared with the printed numbers: recomputed from other printed numbers, or simulated with "
-      "the\n"
-      "same mechanism, or not recoverable, with the reason; also errata of the source, its research questions and its\n"
-      "future work.\n\n"
+      "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
+      "University of Alberta, 2013), compared with the printed numbers: recomputed from other printed\n"
+      "numbers, or simulated with the same mechanism, or not recoverable, with the reason; also errata of\n"
+      "the source, its research questions and its future work.\n\n"
       "Examples:\n"
       "  mbk reproduce --out thesis\n"
       "      writes thesis/index.html, and tables and figures as files\n"

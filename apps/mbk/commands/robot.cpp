@@ -83,8 +83,9 @@ Action add_workspace(Command group) {
       "  mbk robot workspace\n"
       "  mbk robot workspace --at 300,50\n"
       "  mbk robot workspace --at 300,50 --out workspace.svg\n\n"
-      "x and y are in the robot's base frame; θ₁ is the angle of the first link from x, θ₂ that of the last from −y.\n"
-      "A position that the robot cannot reach is rejected with the limit that excludes it (exit code 2).");
+      "x and y are in the robot's base frame; θ₁ is the angle of the first link from x, θ₂ that of the\n"
+      "last from −y. A position that the robot cannot reach is rejected with the limit that excludes it\n"
+      "(exit code 2).");
   command
       .add_option("--at", arguments->at,
                   "also report joint angles, Jacobian, inertia and margins with the hand at this position, in mm")

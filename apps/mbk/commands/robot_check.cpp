@@ -127,10 +127,11 @@ Action add_robot_check(Command group) {
       "      tests whether the robot's program, such as your own bridge, follows every rule of the link\n"
       "  mbk robot check --rt 60\n"
       "      measures how punctually this computer wakes the control loop, and what delays it\n\n"
-      "Run all of these before a participant sits down at a new robot. docs/guide/devices.md lists the keys of "
-      "[device]\n"
-      "and the rules of the link; docs/guide/your_own_robot.md has a bridge to start from.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not everything was tested.");
+      "Run all of these before a participant sits down at a new robot. docs/guide/devices.md lists the\n"
+      "keys of [device] and the rules of the link; docs/guide/your_own_robot.md has a bridge to start\n"
+      "from.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not everything\n"
+      "was tested.");
   const Option file = command
                           .add_option("FILE", arguments->file,
                                       "description of a robot, or an experiment: .toml, or the name of a built-in one")

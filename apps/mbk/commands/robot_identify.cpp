@@ -231,8 +231,9 @@ Action add_robot_identify(Command group) {
       "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n"
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml --consistent\n"
       "      each link with a physically possible mass, centre of mass and inertia\n\n"
-      "Record with nothing at the handle and every joint moving, fast and slow, through the positions where you will\n"
-      "measure. Torque and motion are filtered alike; parameters that cannot be distinguished are reported.\n\n"
+      "Record with nothing at the handle and every joint moving, fast and slow, through the positions\n"
+      "where you will measure. Torque and motion are filtered alike; parameters that cannot be\n"
+      "distinguished are reported.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(command, arguments->reading);

@@ -375,13 +375,13 @@ Action add_run(Command app) {
       "      the same on a virtual clock, as fast as possible; --speed 20: twenty times real time\n"
       "  mbk run mine.toml --wait\n"
       "      nothing moves until the operator starts it in the console, a page whose address is printed\n\n"
-      "The space bar and Ctrl-C stop the robot; e ends a trial early. Data are first written to NAME.h5.journal; if "
-      "the\n"
-      "program or the computer crashed, 'mbk recover' makes a recording of it. The gate limits force, torque, speed\n"
-      "and position in software; it is not a certified safety function. With people, a stop button that cuts the\n"
-      "motors' power remains necessary (docs/guide/run.md).\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or lost ticks, 4 computed but not usable,\n"
-      "5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
+      "The space bar and Ctrl-C stop the robot; e ends a trial early. Data are first written to\n"
+      "NAME.h5.journal; if the program or the computer crashed, 'mbk recover' makes a recording of it.\n"
+      "The gate limits force, torque, speed and position in software; it is not a certified safety\n"
+      "function. With people, a stop button that cuts the motors' power remains necessary\n"
+      "(docs/guide/run.md).\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or lost ticks, 4 computed but not\n"
+      "usable, 5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
   command.add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a built-in experiment")
       .required()
       .check(suggests(laboratory::ready_scenario_names()));

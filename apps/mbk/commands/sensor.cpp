@@ -143,15 +143,15 @@ Action add_delay(Command sensor) {
   auto arguments = std::make_shared<SensorDelayArguments>();
   const Command command = sensor.add_command("delay", "measure the delay of the force signal with a known mass");
   command.footer(
-      "Fix a known mass to the handle, let the robot move it for half a minute (a multisine up to a few hertz), and\n"
-      "record as in a trial. Nobody may touch the handle.\n\n"
+      "Fix a known mass to the handle, let the robot move it for half a minute (a multisine up to a few\n"
+      "hertz), and record as in a trial. Nobody may touch the handle.\n\n"
       "Examples:\n"
       "  mbk sensor delay mass.h5 --mass 1.194\n"
       "      1 kg, plus 0.194 kg of the handle beyond the force sensor\n"
       "  mbk measure trial.h5 --force-delay-ms 10.2\n"
       "      measures a trial with this delay corrected\n\n"
-      "Exit codes: 0 the delay was found, 2 wrong usage, 3 bad or unreadable data, 4 the delay is not usable:\n"
-      "something other than this mass is at the handle, or its motion is too slow or too short.");
+      "Exit codes: 0 the delay was found, 2 wrong usage, 3 bad or unreadable data, 4 the delay is not\n"
+      "usable: something other than this mass is at the handle, or its motion is too slow or too short.");
   add_reading_options(command, arguments->reading);
   command.add_option("--mass", arguments->mass, "mass beyond the force sensor, including that of the handle, in kg")
       .type_name("KG")

@@ -153,10 +153,10 @@ Action add_simulate(Command app) {
       "  mbk simulate rig_table_5_1 --trial K5_M5 --out rig.mat\n"
       "  mbk simulate mine.toml --facts\n"
       "      peaks, speed, crest factor and band of the perturbation; simulates nothing\n\n"
-      "The metadata of the recording contain the true parameters (truth_M, truth_B, truth_K, …). 'mbk info' shows "
-      "them,\n"
-      "no measuring command reads them, and --blind omits them. The same scenario and seed give the same bytes.\n"
-      "Arms that correct their position or force do so with tuned gains, which are not fitted to people.");
+      "The metadata of the recording contain the true parameters (truth_M, truth_B, truth_K, …). 'mbk\n"
+      "info' shows them, no measuring command reads them, and --blind omits them. The same scenario and\n"
+      "seed give the same bytes. Arms that correct their position or force do so with tuned gains, which\n"
+      "are not fitted to people.");
   command.add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a built-in scenario")
       .check(suggests(laboratory::ready_scenario_names()));
   command

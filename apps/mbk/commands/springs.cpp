@@ -108,8 +108,9 @@ Action add_field(Command springs) {
       "      the [[rig.spring]] of a scenario file; --trial selects one of several trials\n"
       "  mbk springs field --spring k=120,l=90mm,anchor=565:183 --spring k=120,l=90,anchor=565:-183 \\\n"
       "      --spring k=150,l=80,anchor=215:0 --grid-step 0.15\n\n"
-      "Positions are x:y in mm in the robot's base frame; a hole is the position of the spring in the disc, relative\n"
-      "to the hand. K is the negative gradient of the force at the position where the force is zero.");
+      "Positions are x:y in mm in the robot's base frame; a hole is the position of the spring in the\n"
+      "disc, relative to the hand. K is the negative gradient of the force at the position where the\n"
+      "force is zero.");
   const Option scenario = command
                               .add_option("SCENARIO.toml", arguments->scenario,
                                           "a scenario with [[rig.spring]], or the name of a built-in one")
@@ -128,9 +129,8 @@ Action add_find(Command springs) {
       "Examples:\n"
       "  mbk springs find --stiffness 443.86,232.34,16.74 --at 393:-55\n"
       "  mbk springs find --stiffness 300,300,0 --disc --payload 1.031 --spring-stiffness 30:250\n\n"
-      "Among the springs within the bounds that give exactly this K, it finds those with the most linear force over "
-      "the\n"
-      "travel. The output lists them as --spring options and as TOML.");
+      "Among the springs within the bounds that give exactly this K, it finds those with the most linear\n"
+      "force over the travel. The output lists them as --spring options and as TOML.");
   add_options(command, request::spring_design_table(), *arguments);
   command.get_option("--stiffness").required();
   command.accept_former_name(command.get_option("--min-extension"), "--least-extension");

@@ -16,8 +16,8 @@ Action add_study(Command app) {
       "      measures only recordings that are new or whose options changed\n"
       "  mbk study summary\n"
       "  mbk study check\n\n"
-      "Participants are numbers. File names are not stored, and a recording whose metadata name a person is rejected.\n"
-      "Every change of a study is recorded in its log ('mbk study log').");
+      "Participants are numbers. File names are not stored, and a recording whose metadata name a person\n"
+      "is rejected. Every change of a study is recorded in its log ('mbk study log').");
   group.require_subcommand();
   const Actions actions = {{"init", add_study_init(group)},       {"defaults", add_study_defaults(group)},
                            {"add", add_study_add(group)},         {"import", add_study_import(group)},

@@ -137,9 +137,9 @@ Action add_study_add(Command group) {
       "      numbers the trials within participant, session and condition\n"
       "  mbk study add p07.h5\n"
       "      a recording of 'mbk run' contains participant and condition\n\n"
-      "A file is copied into the folder of the study; only the extension of its name (.h5) is kept. A file is not "
-      "stored\n"
-      "twice. The default options of the study (mbk study defaults) determine how it is read.");
+      "A file is copied into the folder of the study; only the extension of its name (.h5) is kept. A\n"
+      "file is not stored twice. The default options of the study (mbk study defaults) determine how it\n"
+      "is read.");
   command.add_option("FILE", arguments->files, "recordings: " + recording::readable_files()).required();
   constexpr long kLargest = 999999999;
   command.add_option("--participant", arguments->facts.participant, "number of the participant, never a name")

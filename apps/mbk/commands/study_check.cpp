@@ -175,9 +175,9 @@ Action add_study_forget(Command group) {
   command.footer(
       "Examples:\n"
       "  mbk study forget --participant 7 --why \"consent withdrawn\"\n\n"
-      "Recordings and results are removed, and their rows in the database are overwritten with zeros. The log keeps a\n"
-      "record without data that they existed and were erased. A disk may still contain traces of removed files.\n"
-      "Backups are not changed.");
+      "Recordings and results are removed, and their rows in the database are overwritten with zeros. The\n"
+      "log keeps a record without data that they existed and were erased. A disk may still contain traces\n"
+      "of removed files. Backups are not changed.");
   command.add_option("--participant", arguments->number, "number of the participant")
       .type_name("N")
       .required()
@@ -216,10 +216,9 @@ Action add_study_log(Command group) {
       "      the last line is the head: keep a copy of it where nobody can change both\n"
       "  mbk study log --verify --head 3f0c…\n"
       "      also checks that the log still contains the line with this head\n\n"
-      "Each line contains the hash of the previous one, so that a changed, removed or inserted line is detected. "
-      "Anyone\n"
-      "who can write the file can rewrite the whole log or cut its end; only a head that was kept elsewhere, or a\n"
-      "backup, reveals that. Reading a study is not logged.\n\n"
+      "Each line contains the hash of the previous one, so that a changed, removed or inserted line is\n"
+      "detected. Anyone who can write the file can rewrite the whole log or cut its end; only a head that\n"
+      "was kept elsewhere, or a backup, reveals that. Reading a study is not logged.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 the log has been changed.");
   const Option verify = command.add_flag("--verify", arguments->verify, "recompute and check every hash");
   command.add_option("--head", arguments->head, "a head that was kept: 64 hexadecimal digits")

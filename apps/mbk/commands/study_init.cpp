@@ -69,8 +69,8 @@ Action add_study_init(Command group) {
       "  mbk study init arms --title \"Stiffness at rest\"\n"
       "  mbk study init ankles --axes 1 --channels x=position_rad,F=torque_Nm --protocol free\n"
       "      also sets the default options for reading and measuring its recordings\n\n"
-      "Only the owner can read the folder. Create it on a local disk: network file systems do not lock files as the\n"
-      "database requires.");
+      "Only the owner can read the folder. Create it on a local disk: network file systems do not lock\n"
+      "files as the database requires.");
   command.add_option("FOLDER", arguments->folder, "folder of the study, which must be new or empty").required();
   command.add_option("--title", arguments->title, "title, one line; do not name a person")
       .type_name("TEXT")

@@ -253,7 +253,8 @@ Action add_study_export(Command group) {
       "  mbk study export --bids data_set\n"
       "      the recordings as a BIDS data set (Motion), without excluded ones; condition is the task, trial the "
       "run\n\n"
-      "The export also contains unusable results and excluded recordings, with their state: select state == 'usable'.");
+      "The export also contains unusable results and excluded recordings, with their state: select state\n"
+      "== 'usable'.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
   const Option format =

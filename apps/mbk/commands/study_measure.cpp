@@ -105,10 +105,9 @@ Action add_study_measure(Command group) {
       "  mbk study measure --again-failed\n"
       "  mbk study measure --engine slurm --tasks 40\n"
       "      as a job array on the cluster, 40 tasks at a time; the results are the same to the byte\n\n"
-      "The options are those of 'mbk measure'; a given option overrides the default of the study. Each result is "
-      "stored\n"
-      "with the hash of the recording, the options and the version of mbk. An interrupted run continues where it\n"
-      "stopped. The results do not depend on the number of threads.\n\n"
+      "The options are those of 'mbk measure'; a given option overrides the default of the study. Each\n"
+      "result is stored with the hash of the recording, the options and the version of mbk. An\n"
+      "interrupted run continues where it stopped. The results do not depend on the number of threads.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 a recording could not be measured, 4 no new result is usable.");
   add_study_and_role(command, arguments->study);
   command.add_flag("--again-failed", arguments->again_failed, "retry recordings that could not be measured");

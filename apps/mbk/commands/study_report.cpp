@@ -80,8 +80,9 @@ Action add_study_report(Command group) {
       "  mbk study report --participant 7 --out participant_7.html\n"
       "      changes since the first session, compared with the minimal detectable change\n"
       "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"
-      "A report is one file that needs no network. It prints on A4, and its data can be saved from it. It contains\n"
-      "health data: treat it as such. The report of a participant contains no numbers of other people.");
+      "A report is one file that needs no network. It prints on A4, and its data can be saved from it. It\n"
+      "contains health data: treat it as such. The report of a participant contains no numbers of other\n"
+      "people.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
   const Option participant = command.add_option("--participant", arguments->participant, "report on this participant")

@@ -191,8 +191,8 @@ Action add_study_summary(Command group) {
       "  mbk study summary --bootstrap 100000 --engine slurm\n"
       "      on the cluster; the intervals are the same to the last bit\n"
       "  mbk study summary --json --out summary.json\n\n"
-      "The summary includes only usable results of recordings that are not excluded; the number of others is "
-      "reported.");
+      "The summary includes only usable results of recordings that are not excluded; the number of others\n"
+      "is reported.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
   command.add_option("--outcome", arguments->outcomes, "report only these outcomes, with all statistics (default: all)")

@@ -126,8 +126,8 @@ Action add_tf(Command app, const std::string& typed) {
       "  mbk tf arm.csv --input torque --output angle --method bj --poles 2 --zeros 2 --sample-rate 50\n"
       "  mbk tf log.mat --input -Fx --output x --poles 2 --zeros 0 --invert position --report log.html\n"
       "      from the force on the hand to its position; the inverse is the impedance with M, B and K\n\n"
-      "All FILEs are of one system: one model is fitted to them. A fit that did not converge, or converged to an\n"
-      "unstable model, is rejected.\n\n"
+      "All FILEs are of one system: one model is fitted to them. A fit that did not converge, or\n"
+      "converged to an unstable model, is rejected.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(command, arguments->reading);

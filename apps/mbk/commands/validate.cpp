@@ -301,7 +301,8 @@ Action add_validate(Command app) {
   command.footer([] {
     return "Studies:\n" + study_lines() +
            "\nDefault number of runs, and the minimum with which every row can be met:\n" + runs_lines() +
-           "\nExamples:\n"
+           "\n"
+           "Examples:\n"
            "  mbk validate coverage --runs 2000 --seed 7 --json\n"
            "  mbk validate participant --charts charts\n"
            "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
@@ -309,9 +310,8 @@ Action add_validate(Command app) {
            "      on a cluster; the table is identical to the byte\n"
            "  mbk validate faults --link udp --runs 2\n"
            "      robots that misbehave, as separate processes over UDP, in real time; four trials at a time\n\n"
-           "A row is met if its 95 % interval lies within the expected range, and falls short if the whole interval "
-           "lies\n"
-           "outside it. Otherwise it is not shown: more runs are needed.\n\n"
+           "A row is met if its 95 % interval lies within the expected range, and falls short if the whole\n"
+           "interval lies outside it. Otherwise it is not shown: more runs are needed.\n\n"
            "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data,\n"
            "6 not shown by this many runs.";
   });

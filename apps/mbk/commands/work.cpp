@@ -88,9 +88,8 @@ Action add_work(Command app) {
       "      64 workers, started by MPI or srun: each takes unstarted chunks until none are left\n"
       "  mbk work arms/jobs/measure --cancel\n"
       "      cancels waiting and running Slurm tasks; finished chunks are kept\n\n"
-      "The results of a chunk are in the job's folder, shards/CHUNK.*.shard; the command that started the job "
-      "collects\n"
-      "them. Repeating a chunk gives the same bytes.");
+      "The results of a chunk are in the job's folder, shards/CHUNK.*.shard; the command that started the\n"
+      "job collects them. Repeating a chunk gives the same bytes.");
   command.add_option("FOLDER", arguments->folder, "the job's folder").required().check(not_empty());
   const Option chunk =
       command
