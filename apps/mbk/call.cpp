@@ -288,7 +288,9 @@ std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answe
     at = quoted ? begin : end_of_list(text, begin);
     if (quoted) continue;
     for (const nlohmann::json& one : nlohmann::json::parse(text.substr(begin, at - begin), nullptr, false)) {
-      if (one.is_object()) warnings.emplace_back(text_of(one, "code"), text_of(one, "message"));
+      if (!one.is_object()) continue;
+      const std::string advice = text_of(one, "try");
+      warnings.emplace_back(text_of(one, "code"), text_of(one, "message") + (advice.empty() ? "" : "; " + advice));
     }
   }
   return warnings;

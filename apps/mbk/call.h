@@ -57,7 +57,7 @@ struct Answer {
 /// @throws  Stopped if `stop` returned true
 [[nodiscard]] Result<Answer> call(const Call& call);
 
-/// Code and text of every warning in the document of an answer.
+/// Code and text of every warning in the document of an answer. The text is "message; advice".
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answer);
 
 /// Reads every recording of the files that `words` name, with the options for reading. `command` is ignored.

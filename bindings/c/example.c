@@ -1,4 +1,4 @@
-/* Measures one joint from arrays in memory and prints what was found.
+/* Measures one joint from arrays in memory and prints the result.
  *
  *   cc -std=c99 example.c -lmbk -lm
  */
@@ -8,7 +8,7 @@
 
 #include "mbk.h"
 
-/* A limb of 0.3 kg·m², 1 N·m·s/rad and 40 N·m/rad, moved by a sum of sines. `reaction` is what it exerts. */
+/* A limb of 0.3 kg·m², 1 N·m·s/rad and 40 N·m/rad, moved by a sum of sines. `reaction` is its torque on the machine. */
 static void make_trial(size_t count, double* time, double* angle, double* reaction) {
   const double inertia = 0.3, damping = 1.0, stiffness = 40.0, pi = 3.14159265358979323846;
   for (size_t k = 0; k < count; ++k) {
@@ -38,7 +38,7 @@ int main(void) {
   mbk_recording* recording = NULL;
   mbk_answer* answer = NULL;
   mbk_error* error = NULL;
-  /* The recording takes the numbers as they stand, and frees them. */
+  /* The recording uses the numbers without copying and frees them. */
   mbk_facts facts = {0};
   facts.size = sizeof facts;
   facts.release = free;

@@ -1,5 +1,6 @@
 #include "bindings/c/mbk.h"
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
@@ -12,11 +13,12 @@
 #include <vector>
 
 #include "apps/mbk/call.h"
+#include "apps/mbk/wording.h"
 #include "mbk/base/core/requester.h"
 #include "mbk/base/core/version.h"
 #include "mbk/files/recording/in_memory.h"
 
-// What the opaque types of the header are.
+// The opaque types of the header.
 struct mbk_error {
   mbk::Error error;
   int exit_code;
@@ -47,8 +49,13 @@ int exit_code_of(ErrorKind kind) {
   return kind == ErrorKind::data ? MBK_BAD_DATA : MBK_NOT_USABLE;
 }
 
-mbk_error made_of(const Error& error, int exit_code) {
-  return {error, exit_code, error.line()};
+/// Language that messages are written for, in the whole process.
+std::atomic<mbk::app::Language> language = mbk::app::Language::c;
+
+mbk_error made_of(const Error& given, int exit_code) {
+  Error error = mbk::app::in_language(language, given);
+  std::string line = error.line();
+  return {std::move(error), exit_code, std::move(line)};
 }
 
 int fail(const Error& error, mbk_error** to, int exit_code) {
@@ -60,7 +67,7 @@ int fail(const Error& error, mbk_error** to) {
   return fail(error, to, exit_code_of(error.kind));
 }
 
-/// `work`, whose exceptions leave it as errors: a caller in C knows none.
+/// Runs `work` and returns its exceptions as errors, because C has no exceptions.
 template <class Work>
 int guarded(mbk_error** error, const Work& work) noexcept {
   if (error != nullptr) *error = nullptr;
@@ -80,18 +87,18 @@ int guarded(mbk_error** error, const Work& work) noexcept {
 }
 
 int wrong_size(const std::string& what, const std::string& type, mbk_error** error) {
-  return fail({ErrorKind::usage, "the size of the " + what + " is not that of this version",
+  return fail({ErrorKind::usage, "the size of the " + what + " differs from the size in this version",
                "set 'size' to sizeof(" + type + ")", ""},
               error);
 }
 
-/// What a caller in C gets wrong without noticing: a list that is not there, a length that was negative.
-/// @param size  [bytes] of one
+/// Mistakes that C does not notice: a missing list, a negative length.
+/// @param size  [bytes] of one element
 Result<void> check_list(const std::string& name, const void* list, std::size_t count, std::size_t size) {
-  if (count > 0 && list == nullptr) return mbk::bad_usage("'" + name + "' is NULL, and its count is not 0");
+  if (count > 0 && list == nullptr) return mbk::bad_usage("'" + name + "' is NULL, but its count is not 0");
   if (count > static_cast<std::size_t>(PTRDIFF_MAX) / size) {
     return mbk::bad_usage("'" + name + "' cannot have " + std::to_string(count) + " elements",
-                          "check its count: a negative number is a huge one here");
+                          "check its count: a negative number becomes a huge one");
   }
   return {};
 }
@@ -113,8 +120,8 @@ Result<InMemory::Signal> signal_of(const mbk_signal& given, const std::shared_pt
     return mbk::bad_usage("'" + signal.name + "' cannot have " + std::to_string(given.rows) + " rows");
   }
   if (given.rows > 0 && given.count % given.rows != 0) {
-    return mbk::bad_usage("'" + signal.name + "' is no matrix of " + std::to_string(given.rows) + " rows",
-                          "'count' is a multiple of 'rows'");
+    return mbk::bad_usage("'" + signal.name + "' does not form a matrix of " + std::to_string(given.rows) + " rows",
+                          "set 'count' to a multiple of 'rows'");
   }
   const auto count = static_cast<Index>(given.count);
   if (given.stride != 0 && given.stride != 1) {
@@ -128,7 +135,7 @@ Result<InMemory::Signal> signal_of(const mbk_signal& given, const std::shared_pt
   return signal;
 }
 
-/// Those in a row that have the same name are one with several values.
+/// Consecutive options of the same name become one with several values.
 std::vector<mbk::app::CallOption> options_of(const mbk_option* options, std::size_t count) {
   std::vector<mbk::app::CallOption> made;
   for (std::size_t k = 0; k < count; ++k) {
@@ -165,6 +172,10 @@ mbk::app::Call call_of(const mbk_request& request) {
 
 int mbk_api_version(void) {
   return MBK_API_VERSION;
+}
+
+void mbk_set_language(int to) {
+  language = to == MBK_FOR_MATLAB ? mbk::app::Language::matlab : mbk::app::Language::c;
 }
 
 const char* mbk_version(void) {
@@ -250,8 +261,8 @@ int mbk_read(const char* file, const mbk_option* options, size_t count, mbk_reco
     auto found = mbk::app::read(call);
     if (!found) return fail(found.error(), error);
     if (found->size() != 1) {
-      return fail({ErrorKind::usage, "holds " + std::to_string(found->size()) + " recordings", "say which with trial",
-                   text_of(file)},
+      return fail({ErrorKind::usage, "holds " + std::to_string(found->size()) + " recordings",
+                   "choose one with --trial", text_of(file)},
                   error);
     }
     *recording = new mbk_recording{std::move(found->front())};
@@ -324,7 +335,9 @@ int mbk_call(const mbk_request* request, mbk_answer** answer, mbk_error** error)
     if (!found) return fail(found.error(), error);
     auto made = std::make_unique<mbk_answer>();
     made->warnings = mbk::app::warnings_of(*found);
+    for (auto& [code, text] : made->warnings) text = mbk::app::in_language(language, text);
     made->answer = std::move(*found);
+    for (std::string& message : made->answer.messages) message = mbk::app::in_language(language, message);
     for (const Error& one : made->answer.errors) made->errors.push_back(made_of(one, exit_code_of(one.kind)));
     *answer = made.release();
     return (*answer)->answer.exit_code;

@@ -1,4 +1,4 @@
-/* The interface in C as a program in C sees it. */
+/* The C interface, used by a C program. */
 #include "mbk.h"
 
 #include <math.h>
@@ -235,6 +235,23 @@ static void test_stops(void) {
   mbk_error_free(error);
 }
 
+static void test_messages_name_options_as_the_caller_writes_them(void) {
+  mbk_recording* const recording = trial(NULL, NULL);
+  mbk_answer* answer = NULL;
+  mbk_error* error = NULL;
+  const mbk_option parts[] = {{"parts", NULL}};
+  EXPECT(measure(recording, parts, 1, &answer, &error) == MBK_WRONG_USAGE);
+  EXPECT(strstr(mbk_error_line(error), "{\"parts\", NULL}") != NULL);
+  mbk_error_free(error);
+  mbk_set_language(MBK_FOR_MATLAB);
+  EXPECT(measure(recording, parts, 1, &answer, &error) == MBK_WRONG_USAGE);
+  EXPECT(strstr(mbk_error_line(error), "'parts', true") != NULL);
+  EXPECT(strstr(mbk_error_line(error), "--") == NULL);
+  mbk_error_free(error);
+  mbk_set_language(MBK_FOR_C);
+  mbk_recording_free(recording);
+}
+
 static void test_frees_nothing(void) {
   mbk_error_free(NULL);
   mbk_answer_free(NULL);
@@ -251,6 +268,7 @@ int main(void) {
   test_says_what_is_wrong();
   test_answers_null_and_impossible_sizes();
   test_stops();
+  test_messages_name_options_as_the_caller_writes_them();
   test_frees_nothing();
   if (failures > 0) fprintf(stderr, "%d failures\n", failures);
   return failures == 0 ? 0 : 1;

@@ -1,4 +1,4 @@
-// The MEX file of mbk for MATLAB and Octave: one entry to the C interface. People call the functions of +mbk.
+// The MEX file of mbk for MATLAB and Octave: one entry point to the C interface. Users call the functions of +mbk.
 //
 //   [result, text, warnings, exit_code, messages] =
 //       mbk_mex('call', command, options, words, documents, signals, metadata, events)
@@ -7,8 +7,8 @@
 //
 // options: cell row of names and values, all char; signals: struct array with the fields name, unit, values (double,
 // real), or []; metadata: as options; events: struct array with the fields time, name, value, or []; words: cell of
-// char; documents: cell of results as JSON. result: the JSON document as MATLAB's jsondecode gives it, with every
-// digit.
+// char; documents: cell of results as JSON. result: the JSON document as MATLAB's jsondecode returns it, in full
+// precision.
 #include <mex.h>
 
 #include <atomic>
@@ -22,7 +22,7 @@
 
 #include "mbk.h"
 
-// Where the host notes that Ctrl-C was pressed: each has one of these, and does not act before the MEX file returns.
+// Where the host records Ctrl-C. Each host has one of these, and acts only after the MEX file returns.
 extern "C" {
 extern volatile std::sig_atomic_t octave_interrupt_state __attribute__((weak));
 bool utIsInterruptPending() __attribute__((weak));
@@ -32,13 +32,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What ends the call. MATLAB leaves a MEX file by a jump: until then everything else must be gone.
+/// Ends the call. MATLAB leaves a MEX file by a jump, so everything else must be destroyed before.
 struct Failure {
   std::string identifier, text;
 };
 
 std::string text_of(const mxArray* array, const char* what) {
-  if (array == nullptr || !mxIsChar(array)) throw Failure{"mbk:usage", std::string(what) + " is no text"};
+  if (array == nullptr || !mxIsChar(array)) throw Failure{"mbk:usage", std::string(what) + " must be text"};
   char* const text = mxArrayToString(array);
   if (text == nullptr) throw Failure{"mbk:usage", std::string(what) + " cannot be read"};
   std::string copy(text);
@@ -49,15 +49,15 @@ std::string text_of(const mxArray* array, const char* what) {
 std::vector<std::string> texts_of(const mxArray* cell, const char* what) {
   std::vector<std::string> texts;
   if (cell == nullptr || mxIsEmpty(cell)) return texts;
-  if (!mxIsCell(cell)) throw Failure{"mbk:usage", std::string(what) + " is no cell of texts"};
+  if (!mxIsCell(cell)) throw Failure{"mbk:usage", std::string(what) + " must be a cell array of texts"};
   for (mwIndex k = 0; k < static_cast<mwIndex>(mxGetNumberOfElements(cell)); ++k)
     texts.push_back(text_of(mxGetCell(cell, k), what));
   return texts;
 }
 
-/// Names and values, as they lie in `texts`; a value '' after a flag is written as "true".
+/// Names and values, which stay in `texts`.
 std::vector<mbk_option> options_of(const std::vector<std::string>& texts) {
-  if (texts.size() % 2 != 0) throw Failure{"mbk:usage", "options are names with a value each"};
+  if (texts.size() % 2 != 0) throw Failure{"mbk:usage", "an option has no value; give names and values in pairs"};
   std::vector<mbk_option> options;
   for (std::size_t k = 0; k < texts.size(); k += 2) options.push_back({texts[k].c_str(), texts[k + 1].c_str()});
   return options;
@@ -87,12 +87,12 @@ const char* identifier_of(int exit_code) {
   throw failure;
 }
 
-/// Signals where they stand in the arrays of the caller, who keeps them for as long as the call lasts.
+/// Signals in the arrays of the caller, not copied. They must live as long as the call.
 class Signals {
  public:
   Signals(const mxArray* given, const mxArray* metadata, const mxArray* events) {
     if (given == nullptr || mxIsEmpty(given)) return;
-    if (!mxIsStruct(given)) throw Failure{"mbk:usage", "signals are no struct"};
+    if (!mxIsStruct(given)) throw Failure{"mbk:usage", "signals must be a struct"};
     const auto count = static_cast<std::size_t>(mxGetNumberOfElements(given));
     names_.reserve(2 * count);  // their texts stay where they are
     std::vector<mbk_signal> signals;
@@ -122,14 +122,14 @@ class Signals {
   std::vector<mbk_event> events_of(const mxArray* given) {
     std::vector<mbk_event> events;
     if (given == nullptr || mxIsEmpty(given)) return events;
-    if (!mxIsStruct(given)) throw Failure{"mbk:usage", "events are no struct"};
+    if (!mxIsStruct(given)) throw Failure{"mbk:usage", "events must be a struct"};
     const auto count = static_cast<std::size_t>(mxGetNumberOfElements(given));
     event_names_.reserve(count);
     for (std::size_t k = 0; k < count; ++k) {
       const auto at = static_cast<mwIndex>(k);
       const mxArray *const time = mxGetField(given, at, "time"), *const value = mxGetField(given, at, "value");
       if (time == nullptr || value == nullptr || mxIsEmpty(time) || mxIsEmpty(value)) {
-        throw Failure{"mbk:usage", "an event has the fields time, name and value"};
+        throw Failure{"mbk:usage", "an event must have the fields time, name and value"};
       }
       event_names_.push_back(text_of(mxGetField(given, at, "name"), "the name of an event"));
       events.push_back({mxGetScalar(time), event_names_.back().c_str(), mxGetScalar(value)});
@@ -145,7 +145,7 @@ class Signals {
     const mxArray* const values = mxGetField(given, k, "values");
     if (values == nullptr || !mxIsDouble(values) || mxIsComplex(values) || mxIsSparse(values) ||
         mxGetNumberOfDimensions(values) != 2) {
-      throw Failure{"mbk:usage", "'" + name + "' is no full matrix or vector of real numbers (double)"};
+      throw Failure{"mbk:usage", "'" + name + "' must be a full matrix or vector of real numbers (double)"};
     }
     const std::size_t rows = mxGetM(values), columns = mxGetN(values);
     const bool matrix = rows > 1 && columns > 1;
@@ -160,7 +160,7 @@ class Signals {
 
 mxArray* array_of(const Json& json);
 
-/// A name that a field may have.
+/// The name as a valid field name.
 std::string field_name(std::string name) {
   for (char& c : name) {
     if (std::strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", c) == nullptr) c = '_';
@@ -184,7 +184,7 @@ mxArray* column_of(const Json& numbers) {
   return column;
 }
 
-/// Rows of numbers that are equally long; nullptr where they are not.
+/// Rows of numbers of equal length; nullptr otherwise.
 mxArray* matrix_of(const Json& rows) {
   const std::size_t columns = rows.front().is_array() ? rows.front().size() : 0;
   if (columns == 0) return nullptr;
@@ -291,7 +291,7 @@ class Interruption {
   std::atomic<bool> pressed_ = false;
 };
 
-// ---- what can be asked for ----
+// ---- commands ----
 
 mxArray* warnings_of(const mbk_answer* answer) {
   const char* fields[] = {"code", "message"};
@@ -304,7 +304,7 @@ mxArray* warnings_of(const mbk_answer* answer) {
   return warnings;
 }
 
-/// What was said, and what failed beside what did not.
+/// Errors of files that failed while others succeeded, then messages.
 mxArray* messages_of(const mbk_answer* answer) {
   const std::size_t errors = mbk_answer_error_count(answer), said = mbk_answer_message_count(answer);
   mxArray* const messages = mxCreateCellMatrix(errors + said, 1);
@@ -413,7 +413,7 @@ void run(int results, mxArray* result[], int count, const mxArray* given[]) {
   } else if (what == "version") {
     result[0] = mxCreateString(mbk_version());
   } else {
-    throw Failure{"mbk:usage", "mbk_mex is called by the functions of +mbk; see 'help mbk.measure'"};
+    throw Failure{"mbk:usage", "mbk_mex is internal; call the functions of +mbk (see 'help mbk.measure')"};
   }
 }
 
@@ -422,6 +422,7 @@ void run(int results, mxArray* result[], int count, const mxArray* given[]) {
 void mexFunction(int results, mxArray* result[], int count, const mxArray* given[]) {
   static char identifier[32], text[4096];
   identifier[0] = '\0';
+  mbk_set_language(MBK_FOR_MATLAB);
   try {
     run(results, result, count, given);
   } catch (const Failure& failure) {

@@ -1,4 +1,4 @@
-% The package +mbk in Octave: what it gives is what the program gives, to the last bit.
+% The package +mbk in Octave: results equal those of the program, to the last bit.
 1;
 
 function check(condition, what)
@@ -49,6 +49,22 @@ function check_error(work, identifier, word, what)
     check(strcmp(error.identifier, identifier), [what ': ' error.identifier]);
     check(~isempty(strfind(error.message, word)), [what ': ' error.message]);
   end
+end
+
+% The error names options and commands as MATLAB writes them: 'rate', 1000 for --rate 1000.
+function check_matlab(work, word)
+  try
+    work();
+    check(false, ['no error that names ' word]);
+  catch error
+    check(~isempty(strfind(error.message, word)), [word ' is missing: ' error.message]);
+    check(~has_shell_words(error.message), ['an option of the command line: ' error.message]);
+  end
+end
+
+function yes = has_shell_words(text)
+  text = regexprep(text, '''mbk [^'']*'' in a terminal', '');
+  yes = ~isempty(regexp(text, '(^|[^\w./-])--[a-z]|''mbk ', 'once'));
 end
 
 function check_alike(a, b, what)
@@ -130,6 +146,30 @@ check_error(@() mbk.measure(struct('time', recording.time, 'x', {{1}})), 'mbk:us
 check_error(@() mbk.measure(struct('time', [], 'x', [], 'F', [])), 'mbk:data', '''time''', 'no samples');
 check_error(@() mbk.measure(recording.time, 1i * x, F), 'mbk:usage', 'numbers', 'complex numbers');
 
+% Errors name arguments of MATLAB functions.
+unnamed = struct('time', recording.time, 'u', recording.hand_x, 'v', recording.force_x);
+without_time = struct('x', recording.hand_x, 'F', recording.force_x);
+cases = {@() mbk.measure(log_file, 'mode', 'fast'), 'mode: '
+         @() mbk.measure(log_file, 'sg_window', 4), '''help mbk.measure'''
+         @() mbk.measure(log_file, 'trial', 7), '''trial'', 7'
+         @() mbk.measure(log_file, 'from', 500), '''from'''
+         @() mbk.measure(log_file, 'split', 500), '''split'', 500'
+         @() mbk.measure(log_file, 'cutoff', 900), '''cutoff'''
+         @() mbk.measure(log_file, 'procedure', 'chapter3'), '''mode'', ''reference'''
+         @() mbk.measure(log_file, 'channels', 'x'), '''channels'', ''x='
+         @() mbk.measure(unnamed), '''channels'', ''time='
+         @() mbk.measure(without_time), '''rate'', 1000'
+         @() mbk.measure(recording, 'parts', true), '''parts'', true'
+         @() mbk.tf(log_file, 'input', 'Fx', 'output', 'x'), '''poles'', 4, ''zeros'', 3'
+         @() mbk.simulate('relaxed_sinusoidal', 'out', log_file), '''overwrite'', true'
+         @() mbk.simulate('no_such_scenario'), '''out'', ''recording.mat'''
+         @() mbk.simulate('no_such_scenario', 'out', fullfile(folder, 'a.mat')), 'mbk.simulate(''list'', true)'
+         @() mbk.study('list', {}, 'study', fullfile(folder, 'nowhere')), 'mbk.study(''init'', FOLDER)'
+         @() mbk.sensor('delay', log_file), '''help mbk.sensor'''};
+for k = 1:rows(cases)
+  check_matlab(cases{k, :});
+end
+
 % Other classes and units are converted, and no number is lost on the way.
 whole = struct('time', recording.time, 'x', single(1000 * recording.hand_x), 'F', recording.force_x);
 whole.units = struct('x', 'mm');
@@ -184,7 +224,7 @@ untimed = table(struct('x', x, 'F', force), {});
 check_near(model_of(untimed, 'rate', 1000), numbers_of(direct.model), 'a table without time and a rate');
 check_error(@() mbk.identify(untimed, 'axes', 1), 'mbk:data', 'rate', 'a table without time');
 
-% A struct with y, u and Ts: rows or columns, names and units; what does not fit is said.
+% A struct with y, u and Ts: rows or columns, names and units; mismatches are errors.
 short = struct('y', 1000 * x', 'u', force', 'Ts', 1e-3, 'OutputName', 'x', 'InputName', 'F', 'OutputUnit', 'mm');
 check_near(model_of(short), numbers_of(direct.model), 'rows with names and a unit');
 both = struct('y', [x, recording.hand_y], 'u', [force, recording.force_y], 'Ts', 1e-3);
@@ -219,9 +259,12 @@ check(strcmp(facts.schema, 'mbk.info/1'), 'info');
 % A warning has the code of the document.
 warning('on', 'all');
 lastwarn('', '');
-evalc('poor = mbk.measure(struct(''time'', recording.time, ''x'', recording.hand_x, ''F'', randn(size(recording.time))), ''axes'', 1);');
+evalc('[poor, poor_info] = mbk.measure(struct(''time'', recording.time, ''x'', recording.hand_x, ''F'', randn(size(recording.time))), ''axes'', 1);');
 [~, identifier] = lastwarn();
 check(strncmp(identifier, 'mbk:', 4), ['a warning: ' identifier]);
+for k = 1:numel(poor_info.warnings)
+  check(~has_shell_words(poor_info.warnings(k).message), ['a warning: ' poor_info.warnings(k).message]);
+end
 warning('off', 'all');
 
 % Help and plots.

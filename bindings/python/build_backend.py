@@ -1,8 +1,8 @@
-"""Builds the wheel of mbk with CMake, as pip asks for it (PEP 517). It needs no package of Python.
+"""Builds the wheel of mbk with CMake for pip (PEP 517). It needs no Python package.
 
-`pip install .` configures and builds in build/wheel, or in the folder that `--config-settings build-dir=…` names, with
-the options of CMake that the environment variable CMAKE_ARGS holds. With MBK_BUILD set to a build folder of this tree,
-that is taken as it is. The wheel holds the shared libraries that the module links, but for those of the C and C++ runtimes.
+`pip install .` configures and builds in build/wheel, or in the folder of `--config-settings build-dir=…`, with the CMake
+options in the environment variable CMAKE_ARGS. If MBK_BUILD names a build folder of this tree, that is used without
+building. The wheel contains the shared libraries that the module links, except those of the C and C++ runtimes.
 """
 
 import base64
@@ -55,7 +55,7 @@ def metadata():
 
 
 def built(settings):
-    """A build folder with the package in it.   settings: what pip was given as --config-settings, or None"""
+    """A build folder that contains the package.   settings: --config-settings of pip, or None"""
     given = os.environ.get("MBK_BUILD")
     if given:
         return pathlib.Path(given).resolve()
@@ -69,7 +69,7 @@ def built(settings):
 
 
 def staged(build, folder):
-    """The package as it is installed, below `folder`."""
+    """Installs the package below `folder` and returns its path."""
     run("cmake", "--install", build, "--component", "python", "--strip", "--prefix", folder)
     package = next(folder.rglob("mbk/__init__.py")).parent
     bundle(package)
@@ -77,8 +77,7 @@ def staged(build, folder):
 
 
 def bundle(package):
-    """The shared libraries that the module needs, in an order in which they can be loaded: each after those that it
-    needs itself."""
+    """Copies the shared libraries that the module needs, and writes their load order: each after its dependencies."""
     module = next(package.glob("_mbk*.so"))
     paths, order = {}, []
     for name, path in re.findall(r"(\S+) => (/\S+)", subprocess.run(["ldd", module], check=True, capture_output=True,
@@ -104,7 +103,7 @@ def bundle(package):
     (libraries / "order.txt").write_text("\n".join(order) + "\n", encoding="utf-8")
 
 
-# ---- what pip calls
+# ---- hooks for pip
 
 
 def get_requires_for_build_wheel(config_settings=None):
@@ -157,7 +156,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """What git knows of the tree."""
+    """An archive of the files in git."""
     name = f"mbk-{version()}"
     files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True).stdout.decode().split("\0")
     with tarfile.open(pathlib.Path(sdist_directory, f"{name}.tar.gz"), "w:gz", format=tarfile.PAX_FORMAT) as archive:

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Writes the functions of the Python package from the table of options of the command line: `mbk manual --json`.
+"""Writes the functions of the Python package from the option table of the command line: `mbk manual --json`.
 
 usage: generate.py COMMANDS.json FOLDER
 
-FOLDER gets _functions.py (measure, identify, …) and a module for each command with commands below it: robot.py,
-springs.py, sensor.py, study.py. Nothing in them is typed by hand: names, words, help and what an option needs are those
-of --help. What only a command line needs (--json, --out for text, --quiet, --help) has another form in Python.
+Writes to FOLDER, which contains the module _mbk: _functions.py (measure, identify, …) and a module for each command
+with subcommands: robot.py, springs.py, sensor.py, study.py. Names, fixed values, help and needs of options are those of
+--help; texts name options and commands as in Python. Options that only a command line needs (--json, --out for text,
+--quiet, --help) have another form in Python.
 """
 
 import json
@@ -18,7 +19,7 @@ import textwrap
 WIDTH = 100
 ONLY_COMMAND_LINE = {"--help", "--help-all", "--version", "--json", "--quiet"}
 NAMES = {"tf": "transfer_function", "import": "import_"}
-RESULTS = {  # the class of what a command gives; Document where it has no class of its own
+RESULTS = {  # class of a command's result; Document if it has no class of its own
     ("measure",): "Results | Result", ("identify",): "Results | Result", ("passivity",): "Passivity",
     ("explore",): "Exploration", ("tf",): "TransferFunction", ("teleop",): "Teleoperation", ("compare",): "Comparison",
     ("ellipse",): "Ellipses", ("validate",): "Validation", ("info",): "Information", ("movement",): "Movement",
@@ -29,12 +30,12 @@ RESULTS = {  # the class of what a command gives; Document where it has no class
 }
 NUMBERS = {"HZ": "float", "S": "float", "KG": "float", "MM": "float", "MS": "float", "DEG": "float", "V": "float",
            "X": "float", "FLOAT": "float", "N": "int", "W": "int"}
-SPECIAL = {  # how it is called, and what comes back
-    ("convert",): ("convert", "Path", "The file that was written."),
+SPECIAL = {  # function that calls it, type and description of its result
+    ("convert",): ("convert", "Path", "Path of the file written."),
     ("simulate",): ("simulate", "Recording | list[Recording] | Path | str",
-                    "A recording, or a list of them for several trials or seeds; with `out` the path that was written; with "
-                    "`list`, `facts` or `show` what the command prints."),
-    ("read",): ("read", "Recording | list[Recording]", "A recording, or a list of them where the files hold several."),
+                    "A recording, or a list for several trials or seeds. With `out`, the path of the file written. With `list`, "
+                    "`facts` or `show`, the text that the command prints."),
+    ("read",): ("read", "Recording | list[Recording]", "A recording, or a list if there are several."),
 }
 
 
@@ -44,7 +45,7 @@ def python_name(option):
 
 
 def type_of(option):
-    """The type of one value, then of what may be given."""
+    """Type annotation of an option."""
     if not option["value"]:
         return "bool"
     kinds = []
@@ -69,17 +70,17 @@ def type_of(option):
 
 
 def is_read(option):
-    """Whether it names a file that is read, so that what is in memory may stand there."""
+    """Whether the option names a file to read, which an object in memory may replace."""
     return option["value"] in ("FILE", "FILE.json", "RESULT.json") and option["names"][-1] not in ("--out", "--report", "--summary")
 
 
 def is_for_text(option):
-    """Whether it says where the text goes that would stand on standard output."""
+    """Whether the option redirects the text of standard output to a file."""
     return option["names"][-1] == "--out" and "instead of standard output" in option["description"]
 
 
 def separator_of(option):
-    """What stands between several numbers of one value; empty where each is a value of its own."""
+    """Separator between numbers of one value; empty if the option is repeated for each value."""
     if option["repeats"]:
         return ""
     return ":" if ":" in option["value"] and "," not in option["value"] and option["value"] != "MAP" else ","
@@ -87,7 +88,10 @@ def separator_of(option):
 
 def sentence(text):
     text = re.sub(r"\s+", " ", text).strip()
-    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+    made = _mbk.in_python(text)
+    if text[:1].isalpha():
+        made = made[:1].upper() + made[1:]
+    return made + ("" if made.endswith(".") else ".")
 
 
 def quoted(text):
@@ -100,7 +104,7 @@ def paragraph(text, indent):
 
 
 class Command:
-    """One function: its name, the module that it stands in, its parameters."""
+    """One function: its name, its module, its parameters."""
 
     def __init__(self, json_command):
         self.path = json_command["path"]
@@ -120,7 +124,7 @@ class Command:
             return False
         if not self.json:
             return True
-        # A document is saved by its own method; --overwrite then speaks of what else is written.
+        # Document.save writes the document; --overwrite then applies to other files.
         if name == "--out":
             return not is_for_text(option)
         others = [one for one in self.all_options if one["names"][-1] in ("--report", "--summary", "--charts", "--out")]
@@ -135,7 +139,7 @@ class Command:
         return "Document" if self.json else "str"
 
     def positional(self):
-        """The arguments as Python has them: (parameter, type, description)."""
+        """Positional parameters: (name, type, description)."""
         rows = []
         for argument in self.arguments:
             placeholder = re.split(r"[.( ]", argument["value"])[0]
@@ -168,8 +172,8 @@ class Command:
             out.append(f"    {quoted(name).replace('*', chr(92) * 2 + '*')} : {kind.replace(' = None', '').replace(' | None', ', optional')}")
             out.append(paragraph(quoted(sentence(description)), 8))
             if kind.startswith("Source"):
-                out.append(paragraph("Names of files, or recordings in memory: `Recording`, a mapping of arrays, a pandas "
-                                     "DataFrame, an xarray Dataset.", 8))
+                out.append(paragraph("File names, or recordings in memory: `Recording`, a mapping of arrays, a pandas DataFrame, "
+                                     "an xarray Dataset.", 8))
         for option in self.options:
             kind = type_of(option)
             more = "default: False" if not option["value"] else "optional"
@@ -187,9 +191,9 @@ class Command:
         if tuple(self.path) in SPECIAL:
             out.append(paragraph(SPECIAL[tuple(self.path)][2], 8))
         elif self.json:
-            out.append(paragraph(f"`.to_dict()` is what `mbk {' '.join(self.path)} --json` prints.", 8))
+            out.append(paragraph("`.to_dict()` returns the JSON document.", 8))
         else:
-            out.append(paragraph("What the command prints.", 8))
+            out.append(paragraph("The text that the command prints.", 8))
         out += ["", "    Raises", "    ------", "    UsageError", "        An option or argument is wrong.",
                 "    DataError", "        A file or recording cannot be read or used."]
         footer = self.footer.strip()
@@ -200,7 +204,7 @@ class Command:
         return "\n".join(line.rstrip() for line in out) + "\n"
 
     def parameter(self, option):
-        """`option`, which is "--name" or the placeholder of an argument, as Python calls it."""
+        """Name in Python of an option "--name" or of the placeholder of an argument."""
         return python_name(option) if option.startswith("--") else re.split(r"[.( ]", option)[0].lower()
 
     def body(self):
@@ -220,7 +224,7 @@ class Command:
 
 HEADER = '''"""{title}
 
-Made of the command line's table of options when mbk is built; see `mbk {command} --help`.
+Generated from the option table of the command line; see `mbk {command} --help`.
 """
 
 from __future__ import annotations
@@ -245,10 +249,13 @@ def main():
         sys.exit(__doc__)
     table = json.loads(pathlib.Path(sys.argv[1]).read_text(encoding="utf-8"))
     folder = pathlib.Path(sys.argv[2])
+    sys.path.insert(0, str(folder))
+    global _mbk
+    import _mbk
     groups = {one["path"][0]: one["summary"] for one in table["commands"]}
     modules = {}
     info = next(one for one in table["commands"] if one["path"] == ["info"])
-    reading = {**info, "path": ["read"], "summary": "a recording in memory", "footer": ""}
+    reading = {**info, "path": ["read"], "summary": "read recordings into memory", "footer": ""}
     for one in [reading, *table["commands"]]:
         if not one["callable"]:
             continue

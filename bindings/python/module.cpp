@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "apps/mbk/call.h"
+#include "apps/mbk/wording.h"
 #include "mbk/base/core/requester.h"
 #include "mbk/base/core/rests.h"
 #include "mbk/base/core/version.h"
@@ -44,8 +45,18 @@ int exit_code_of(mbk::ErrorKind kind) {
   return kind == mbk::ErrorKind::data ? kBadData : kNotUsable;
 }
 
-/// An instance of _mbk.Error, whose text is the one line that the program prints.
-py::object to_python(const Error& error) {
+std::string in_python(const std::string& text) {
+  return mbk::app::in_language(mbk::app::Language::python, text);
+}
+
+std::vector<std::string> in_python(std::vector<std::string> texts) {
+  for (std::string& text : texts) text = in_python(text);
+  return texts;
+}
+
+/// An instance of _mbk.Error, whose text is one line: "file: what; hint", with options and commands as in Python.
+py::object to_python(const Error& given) {
+  const Error error = mbk::app::in_language(mbk::app::Language::python, given);
   py::object made = py::reinterpret_borrow<py::object>(error_class)(error.line());
   made.attr("file") = error.where;
   made.attr("what") = error.message;
@@ -69,8 +80,8 @@ Value value_or_raise(mbk::Result<Value> result) {
   return std::move(*result);
 }
 
-/// The thread that ends the interpreter, once it does; a daemon thread may then no longer take the GIL: Python would
-/// end it by an exception that no destructor lets through, and with it the process.
+/// The thread that ends the interpreter, once it does. From then on a daemon thread must not take the GIL: Python would
+/// end the thread with an exception that cannot pass a destructor, and so end the process.
 std::atomic<std::thread::id> ending_thread{};
 
 bool others_are_ending() {
@@ -78,7 +89,7 @@ bool others_are_ending() {
   return ending != std::thread::id() && ending != std::this_thread::get_id();
 }
 
-/// As py::gil_scoped_release; a daemon thread that comes back after the interpreter began to end waits for the end.
+/// Like py::gil_scoped_release; a daemon thread that returns after the interpreter began to end waits for the end.
 class Released {
  public:
   Released() = default;
@@ -105,12 +116,12 @@ std::shared_ptr<const void> keep(py::object object) {
 // ---- arrays ----
 
 /// Numbers as NumPy has them: float64 in native order without a copy, other real numbers converted.
-/// @fails  no array of real numbers
+/// @fails  not an array of real numbers
 py::array real_array(const std::string& name, const py::object& given) {
   py::array array;
   try {
     py::object source = given;
-    if (py::hasattr(given, "mask") && py::hasattr(given, "filled")) {  // what a masked array hides is not there
+    if (py::hasattr(given, "mask") && py::hasattr(given, "filled")) {  // masked values become NaN
       source = given.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
     }
     array = py::array::ensure(source);
@@ -119,7 +130,7 @@ py::array real_array(const std::string& name, const py::object& given) {
       throw py::type_error();
     }
   } catch (const py::builtin_exception&) {
-    raise_usage("'" + name + "' is no array", "give a one-dimensional array of numbers");
+    raise_usage("'" + name + "' is not an array", "give a one-dimensional array of numbers");
   }
   const char kind = array.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b') {
@@ -133,7 +144,7 @@ py::array real_array(const std::string& name, const py::object& given) {
   return array;
 }
 
-/// What doubles leave of integers of 64 bits.
+/// Differences between 64-bit integers and their nearest doubles.
 template <class Number>
 mbk::Rests rests_of(const py::array& array, const py::array& doubles) {
   const auto numbers = py::array_t<Number, py::array::f_style>::ensure(array);
@@ -159,7 +170,7 @@ InMemory::Signal signal_of(const std::string& name, const std::string& unit, con
   const py::array array = real_array(name, given);
   InMemory::Signal signal{name, unit, {}, 0};
   if (array.ndim() == 1) {
-    // NumPy makes a copy where the numbers stand apart, turned around or as another type.
+    // NumPy copies strided or reversed arrays and other types.
     auto plain = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
     if (!plain) throw py::error_already_set();
     signal.rests = rests_of(array, plain);
@@ -178,7 +189,7 @@ InMemory::Signal signal_of(const std::string& name, const std::string& unit, con
   return signal;
 }
 
-/// The same numbers for NumPy, to be read only.   @param keeper  owns them
+/// The same numbers as a read-only NumPy array, without a copy.   @param keeper  owns them
 py::array to_numpy(const Samples& values, const Recording& keeper) {
   const py::capsule owner(new Recording(keeper), [](void* kept) { delete static_cast<Recording*>(kept); });
   py::array array(py::dtype::of<double>(), {values.size()}, {static_cast<py::ssize_t>(sizeof(double))}, values.data(),
@@ -198,7 +209,8 @@ Recording make_recording(const py::dict& channels, double rate_hz, const std::ma
         signal_of(name, unit == units.end() ? "" : unit->second, py::reinterpret_borrow<py::object>(value)));
   }
   for (const auto& [name, unit] : units) {
-    if (!channels.contains(name)) raise_usage("a unit is said of '" + name + "', which is not there", "check its name");
+    if (!channels.contains(name))
+      raise_usage("there is a unit for '" + name + "', but no such signal", "correct its name");
   }
   std::vector<mbk::Event> happened;
   happened.reserve(events.size());
@@ -207,7 +219,7 @@ Recording make_recording(const py::dict& channels, double rate_hz, const std::ma
       value_or_raise(InMemory::of(std::move(signals), rate_hz, metadata, std::move(happened))));
 }
 
-/// What it is without any options.
+/// The recording as read without options.
 mbk::Recording meaning_of(const InMemory& recording) {
   return value_or_raise(recording.read({}));
 }
@@ -222,7 +234,7 @@ py::array channel_of(const Recording& recording, const std::string& name) {
 
 std::string text_of(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::isinstance<py::str>(value)) {  // a name of a file may be no UTF-8
+  if (py::isinstance<py::str>(value)) {  // a file name may be invalid UTF-8
     const auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_EncodeFSDefault(value.ptr()));
     if (!bytes) throw py::error_already_set();
     return bytes;
@@ -233,7 +245,7 @@ std::string text_of(const py::handle& value) {
   return py::str(value).cast<std::string>();
 }
 
-/// A value, or several; None and False: it was not given.
+/// One value or several; None and False: not given.
 std::optional<mbk::app::CallOption> option_of(std::string name, const py::handle& value) {
   for (char& letter : name) letter = letter == '_' ? '-' : letter;
   if (value.is_none()) return std::nullopt;
@@ -252,7 +264,7 @@ std::optional<mbk::app::CallOption> option_of(std::string name, const py::handle
   return option;
 }
 
-/// Asks Python, on the thread that called and not too often, whether Ctrl-C was pressed.
+/// Checks on the calling thread, at intervals, whether Python has received Ctrl-C.
 class Interruption {
  public:
   bool operator()() {
@@ -263,7 +275,7 @@ class Interruption {
     if (PyErr_CheckSignals() != 0) keep();
     return requested_;
   }
-  /// The exception that Python has now ends the call.   Holds the GIL.
+  /// Ends the call with the current Python exception.   The caller holds the GIL.
   void keep() {
     const std::scoped_lock lock(mutex_);
     if (!error_) error_.emplace();
@@ -294,7 +306,7 @@ mbk::app::Call call_of(const std::string& command, const py::dict& options, cons
   return call;
 }
 
-/// What `use` gives for the call, without the GIL; Ctrl-C and an exception out of `progress` end it.
+/// Returns the result of `use`, run without the GIL. Ctrl-C and an exception in `progress` end the call.
 template <class Use>
 auto run(mbk::app::Call& call, const py::object& progress, const Use& use) {
   Interruption interruption;
@@ -346,7 +358,7 @@ void keep_freed_memory() {
 PYBIND11_MODULE(_mbk, m) {
   keep_freed_memory();
   py::module_::import("atexit").attr("register")(py::cpp_function([] { ending_thread = std::this_thread::get_id(); }));
-  m.doc() = "Recordings and commands of mbk; 'import mbk' gives what people use.";
+  m.doc() = "Internal module of mbk; use 'import mbk'.";
   m.attr("__version__") = std::string(mbk::version());
 
   error_class = PyErr_NewExceptionWithDoc(
@@ -371,7 +383,7 @@ PYBIND11_MODULE(_mbk, m) {
             for (const InMemory::Signal& one : self.signals()) signals.emplace_back(one.name, one.unit);
             return signals;
           },
-          "Names and units as they were given.")
+          "Names and units as given.")
       .def_property_readonly(
           "channels",
           [](const InMemory& self) {
@@ -380,10 +392,10 @@ PYBIND11_MODULE(_mbk, m) {
             for (const mbk::Channel& c : meaning.channels) channels.emplace_back(c.name, c.unit, c.frame);
             return channels;
           },
-          "Names, SI units and frames of what was recognised.")
+          "Names, SI units and frames of the recognised channels.")
       .def_property_readonly("samples", [](const InMemory& self) { return meaning_of(self).samples(); })
       .def_property_readonly("metadata", [](const InMemory& self) { return meaning_of(self).metadata; })
-      .def_property_readonly("notes", [](const InMemory& self) { return meaning_of(self).notes; })
+      .def_property_readonly("notes", [](const InMemory& self) { return in_python(meaning_of(self).notes); })
       .def_property_readonly("events",
                              [](const InMemory& self) {
                                std::vector<std::tuple<double, std::string, double>> events;
@@ -401,17 +413,25 @@ PYBIND11_MODULE(_mbk, m) {
             }
             return sources;
           },
-          "Files that it was read from.");
+          "Files that the recording was read from.");
 
   using mbk::app::Answer;
-  py::class_<Answer>(m, "Answer", "What a command found.")
+  py::class_<Answer>(m, "Answer", "The answer of a command.")
       .def_property_readonly(
           "json", [](const Answer& a) { return a.json ? a.text : std::string(); }, "The document of --json.")
-      .def_readonly("text", &Answer::text, "What the command prints.")
+      .def_readonly("text", &Answer::text, "The text that the command prints.")
       .def_readonly("exit_code", &Answer::exit_code)
       .def_property_readonly(
-          "warnings", [](const Answer& a) { return mbk::app::warnings_of(a); }, "Codes and texts.")
-      .def_readonly("messages", &Answer::messages, "What the command says beside its answer.")
+          "warnings",
+          [](const Answer& a) {
+            auto warnings = mbk::app::warnings_of(a);
+            for (auto& [code, text] : warnings) text = in_python(text);
+            return warnings;
+          },
+          "Code and text of each; the text ends with the advice.")
+      .def_property_readonly(
+          "messages", [](const Answer& a) { return in_python(a.messages); },
+          "What the program would print on standard error.")
       .def_property_readonly(
           "errors",
           [](const Answer& a) {
@@ -419,13 +439,15 @@ PYBIND11_MODULE(_mbk, m) {
             for (const Error& error : a.errors) errors.append(to_python(error));
             return errors;
           },
-          "What could not be read or measured beside what could.");
+          "Errors of files or recordings that failed while others succeeded.");
 
   m.def("call", &call_command, py::arg("command"), py::arg("options") = py::dict(),
         py::arg("recordings") = std::vector<Recording>{}, py::arg("files") = py::list(),
         py::arg("documents") = std::vector<std::string>{}, py::arg("progress") = py::none());
-  m.def("read_all", &read_files, py::arg("files"), py::arg("options") = py::dict(),
-        "Every recording that the files hold.");
+  m.def("read_all", &read_files, py::arg("files"), py::arg("options") = py::dict(), "Every recording in the files.");
+  m.def(
+      "in_python", [](const std::string& text) { return in_python(text); }, py::arg("text"),
+      "A message for the command line with its options and commands as in Python.");
   m.def("describe", &mbk::app::describe_commands, "The document of 'mbk manual --json'.");
   m.def("recording_word", &mbk::app::recording_word);
   m.def("document_word", &mbk::app::document_word);

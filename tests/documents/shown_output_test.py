@@ -21,8 +21,7 @@ MAKE_LOG = pathlib.Path(os.environ["MAKE_LOG"]).resolve()
 
 #: Before a page begins: what its text, and not a block with `$ `, tells the reader to do.
 BEFORE = {
-    "README.md": "mkdir -p build/demonstration && "
-                 "mbk simulate relaxed_sinusoidal --quiet --out build/demonstration/demonstration.mat",
+    "README.md": "mbk simulate relaxed_sinusoidal --quiet --out trial.csv",
     "docs/guide/first_measurement.md": "mkdir -p build/demonstration && mbk simulate relaxed_sinusoidal --quiet "
                                        "--out build/demonstration/demonstration.mat",
     "docs/guide/simulate.md": "mkdir -p build/trials",
@@ -30,10 +29,7 @@ BEFORE = {
 
 #: (part of the command, why it is not run)
 SKIPPED = [
-    ("mbk run examples/", "takes as long as its trials"),
-    ("mbk reproduce", "takes minutes; tests/end_to_end/reproduce_test.py runs it"),
     ("mbk validate", "takes minutes; each study has a test of its own"),
-    ("servo", "sixteen trials and a file from the text"),
 ]
 
 

@@ -70,8 +70,8 @@ class Exams(Case):
         events = [(event["name"], event["time_s"]) for event in document["events"]]
         want = list(zip(map(str, expected[f"{k}/event_labels"]), map(float, expected[f"{k}/event_times"])))
         self.assertEqual([name for name, _ in events], [name for name, _ in want])
-        for (_, time), (_, expected) in zip(events, want):
-            self.assertAlmostEqual(time, expected, delta=1e-6)
+        for (_, time), (_, right) in zip(events, want):
+            self.assertAlmostEqual(time, right, delta=1e-6)
         self.assertEqual(document["samples"], int(sum(expected[f"{k}/parts"])))
 
     def check_hand(self, path, expected, k, side):

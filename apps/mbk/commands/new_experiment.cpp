@@ -40,7 +40,7 @@ Result<std::string> robot_section(const Questions& questions) {
   if (robot == "simulated") {
     return std::string(
         "# Without [device] the robot is simulated, with this participant holding its handle. See "
-        "docs/guide/devices.md.\n"
+        "docs/guide/own_robot.md.\n"
         "[participant]\nkind = \"arm\"\nnumber = 1\n");
   }
   const auto address = MBK_TRY(questions.ask("Address of the robot", "127.0.0.1", [](const std::string& given) {
@@ -62,7 +62,7 @@ Result<std::string> robot_section(const Questions& questions) {
   const auto home = MBK_TRY(questions.ask("Test location of the hand, x, y in mm from the base", "300, -50", place));
   lengths += fmt::format("home_mm = [{}]\n", home);
   return fmt::format(
-      "[robot]                        # angles, inertia and friction: docs/guide/devices.md\n{}\n"
+      "[robot]                        # angles, inertia and friction: docs/guide/own_robot.md\n{}\n"
       "# Check the robot before a participant sits down: mbk robot check FILE --live 5\n"
       "[device]\nkind = \"udp\"\naddress = \"{}\"\nport = {}\n",
       lengths, address, port);

@@ -22,7 +22,7 @@ struct NewRobotArguments : NewFileArguments {
 };
 
 constexpr const char* kHead =
-    "# A robot for mbk. docs/guide/your_own_robot.md lists every key.\n"
+    "# A robot for mbk. docs/guide/own_robot.md lists every key.\n"
     "#   mbk robot describe FILE    shows how mbk understands it\n";
 
 /// A question whose answer is the value of a key.

@@ -127,9 +127,8 @@ Action add_robot_check(Command group) {
       "      tests whether the robot's program, such as your own bridge, follows every rule of the link\n"
       "  mbk robot check --rt 60\n"
       "      measures how punctually this computer wakes the control loop, and what delays it\n\n"
-      "Run all of these before a participant sits down at a new robot. docs/guide/devices.md lists the\n"
-      "keys of [device] and the rules of the link; docs/guide/your_own_robot.md has a bridge to start\n"
-      "from.\n\n"
+      "Run all of these before a participant sits down at a new robot. docs/guide/own_robot.md has a\n"
+      "bridge to start from, the keys of [device] and the rules of the link.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not everything\n"
       "was tested.");
   const Option file = command

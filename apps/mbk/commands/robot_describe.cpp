@@ -39,7 +39,7 @@ Action add_robot_describe(Command group) {
       "  mbk robot describe arm.urdf\n"
       "      the whole chain, from the root of the URDF to its only leaf\n\n"
       "Check the limits, and the hand position with every joint at zero, before you record.\n"
-      "docs/guide/robot_dynamics.md lists the keys of a description.");
+      "docs/guide/own_robot.md lists the keys of a description.");
   command.add_option("FILE", arguments->file, "description of a robot: .toml, or only a .urdf").required();
   command.add_flag("--json", arguments->json, "print JSON: schema mbk.robot_description/1");
   arguments->output.add_options(command);

@@ -1,14 +1,14 @@
 function [result, info] = compare(varargin)
-% mbk.compare  What changed between two results: how far M, B and K are apart.
+% mbk.compare  Difference between two results in M, B and K.
 %
-%   RESULT = mbk.compare(...) is the document that 'mbk compare --json' writes, as a struct with every digit.
-%   [RESULT, INFO] = mbk.compare(...) also gives INFO.text, that document itself, INFO.exit_code (0: fine,
+%   RESULT = mbk.compare(...) returns the JSON document of 'mbk compare --json' as a struct, in full precision.
+%   [RESULT, INFO] = mbk.compare(...) also returns INFO.text (the JSON document itself), INFO.exit_code (0: success,
 %   4: computed, but not usable), INFO.warnings (code, message) and INFO.messages.
 %
 %   [...] = mbk.compare(INFO1, INFO2, ...)          second outputs of mbk.measure
 %   [...] = mbk.compare({'a.json', 'b.json'}, ...)  files: results, or recordings
 %
-%   Errors are mbk:usage, mbk:data and mbk:not_usable; warnings are mbk:CODE, with _ for -.
+%   Error identifiers: mbk:usage, mbk:data, mbk:not_usable. Warning identifiers: mbk:CODE, with _ for -.
 %   See also mbk.measure
   [result, info] = mbk.internal.run('compare', varargin);
 end

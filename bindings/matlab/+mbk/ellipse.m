@@ -1,14 +1,14 @@
 function [result, info] = ellipse(varargin)
-% mbk.ellipse  Ellipses of a result.
+% mbk.ellipse  Ellipses of inertia, damping and stiffness of a result.
 %
-%   RESULT = mbk.ellipse(...) is the document that 'mbk ellipse --json' writes, as a struct with every digit.
-%   [RESULT, INFO] = mbk.ellipse(...) also gives INFO.text, that document itself, INFO.exit_code (0: fine,
+%   RESULT = mbk.ellipse(...) returns the JSON document of 'mbk ellipse --json' as a struct, in full precision.
+%   [RESULT, INFO] = mbk.ellipse(...) also returns INFO.text (the JSON document itself), INFO.exit_code (0: success,
 %   4: computed, but not usable), INFO.warnings (code, message) and INFO.messages.
 %
 %   [...] = mbk.ellipse(INFO)      the second output of mbk.measure
-%   [...] = mbk.ellipse('r.json')  a file
+%   [...] = mbk.ellipse('r.json')  a result file
 %
-%   Errors are mbk:usage, mbk:data and mbk:not_usable; warnings are mbk:CODE, with _ for -.
+%   Error identifiers: mbk:usage, mbk:data, mbk:not_usable. Warning identifiers: mbk:CODE, with _ for -.
 %   See also mbk.measure
   [result, info] = mbk.internal.run('ellipse', varargin);
 end

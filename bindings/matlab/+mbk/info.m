@@ -1,20 +1,20 @@
 function [result, info] = info(varargin)
-% mbk.info  What is in a recording: channels, rate, gaps, problems.
+% mbk.info  Contents of a recording: channels, rate, gaps, problems.
 %
-%   RESULT = mbk.info(...) is the document that 'mbk info --json' writes, as a struct with every digit.
-%   [RESULT, INFO] = mbk.info(...) also gives INFO.text, that document itself, INFO.exit_code (0: fine,
+%   RESULT = mbk.info(...) returns the JSON document of 'mbk info --json' as a struct, in full precision.
+%   [RESULT, INFO] = mbk.info(...) also returns INFO.text (the JSON document itself), INFO.exit_code (0: success,
 %   4: computed, but not usable), INFO.warnings (code, message) and INFO.messages.
 %
-%   [...] = mbk.info(FILE)                   the name of a file, or a cell of several
-%   [...] = mbk.info(T, X, F)                time in s, position in m (rad), force in N (N.m): columns, one axis
-%                                           or two
-%   [...] = mbk.info(T, X, F, XR)            with the reference of the perturbation; then perhaps acceleration
+%   [...] = mbk.info(FILE)                   a file name, or a cell array of several
+%   [...] = mbk.info(T, X, F)                time [s], position [m or rad], force [N or N.m]: one column per axis,
+%                                           one or two axes
+%   [...] = mbk.info(T, X, F, XR)            also the reference; a fifth array is the acceleration
 %   [...] = mbk.info(DATA)                   a struct of signals (time, x, Fx, ...), a 19 x N logs matrix, a table,
-%                                           a timetable or iddata; units as the field units, or the table, says
-%   [...] = mbk.info(..., NAME, VALUE, ...)  options of 'mbk info' on the command line, as in
-%                                           'mode', 'reference', 'cutoff', 5; flags take true
+%                                           timetable or iddata; units in the field 'units' or in the table
+%   [...] = mbk.info(..., NAME, VALUE, ...)  options of 'mbk info' with _ for -, such as
+%                                           'axes', 1; flags take true
 %
-%   Errors are mbk:usage, mbk:data and mbk:not_usable; warnings are mbk:CODE, with _ for -.
+%   Error identifiers: mbk:usage, mbk:data, mbk:not_usable. Warning identifiers: mbk:CODE, with _ for -.
 %   See also mbk.read
   [result, info] = mbk.internal.run('info', varargin);
 end

@@ -1,17 +1,17 @@
 function handles = plot(document)
-% mbk.plot  What a result shows: ellipses and impedance, energy, Bode plots.
+% mbk.plot  Plot a result: ellipses and impedance, energy, or Bode plots.
 %
-%   HANDLES = mbk.plot(RESULT) draws what was found by
-%     mbk.measure, mbk.identify   with two axes the ellipses of inertia, damping and stiffness, each the force (in N)
-%                                 that one unit of acceleration, velocity or displacement in any direction takes, with
-%                                 the 95 % interval of its direction; with one axis M, B and K with their 95 % intervals.
-%                                 Below: the magnitude of M s^2 + B s + K along each axis over frequency
-%     mbk.passivity               the energy that was absorbed, and the least damping in any direction over frequency
-%                                 (the passivity index) with its 95 % band
-%     mbk.explore, mbk.tf         magnitude and phase with their 95 % bands (Bode), and the coherence
+%   HANDLES = mbk.plot(RESULT) plots the result of
+%     mbk.measure, mbk.identify   two axes: ellipses of inertia, damping and stiffness, that is, the force (in N) for
+%                                 one unit of acceleration, velocity or displacement in any direction, with the 95 %
+%                                 interval of the orientation. One axis: M, B and K with their 95 % intervals. Below:
+%                                 magnitude of M s^2 + B s + K along each axis over frequency
+%     mbk.passivity               absorbed energy over time, and passivity index (minimum damping in any direction)
+%                                 over frequency with its 95 % band
+%     mbk.explore, mbk.tf         magnitude and phase (Bode) with their 95 % bands, and coherence
 %   HANDLES are the axes.
 %
-%   Of several results (RESULT.results), draw one: mbk.plot(RESULT.results{1}).
+%   If there are several results (RESULT.results), plot one: mbk.plot(RESULT.results{1}).
 %   See also mbk.plot_energy, mbk.plot_fit
   schema = '';
   if isstruct(document) && isfield(document, 'schema')
@@ -25,7 +25,7 @@ function handles = plot(document)
     case {'mbk.explore', 'mbk.tf'}
       handles = mbk.internal.draw_responses(document);
     otherwise
-      error('mbk:usage', ['there is no plot of this: give what mbk.measure, identify, passivity, explore or tf found ' ...
-                          'of one recording']);
+      error('mbk:usage', ['this result has no plot; give a result of mbk.measure, identify, passivity, explore ' ...
+                          'or tf for one recording']);
   end
 end

@@ -1,9 +1,9 @@
 function handles = plot_energy(result)
-% mbk.plot_energy  What a result of mbk.measure says of energy.
+% mbk.plot_energy  Passivity index of a result of mbk.measure.
 %
-%   HANDLES = mbk.plot_energy(RESULT) draws the least damping in any direction over frequency (the passivity index) with
-%   its 95 % band: where it is below zero, the model can generate energy. Of what mbk.passivity found it draws the
-%   energy that was absorbed over time as well. HANDLES are the axes.
+%   HANDLES = mbk.plot_energy(RESULT) plots the passivity index (minimum damping in any direction) over frequency with
+%   its 95 % band. Where it is below zero, the model can generate energy. For a result of mbk.passivity it also plots
+%   the absorbed energy over time. HANDLES are the axes.
 %   See also mbk.plot, mbk.passivity
   handles = mbk.internal.draw_passivity(result);
 end

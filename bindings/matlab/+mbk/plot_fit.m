@@ -1,9 +1,8 @@
 function handles = plot_fit(varargin)
 % mbk.plot_fit  Measured and predicted force, and the residual.
 %
-%   HANDLES = mbk.plot_fit(...) takes what mbk.measure takes, of one recording, measures it, and draws the force with
-%   its prediction and what is left of it, on held-out data where there are any, as the report does. HANDLES are the
-%   axes.
+%   HANDLES = mbk.plot_fit(...) has the inputs of mbk.measure. It measures one recording and plots the measured force,
+%   the predicted force and the residual, as the report does: on held-out data if there are any. HANDLES are the axes.
 %
 %   Example
 %     mbk.plot_fit('log.mat', 'mode', 'reference')
@@ -15,18 +14,18 @@ function handles = plot_fit(varargin)
   cleaner = onCleanup(@() remove(folder, page));
   result = mbk.internal.run('measure', varargin, {'report', page});
   if ~strcmp(strtok(result.schema, '/'), 'mbk.result')
-    error('mbk:usage', 'give one recording');
+    error('mbk:usage', 'plot_fit takes one recording; give one file or one set of signals');
   end
   handles = mbk.internal.draw_fit(data_of(page), mbk.internal.unit_of(result, 'force'));
 end
 
 function report = data_of(page)
-% What the page of a report shows, which stands in it as JSON.
+% The data of a report page, which the page contains as JSON.
   text = fileread(page);
   head = '<script type="application/json" id="report-data">';
   first = strfind(text, head);
   if isempty(first)
-    error('mbk:data', 'this build of mbk has no page for reports; build it with npm');
+    error('mbk:data', 'this build of mbk has no report page; build mbk with MBK_WEB=ON');
   end
   text = text(first(1) + numel(head):end);
   last = strfind(text, '</script>');

@@ -3,9 +3,10 @@ function recording = read(file, varargin)
 %
 %   RECORDING = mbk.read(FILE, NAME, VALUE, ...) reads MAT, HDF5, CSV, C3D and the other formats of mbk. RECORDING has
 %   a column for each channel under its name (hand_x, force_x, ...), the column time in seconds, units (a struct with
-%   the unit of each), metadata (a cell of names and values) and events (a struct array with time, name and value). It can be handed to mbk.measure and the others as it is.
+%   the unit of each), metadata (a cell array of names and values) and events (a struct array with time, name and
+%   value). You can pass it to mbk.measure and the other functions.
 %
-%   Options are those of reading: 'channels', 'variable', 'trial', 'side', 'clock', 'rate', 'axes'.
+%   Options for reading: 'channels', 'variable', 'trial', 'side', 'clock', 'rate', 'axes'.
 %
 %   Example
 %     recording = mbk.read('log.mat');

@@ -1,10 +1,10 @@
 function [result, info] = robot(what, varargin)
-% mbk.robot  The commands 'mbk robot ...': identify, force, check, describe, workspace.
+% mbk.robot  Subcommands of 'mbk robot': identify, force, check, describe, workspace.
 %
-%   [RESULT, INFO] = mbk.robot('identify', ..., NAME, VALUE, ...) does what 'mbk robot identify' does. Behind the name of the
-%   command stand data (see 'help mbk.measure'), names of files or other words, as a text or a cell of several, and then
-%   options with their values. RESULT is the document of --json as a struct, or text where the command has none.
+%   [RESULT, INFO] = mbk.robot('identify', ..., NAME, VALUE, ...) runs 'mbk robot identify'. After the name of the
+%   subcommand come data (see 'help mbk.measure'), file names or other words, as a text or a cell array of several,
+%   then options with their values. RESULT is the document of --json as a struct, or the text that the command prints.
 %
-%   Errors are mbk:usage, mbk:data and mbk:not_usable; warnings are mbk:CODE, with _ for -.
+%   Error identifiers: mbk:usage, mbk:data, mbk:not_usable. Warning identifiers: mbk:CODE, with _ for -.
   [result, info] = mbk.internal.run(['robot ' char(what)], varargin);
 end

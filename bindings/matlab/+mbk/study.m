@@ -1,10 +1,11 @@
 function [result, info] = study(what, varargin)
-% mbk.study  The commands 'mbk study ...': init, add, import, list, show, measure, exclude, summary, export, forget, check, log, backup.
+% mbk.study  Subcommands of 'mbk study': init, defaults, add, import, list, show, measure, status, exclude, summary,
+%   plan, report, export, forget, check, log, backup.
 %
-%   [RESULT, INFO] = mbk.study('init', ..., NAME, VALUE, ...) does what 'mbk study init' does. Behind the name of the
-%   command stand data (see 'help mbk.measure'), names of files or other words, as a text or a cell of several, and then
-%   options with their values. RESULT is the document of --json as a struct, or text where the command has none.
+%   [RESULT, INFO] = mbk.study('init', ..., NAME, VALUE, ...) runs 'mbk study init'. After the name of the
+%   subcommand come data (see 'help mbk.measure'), file names or other words, as a text or a cell array of several,
+%   then options with their values. RESULT is the document of --json as a struct, or the text that the command prints.
 %
-%   Errors are mbk:usage, mbk:data and mbk:not_usable; warnings are mbk:CODE, with _ for -.
+%   Error identifiers: mbk:usage, mbk:data, mbk:not_usable. Warning identifiers: mbk:CODE, with _ for -.
   [result, info] = mbk.internal.run(['study ' char(what)], varargin);
 end

@@ -1,13 +1,13 @@
 function [result, info] = teleop(varargin)
-% mbk.teleop  Absolute stability of a teleoperator.
+% mbk.teleop  Absolute stability of a teleoperation system.
 %
-%   RESULT = mbk.teleop(...) is the document that 'mbk teleop --json' writes, as a struct with every digit.
-%   [RESULT, INFO] = mbk.teleop(...) also gives INFO.text, that document itself, INFO.exit_code (0: fine,
+%   RESULT = mbk.teleop(...) returns the JSON document of 'mbk teleop --json' as a struct, in full precision.
+%   [RESULT, INFO] = mbk.teleop(...) also returns INFO.text (the JSON document itself), INFO.exit_code (0: success,
 %   4: computed, but not usable), INFO.warnings (code, message) and INFO.messages.
 %
 %   [...] = mbk.teleop('design.toml', NAME, VALUE, ...)
 %
-%   Errors are mbk:usage, mbk:data and mbk:not_usable; warnings are mbk:CODE, with _ for -.
+%   Error identifiers: mbk:usage, mbk:data, mbk:not_usable. Warning identifiers: mbk:CODE, with _ for -.
 %   See also mbk.passivity
   [result, info] = mbk.internal.run('teleop', varargin);
 end

@@ -8,8 +8,8 @@
 >>> result.usable
 True
 
-Each command of the program is a function with the same options (dashes are underscores, `from` is `from_`), and gives
-an object whose `.to_dict()` is what `--json` prints. Force is what the hand exerts on the robot, as in
+Each command of the program is a function with the same options (`_` for `-`; `from_` for `--from`). It returns an object
+whose `.to_dict()` is the JSON document of the command. Force F is the force of the hand on the robot:
 M ẍ + B ẋ + K (x − x₀) = −F. Units are SI and radians.
 """
 
@@ -65,7 +65,7 @@ from mbk._live import Live, live
 from mbk._recording import Recording
 
 __version__: str = _mbk.__version__
-tf = transfer_function  # as the command is called
+tf = transfer_function  # name of the command
 
 __all__ = [
     "Comparison", "DataError", "Document", "Ellipses", "Error", "Exploration", "Information", "Live", "MbkWarning",

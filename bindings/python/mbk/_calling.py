@@ -1,4 +1,4 @@
-"""From a function's arguments to a command of the core, and from its answer to a document."""
+"""Converts arguments of a function to a command of the core, and its answer to a document."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ class DataSet(Protocol):
     def coords(self) -> Any: ...
 
 
-# What a function takes in place of the name of a file.
+# What a function accepts in place of a file name.
 Source = Union[str, "os.PathLike[str]", Recording, _documents.Document, Mapping[str, Any], Sequence[Any], Table, DataSet]
 
 
 def _plain(value: Any) -> Any:
-    """A scalar of NumPy as one of Python."""
+    """A NumPy scalar as a Python scalar."""
     return value.item() if isinstance(value, np.generic) or isinstance(value, np.ndarray) and value.ndim == 0 else value
 
 
 class _Given:
-    """The words of a call, with what stands for them in memory."""
+    """The words of a call, and the recordings and documents in memory that they stand for."""
 
     __slots__ = ("documents", "recordings", "words")
 
@@ -84,7 +84,7 @@ class _Given:
             self.words.append(self.word(source))
 
     def value(self, value: Any, separator: str) -> Any:
-        """An option's value as it would be typed."""
+        """The value of an option as on the command line."""
         value = _plain(value)
         if isinstance(value, (str, int, float)):
             return value
@@ -94,9 +94,9 @@ class _Given:
             return ",".join(f"{name}={self.value(one, ':')}" for name, one in value.items())
         if isinstance(value, (Sequence, np.ndarray)):
             if not len(value):
-                raise _errors.usage("an option cannot be an empty list", "leave it out")
+                raise _errors.usage("an option is an empty list", "omit the option")
             return separator.join(str(self.value(one, ":")) for one in value)
-        raise _errors.usage(f"an option cannot be {type(value).__name__}", "give a number, a word, or several")
+        raise _errors.usage(f"an option has the type {type(value).__name__}", "give a number, a text or a list of them")
 
     def options(self, options: Mapping[str, Any], several: Mapping[str, str]) -> dict[str, Any]:
         given: dict[str, Any] = {}
@@ -114,7 +114,7 @@ class _Given:
 
 
 def _answer(command: str, given: _Given, options: dict[str, Any], level: int) -> _mbk.Answer:
-    """Calls; what needs care becomes Python warnings of whoever called the function, `level` frames up."""
+    """Calls the core. Issues warnings of the result as Python warnings of the caller, `level` frames up."""
     try:
         answer = _mbk.call(command, options, given.recordings, given.words, given.documents)
     except _mbk.Error as error:
@@ -132,18 +132,18 @@ def run(command: str, sources: Sequence[Any], options: Mapping[str, Any], severa
     Parameters
     ----------
     command : str
-        As it is typed: "robot identify".
+        As on the command line: "robot identify".
     sources : sequence
-        What stands beside the options: names of files, recordings, documents, words.
+        Arguments other than options: file names, recordings, documents, words.
     options : mapping
-        By their long names; None and False are not given.
+        By their long names; None and False mean that an option is not given.
     several : mapping
-        For options that take more than one value, what stands between them; empty: each is given by itself.
+        Separator between values of options with several values; empty: the option is repeated.
 
     Returns
     -------
     Document or str
-        A document where the command has one, else what it prints.
+        A document if the command has one, otherwise the text that it prints.
     """
     given = _Given()
     for source in sources:
@@ -159,7 +159,7 @@ def run(command: str, sources: Sequence[Any], options: Mapping[str, Any], severa
 
 
 def _report(given: _Given, options: dict[str, Any]) -> Any:
-    """What the page of a report shows."""
+    """The data of a report page."""
     with tempfile.TemporaryDirectory(prefix="mbk-") as folder:
         page = pathlib.Path(folder, "report.html")
         with _errors.translated():
@@ -167,12 +167,12 @@ def _report(given: _Given, options: dict[str, Any]) -> Any:
         text = page.read_text(encoding="utf-8")
     match = re.search(r'<script type="application/json" id="report-data">(.*?)</script>', text, re.DOTALL)
     if match is None:
-        raise _errors.Error("this build of mbk has no page for reports; build it with npm")
+        raise _errors.Error("this build of mbk has no report page; build mbk with MBK_WEB=ON")
     return json.loads(match[1])
 
 
 def convert(command: str, sources: Sequence[Any], options: Mapping[str, Any], several: Mapping[str, str]) -> Any:
-    """As `run`; the last source is the file to write, whose path comes back. What has no place in it is a warning."""
+    """Like `run`. Writes the last source and returns its path. Data that its format cannot hold cause a warning."""
     given = _Given()
     for source in sources:
         given.add(source)
@@ -183,7 +183,7 @@ def convert(command: str, sources: Sequence[Any], options: Mapping[str, Any], se
 
 
 def simulate(command: str, sources: Sequence[Any], options: Mapping[str, Any], several: Mapping[str, str]) -> Any:
-    """As `run`; without `out` the recordings come back and no file stays."""
+    """Like `run`. Without `out` it returns the recordings and leaves no file."""
     given = _Given()
     for source in sources:
         given.add(source)
@@ -206,7 +206,7 @@ def _natural(path: pathlib.Path) -> list[Any]:
 
 
 def read(command: str, sources: Sequence[Any], options: Mapping[str, Any], several: Mapping[str, str]) -> Any:
-    """Every recording that the files hold: one, or a list of them."""
+    """Every recording in the files: one, or a list if there are several."""
     given = _Given()
     for source in sources:
         given.add(source)

@@ -1,4 +1,4 @@
-"""What commands give: documents with attributes, units, tables and plots."""
+"""Results of commands: documents with attributes, units, tables and plots."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbk import _errors, _tables
+from mbk import _errors, _mbk, _tables
 
 if TYPE_CHECKING:
     import matplotlib.figure
     import pandas
 
 SCHEMAS = pathlib.Path(__file__).resolve().parent / "schemas"
-_ATTRIBUTE = {"from": "from_", "import": "import_", "class": "class_"}  # names that Python keeps to itself
+_ATTRIBUTE = {"from": "from_", "import": "import_", "class": "class_"}  # reserved words of Python
 
 
-# ---- schemas: which fields there are, what they mean, in which unit
+# ---- schemas: fields, their meaning and their units
 
 
 @functools.lru_cache(maxsize=None)
@@ -36,11 +36,11 @@ def _schema(name: str) -> _Field | None:
 
 
 class _Field:
-    """A place in a schema: what a description says of it, and what is below it."""
+    """A place in a schema: its description and the fields below it."""
 
     def __init__(self, node: dict[str, Any], types: dict[str, Any], description: str = "", within: str = "") -> None:
         self.types = types
-        self.type, self.within = "", within  # the names of its type and of the type that it is a field of
+        self.type, self.within = "", within  # names of its type and of the type that contains it
         while "$ref" in node:
             description = description or node.get("description", "")
             self.type = node["$ref"].rpartition("/")[2]
@@ -75,7 +75,7 @@ _UNIT = re.compile(r"\[([^\[\]]+)\]")
 
 
 class Part:
-    """A part of a document. Its fields are attributes: numbers, words, NumPy arrays, further parts."""
+    """A part of a document. Its fields are attributes: numbers, texts, NumPy arrays or further parts."""
 
     def __init__(self, values: dict[str, Any], field: _Field | None, units: dict[str, str]) -> None:
         self._values, self._field, self._units = values, field, units
@@ -90,7 +90,7 @@ class Part:
             return made[key]
         if key not in self._values:
             known = self._field.names if self._field else []
-            why = "is not in this result" if key in known else f"is none of {', '.join(sorted(self._values))}"
+            why = "is not in this result" if key in known else f"is not one of {', '.join(sorted(self._values))}"
             raise AttributeError(f"'{name}' {why}")
         field = self._field.below(key) if self._field else None
         made[key] = _made(self._values[key], field, self._units)
@@ -114,22 +114,22 @@ class Part:
         return [*super().__dir__(), *(_ATTRIBUTE.get(name, name) for name in self._values)]
 
     def to_dict(self) -> dict[str, Any]:
-        """A copy of what the JSON holds here."""
+        """A copy of this part of the JSON document."""
         copied: dict[str, Any] = json.loads(json.dumps(self._values))
         return copied
 
     def unit(self, path: str) -> str:
-        """The unit of a field below this one.
+        """The unit of a field in this part.
 
         Parameters
         ----------
         path : str
-            Names with dots: ``"model.K"``, ``"fit.RMSE"``.
+            Names separated by dots: ``"model.K"``, ``"fit.RMSE"``.
 
         Returns
         -------
         str
-            ``"N/m"``; empty where it has none.
+            Such as ``"N/m"``; empty if it has no unit.
         """
         field, name, value = self._field, "", self._values
         for name in path.split("."):
@@ -154,14 +154,14 @@ class Part:
         return unit
 
     def describe(self, path: str) -> str:
-        """What a field is, in a sentence."""
+        """The description of a field."""
         field = self._field
         for name in path.split("."):
             field = field.below(name) if field else None
             if field is None:
                 raise KeyError(path)
         assert field is not None
-        return field.description
+        return _mbk.in_python(field.description)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {', '.join(self._values)}>"
@@ -182,7 +182,7 @@ def _made(value: Any, field: _Field | None, units: dict[str, str]) -> Any:
     if isinstance(value, list):
         if value and _is_numeric(value):
             try:
-                array = np.array(value, dtype=np.float64)  # null is a number that is not defined: NaN
+                array = np.array(value, dtype=np.float64)  # null is an undefined number: NaN
                 array.setflags(write=False)
                 return array
             except ValueError:  # rows of different lengths
@@ -196,22 +196,22 @@ def _made(value: Any, field: _Field | None, units: dict[str, str]) -> Any:
 
 
 class Document(Part):
-    """What a command gives. Its fields are attributes (``.model.K``), numbers are NumPy arrays in SI units.
+    """The result of a command. Its fields are attributes (``.model.K``). Lists of numbers are NumPy arrays. Units are SI.
 
     Attributes
     ----------
     json : str
-        The document as the command prints it with ``--json``, to the bit.
+        The exact JSON text of the command.
     exit_code : int
-        With which the command would have ended: 0, or 4 where the result is not usable.
+        Exit code of the command: 0, or 4 if the result is not usable.
     """
 
     def __init__(self, text: str, exit_code: int = 0) -> None:
         self.json, self.exit_code = text, exit_code
-        self._again: Callable[[], dict[str, Any]] | None = None  # the report of the same measurement
+        self._again: Callable[[], dict[str, Any]] | None = None  # makes the report of the same measurement
 
     def __getattr__(self, name: str) -> Any:
-        if name in ("_values", "_field", "_units", "_made"):  # made when something is asked for
+        if name in ("_values", "_field", "_units", "_made"):  # made on first access
             self._read()
             return self.__dict__[name]
         return super().__getattr__(name)
@@ -222,37 +222,37 @@ class Document(Part):
         Part.__init__(self, values, _schema(match[1]) if match else None, values.get("units") or {})
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``--json`` prints, as dictionaries and lists; a copy of its own each time."""
+        """The JSON document as dictionaries and lists; a new copy each time."""
         found: dict[str, Any] = json.loads(self.json)
         return found
 
     def save(self, file: str | os.PathLike[str], *, overwrite: bool = False) -> None:
-        """Writes the JSON document, as ``--json --out`` does.
+        """Writes the JSON document to a file.
 
         Parameters
         ----------
         file : str or path
-            Where to.
+            File to write.
         overwrite : bool
-            Replace a file that is there.
+            Replace an existing file.
         """
         try:
             with open(file, "w" if overwrite else "x", encoding="utf-8") as out:
                 out.write(self.json)
         except FileExistsError:
-            raise _errors.UsageError(f"{os.fspath(file)}: there is such a file; replace it with overwrite=True",
-                                     file=str(os.fspath(file)), what="there is such a file",
+            raise _errors.UsageError(f"{os.fspath(file)}: the file exists; replace it with overwrite=True",
+                                     file=str(os.fspath(file)), what="the file exists",
                                      hint="replace it with overwrite=True") from None
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """The document's numbers as a table; which, its class says."""
+        """A table of the numbers in the document; each class documents its own."""
         import pandas
 
         return pandas.DataFrame(_tables.flat(self._values))
 
     def plot(self) -> matplotlib.figure.Figure:
-        """A figure, where there is one for this kind of document."""
-        raise NotImplementedError(f"there is no plot of {self._values.get('schema', 'this document')}")
+        """A figure, if this kind of document has one."""
+        raise NotImplementedError(f"{self._values.get('schema', 'this document')} has no plot")
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Document) and self.json == other.json
@@ -271,7 +271,7 @@ class Document(Part):
 
 
 def load(file: str | os.PathLike[str]) -> Any:
-    """A document that `--json` or `.save` wrote.
+    """Reads a document that `.save` or `mbk … --json` wrote.
 
     Parameters
     ----------
@@ -281,7 +281,7 @@ def load(file: str | os.PathLike[str]) -> Any:
     Returns
     -------
     Document
-        Of the class that its schema names.
+        Its schema determines the class.
     """
     text = pathlib.Path(file).read_text(encoding="utf-8")
     try:
@@ -289,28 +289,28 @@ def load(file: str | os.PathLike[str]) -> Any:
     except (ValueError, KeyError, TypeError):
         schema = ""
     if not re.fullmatch(r"mbk\.\w+/\d+", str(schema)):
-        raise _errors.DataError(f"{os.fspath(file)}: no document of mbk; give a file that --json or save() wrote",
-                                file=str(os.fspath(file)), what="no document of mbk",
-                                hint="give a file that --json or save() wrote")
+        raise _errors.DataError(f"{os.fspath(file)}: the file is not a document of mbk; give a file that save() wrote",
+                                file=str(os.fspath(file)), what="the file is not a document of mbk",
+                                hint="give a file that save() wrote")
     return of(text)
 
 
 class _Measured(Document):
-    """What a result and several have in common."""
+    """Base of one result and of several results."""
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Ellipses of inertia, damping and stiffness at the hand with the 95 % interval of their orientation; with one
-        axis the parameters with their 95 % intervals."""
+        """Ellipses of inertia, damping and stiffness at the hand with the 95 % interval of their orientation; for one
+        axis, the parameters with their 95 % intervals."""
         from mbk import _plots
 
         return _plots.ellipses(self)
 
 
 class Result(_Measured):
-    """M, B, K and x₀ of one recording, or of several that are pooled: ``M ẍ + B ẋ + K (x − x₀) = −F``.
+    """M, B, K and x₀ of one recording or of pooled recordings: ``M ẍ + B ẋ + K (x − x₀) = −F``.
 
     `model.M` [kg], `model.B` [N·s/m], `model.K` [N/m] have shape (axes, axes), `model.x0` [m] has shape (axes,);
-    `standard_error` likewise. `units` says the units of rotation where a joint moves.
+    `standard_error` likewise. For a joint, `units` contains the units of rotation.
     """
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -320,39 +320,40 @@ class Result(_Measured):
         return pandas.DataFrame(_tables.parameters(self._values)).set_index("parameter")
 
     def plot_energy(self) -> matplotlib.figure.Figure:
-        """The least damping in any direction over frequency with its 95 % band, of what `mbk.measure` found."""
+        """Passivity index (minimum damping in any direction) over frequency with its 95 % band; for results of
+        `mbk.measure`."""
         if "passivity" not in self._values:
-            raise _errors.usage("this result says nothing of energy", "measure the recording with mbk.measure")
+            raise _errors.usage("this result has no passivity index", "measure the recording with mbk.measure()")
         from mbk import _plots
 
         return _plots.passivity(self)
 
     def report(self) -> dict[str, Any]:
-        """What the page of `mbk measure --report` shows: schema mbk.report, measured again.
+        """The data of the HTML report (schema mbk.report). Measures the recording again.
 
         Returns
         -------
         dict
-            `trials` with predicted force, residual, spectra and energy.
+            `trials` contains predicted force, residual, spectra and energy.
         """
         if self._again is None:
-            raise _errors.usage("this result was not measured here", "measure the recording again")
+            raise _errors.usage("this result was loaded, not measured in this process", "measure the recording again")
         found: dict[str, Any] = self._again()
         return found
 
     def plot_fit(self) -> matplotlib.figure.Figure:
-        """Measured and predicted force, and the residual, on held-out data where there are any, as in the report."""
+        """Measured force, predicted force and residual, on held-out data if there are any, as in the report."""
         from mbk import _plots
 
         return _plots.fit(self.report(), self._units.get("force", "N"))
 
 
 class Results(_Measured):
-    """Results of several recordings, and their mean. ``len()`` of it is the number of results, which it iterates."""
+    """Results of several recordings, and their mean. Supports ``len()``, iteration and indexing over the results."""
 
     @property
     def results(self) -> list[Result]:
-        """One for each recording that could be measured."""
+        """One result for each recording that could be measured."""
         made: dict[str, Any] = self._made
         if "results" not in made:
             made["results"] = [_inner(Result, one) for one in self._values["results"]]
@@ -381,40 +382,40 @@ def _inner(kind: type[Document], values: dict[str, Any]) -> Any:
 
 
 class Passivity(Document):
-    """What energy the limb absorbed in the trial, and what its model predicts."""
+    """Energy that the limb absorbed in the trial, and the prediction of its model."""
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row for each recording: the energy that was absorbed [J] with its 95 % interval and verdict, what the model
-        predicts, the least passivity index and the excess of passivity [unit of the damping]."""
+        """A row for each recording: absorbed energy [J] with its 95 % interval and verdict, prediction of the model,
+        minimum passivity index and excess of passivity [unit of the damping]."""
         import pandas
 
         return pandas.DataFrame(_tables.passivity_rows(self._values))
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Absorbed energy of the trial, and the least damping in any direction over frequency with its 95 % band."""
+        """Absorbed energy over the trial, and passivity index over frequency with its 95 % band."""
         from mbk import _plots
 
         return _plots.passivity(self)
 
 
 class Exploration(Document):
-    """What a recording says without M, B and K: frequency responses, impulse response, reflexes."""
+    """Results that do not use the model M, B, K: frequency responses, impulse response, reflexes."""
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row for each frequency, input and output of the frequency response."""
+        """A row for each combination of frequency, input and output of the frequency response."""
         import pandas
 
         return pandas.DataFrame(_tables.frequency_rows(self._values))
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Bode plot with 95 % intervals, and the coherence."""
+        """Bode plot with 95 % intervals, and coherence."""
         from mbk import _plots
 
         return _plots.exploration(self)
 
 
 class TransferFunction(Document):
-    """A transfer function from one signal to another."""
+    """Transfer function from one signal to another."""
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each coefficient: value, standard_error, low95, high95."""
@@ -430,10 +431,10 @@ class TransferFunction(Document):
 
 
 class Teleoperation(Document):
-    """Whether a teleoperation system is absolutely stable."""
+    """Absolute stability of a teleoperation system."""
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """The curves: a row for each frequency."""
+        """The curves: a row for each curve and frequency."""
         import pandas
 
         return pandas.DataFrame([
@@ -448,7 +449,7 @@ class Teleoperation(Document):
 
 
 class Comparison(Document):
-    """How far two results are apart."""
+    """Difference between two results."""
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each matrix: distance, low95, high95, distinguishable."""
@@ -461,14 +462,14 @@ class Ellipses(_Measured):
     """Area, shape and orientation of the ellipses of a result."""
 
     def to_dataframe(self) -> pandas.DataFrame:
-        """A row for each matrix: area, shape, orientation with their intervals."""
+        """A row for each matrix: area, shape and orientation with their intervals."""
         import pandas
 
         return pandas.DataFrame(_tables.ellipse_rows(self._values)).set_index("matrix")
 
 
 class Validation(Document):
-    """A method against known truth."""
+    """Test of a method against known truth."""
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each row of the table."""
@@ -477,14 +478,14 @@ class Validation(Document):
         return pandas.DataFrame(_tables.validation_rows(self._values))
 
     def plot(self) -> matplotlib.figure.Figure:
-        """The judged rows with their intervals against what is expected."""
+        """The judged rows with their intervals and the expected ranges."""
         from mbk import _plots
 
         return _plots.validation(self)
 
 
 class Information(Document):
-    """What is in a recording."""
+    """Contents of a recording."""
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each channel."""
@@ -505,7 +506,7 @@ class Movement(Document):
 
 
 class Springs(Document):
-    """A rig of springs: its field, its design, or the constants of springs."""
+    """A rig of springs: its force field, its design, or calibrated spring constants."""
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each spring."""
@@ -532,7 +533,7 @@ class RobotDynamics(Document):
 
 
 class VirtualForce(Document):
-    """A force at the hand without a force sensor, in short."""
+    """Summary of a force at the hand that was computed without a force sensor."""
 
 
 class StudyList(Document):
@@ -555,9 +556,9 @@ class StudySummary(Document):
         return pandas.DataFrame(self._values["outcomes"])
 
     def reliability_table(self) -> pandas.DataFrame:
-        """A row for each condition and outcome that was repeated: ICC(A,1) between sessions with its 95 % interval,
-        standard error of measurement and minimal detectable change in the outcome's unit; `support` says whether the
-        data carry them."""
+        """A row for each condition and outcome with repeated sessions: ICC(A,1) between sessions with its 95 % interval,
+        standard error of measurement and minimal detectable change in the unit of the outcome. `support` says whether
+        the data support them."""
         import pandas
 
         return pandas.DataFrame(_tables.reliability_rows(self._values))
@@ -580,11 +581,11 @@ _SCHEMA = re.compile(r'"schema"\s*:\s*"mbk\.(\w+)/\d+"')
 
 
 def of(text: str, exit_code: int = 0) -> Document:
-    """The document, as the class that its schema names."""
+    """The document as an object of the class for its schema."""
     match = _SCHEMA.search(text, 0, 200)
     return CLASSES.get(match[1] if match else "", Document)(text, exit_code)
 
 
 def escaped(text: object) -> str:
-    """For HTML."""
+    """Escaped for HTML."""
     return html.escape(str(text))

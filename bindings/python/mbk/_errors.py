@@ -1,4 +1,4 @@
-"""What goes wrong, and what needs care."""
+"""Exceptions and warnings."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from mbk import _mbk
 
 
 class Error(ValueError):
-    """mbk gave no answer.
+    """mbk could not compute a result.
 
     Attributes
     ----------
     file : str
-        Where it happened: a file, an option; empty where it is of no file.
+        Where the error is: a file or an option; may be empty.
     what : str
         What is wrong.
     hint : str
-        What to do about it.
+        What to do; may be empty.
     exit_code : int
-        With which the command would have ended.
+        Exit code of the command.
     """
 
     file: str = ""
@@ -49,13 +49,13 @@ class DataError(Error):
 
 
 class NotUsableError(Error):
-    """What was given is marked as not usable, such as a robot that could not be identified (exit code 4)."""
+    """An input is marked as not usable, such as a robot that could not be identified (exit code 4)."""
 
     exit_code = 4
 
 
 class MbkWarning(UserWarning):
-    """An answer needs care. The text begins with the code in brackets, so that one kind can be filtered:
+    """A result needs care. The message begins with the code in brackets, so that you can filter one kind:
 
     >>> import warnings
     >>> warnings.filterwarnings("ignore", message=r"\\[no-held-out-data\\]")
@@ -63,9 +63,9 @@ class MbkWarning(UserWarning):
     Attributes
     ----------
     code : str
-        Stable: scripts may test for it.
+        Stable, so that scripts may test for it.
     text : str
-        What was found, and what to try.
+        What was found; what to do.
     """
 
     def __init__(self, code: str, text: str) -> None:
@@ -74,7 +74,7 @@ class MbkWarning(UserWarning):
 
 
 def usage(what: str, hint: str) -> UsageError:
-    """An argument is wrong."""
+    """Makes the error for a wrong argument."""
     return UsageError(f"{what}; {hint}", what=what, hint=hint)
 
 
@@ -86,14 +86,14 @@ def _made_again(kind: type[Error], line: str, file: str, what: str, hint: str) -
 
 
 def of(error: _mbk.Error) -> Error:
-    """The exception for what the core says."""
+    """The exception for an error of the core."""
     kind = _CLASSES.get(error.exit_code, Error)
     return kind(str(error), file=error.file, what=error.what, hint=error.hint)
 
 
 @contextmanager
 def translated() -> Iterator[None]:
-    """What the core raises, as an exception of this package."""
+    """Raises errors of the core as exceptions of this package."""
     try:
         yield
     except _mbk.Error as error:

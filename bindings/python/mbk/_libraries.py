@@ -1,4 +1,4 @@
-"""Loads what a wheel brings along for the module in C++: then the system need not have it."""
+"""Loads the shared libraries that a wheel contains for the C++ module, so that the system need not have them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 def load() -> None:
-    """Each library after those that it needs. A library that the process has under that name already stays."""
+    """Loads each library after its dependencies. A library that the process has already loaded by that name is kept."""
     folder = pathlib.Path(__file__).resolve().parent / "libraries"
     order = folder / "order.txt"
     if order.exists():
@@ -18,13 +18,13 @@ def load() -> None:
 
 
 def refuse_sub_interpreter() -> None:
-    """mbk and NumPy belong to the main interpreter: loading them in another one would wait for its lock for ever."""
+    """mbk and NumPy work only in the main interpreter: loading them in another one would deadlock on its lock."""
     for name in ("_interpreters", "_xxsubinterpreters"):  # from Python 3.13 on, and before
         try:
             interpreters: Any = importlib.import_module(name)
         except ImportError:
             continue
         if interpreters.get_current() != interpreters.get_main():
-            raise ImportError("mbk works in the main interpreter only, not in a sub-interpreter; use threads, or "
+            raise ImportError("mbk works only in the main interpreter, not in a sub-interpreter; use threads or "
                               "processes (multiprocessing)")
         return

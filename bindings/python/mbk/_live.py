@@ -1,4 +1,4 @@
-"""Watching a trial: a client for the stream of `mbk run`'s console. It only watches; nothing that it sends moves a robot."""
+"""Live view of a trial: a client for the console of `mbk run`. It only receives data and never moves a robot."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _TEXT, _BYTES, _CLOSE, _PING, _PONG = 1, 2, 8, 9, 10
 
 
 class _Socket:
-    """A WebSocket (RFC 6455), as far as the console speaks it."""
+    """The part of WebSocket (RFC 6455) that the console uses."""
 
     def __init__(self, host: str, port: int, token: str, timeout: float) -> None:
         where = f"{host}:{port}"
@@ -40,7 +40,7 @@ class _Socket:
             self.socket = socket.create_connection((host, port), timeout)
         except OSError as error:
             raise _refused(where, f"no console answers ({error.strerror or error})",
-                           "is 'mbk run --console' running, and is this its port?") from None
+                           "start 'mbk run --console' in a terminal, or correct the port") from None
         self.buffer = bytearray()
         try:
             self._open(where, token)
@@ -57,23 +57,23 @@ class _Socket:
         try:
             while b"\r\n\r\n" not in self.buffer:
                 if len(self.buffer) > 65536:
-                    raise _refused(where, "no console answers there", "name the address that 'mbk run' prints")
+                    raise _refused(where, "no console answers", "use the address that 'mbk run' prints")
                 self._fill()
         except (OSError, EOFError):
-            raise _refused(where, "no console answers there", "name the address that 'mbk run' prints") from None
+            raise _refused(where, "no console answers", "use the address that 'mbk run' prints") from None
         head, _, rest = bytes(self.buffer).partition(b"\r\n\r\n")
         self.buffer = bytearray(rest)
         status = head.split(b"\r\n")[0].split(b" ")[1:2]
         if status != [b"101"]:
             code = b"".join(status).decode("ascii", "replace")
             if code == "503":
-                raise _refused(where, "the console has no place for another page", "close one of them")
-            raise _errors.UsageError(f"{where}: the console refuses this token (HTTP {code}); use a token that this run "
-                                     "of 'mbk run' printed", file=where, what=f"the console refuses this token (HTTP {code})",
+                raise _refused(where, "the console accepts no more pages", "close one page")
+            raise _errors.UsageError(f"{where}: the console rejects the token (HTTP {code}); use a token that this run "
+                                     "of 'mbk run' printed", file=where, what=f"the console rejects the token (HTTP {code})",
                                      hint="use a token that this run of 'mbk run' printed")
         accepted = base64.b64encode(hashlib.sha1(key + _GUID).digest())
         if not re.search(rb"(?i)\r\nsec-websocket-accept:\s*" + re.escape(accepted), head):
-            raise _refused(where, "what answers there is no console", "name the address that 'mbk run' prints")
+            raise _refused(where, "the server at this address is not a console", "use the address that 'mbk run' prints")
 
     def _fill(self) -> None:
         part = self.socket.recv(1 << 18)
@@ -94,7 +94,7 @@ class _Socket:
         self.socket.sendall(bytes([0x80 | opcode, 0x80 | len(payload)]) + mask + masked)
 
     def messages(self) -> Iterator[tuple[int, bytes]]:
-        """Each message with its kind; pings are answered. Ends with EOFError where the console does."""
+        """Yields each message with its kind and answers pings. Raises EOFError when the console ends."""
         whole, kind = bytearray(), 0
         while True:
             first, second = self._take(2)
@@ -104,7 +104,7 @@ class _Socket:
             elif size == 127:
                 size = struct.unpack("!Q", self._take(8))[0]
             if size + len(whole) > _LONGEST or second & 0x80:
-                raise EOFError("what came is no message of a console")
+                raise EOFError("the data are not a message of a console")
             payload, opcode = self._take(size), first & 0x0F
             if opcode == _PING:
                 self._send(_PONG, payload[:125])
@@ -130,16 +130,16 @@ def _refused(where: str, what: str, hint: str) -> _errors.DataError:
 
 
 class Live:
-    """A trial that runs, as its console shows it. Made by `live`; close it, or use it in a ``with``.
+    """A running trial, as its console shows it. Made by `live`; close it, or use it in a ``with`` statement.
 
-    A thread of its own takes what comes; every attribute is the newest at any time.
+    A background thread receives the data; attributes always have the latest values.
 
     Attributes
     ----------
     state : dict
-        The newest state: `phase`, `running`, `time_s`, `safety`, `trials`, … (schema `console`).
+        The latest state: `phase`, `running`, `time_s`, `safety`, `trials`, … (schema `console`).
     estimate : Result or None
-        The newest M, B and K with their intervals, while the trial still runs.
+        The latest M, B and K with their intervals, while the trial is still running.
     """
 
     def __init__(self, host: str, port: int, token: str, *, timeout: float = 10.0, keep_s: float = 120.0) -> None:
@@ -180,7 +180,7 @@ class Live:
     def _take_samples(self, message: bytes) -> None:
         magic, version, columns, samples, trial, first, _ = _HEADER.unpack_from(message)
         if magic != b"MBKF" or version != 1 or columns < len(COLUMNS):
-            raise ValueError("the console speaks a newer version of the stream")
+            raise ValueError("the console sends a newer version of the stream")
         block = np.frombuffer(message, dtype="<f4", count=columns * samples, offset=_HEADER.size)
         block = block.reshape(samples, columns)[:, :len(COLUMNS)].astype(np.float64)
         block[:, 0] += first
@@ -193,12 +193,12 @@ class Live:
 
     @property
     def open(self) -> bool:
-        """Whether the console still sends."""
+        """Whether the console is still sending."""
         return self._ended is None
 
     @property
     def trial(self) -> int:
-        """Number of the trial whose samples are here, from 0; -1: none yet."""
+        """Number of the trial that the samples belong to, from 0; -1: none yet."""
         return self._trial
 
     def samples(self, last_s: float | None = None) -> dict[str, npt.NDArray[np.float64]]:
@@ -207,7 +207,7 @@ class Live:
         Parameters
         ----------
         last_s : float, optional
-            Only the last so many seconds.
+            Only the last `last_s` seconds [s] (default: all samples kept).
 
         Returns
         -------
@@ -224,19 +224,19 @@ class Live:
         return {name: table[:, k].copy() for k, name in enumerate(COLUMNS)}
 
     def wait(self, until: Callable[[Live], object], timeout: float = 60.0) -> bool:
-        """Waits until something is so; it is asked at each message.
+        """Waits until a condition is true; checks it at each message.
 
         Parameters
         ----------
         until : callable
-            Gets this object: ``lambda trial: trial.estimate is not None``.
+            Function of this object: ``lambda trial: trial.estimate is not None``.
         timeout : float
-            At most so long [s].
+            Maximum time to wait [s].
 
         Returns
         -------
         bool
-            Whether it is so; False where the time is over or the console has ended.
+            Whether the condition is true; False after the timeout or when the console has ended.
         """
         end = time.monotonic() + timeout
         seen = -1
@@ -251,7 +251,7 @@ class Live:
                 return False
 
     def __iter__(self) -> Iterator[Live]:
-        """Itself, at each new message, until the console ends."""
+        """Yields this object at each new message, until the console ends."""
         seen = 0
         while True:
             with self._changed:
@@ -273,7 +273,7 @@ class Live:
         return str(trials[self._trial]["reference_unit"]) if 0 <= self._trial < len(trials) else "m"
 
     def close(self) -> None:
-        """Leaves. The trial goes on."""
+        """Disconnects. The trial continues."""
         self._socket.close()
         if self._reader is not threading.current_thread():
             self._reader.join(5.0)
@@ -291,18 +291,18 @@ class Live:
 
 
 def live(address: str, token: str | None = None, *, timeout: float = 10.0, keep_s: float = 120.0) -> Live:
-    """Watches a trial of `mbk run` through its console.
+    """Connects to the console of `mbk run` and shows its trial.
 
     Parameters
     ----------
     address : str
         ``"127.0.0.1:40113"``, or an address that `mbk run` prints, with its token.
     token : str, optional
-        One that `mbk run` prints; that of viewers is enough.
+        A token that `mbk run` prints; the viewer token is enough.
     timeout : float
-        How long the console may take to answer [s].
+        Time limit for the console to answer [s].
     keep_s : float
-        How many seconds of samples are kept [s].
+        Duration of the samples to keep [s].
 
     Returns
     -------
@@ -311,9 +311,9 @@ def live(address: str, token: str | None = None, *, timeout: float = 10.0, keep_
     Raises
     ------
     DataError
-        No console answers there.
+        No console answers at the address.
     UsageError
-        The token is not one of this run.
+        The token does not belong to this run.
 
     Examples
     --------
@@ -324,7 +324,7 @@ def live(address: str, token: str | None = None, *, timeout: float = 10.0, keep_
     match = re.fullmatch(r"(?:http://)?([\w.-]+):(\d+)(?:/[\w/]*(?:\?token=(\w+))?)?", address.strip())
     token = token or (match[3] if match else None)
     if not match or not 0 < int(match[2]) < 65536 or not token or not re.fullmatch(r"\w+", token):
-        raise _errors.UsageError(f"'{address}' is no address with a token; write mbk.live(\"127.0.0.1:40113\", token) as "
-                                 "'mbk run' prints them", what=f"'{address}' is no address with a token",
+        raise _errors.UsageError(f"'{address}' is not an address with a token; write mbk.live(\"127.0.0.1:40113\", token) as "
+                                 "'mbk run' prints them", what=f"'{address}' is not an address with a token",
                                  hint="write mbk.live(\"127.0.0.1:40113\", token) as 'mbk run' prints them")
     return Live(match[1], int(match[2]), token, timeout=timeout, keep_s=keep_s)

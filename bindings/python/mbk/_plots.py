@@ -1,4 +1,4 @@
-"""Figures, in matplotlib. Axes are labelled with their units; colours tell series apart for everyone."""
+"""Figures, in matplotlib. Axis labels contain units; colour-blind readers can distinguish the colours."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def numbers(values: Any) -> Any:
 
 
 def logarithmic(axis: Any) -> None:
-    """A logarithmic axis with plain numbers, so that a range of less than a decade has some too."""
+    """A logarithmic axis with plain numbers, so that a range below a decade has labels too."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -54,8 +54,8 @@ def unit_text(unit: str) -> str:
 # ---- recordings
 
 
-# Channels that share a panel: what they begin with, and what the panel is called. Motion has one for each axis, with its
-# reference, since its places are apart by more than it moves.
+# Channels that share a panel: prefix of their names, and title of the panel. Motion has one panel for each axis, with
+# its reference, because the positions of the axes differ by more than the motion.
 KINDS = (("force_", "force of the hand"), ("reaction", "reaction"), ("acceleration", "acceleration"),
          ("torque_", "torque"), ("voltage", "voltage"), ("velocity", "velocity"))
 
@@ -229,7 +229,7 @@ def decibels(values: Any) -> Any:
 
 
 def bode(pairs: list[tuple[str, str, dict[str, Any]]], frequency: Any, *, coherence: bool) -> matplotlib.figure.Figure:
-    """Magnitude, phase and, where it is known, coherence of each response: a column for each."""
+    """Magnitude, phase and, if known, coherence: one column per response."""
     made, axes = figure(3 if coherence else 2, len(pairs), width=max(6.0, 3.6 * len(pairs)), height=2.1, sharex=True)
     for column, (title, unit, one) in enumerate(pairs):
         magnitude, phase = axes[0, column], axes[1, column]
@@ -299,7 +299,7 @@ def teleoperation(document: Any) -> matplotlib.figure.Figure:
         panel.set_ylabel(CURVES.get(curve["name"], curve["name"]))
         low, high = panel.get_ylim()
         panel.set_ylim(min(low, -0.05 * high), high)
-    axes[0, 0].set_title("none may be negative: Llewellyn's conditions", fontsize="medium")
+    axes[0, 0].set_title("Llewellyn's conditions: none may be negative", fontsize="medium")
     axes[-1, 0].set_xlabel("frequency [rad/s]")
     logarithmic(axes[-1, 0].xaxis)
     return made

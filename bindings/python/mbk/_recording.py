@@ -27,33 +27,34 @@ _ALIAS = re.compile(r"t|x|y|a|F|xr|yr|Fx|Fy|ax|ay|Vx|Vy|(?:q|tau|qr)[1-8]")  # n
 
 
 class Recording:
-    """Signals of one trial in memory. It never changes, and threads may share it.
+    """Signals of one trial in memory. Immutable; threads may share it.
 
     Parameters
     ----------
     channels : mapping of str to array_like, pandas.DataFrame or xarray.Dataset, optional
-        One-dimensional arrays of one length, by their names; what a name means is what it means in a file: ``time``,
-        ``x``, ``y``, ``Fx``, ``Fy``, ``xr``, ``yr``, ``ax``, …, also ``hand_x_mm``. Arrays of float64 in one piece are
-        taken without a copy: do not change them while the recording lives. Others are converted.
+        One-dimensional arrays of equal length, by name. Names have the same meaning as in a file: ``time``, ``x``,
+        ``y``, ``Fx``, ``Fy``, ``xr``, ``yr``, ``ax``, …, also ``hand_x_mm``. Contiguous float64 arrays are not copied:
+        do not change them while the recording exists. Other arrays are converted.
     time : array_like, optional
-        Time of each sample, where it is not among the channels: seconds, or dates, which are counted from the first.
+        Time of each sample, if it is not one of the channels: seconds, or dates, which are converted to seconds from
+        the first.
     rate_hz : float, optional
-        Sample rate [Hz], where there is no time.
+        Sample rate [Hz], if there is no time.
     units : mapping of str to str, optional
-        Units of channels that are not SI: ``{"x": "mm"}``.
+        Units of channels that are not in SI: ``{"x": "mm"}``.
     metadata : mapping of str to str, optional
-        What else is known of the recording, such as ``{"handle_mass_kg": "0.194"}``.
+        Other properties of the recording, such as ``{"handle_mass_kg": "0.194"}``.
     events : iterable of (float, str) or (float, str, float), optional
-        Time [s], name and value of what happened.
+        Time [s], name and value of each event.
     **named : array_like
         Further channels.
 
     Raises
     ------
     UsageError
-        What is given is no recording: no real numbers, a name that is given twice, a unit that is no text.
+        The arguments do not form a recording: values are not real numbers, a name is given twice, a unit is not a text.
     DataError
-        The signals have different lengths, or none.
+        The signals have different lengths or are empty.
 
     Examples
     --------
@@ -82,13 +83,13 @@ class Recording:
         signals, known_units, known_metadata = _signals_of(channels)
         for name in ("time", *named) if time is not None else named:
             if name in signals:
-                raise _errors.usage(f"'{name}' is given twice", "leave one of them out")
+                raise _errors.usage(f"'{name}' is given twice", "omit one of them")
         signals = {**({} if time is None else {"time": time}), **signals, **named}
         known_units.update(_mapping("units", units))
         known_metadata.update(_mapping("metadata", metadata))
         for name in _TIMES & signals.keys():
             if rate_hz is not None:
-                raise _errors.usage(f"'{name}' is given, and a rate", "leave one of them out")
+                raise _errors.usage(f"both '{name}' and rate_hz are given", "omit one of them")
             signals[name] = _time(name, signals[name], known_units)
         signals = {name: _numbers(name, values) for name, values in signals.items()}
         self._rate_hz = 0.0 if rate_hz is None else _rate(rate_hz)
@@ -97,7 +98,7 @@ class Recording:
                                                         _events(events))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For pickle, and so for multiprocessing and joblib: the signals, what is known of them, and the events."""
+        """For pickle, multiprocessing and joblib: signals, rate, units, metadata and events."""
         given = self._given()
         with _errors.translated():
             known = dict(self._core.metadata), list(self._core.events)
@@ -105,7 +106,7 @@ class Recording:
                           {name: unit for name, unit in given.items() if unit}, *known)
 
     def __copy__(self) -> Recording:
-        return self  # it never changes
+        return self  # immutable
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Recording:
         return self
@@ -116,17 +117,17 @@ class Recording:
         made._core, made._rate_hz = core, 0.0
         return made
 
-    # What is in it
+    # Contents
 
     def _given(self) -> dict[str, str]:
-        """Names and units as they were given; read once, since nothing of it changes."""
+        """Names and units as given; cached."""
         found: dict[str, str] | None = self.__dict__.get("_signals")
         if found is None:
             found = self.__dict__["_signals"] = dict(self._core.signals)
         return found
 
     def _meaning(self) -> list[tuple[str, str, str]]:
-        """Names, SI units and frames of what was recognised; read once."""
+        """Names, SI units and frames of the recognised channels; cached."""
         found: list[tuple[str, str, str]] | None = self.__dict__.get("_recognised")
         if found is None:
             with _errors.translated():
@@ -134,7 +135,7 @@ class Recording:
         return found
 
     def _si(self) -> _mbk.Recording:
-        """The same with every channel in SI units: itself, where it was given so."""
+        """The recording with every channel in SI units: itself if all signals are in SI."""
         found: _mbk.Recording | None = self.__dict__.get("_converted")
         if found is None:
             found = self.__dict__["_converted"] = self._core if self._is_si() else self._by_way_of_a_file()
@@ -156,18 +157,17 @@ class Recording:
             return _mbk.read_all([file], {})[0]
 
     def __getitem__(self, name: str) -> Array:
-        """A channel, or a signal as it was given.
+        """A channel, or a signal as given.
 
         Parameters
         ----------
         name : str
-            ``hand_x``, a channel: in SI units. Another name that was given: those numbers as they stand.
+            Name of a channel, such as ``hand_x``: values in SI units. Name of any other signal: values as given.
 
         Returns
         -------
         numpy.ndarray
-            Shape (samples,), float64, to be read only. It is the memory of the recording, without a copy, but for channels
-            that were given in another unit than SI.
+            Shape (samples,), float64, read-only. Not a copy, except for channels that were given in other units than SI.
         """
         given = self._given()
         if given.get(name) == "":
@@ -196,12 +196,12 @@ class Recording:
 
     @property
     def signals(self) -> dict[str, str]:
-        """Names and units of what was given, as they were given."""
+        """Names and units of the signals, as given."""
         return dict(self._given())
 
     @property
     def channels(self) -> list[str]:
-        """Names of what was recognised, without the time."""
+        """Names of the recognised channels, without the time."""
         return [name for name, _, _ in self._meaning()]
 
     @property
@@ -219,12 +219,12 @@ class Recording:
         """Time of each sample [s]; shape (samples,)."""
         try:
             return self._si().channel("time")
-        except KeyError:  # there is only a rate
+        except KeyError:  # no time, only a rate
             return np.arange(len(self)) / self._rate_hz
 
     @property
     def rate_hz(self) -> float:
-        """Sample rate [Hz]: one over the median interval."""
+        """Sample rate [Hz]: reciprocal of the median interval."""
         if self._rate_hz:
             return self._rate_hz
         time = self.time
@@ -232,35 +232,35 @@ class Recording:
 
     @property
     def duration_s(self) -> float:
-        """From the first sample to the last [s]."""
+        """Time from the first to the last sample [s]."""
         time = self.time
         return float(time[-1] - time[0])
 
     @property
     def metadata(self) -> dict[str, str]:
-        """What else is known of it."""
+        """Other properties, by name."""
         with _errors.translated():
             return dict(self._core.metadata)
 
     @property
     def events(self) -> list[tuple[float, str, float]]:
-        """Time [s], name and value of what happened."""
+        """Time [s], name and value of each event."""
         with _errors.translated():
             return list(self._core.events)
 
     @property
     def notes(self) -> list[str]:
-        """What was said when it was read."""
+        """Notes about how the recording was read."""
         with _errors.translated():
             return list(self._core.notes)
 
     @property
     def sources(self) -> list[dict[str, str]]:
-        """Files that it was read from: path, format, sha256, trial."""
+        """Files that the recording was read from: path, format, sha256, trial."""
         with _errors.translated():
             return [dict(one) for one in self._core.sources]
 
-    # Other forms
+    # Conversions
 
     def to_dict(self) -> dict[str, Array]:
         """The time and every channel by name, without a copy."""
@@ -284,25 +284,25 @@ class Recording:
         return xarray.Dataset(variables, coords={"time": ("time", self.time, {"units": "s"})}, attrs=self.metadata)
 
     def save(self, file: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Writes it to a file; the end of its name says the format: .h5, .mat or .csv."""
+        """Writes the recording to a file. The extension selects the format: .h5, .mat or .csv."""
         import mbk
 
         mbk.convert(self, file, overwrite=overwrite)
 
     def info(self) -> Information:
-        """What is in it, and what is wrong with it."""
+        """Contents of the recording, and problems found in it."""
         import mbk
 
         found: Information = mbk.info(self)
         return found
 
     def plot(self, channels: Iterable[str] | None = None) -> matplotlib.figure.Figure:
-        """Each kind of channel over time, with its unit.
+        """Plots each kind of channel over time, with its unit.
 
         Parameters
         ----------
         channels : iterable of str, optional
-            Which; otherwise all.
+            Channels to plot (default: all).
 
         Returns
         -------
@@ -325,15 +325,15 @@ class Recording:
             head = f"{self.duration_s:.6g} s at {self.rate_hz:.6g} Hz"
         except (_errors.Error, KeyError):
             rows = [(name, unit, self[name]) for name, unit in self.signals.items()]
-            head = "Signals whose meaning takes channels=…"
+            head = "Signals that need channels=… to be measured"
         body = [[name, *(_tables.significant(float(one), 6) for one in (np.fmin.reduce(values), np.fmax.reduce(values))),
                  _tables.unit_as_read(unit)] for name, unit, values in rows]
         return (f"<p><strong>Recording</strong>: {_tables.escaped(head)}</p>"
-                + _tables.table("", ["channel", "lowest", "highest", "unit"], body))
+                + _tables.table("", ["channel", "minimum", "maximum", "unit"], body))
 
 
 def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
-    """Signals, units and metadata of what holds named arrays."""
+    """Signals, units and metadata of an object with named arrays."""
     if given is None:
         return {}, {}, {}
     if isinstance(given, Recording):
@@ -347,7 +347,7 @@ def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, s
         return signals, units, {str(name): str(value) for name, value in given.attrs.items()}
     if hasattr(given, "columns") and hasattr(given, "index"):  # a pandas DataFrame
         for name in given.columns[given.columns.duplicated()]:
-            raise _errors.usage(f"two columns are called '{name}'", "leave one of them out")
+            raise _errors.usage(f"two columns have the name '{name}'", "omit one of them")
         signals = {str(name): values for name, values in given.items()}
         units = {str(name): unit for name, unit in dict(given.attrs.get("units", {})).items() if name in signals}
         if "time" not in signals and (given.index.name in _TIMES or given.index.dtype.kind in "mM"):
@@ -355,17 +355,17 @@ def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, s
         return signals, units, {}
     if isinstance(given, Mapping):
         return {str(name): value for name, value in given.items()}, {}, {}
-    raise _errors.usage(f"a recording cannot be made of {type(given).__name__}",
-                        "give arrays by their names, as in mbk.Recording(time=t, x=x, F=F)")
+    raise _errors.usage(f"the type {type(given).__name__} does not form a recording",
+                        "give arrays by name, as in mbk.Recording(time=t, x=x, F=F)")
 
 
 def _numbers(name: str, given: Any) -> Any:
-    """What pandas has as numbers of which some may be missing; anything else as it is, since the core looks at it."""
+    """Nullable numbers of pandas as float64 with NaN; anything else unchanged, because the core checks it."""
     plain = name.isascii()
     if plain and type(given) is np.ndarray:
         return given
     if not plain and any("\ud800" <= letter <= "\udfff" for letter in name):
-        raise _errors.usage(f"the name {ascii(name)} is no text", "name the signal otherwise")
+        raise _errors.usage(f"the name {ascii(name)} is not valid text", "rename the signal")
     dtype = getattr(given, "dtype", None)
     if isinstance(dtype, np.dtype) or getattr(dtype, "kind", "O") not in "fiub" or not hasattr(given, "to_numpy"):
         return given
@@ -373,20 +373,20 @@ def _numbers(name: str, given: Any) -> Any:
 
 
 def _time(name: str, given: Any, units: dict[str, Any]) -> Any:
-    """Dates and differences of NumPy, pandas and Python in seconds from the first; numbers as they are."""
+    """Dates and time differences of NumPy, pandas and Python as seconds from the first; numbers unchanged."""
     try:
         times = _dates(given)
     except (TypeError, ValueError, AttributeError):
         raise _errors.usage(f"'{name}' is neither numbers nor dates", "give seconds") from None
     if times is None:
         return given
-    units.pop(name, None)  # they say it themselves
+    units.pop(name, None)  # dates have their own unit
     since = times - times[:1]
     return np.where(np.isnat(since), np.nan, since.astype(np.float64) * 1e-9)
 
 
 def _dates(given: Any) -> npt.NDArray[Any] | None:
-    """As NumPy has them, to the nanosecond; nothing where it is none."""
+    """Dates as NumPy dates, to the nanosecond; None if they are not dates."""
     kind = getattr(getattr(given, "dtype", None), "kind", "O")
     if kind == "O" and isinstance(given, (Sequence, np.ndarray)) and len(given):
         if isinstance(given[0], datetime.datetime):
@@ -412,14 +412,14 @@ def _mapping(what: str, given: Any) -> dict[str, Any]:
     if given is None:
         return {}
     if not isinstance(given, Mapping):
-        raise _errors.usage(f"{what} is of {type(given).__name__}", f"give a mapping of names: {what}={{…}}")
+        raise _errors.usage(f"{what} has the type {type(given).__name__}", f"give a mapping: {what}={{…}}")
     return {str(name): value if what == "units" else str(value) for name, value in given.items()}
 
 
 def _texts(units: dict[str, Any]) -> dict[str, str]:
     for name, unit in units.items():
         if not isinstance(unit, str):
-            raise _errors.usage(f"the unit of '{name}' is {unit!r}", "give a text, such as 'mm'")
+            raise _errors.usage(f"the unit of '{name}' is {unit!r}, not a text", "give a text, such as 'mm'")
     return units
 
 
@@ -428,12 +428,12 @@ def _events(given: Iterable[tuple[Any, ...]]) -> list[tuple[float, str, float]]:
         return [(float(one[0]), str(one[1]), float(one[2]) if len(one) > 2 else float("nan")) for one in given]
     except (TypeError, ValueError, LookupError):
         raise _errors.usage("an event is not (time in seconds, name) or (time, name, value)",
-                            "give a list of such") from None
+                            "give a list of such tuples") from None
 
 
 def _rebuilt(signals: dict[str, Any], rate_hz: float, units: dict[str, str], metadata: dict[str, str],
              events: list[tuple[float, str, float]]) -> Recording:
-    """What `Recording.__reduce__` took apart."""
+    """The inverse of `Recording.__reduce__`."""
     made = Recording.__new__(Recording)
     made._rate_hz = rate_hz
     with _errors.translated():

@@ -1,4 +1,4 @@
-"""Documents as tables: for notebooks (HTML, as the report has them) and for pandas (rows)."""
+"""Documents as tables: HTML for notebooks, as in the report, and rows for pandas."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from mbk import _mbk
+
 NORMAL95 = 1.959963984540054
 MATRICES = (("M", "inertia"), ("B", "damping"), ("K", "stiffness"))
 UNITS = {"M": "kg or kg·m²", "B": "N·s/m or N·m·s/rad", "K": "N/m or N·m/rad", "x0": "m or rad", "force": "N or N·m"}
 METHODS = {"ls": "least squares", "iv": "instrumental variables"}
 
-# ---- numbers as they are read
+# ---- numbers for people
 
 
 def minus(text: str) -> str:
@@ -39,7 +41,7 @@ def significant(value: float | None, digits: int = 3) -> str:
 
 
 def unit_as_read(unit: str) -> str:
-    """As it is read: "N·m", "m/s²" for "N.m", "m/s2" of a recording."""
+    """For people: "N·m", "m/s²" for "N.m", "m/s2" in a recording."""
     return re.sub(r"(?<=[a-z])2$", "²", unit.replace(".", "·"))
 
 
@@ -96,7 +98,7 @@ def parameters(result: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def one_row(result: dict[str, Any]) -> dict[str, Any]:
-    """A result as one row of many."""
+    """A result as one row of a table."""
     row: dict[str, Any] = {
         "file": ", ".join(one["file"] for one in result["inputs"]),
         "trial": ", ".join(one["trial"] for one in result["inputs"] if "trial" in one),
@@ -175,13 +177,13 @@ def validation_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def study_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
-    """Numbers and words of each recording; what holds more than one is left out."""
+    """Numbers and texts of each recording; lists are omitted."""
     return [{name: value for name, value in one.items() if not isinstance(value, (dict, list))}
             for one in found["recordings"]]
 
 
 def reliability_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
-    """What repeated sessions say of each outcome."""
+    """Reliability of each outcome between sessions."""
     rows = []
     for one in found.get("reliability", []):
         between = one.get("between_sessions", {})
@@ -223,7 +225,7 @@ def channel_rows(found: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def flat(values: dict[str, Any]) -> list[dict[str, Any]]:
-    """The first list of objects of a document, else its numbers and words."""
+    """The first list of objects in a document; if there is none, its numbers and texts."""
     for name, value in values.items():
         if objects(value) and name != "inputs":
             return [dict(leaves(one)) for one in value]
@@ -235,6 +237,11 @@ def flat(values: dict[str, Any]) -> list[dict[str, Any]]:
 
 def escaped(text: object) -> str:
     return html.escape(str(text))
+
+
+def for_python(text: str) -> str:
+    """Escaped, with options and commands as in Python."""
+    return escaped(_mbk.in_python(text))
 
 
 def table(caption: str, head: list[str], rows: list[list[str]], align: str = "right") -> str:
@@ -251,8 +258,8 @@ def table(caption: str, head: list[str], rows: list[list[str]], align: str = "ri
 def warning_list(warnings: list[dict[str, Any]]) -> str:
     if not warnings:
         return ""
-    items = "".join(f"<li><code>{escaped(one['code'])}</code>: {escaped(one['message'])}. <strong>Try:</strong> "
-                    f"{escaped(one['try'])}.</li>" for one in warnings)
+    items = "".join(f"<li><code>{escaped(one['code'])}</code>: {for_python(one['message'])}. <strong>Try:</strong> "
+                    f"{for_python(one['try'])}.</li>" for one in warnings)
     return f"<p><strong>Warnings</strong></p><ul>{items}</ul>"
 
 
@@ -262,7 +269,7 @@ def verdict(document: dict[str, Any]) -> str:
     if not document["usable"]:
         return f"<p><strong>✕ Not usable.</strong> Do not report these numbers: {escaped(codes or 'see the warnings')}.</p>"
     if warnings:
-        return f"<p><strong>! Usable with care.</strong> There is something to know first: {escaped(codes)}.</p>"
+        return f"<p><strong>! Usable with care.</strong> Read the warnings first: {escaped(codes)}.</p>"
     return "<p><strong>✓ Usable.</strong></p>"
 
 
@@ -294,7 +301,7 @@ def result_html(result: dict[str, Any], heading: bool = True) -> str:
                          ["", *(pair for _, _, pair in pairs)] + ["unit"] if axes == 2 else ["", "value ± 95 %", "unit"],
                          rows))
     where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
-    out.append(table("How well the model explains the force", ["", "value"], [
+    out.append(table("Goodness of fit", ["", "value"], [
         [f"VAF on {where}", per_axis(fit["VAF"], 2, "%")],
         ["VAF in sample", per_axis(fit["VAF_in_sample"], 2, "%")],
         [f"RMSE on {where}", per_axis(fit["RMSE"], 3, units["force"])]]))
@@ -325,7 +332,7 @@ def ellipses_html(result: dict[str, Any], units: dict[str, str]) -> str:
             "" if not anti else "undefined" if anti["zmean_percent"] is None else
             with_interval(anti["zmean_percent"], anti["interval95"], 1) + " %"])
     return table("Ellipses in numbers; brackets are 95 % intervals",
-                 ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows)
+                 ["", "area", "shape", "orientation", "semi-axes", "antisymmetry"], rows)
 
 
 def joint_html(joints: dict[str, Any]) -> str:
@@ -337,17 +344,17 @@ def joint_html(joints: dict[str, Any]) -> str:
 
 
 def names_of(document: dict[str, Any]) -> str:
-    """The files that it is about."""
+    """The input files of a document."""
     return ", ".join(one["file"] or "arrays" for one in document["inputs"])
 
 
 def passivity_html(passivity: dict[str, Any], of_what: str = "the limb") -> str:
     rows = []
-    for key, title in (("trial", "what happened"), ("prediction", "what the model predicts")):
+    for key, title in (("trial", "during the trial"), ("prediction", "predicted by the model")):
         one = passivity.get(key)
         if one:
             rows.append([title, one["verdict"], one.get("statement", "")])
-    return table(f"Is {of_what} passive?", ["", "verdict", "in words"], rows)
+    return table(f"Is {of_what} passive?", ["", "verdict", "statement"], rows)
 
 
 def results_html(found: dict[str, Any]) -> str:
@@ -361,11 +368,11 @@ def results_html(found: dict[str, Any]) -> str:
                      *(with_half_width(result["model"][symbol][k][k], result["standard_error"][symbol][k][k])
                        if result["usable"] else "" for symbol, k, _ in diagonal)])
     out = [f"<p><strong>Impedance of {len(found['results'])} recordings</strong></p>",
-           table("Main diagonals; ± is the 95 % interval", head, rows)]
+           table("Diagonal entries; ± is the 95 % interval", head, rows)]
     for one in found.get("failed", []):
-        out.append(f"<p>{escaped(one['file'])}: {escaped(one['message'])}; {escaped(one['try'])}</p>")
+        out.append(f"<p>{escaped(one['file'])}: {for_python(one['message'])}; {for_python(one['try'])}</p>")
     if "no_summary" in found:
-        out.append(f"<p>No mean: {escaped(found['no_summary'])}.</p>")
+        out.append(f"<p>No mean: {for_python(found['no_summary'])}.</p>")
     return "".join(out)
 
 
@@ -388,7 +395,7 @@ def teleoperation_html(found: dict[str, Any]) -> str:
     limits = [[f"port {one['port']}", significant(one["a"])] for one in found["largest_a"]]
     return (f"<p><strong>{escaped(found['name'])}</strong>: {escaped(found['kind'])}, decided {escaped(found['decided'])}</p>"
             + table("Absolutely stable with", ["", "verdict"], rows)
-            + table("How much a termination may lack in passivity [N·s/m]", ["", "a ≤"], limits))
+            + table("Largest permitted shortage of passivity of a termination [N·s/m]", ["", "a ≤"], limits))
 
 
 def validation_html(found: dict[str, Any]) -> str:
@@ -412,7 +419,7 @@ def scalars(values: Any) -> int:
 
 
 def cell(value: Any) -> str:
-    """A value as a table shows it."""
+    """The text of a value in a table."""
     if isinstance(value, bool) or value is None:
         return "" if value is None else "yes" if value else "no"
     if isinstance(value, list):
@@ -421,7 +428,7 @@ def cell(value: Any) -> str:
         if scalars(value) > NUMBERS_SHOWN and not all(isinstance(one, str) for one in value):
             return f"{scalars(value)} numbers"
         return ("; " if isinstance(value[0], (list, str)) else ", ").join(cell(one) or "–" for one in value)
-    return significant(value, 4) if isinstance(value, float) else str(value)
+    return significant(value, 4) if isinstance(value, float) else _mbk.in_python(str(value))
 
 
 def objects(value: Any) -> bool:
@@ -429,7 +436,7 @@ def objects(value: Any) -> bool:
 
 
 def leaves(values: dict[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
-    """Every value below, and every list of several objects, by what stands behind the document's name in Python."""
+    """Every value below, and every list of several objects, by its path in Python."""
     for name, value in values.items():
         if objects(value) and len(value) == 1:
             name, value = f"{name}[0]", value[0]
@@ -463,7 +470,7 @@ def listed(caption: str, rows: list[dict[str, Any]], unit: Callable[[str], str])
 
 
 def fields(part: Any) -> str:
-    """Everything that a part holds, under the names that it has in Python."""
+    """All values in a part, by their names in Python."""
     rows, lists = [], []
     for path, value in leaves(part._values):
         if objects(value):
@@ -474,13 +481,13 @@ def fields(part: Any) -> str:
 
 
 def title_of(document: dict[str, Any]) -> str:
-    """'study_check' is 'Study check'."""
+    """Title from the schema: 'Study check' for 'study_check'."""
     schema: str = document.get("schema", "").split("/")[0].removeprefix("mbk.")
     return str(document.get("title") or schema.replace("_", " ").capitalize() or "mbk")
 
 
 def of(document: Any) -> str:
-    """A document for a notebook."""
+    """The HTML of a document for a notebook."""
     values: dict[str, Any] = document._values
     schema = values.get("schema", "").split("/")[0]
     special: dict[str, Callable[[dict[str, Any]], str]] = {
@@ -493,7 +500,7 @@ def of(document: Any) -> str:
     if schema == "mbk.passivities":
         return "".join(passivity_html(one["passivity"], f"the limb of {names_of(one)}") for one in values["results"])
     if schema == "mbk.compare":
-        return heading("How far the two are apart") + listed("", widths(values), no_unit)
+        return heading("Difference between the two results") + listed("", widths(values), no_unit)
     if schema == "mbk.ellipse":
         return heading("Ellipses") + listed("", ellipse_rows(values), no_unit)
     if schema == "mbk.study_list":

@@ -690,9 +690,9 @@ namespace {
 /// makes e white (its autoregressive model): then that is σ_e √Σu², whatever the colour of u (Box & Jenkins 1970,
 /// §11.1).
 Vector cross_correlation(const std::vector<Vector>& residuals, const std::vector<Vector>& inputs, Index lags) {
-  constexpr Index kMaxOrder = 50, kSamplesEach = 20;
+  constexpr Index kAutoregressionOrder = 50, kSamplesEach = 20;
   const Index shortest = std::ranges::min(residuals, {}, &Vector::size).size();
-  const Vector whitening = dsp::autoregression(residuals, std::min(kMaxOrder, shortest / kSamplesEach));
+  const Vector whitening = dsp::autoregression(residuals, std::min(kAutoregressionOrder, shortest / kSamplesEach));
   const Index order = whitening.size() - 1;
   Vector cross = Vector::Zero(lags + 1);
   double of_residual = 0.0, of_input = 0.0, samples = 0.0;

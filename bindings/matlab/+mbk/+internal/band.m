@@ -1,5 +1,5 @@
 function band(x, low, high, light)
-% What lies between two lines, where both are there. Later lines are drawn over it.
+% Fills the area between two lines where both are finite. Draw lines after it, so that they are on top.
   x = x(:)';
   low = low(:)';
   high = high(:)';

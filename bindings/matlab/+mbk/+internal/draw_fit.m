@@ -1,5 +1,5 @@
 function handles = draw_fit(report, unit)
-% Force, prediction and residual of the data of a report.
+% Plots force, prediction and residual from the data of a report.
   trials = mbk.internal.items(report.trials);
   found = trials{1}.diagnostics.prediction;
   time = found.time_s(:)';

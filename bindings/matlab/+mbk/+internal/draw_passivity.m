@@ -1,11 +1,11 @@
 function handles = draw_passivity(document)
-% The energy that was absorbed, where it is in the document; the passivity index of each model with its band.
+% Plots the absorbed energy if the document contains it, and the passivity index of each model with its band.
   if isstruct(document) && isfield(document, 'results')
     several = mbk.internal.items(document.results);
     document = several{1};
   end
   if ~isstruct(document) || ~isfield(document, 'passivity')
-    error('mbk:usage', 'this says nothing of passivity: give what mbk.measure or mbk.passivity found of one recording');
+    error('mbk:usage', 'this result has no passivity; give a result of mbk.measure or mbk.passivity for one recording');
   end
   recordings = {};
   if isfield(document, 'recordings')
@@ -56,7 +56,7 @@ function handles = draw_passivity(document)
 end
 
 function name = method(word)
-% In words.
+% Full name of a method.
   words = {'ls', 'iv'};
   names = {'least squares', 'instrumental variables'};
   name = [names{strcmp(word, words)}];

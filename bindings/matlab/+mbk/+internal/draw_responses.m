@@ -1,7 +1,7 @@
 function handles = draw_responses(document)
-% Bode plots: magnitude, phase and, where it is known, coherence; a column for each input and output.
+% Bode plots: magnitude, phase and, if known, coherence; one column per input and output.
   if ~isfield(document, 'frequency_response') || isempty(document.frequency_response)
-    error('mbk:usage', 'this holds no frequency response; plot its parts yourself');
+    error('mbk:usage', 'this result has no frequency response; plot its fields directly');
   end
   found = document.frequency_response;
   if isfield(found, 'responses')
@@ -44,7 +44,7 @@ function handles = draw_responses(document)
 end
 
 function label_where(shown, text)
-% Those in a row that have the same label as the first need none.
+% Labels an axis only if its label differs from the first in its row.
   set(gca, 'FontSize', 9);
   if shown
     mbk.internal.label('', text);
@@ -52,7 +52,7 @@ function label_where(shown, text)
 end
 
 function line_with_band(hz, response, value, interval, lowest)
-% The band ends at `lowest`: a logarithmic axis has no zero.
+% Clips the band at `lowest`, because a logarithmic axis has no zero.
   [colour, light] = mbk.internal.style('first');
   if isfield(response, interval) && size(response.(interval), 1) == 2
     ends = response.(interval);
@@ -67,7 +67,7 @@ function line_with_band(hz, response, value, interval, lowest)
 end
 
 function units = units_of(found)
-% By the names of signals.
+% Struct of units by signal name.
   units = struct();
   signals = [mbk.internal.items(found.inputs), mbk.internal.items(found.outputs)];
   for k = 1:numel(signals)

@@ -1,5 +1,5 @@
 function handles = draw_result(result)
-% Ellipses, or parameters with their intervals; below them the impedance over frequency.
+% Plots ellipses, or parameters with their intervals; below them the impedance over frequency.
   planar = size(result.model.K, 1) == 2;
   symbols = {'M', 'B', 'K'};
   names = {'inertia', 'damping', 'stiffness'};
@@ -29,7 +29,7 @@ function ellipse(result, name, unit)
     large = found.eigenvalues(2);
     turn = found.orientation_deg * pi / 180;
     range = found.interval95.orientation_deg * pi / 180;
-    if numel(range) == 2 && all(isfinite(range)) && diff(range) < pi  % where the major axis may point
+    if numel(range) == 2 && all(isfinite(range)) && diff(range) < pi  % interval of the major axis
       for half = [0 pi]
         arc = linspace(range(1), range(2), 31) + half;
         fill([0, large * cos(arc)], [0, large * sin(arc)], light, 'EdgeColor', 'none');
@@ -53,14 +53,14 @@ function ellipse(result, name, unit)
 end
 
 function number = round_below(limit)
-% 1, 2 or 5 times a power of ten.
+% Largest 1, 2 or 5 times a power of ten up to `limit`.
   decade = 10 ^ floor(log10(limit));
   steps = decade * [1 2 5];
   number = max(steps(steps <= limit));
 end
 
 function interval(value, standard_error, name, unit)
-% Of one parameter.
+% Plots one parameter with its 95 % interval.
   half = 1.959963984540054 * standard_error;
   colour = mbk.internal.style(name);
   plot([1 1], value + half * [-1 1], 'Color', colour, 'LineWidth', 1.5);

@@ -1,5 +1,5 @@
 function cells = items(list)
-% The parts of a list, whether it was decoded as a struct array or as a cell.
+% Elements of a list, which may have been decoded as a struct array or as a cell array.
   if isempty(list)
     cells = {};
   elseif iscell(list)

@@ -1,5 +1,5 @@
 function label(across, up)
-% Labels of the current axes, without the dot between factors, which not every font has.
+% Labels the current axes, with a space for the dot between factors, which some fonts lack.
   xlabel(plain(across));
   ylabel(plain(up));
   set(gca, 'FontSize', 9);

@@ -1,19 +1,19 @@
 function texts = option_texts(given)
-% Names and values of options as texts: {'sg-window', '101', ...}.
+% Converts names and values of options to texts: {'sg-window', '101', ...}.
   if numel(given) == 1 && isstruct(given{1})
     names = fieldnames(given{1});
     given = [names'; struct2cell(given{1})'];
     given = given(:)';
   end
   if mod(numel(given), 2) ~= 0
-    error('mbk:usage', 'options are names with a value each');
+    error('mbk:usage', 'an option has no value; give names and values in pairs');
   end
   texts = {};
   for k = 1:2:numel(given)
     name = strrep(char(given{k}), '_', '-');
     value = given{k + 1};
     if isempty(value) && ~ischar(value)
-      continue  % as if it were not given
+      continue  % ignored
     elseif islogical(value) && isscalar(value)
       if value || strcmp(name, 'json')
         words = {'true', 'false'};

@@ -1,5 +1,5 @@
 function [result, info] = run(command, inputs, more)
-% What a function of +mbk does: data first, then names of options, each with its value. more: further options, as texts.
+% Runs a command. inputs: data, then names and values of options. more: further options, as texts.
   if nargin < 3
     more = {};
   end

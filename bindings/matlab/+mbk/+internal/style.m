@@ -1,5 +1,5 @@
 function [colour, light] = style(name)
-% A colour that is told from the others by everyone, and the same one for bands behind lines.
+% A colour that colour-blind readers can distinguish, and its light variant for bands.
   switch name
     case 'inertia'
       colour = [142 90 155] / 255;

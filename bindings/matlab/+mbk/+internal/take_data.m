@@ -1,6 +1,6 @@
 function [data, words, documents, rest] = take_data(inputs)
-% Data before the options: names of files; time, position, force and so on as arrays; a struct, table, timetable or
-% iddata; or what a function of mbk gave as its second output. rest: the options.
+% Separates data from the options that follow. Data: file names; time, position, force etc. as arrays; a struct, table,
+% timetable or iddata; or the second output of a function of mbk. rest: the options.
   data = struct('signals', [], 'metadata', {{}}, 'events', []);
   words = {};
   documents = {};
@@ -55,7 +55,8 @@ function signals = of_arrays(arrays)
     return
   end
   if numel(arrays) < 3 || numel(arrays) > 5
-    error('mbk:usage', 'give time, position and force, then perhaps reference and acceleration');
+    error('mbk:usage', ['there are %d arrays; give time, position and force, then optionally reference and ' ...
+                        'acceleration'], numel(arrays));
   end
   t = arrays{1};
   signals = added(signals, 'time', 's', t(:));
@@ -65,7 +66,7 @@ function signals = of_arrays(arrays)
   elseif axes == 2
     names = {{'x', 'y'}, {'Fx', 'Fy'}, {'xr', 'yr'}, {'ax', 'ay'}};
   else
-    error('mbk:usage', 'position has %d columns: it has one for each axis, 1 or 2', axes);
+    error('mbk:usage', 'position has %d columns; give one column per axis, for 1 or 2 axes', axes);
   end
   for k = 2:numel(arrays)
     columns = arrays{k};
@@ -73,7 +74,7 @@ function signals = of_arrays(arrays)
       columns = columns(:);
     end
     if size(columns, 2) ~= axes || size(columns, 1) ~= numel(t)
-      error('mbk:usage', 'input %d is %d x %d, and with %d samples of %d axes it is %d x %d', k, size(columns, 1), ...
+      error('mbk:usage', 'input %d is %d x %d; with %d samples and %d axes it must be %d x %d', k, size(columns, 1), ...
             size(columns, 2), numel(t), axes, numel(t), axes);
     end
     for axis = 1:axes
@@ -95,7 +96,7 @@ function [data, documents] = of_one(data, given)
   elseif isstruct(given) && numel(given) == 1
     data = of_struct(data, given);
   else
-    error('mbk:usage', 'data of class %s: give names of files, arrays, a struct, a table, a timetable or iddata', ...
+    error('mbk:usage', 'data have class %s; give file names, arrays, a struct, a table, a timetable or iddata', ...
           class(given));
   end
 end
@@ -105,7 +106,7 @@ function signals = empty_signals()
 end
 
 function data = of_struct(data, given)
-% Fields are signals; beside them may stand units, metadata and events, as mbk.read gives them.
+% Fields are signals, except units, metadata and events, as mbk.read returns them.
   signals = empty_signals();
   names = fieldnames(given);
   for k = 1:numel(names)
@@ -157,7 +158,7 @@ function yes = has_fields_of_iddata(data)
 end
 
 function signals = of_iddata(data)
-% One experiment in time, sampled evenly: outputs and inputs by their names, y1, u1, ... where they have none.
+% One evenly sampled experiment in the time domain: outputs and inputs by name, or y1, u1, ... without names.
   outputs = first_property(data, {'OutputData', 'y'});
   inputs = first_property(data, {'InputData', 'u'});
   step = property(data, 'Ts');
@@ -166,13 +167,13 @@ function signals = of_iddata(data)
     inputs = inputs(:);
   end
   if iscell(outputs) || iscell(inputs) || iscell(step)
-    error('mbk:usage', 'iddata of several experiments: give one, as getexp(data, 1)');
+    error('mbk:usage', 'iddata has several experiments; give one, such as getexp(data, 1)');
   end
   if strcmpi(property(data, 'Domain'), 'Frequency')
-    error('mbk:usage', 'iddata in the frequency domain: give what was measured over time');
+    error('mbk:usage', 'iddata is in the frequency domain; give time-domain data');
   end
   if ~isnumeric(step) || ~isscalar(step) || ~(step > 0) || ~isfinite(step)
-    error('mbk:usage', 'iddata without a sample time Ts: give time, position and force as arrays');
+    error('mbk:usage', 'iddata has no sample time Ts; give time, position and force as arrays');
   end
   start = property(data, 'Tstart');
   if ~isscalar(start) || ~isfinite(start)
@@ -186,7 +187,7 @@ function signals = of_iddata(data)
 end
 
 function value = property(data, name)
-% Of an object or a struct; [] where it has none of that name.
+% Property of an object or struct; [] if it does not exist.
   try
     value = data.(name);
   catch
@@ -212,13 +213,14 @@ function factor = time_unit(name)
   end
   found = strcmp(char(name), names);
   if ~any(found)
-    error('mbk:usage', 'the TimeUnit %s is not known: seconds, milliseconds, microseconds and minutes are', char(name));
+    error('mbk:usage', ['TimeUnit %s is unknown; use seconds, milliseconds, microseconds, nanoseconds, minutes ' ...
+                        'or hours'], char(name));
   end
   factor = factors(find(found, 1));
 end
 
 function signals = of_matrix(signals, values, names, letter, units)
-% Names and units: a text or a cell of texts.
+% Names and units: a text or a cell array of texts.
   if ischar(names)
     names = {names};
   end
@@ -240,7 +242,7 @@ end
 
 function signals = added(signals, name, unit, values)
   if ~(isnumeric(values) || islogical(values)) || ~isreal(values)
-    error('mbk:usage', '%s is of class %s: give real numbers', name, class(values));
+    error('mbk:usage', '%s has class %s; give real numbers', name, class(values));
   end
   signals(end + 1) = struct('name', char(name), 'unit', char(unit), 'values', full(double(values)));
 end

@@ -1,5 +1,5 @@
 function unit = unit_of(document, name)
-% Of 'M', 'B', 'K', 'x0' or 'force'; '' where the document does not say what moves.
+% Unit of 'M', 'B', 'K', 'x0' or 'force'; '' if the document has no units.
   unit = '';
   if isfield(document, 'units')
     unit = document.units.(name);
