@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every option of mbk measure: it changes what is said, or is refused in one line; --out loses and leaves nothing."""
+"""Every option of mbk measure: it changes the result, or is refused in one line; --out loses and leaves nothing."""
 
 import json
 import os

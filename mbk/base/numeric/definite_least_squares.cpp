@@ -271,7 +271,7 @@ Result<DefiniteSolution> DefiniteSolver::solve() {
       done = done || (off_centre() < kCentred && newton_ < kSettled);
       continue;
     }
-    // The longer the step that could be taken, the less is asked of the next.
+    // After a long step the next one reduces the weight more.
     const double fall = length_ > 0.9 ? 0.1 : 0.3;
     if (off_centre() < kFollows) weight_ = std::max(last, std::min(weight_, fall * now));
   }
