@@ -28,8 +28,8 @@
 namespace mbk::app {
 namespace {
 
-/// They move a robot, ask a person, are a process among others, speak to a shell or write pages of this project:
-/// nothing that a script calls.
+/// Commands that move a robot, ask questions, work as one of several processes, or serve a shell or this project: not
+/// for scripts.
 constexpr auto kNotCallable = std::to_array<std::string_view>({"run", "new", "work", "completion", "manual"});
 
 constexpr std::size_t kMaxPrepared = 64;
@@ -48,7 +48,7 @@ struct Prepared {
   bool json = false;
 };
 
-/// The command below `app` that `path` names; nothing where there is none, or where it has commands of its own.
+/// The command below `app` that `path` names; nothing if there is none or if it has subcommands.
 std::optional<Command> find_command(Command app, std::span<const std::string> path) {
   Command at = app;
   for (const std::string& word : path) {
@@ -60,7 +60,7 @@ std::optional<Command> find_command(Command app, std::span<const std::string> pa
   return at.commands().empty() ? std::optional(at) : std::nullopt;
 }
 
-/// What was asked for, one thing a line: the same text, the same parsed command line.
+/// The call as text, one item a line: the same text has the same parsed command line.
 std::string key_of(const Call& call, std::span<const std::string> words) {
   std::string key = call.command;
   const auto add = [&](const std::string& text, char kind) {
@@ -78,11 +78,11 @@ std::string key_of(const Call& call, std::span<const std::string> words) {
   return key;
 }
 
-/// With the name that was perhaps meant.
+/// The error of an unknown option, with a suggestion.
 tl::unexpected<Error> no_option(Command command, const std::string& name) {
   const std::string meant = meant_word("--" + name, command.option_names());
-  return bad_usage(fmt::format("'{}' is no option of {}", name, command.name()),
-                   meant.empty() ? "" : fmt::format("'{}' is one", meant.substr(2)));
+  return bad_usage(fmt::format("unknown option '{}' of {}", name, command.name()),
+                   meant.empty() ? "" : fmt::format("did you mean '{}'?", meant.substr(2)));
 }
 
 /// As it would be typed, word by word.
@@ -101,8 +101,8 @@ std::vector<std::string> typed_option(Command command, const CallOption& given) 
   return words;
 }
 
-/// What would be typed behind the command.
-/// @fails  usage: no option of the command
+/// The words that would be typed after the command.
+/// @fails  usage: an unknown option
 Result<std::vector<std::string>> typed_words(Command command, const Call& call, const std::vector<std::string>& words) {
   std::vector<std::string> typed;
   for (const CallOption& option : call.options) {
@@ -117,7 +117,7 @@ Result<std::vector<std::string>> typed_words(Command command, const Call& call, 
   return typed;
 }
 
-/// A name of a file would end where the zero stands.
+/// A zero byte would end a file name.
 bool holds_zero(const Call& call) {
   const auto has_zero = [](const std::string& text) { return text.find('\0') != std::string::npos; };
   return has_zero(call.command) || std::ranges::any_of(call.words, has_zero) ||
@@ -125,14 +125,16 @@ bool holds_zero(const Call& call) {
                              [&](const CallOption& option) { return std::ranges::any_of(option.values, has_zero); });
 }
 
-/// @fails  usage: what the parser says
+/// @fails  usage: the error of the parser
 Result<void> parse(const Parser& parser, std::vector<std::string> typed, const std::string& help) {
   const auto taken = parser.parse(std::move(typed));
   if (taken) return {};
-  return bad_usage(taken.error().answer ? "that option answers with a text for people" : taken.error().usage, help);
+  return bad_usage(taken.error().answer ? "this option prints a text and is available only on the command line"
+                                        : taken.error().usage,
+                   help);
 }
 
-/// @fails  usage: no such command; what the parser says
+/// @fails  usage: an unknown command; the error of the parser
 Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vector<std::string>& words) {
   const std::vector<std::string> path = split(call.command);
   const std::string first = path.empty() ? "" : path.front();
@@ -140,7 +142,7 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
   const Actions unused = add_commands(first, probe.command(), "");
   const auto command = path.empty() ? std::nullopt : find_command(probe.command(), path);
   if (!command || !can_be_called(first)) {
-    return bad_usage(fmt::format("'{}' is no command that can be called", call.command), "see 'mbk --help'");
+    return bad_usage(fmt::format("'{}' is not a command that can be called", call.command), "see 'mbk --help'");
   }
   auto behind = MBK_TRY(typed_words(*command, call, words));
   const bool said = std::ranges::any_of(call.options, [](const CallOption& o) { return o.name == "json"; });
@@ -161,19 +163,19 @@ Result<std::shared_ptr<const Prepared>> prepare(const Call& call, const std::vec
   return std::shared_ptr<const Prepared>(std::move(prepared));
 }
 
-/// What `work` gives, or why it gives nothing.
+/// The result of `work`, with exceptions as errors.
 template <class Work>
 auto guarded(const Work& work) -> decltype(work()) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    return bad_data("not enough memory", "of a recording choose a part with --from and --to");
+    return bad_data("not enough memory", "analyse part of a recording with --from and --to");
   } catch (const std::exception& error) {
-    return bad_data(error.what(), "nothing more was done");
+    return bad_data(error.what(), "the command was aborted");
   }
 }
 
-/// Parsed command lines, for those who call the same again and again.
+/// Parsed command lines, reused when the same call is repeated.
 class Prepareds {
  public:
   Result<std::shared_ptr<const Prepared>> get(const Call& call, const std::vector<std::string>& words) {
@@ -196,13 +198,13 @@ class Prepareds {
   std::unordered_map<std::string, std::shared_ptr<const Prepared>> made_;
 };
 
-/// Never destroyed: a thread of the host may still call while the process ends.
+/// Never destroyed: a thread of the host may still call while the process exits.
 Prepareds& prepareds() {
   static Prepareds& all = *new Prepareds;
   return all;
 }
 
-/// Behind the list of a JSON document that begins there.
+/// End of the list of a JSON document that starts at `begin`.
 std::size_t end_of_list(std::string_view text, std::size_t begin) {
   int depth = 0;
   bool within = false;
@@ -222,7 +224,7 @@ std::size_t end_of_list(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// The words of the call, and before them what is in memory and that none of them names.
+/// The words of the call, preceded by those of recordings and documents in memory that no word names.
 std::vector<std::string> all_words(const Call& call) {
   std::vector<std::string> words;
   const auto add_unnamed = [&](std::size_t count, std::string (*word_of)(std::size_t)) {
@@ -253,7 +255,7 @@ std::string document_word(std::size_t k) {
 
 Result<Answer> call(const Call& call) {
   return guarded([&]() -> Result<Answer> {
-    if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
+    if (holds_zero(call)) return bad_usage("a text contains a zero byte", "remove it");
     const auto prepared = MBK_TRY(prepareds().get(call, all_words(call)));
     Caller caller(call);
     const Requester::Scope scope(&caller);
@@ -271,7 +273,7 @@ Result<Answer> call(const Call& call) {
 }
 
 std::vector<std::pair<std::string, std::string>> warnings_of(const Answer& answer) {
-  // A document may be long, and says little of this: only those parts are read.
+  // A document may be long: only its lists of warnings are parsed.
   constexpr std::string_view kKey = "\"warnings\": [";
   std::vector<std::pair<std::string, std::string>> warnings;
   if (!answer.json) return warnings;
@@ -300,7 +302,7 @@ Result<std::vector<std::shared_ptr<const recording::InMemory>>> read(const Call&
   const Parser parser("read");
   add_reading_options(parser.command(), reading);
   add_sensor_options(parser.command(), sensor);
-  if (holds_zero(call)) return bad_usage("a text holds a zero byte", "leave it out");
+  if (holds_zero(call)) return bad_usage("a text contains a zero byte", "remove it");
   auto typed = MBK_TRY(typed_words(parser.command(), call, all_words(call)));
   MBK_TRY(parse(parser, std::move(typed), ""));
   return guarded([&]() -> Result<std::vector<std::shared_ptr<const recording::InMemory>>> {

@@ -6,7 +6,7 @@
 namespace mbk::app {
 namespace {
 
-/// The place in the list of what `word` stands for; the size of the list where it stands for nothing.
+/// The index of the input that `word` refers to; `count` if there is none.
 std::size_t place_of(const std::filesystem::path& word, std::size_t count, std::string (*word_of)(std::size_t)) {
   std::size_t k = 0;
   while (k < count && word.native() != word_of(k)) ++k;

@@ -14,13 +14,13 @@
 
 namespace mbk::app {
 
-/// Who called a command from within the process: gets what it would print, and has what it reads from memory.
+/// The caller of a command within the process: receives its output, and provides inputs in memory.
 class Caller : public Requester, public recording::RecordingHolder {
  public:
   /// @param call  outlives this
   explicit Caller(const Call& call) : call_(call) {}
 
-  /// Of this thread; nullptr: the command was typed.
+  /// The caller of this thread; nullptr: the command was typed.
   [[nodiscard]] static Caller* current() noexcept;
 
   [[nodiscard]] bool stopped() override;
@@ -30,14 +30,14 @@ class Caller : public Requester, public recording::RecordingHolder {
   /// In place of standard output.
   void write(std::string_view text);
   void fail(const Error& error);
-  /// @param fraction  of the work that is done; negative where that is not known
+  /// @param fraction  of the work that is done; negative if unknown
   void reached(std::string_view what, double fraction);
 
-  /// What a word stands for; nullptr where it is the name of a file.
+  /// The input that a word refers to; nullptr if it is a file name.
   [[nodiscard]] std::shared_ptr<const recording::InMemory> recording(const std::filesystem::path& word) const override;
   [[nodiscard]] const std::string* document(const std::filesystem::path& word) const override;
 
-  /// What came; nothing of it stays here.   @param wrote  whether there was any output
+  /// Moves the output out.   @param wrote  whether there was any output
   [[nodiscard]] Answer take(int exit_code, bool& wrote);
 
  private:

@@ -28,12 +28,12 @@
 
 namespace {
 
-/// "mbk: what is wrong; which help to read".
+/// "mbk: what is wrong; see 'mbk measure --help'".
 std::string one_line(const mbk::app::NotTaken& why) {
   return fmt::format("mbk: {}{} see '{} --help'\n", why.usage, why.usage.ends_with('?') ? "" : ";", why.command);
 }
 
-/// On standard error where there is no memory to make a line in. What cannot be written is lost: the exit code tells.
+/// On standard error when there is no memory to format a line. What cannot be written is lost; the exit code remains.
 void say_plainly(std::string_view text) noexcept {
   while (!text.empty()) {
     const ssize_t wrote = write(STDERR_FILENO, text.data(), text.size());
@@ -44,11 +44,11 @@ void say_plainly(std::string_view text) noexcept {
 }
 
 constexpr std::string_view kNoMemory =
-    "mbk: not enough memory; of a recording choose a part with --from and --to; of a trial 'mbk recover' saves "
-    "what its journal holds, and what it does not hold is lost\n";
+    "mbk: not enough memory; analyse part of a recording with --from and --to; after a trial, 'mbk recover' saves what "
+    "its journal contains\n";
 
-/// Where an exception has nowhere to go: before main begins, and out of a destructor that needs memory, as that of a
-/// JSON tree does. No memory is no error of mbk; anything else is, and ends as it would.
+/// For an exception that nothing can catch: before main begins, or from a destructor that needs memory, such as that of
+/// a JSON tree. Lack of memory is not an error of mbk; any other exception is, and ends the program as usual.
 [[noreturn]] void end_without_memory() noexcept {
   try {
     if (std::current_exception()) std::rethrow_exception(std::current_exception());
@@ -67,8 +67,8 @@ constexpr std::string_view kNoMemory =
   std::set_terminate(end_without_memory);
 }
 
-/// Keeps freed memory for the next use instead of returning it to the system, which then clears it page by page: a
-/// tenth of the time of `measure`. What is larger than a minute's columns goes back.
+/// Keeps freed memory for the next use instead of returning it to the system, which would clear it page by page: that
+/// takes a tenth of the time of `measure`. Blocks larger than the columns of a minute are returned.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 16 << 20);
@@ -81,7 +81,7 @@ int run(int argc, char** argv) {
   keep_freed_memory();
   const char* const simd = std::getenv("MBK_SIMD");
   if (simd != nullptr && !mbk::value_of<mbk::Simd>(simd)) {
-    mbk::app::say("mbk: MBK_SIMD is '{}', which is none of {}; unset it for what this processor has\n", simd,
+    mbk::app::say("mbk: MBK_SIMD is '{}', not one of {}; unset it to use all that this processor supports\n", simd,
                   fmt::format("{}", fmt::join(mbk::kWordList<mbk::Simd>, ", ")));
     return mbk::app::kWrongUsage;
   }
@@ -89,14 +89,18 @@ int run(int argc, char** argv) {
       "mbk",
       "mbk measures the mechanical impedance of the human arm with a rehabilitation robot: inertia M,\n"
       "damping B, stiffness K and equilibrium x0 at the hand, M ẍ + B ẋ + K (x − x0) = −F, from force\n"
-      "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n\n"
-      "  mbk measure log.mat    the main job: recording → M, B, K, x0, ellipses\n"
-      "  mbk info log.mat       what is in a recording, and what is wrong with it\n"
-      "  mbk measure --help     every command explains itself; --help-all says everything\n");
+      "and position while the robot perturbs it. F is the force that the hand exerts on the robot.\n");
   const mbk::app::Command app = parser.command();
   app.add_text_flag(
-      "--version", [] { return fmt::format("mbk {}", mbk::version()); },
-      "Display program version information and exit");
+      "--version", [] { return fmt::format("mbk {}", mbk::version()); }, "Print the version and exit");
+  app.footer(
+      "Examples:\n"
+      "  mbk measure log.mat\n"
+      "      M, B, K and x0 from a recording, with confidence intervals and ellipses\n"
+      "  mbk info log.mat\n"
+      "      the channels, duration and problems of a recording\n"
+      "  mbk measure --help\n"
+      "      the options of a command, with examples");
   app.require_subcommand();
   mbk::app::add_help(app);
 
@@ -125,7 +129,7 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     say_plainly("mbk: ");
     say_plainly(error.what());
-    say_plainly("; nothing more was done\n");
+    say_plainly("; the command was aborted\n");
   }
   return mbk::app::kBadData;
 }

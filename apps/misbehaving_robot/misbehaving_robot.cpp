@@ -24,12 +24,12 @@ using namespace mbk;
 using validation::RobotTruth;
 
 constexpr char kHelp[] =
-    "A simulated robot behind UDP that misbehaves from a moment on, to try 'mbk run' and your own programs against.\n"
-    "It runs at its own clock of 1 kHz. Each line on standard output is a JSON object of what truly happens: ticks of\n"
-    "its clock since the first greeting, monotonic time, and what its motors do whatever the robot says. The last one\n"
-    "is 'end', which SIGTERM and Ctrl-C bring about.\n"
+    "A simulated robot over UDP that develops a fault, for testing 'mbk run' and your own programs.\n"
+    "It runs at its own clock of 1 kHz. Each line on standard output is a JSON object of the true state: ticks of its\n"
+    "clock since the first greeting, monotonic time, and the state of its motors whatever the robot reports. The last\n"
+    "object is 'end', after SIGTERM or Ctrl-C.\n"
     "With --breaks its program breaks a rule of the link from the beginning, for 'mbk robot check --link' to find; it\n"
-    "prints where it listens, and nothing more.\n"
+    "prints only the address that it listens at.\n"
     "Examples:\n"
     "  mbk_misbehaving_robot relaxed_sinusoidal --fault latched-frozen-answer --at 2 --port 25000\n"
     "  mbk_misbehaving_robot relaxed_sinusoidal --breaks no-watchdog";
@@ -91,7 +91,7 @@ int run(const Arguments& arguments) {
   if (!arguments.fault.empty()) {
     const validation::UdpFaultKind* kind = validation::find_udp_fault(arguments.fault);
     if (kind == nullptr) {
-      return report({ErrorKind::usage, "there is no fault '" + arguments.fault + "'", "--list names them", ""});
+      return report({ErrorKind::usage, "'" + arguments.fault + "' is not a fault", "see --list", ""});
     }
     numeric::Random random(arguments.seed);
     kind->make(fault, random);
@@ -116,12 +116,11 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
-/// A robot whose program breaks a rule.
+/// A robot whose program breaks a rule of the link.
 int run_breaker(const Arguments& arguments) {
   const validation::RuleBreaker* breaker = validation::find_rule_breaker(arguments.breaks);
   if (breaker == nullptr) {
-    return report(
-        {ErrorKind::usage, "no program breaks a rule as '" + arguments.breaks + "'", "--list names them", ""});
+    return report({ErrorKind::usage, "'" + arguments.breaks + "' is not a rule to break", "see --list", ""});
   }
   const auto scenario = laboratory::find_scenario(arguments.scenario, arguments.trial);
   if (!scenario) return report(scenario.error());
@@ -145,17 +144,19 @@ int run_breaker(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app(kHelp, "mbk_misbehaving_robot");
   Arguments arguments;
-  CLI::Option* const scenario = app.add_option("SCENARIO", arguments.scenario, "a .toml file, or a ready one's name");
-  app.add_option("--trial", arguments.trial, "this [[trial]] of the file; the first without it");
-  CLI::Option* const fault = app.add_option("--fault", arguments.fault, "what goes wrong; nothing without it");
-  app.add_option("--breaks", arguments.breaks, "how its program breaks a rule of the link")->excludes(fault);
-  app.add_option("--at", arguments.at, "seconds from when its motors first go on to the fault (1)");
-  app.add_option("--seed", arguments.seed, "of the fault's sizes, of the noise and of the person (1)");
-  app.add_option("--address", arguments.address, "of the network where it listens (127.0.0.1)");
-  app.add_option("--port", arguments.port, "where it listens; 0 for any that is free (25000)");
-  app.add_option("--version", arguments.version, "of its states: 1, 2 (what the fault needs)");
-  app.add_option("--for", arguments.longest, "it ends automatically after N seconds (120)");
-  CLI::Option* const table = app.add_flag("--list", arguments.list, "what can go wrong");
+  CLI::Option* const scenario =
+      app.add_option("SCENARIO", arguments.scenario, "a .toml file, or the name of a built-in scenario");
+  app.add_option("--trial", arguments.trial, "the [[trial]] of the file (default: the first)");
+  CLI::Option* const fault = app.add_option("--fault", arguments.fault, "name of the fault (default: none)");
+  app.add_option("--breaks", arguments.breaks, "name of the rule of the link that its program breaks")->excludes(fault);
+  app.add_option("--at", arguments.at, "time of the fault, in seconds after the motors first switch on (default: 1)");
+  app.add_option("--seed", arguments.seed, "random seed of fault, noise and participant (default: 1)");
+  app.add_option("--address", arguments.address, "IP address that it listens at (default: 127.0.0.1)");
+  app.add_option("--port", arguments.port, "UDP port that it listens at; 0: any free port (default: 25000)");
+  app.add_option("--version", arguments.version,
+                 "protocol version of its states: 1 or 2 (default: as the fault needs)");
+  app.add_option("--for", arguments.longest, "exit after N seconds (default: 120)");
+  CLI::Option* const table = app.add_flag("--list", arguments.list, "list the faults and the rules to break");
   scenario->excludes(table);
   CLI11_PARSE(app, argc, argv);
   if (arguments.list) {
@@ -163,7 +164,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (scenario->empty()) {
-    fmt::print(stderr, "mbk_misbehaving_robot: SCENARIO is missing; --help says more\n");
+    fmt::print(stderr, "mbk_misbehaving_robot: SCENARIO is missing; see --help\n");
     return 2;
   }
   return arguments.breaks.empty() ? run(arguments) : run_breaker(arguments);

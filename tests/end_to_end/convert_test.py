@@ -192,7 +192,7 @@ class Refusals(Case):
         there = self.file("there.h5", "precious")
         for arguments, says in (
                 ((log,), "mbk convert IN OUT"),
-                ((log, log, self.folder / "out.h5"), ["2 files to read", "--parts"]),
+                ((log, log, self.folder / "out.h5"), ["2 input files", "--parts"]),
                 ((log, log), str(log)),
                 ((log, log, "--overwrite"), str(log)),
                 ((log, there), "--overwrite"),

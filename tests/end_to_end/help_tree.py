@@ -11,7 +11,7 @@ class Help:
 
     def __init__(self, path):
         self.path = path
-        self.text = run(*path, "--help-all").out
+        self.text = run(*path, "--help").out
         heading = None
         self.commands, self.options, self.positionals = [], {}, []
         for line in self.text.splitlines():
@@ -21,7 +21,7 @@ class Help:
                 self.commands.append(match.group(1))
             elif heading == "Positionals" and (match := re.match(r"  ([A-Za-z]\S*)", line)):
                 self.positionals.append(match.group(1))
-            elif match := re.match(r"  (-[-\w,]+)(?: (?!Needs:|Excludes:)(\S+))?", line):
+            elif match := re.match(r"  (-[-\w,]+)(?: (\S+))?", line):
                 for name in match.group(1).split(","):
                     self.options[name] = match.group(2) or ""
 

@@ -79,7 +79,7 @@ class Manual(Case):
 
     def test_the_words_of_the_help_are_those_of_the_page(self):
         page = squeezed(plain(self.fine("manual", "measure").out))
-        lines = re.findall(r"(?m)^ {6,}(\S.*)$", self.fine("measure", "--help-all").out)
+        lines = re.findall(r"(?m)^ {6,}(\S.*)$", self.fine("measure", "--help").out)
         self.assertGreater(len(lines), 50)
         for line in lines:
             self.assertIn(squeezed(line), page)
@@ -94,8 +94,8 @@ class Manual(Case):
 
     def test_groups_and_lists_are_kept(self):
         measure = self.fine("manual", "measure").out
-        self.assertEqual(re.findall(r"(?m)^\.SS (.*)$", measure), ["Force sensor", "Analysed interval", "Filters", "Model",
-                                                                     "Plausibility"])
+        self.assertEqual(re.findall(r"(?m)^\.SS (.*)$", measure),
+                         ["Reading the file", "Force sensor", "Analysed interval", "Filters", "Model", "Plausibility"])
         self.assertRegex(self.fine("manual", "validate").out, r"\.SH EXAMPLES\n\.EX\n  mbk validate coverage ")
 
     def test_exit_codes_are_those_of_the_command(self):

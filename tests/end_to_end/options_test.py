@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every option of mbk measure: it changes what is said, or is refused in one line; --out loses and leaves nothing."""
+"""Every option of mbk measure: it changes the result, or is refused in one line; --out loses and leaves nothing."""
 
 import json
 import os
@@ -176,8 +176,8 @@ class Effects(Case):
         return self.measured(*options, **more)["preparation"][0]
 
     def test_each_option_of_the_help_is_known_to_these_tests(self):
-        options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help-all").out))
-        elsewhere = {"--help", "--help-all", "--channels", "--variable", "--parts", "--trial", "--clock",
+        options = set(re.findall(r"(?m)^  (?:-h,)?(--[a-z-]+)", run("measure", "--help").out))
+        elsewhere = {"--help", "--channels", "--variable", "--parts", "--trial", "--clock",
                      "--json", "--out", "--overwrite", "--quiet",
                      "--pool", "--decimate-check", "--report", "--report-note",
                      "--summary", "--charts",  # tables_and_charts_test.py
@@ -379,15 +379,26 @@ class Help(Case):
                     self.assert_lines_fit(self.fine(command, below, "--help").out)
 
     def test_options_with_a_value_name_it_or_its_unit(self):
-        text = run("measure", "--help-all").out
+        text = run("measure", "--help").out
         for line in ("--rate HZ", "--resample HZ", "--cutoff HZ|none", "--from S", "--split S", "--to S", "--hac-lag S",
                      "--handle-mass KG", "--sg-window W", "--sg-order N", "--padding N", "--threads N", "--axes N",
                      "--channels MAP", "--variable NAME", "--out FILE",
                      *(f"{option} {words}" for option, words in WORDS.items())):
             self.assertRegex(text, rf"(?m)^  {re.escape(line)}(?: |$)")
 
+    def test_what_most_people_need_comes_first(self):
+        text = self.fine("measure", "--help").out
+        self.assertEqual(self.fine("measure", "--help-all").out, text)
+        first = text.split("\nOptions:\n")[1].split("\n\n")[0]
+        found = re.findall(r"(?m)^  (--[a-z-]+)", first)
+        main = ["--channels", "--method", "--mode", "--cutoff", "--from", "--to", "--handle-mass", "--report", "--json",
+                "--out", "--summary"]
+        self.assertEqual([one for one in found if one in main], main)
+        for words in ("REQUIRED", "Needs:", "Excludes:", "{false}"):
+            self.assertNotIn(words, text + self.fine("run", "--help").out + self.fine("work", "--help").out)
+
     def test_the_exit_codes_are_explained(self):
-        self.assertRegex(" ".join(run("measure", "--help-all").out.split()), r"\b0 \w+, 2 \w.*, 3 \w.*, 4 \w")
+        self.assertRegex(" ".join(run("measure", "--help").out.split()), r"\b0 \w+, 2 \w.*, 3 \w.*, 4 \w")
 
     def test_info_names_its_own_schema(self):
         self.assertIn("mbk.info/1", run("info", "--help").out)
@@ -428,7 +439,7 @@ class Validate(Case):
         self.assertNotRegex(ran.out, r"(?m) met$")
 
     def test_the_help_says_how_many_runs_a_study_needs(self):
-        text = self.fine("validate", "--help-all").out
+        text = self.fine("validate", "--help").out
         self.assertRegex(text, r"(?m)^  coverage +2000\b.*\b226$")
         self.assertIn("6 not shown", text)
 

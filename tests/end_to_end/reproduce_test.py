@@ -157,7 +157,7 @@ class Whole(Case):
                         continue
                     key = tuple(words[1:3]) if words[1] in ("robot", "springs", "sensor") else (words[1],)
                     if key not in helps:
-                        helps[key] = self.fine(*key, "--help-all").out
+                        helps[key] = self.fine(*key, "--help").out
                     for option in re.findall(r"(?<=\s)--[a-z-]+", part):
                         self.assertIn(option, helps[key], f"{name}: {command}")
 

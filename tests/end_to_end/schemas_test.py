@@ -41,10 +41,10 @@ class Schemas(Case):
     def test_there_is_one_of_each_document_that_the_help_names(self):
         said = set()
         for command in re.findall(r"^  (\w+) {2,}", run("--help").out, re.MULTILINE):
-            helped = run(command, "--help-all").out
+            helped = run(command, "--help").out
             said.update(re.findall(r"mbk\.\w+/\d+", helped))
             for inner in re.findall(r"^  (\w+) {2,}", helped, re.MULTILINE):
-                said.update(re.findall(r"mbk\.\w+/\d+", run(command, inner, "--help-all").out))
+                said.update(re.findall(r"mbk\.\w+/\d+", run(command, inner, "--help").out))
         self.assertGreater(len(said), 12, said)
         for name in said:
             word = name.removeprefix("mbk.").split("/")[0]

@@ -35,8 +35,6 @@ STEPS = {
     "recover a session that was cut off": 3,
 }
 
-ALL_HELP = "--help-all"  # where a command has one: what --help leaves for it
-
 
 class Newcomer:
     """Someone at a terminal. `help` and `do` are steps; `do` fails where a word was never read."""
@@ -54,8 +52,6 @@ class Newcomer:
     def read(self, command, word):
         """`word` stands in the help of `command`, which was read."""
         self.case.assertIn(command, self.texts, f"nobody has read 'mbk {' '.join(command)} --help'")
-        if not self.stands(word, command):  # it is looked for behind what fits a screen
-            self.texts[command] += self.ran(*command, ALL_HELP).out
         self.case.assertTrue(self.stands(word, command), (command, word))
 
     def stands(self, word, command):

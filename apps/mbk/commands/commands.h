@@ -9,19 +9,19 @@
 
 namespace mbk::app {
 
-/// What a command does once its options are parsed; returns the exit code.
+/// Runs a command after its options are parsed; returns the exit code.
 using Action = std::function<int()>;
 
-/// The command line as it was typed, for whoever wants to run it again: quoted for a shell where it has to be.
+/// The command line as it was typed, quoted for a shell, to run it again.
 std::string command_line(int argc, char** argv);
 
-/// What each subcommand does, by its name.
+/// The action of each subcommand, by name.
 using Actions = std::vector<std::pair<std::string, Action>>;
 
-/// Runs the action of the subcommand that was typed; kWrongUsage where none was.
+/// Runs the action of the subcommand that was typed; kWrongUsage if there is none.
 int run_chosen(Command parent, const Actions& actions);
 
-/// Each adds one subcommand to `app` and gives the action to run when it was chosen.
+/// Each adds one subcommand to `app` and returns its action.
 /// @param typed the command line, which a report repeats
 Action add_measure(Command app, const std::string& typed);
 Action add_identify(Command app);

@@ -7,8 +7,8 @@
 
 namespace mbk::app {
 
-/// Every command with its arguments and options, in the words of --help: schema mbk.commands/1. What other languages'
-/// functions are made of, so that an option stands in one table.
+/// Every command with its arguments and options, as --help describes them: schema mbk.commands/1. The functions in
+/// other languages are generated from it, so that an option is defined once.
 [[nodiscard]] std::string commands_json(const CommandText& root);
 
 void add_commands_schema(document::Schemas& schemas);

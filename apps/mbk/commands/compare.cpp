@@ -27,14 +27,14 @@ struct CompareArguments : MeasureArguments {
 
 /// One of those that are compared.
 struct Compared {
-  std::string name;  ///< of the file that was given, and which of its results where it holds several
+  std::string name;  ///< of the given file, and the number of the result if the file contains several
   result::ReportedResult found;
 };
 
-/// Everything that was given, and what a folder held besides.
+/// The results to compare, and the files of folders that were ignored.
 struct Given {
   std::vector<Compared> all;
-  std::vector<Error> ignored;  ///< files of folders that hold no result
+  std::vector<Error> ignored;  ///< files of folders that contain no result
 };
 
 bool is_stored(const std::filesystem::path& file) {
@@ -70,14 +70,14 @@ Result<Compared> from_recording(CompareArguments arguments, const std::filesyste
   return one;
 }
 
-/// The results of a folder in the order of their names; what else is there is kept with the reason.
+/// The results of a folder in the order of their names; other files are kept with the reason.
 Result<void> add_folder(const std::filesystem::path& folder, Given& given) {
   std::error_code error;
   std::vector<std::filesystem::path> files;
   for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     if (is_stored(it->path()) && it->is_regular_file(error)) files.push_back(it->path());
   }
-  if (error) return bad_data("cannot be read: " + error.message(), "check its permissions", folder.string());
+  if (error) return bad_data("the folder cannot be read: " + error.message(), "check its permissions", folder.string());
   std::ranges::sort(files);
   const std::size_t before = given.all.size();
   for (const std::filesystem::path& file : files) {
@@ -89,7 +89,7 @@ Result<void> add_folder(const std::filesystem::path& folder, Given& given) {
     }
   }
   if (given.all.size() > before) return {};
-  return bad_data("there is no result in this folder",
+  return bad_data("the folder contains no result",
                   "write results with 'mbk measure FILE --json --out FOLDER/NAME.json', or name recordings",
                   folder.string());
 }
@@ -109,8 +109,8 @@ Result<Given> read_all(const CompareArguments& arguments) {
     }
   }
   if (given.all.size() < 2) {
-    return bad_usage("there is one result, and nothing to compare it with",
-                     "name another result, a recording, or a folder of results");
+    return bad_usage("there is only one result",
+                     "name another result, a recording, or a folder of results to compare it with");
   }
   return given;
 }
@@ -123,7 +123,7 @@ std::string source_line(const Identification& id, const char* which) {
   std::string text;
   for (const SourceFile& source : id.sources) text += fmt::format("{:<7} {}\n", which, source.label());
   text += fmt::format("        by {}\n", method_name(id.method));
-  if (!id.usable) text += fmt::format("  ! the {} result is not usable: 'mbk measure' says why\n", which);
+  if (!id.usable) text += fmt::format("  ! the {} result is not usable: 'mbk measure' reports the reason\n", which);
   return text;
 }
 
@@ -136,7 +136,7 @@ std::string text_of(const std::vector<Compared>& all, const std::vector<WidthFin
     if (widths.size() > 1) text += fmt::format("{}{}\n", k == 0 ? "" : "\n", all[k + 1].name);
     text += source_line(first, "first") + source_line(second, "second");
     text += first.usable && second.usable ? report::width_text(widths[k])
-                                          : "  no width is shown; --json holds the numbers\n";
+                                          : "  no width is shown; --json contains the numbers\n";
   }
   return text;
 }
@@ -154,7 +154,7 @@ int run(const CompareArguments& arguments, const std::string& typed) {
     return report_error(ok.error());
   auto given = read_all(arguments);
   if (!given) return report_error(given.error());
-  for (const Error& error : given->ignored) say("mbk: left out: {}\n", error.line());
+  for (const Error& error : given->ignored) say("mbk: ignored: {}\n", error.line());
   std::vector<WidthFindings> widths;
   bool good = identification(given->all.front()).usable;
   for (const Compared& other : std::span(given->all).subspan(1)) {
@@ -184,23 +184,24 @@ int run(const CompareArguments& arguments, const std::string& typed) {
 
 Action add_compare(Command app, const std::string& typed) {
   auto arguments = std::make_shared<CompareArguments>();
-  const Command command = app.add_command("compare", "what changed between results: how far M, B and K are apart");
+  const Command command = app.add_command("compare", "compare results: how far M, B and K differ");
   command.footer(
       "Examples:\n"
       "  mbk compare relaxed.json rigid.json\n"
-      "      what 'mbk measure --json --out relaxed.json' and so on wrote\n"
+      "      files written by 'mbk measure --json --out relaxed.json' and so on\n"
       "  mbk compare relaxed.mat rigid.mat --method iv\n"
-      "      both recordings measured alike first\n"
+      "      measures both recordings with the same options first\n"
       "  mbk compare results/ --report all.html\n"
-      "      every result of a folder: side by side on a page, and each against the first of them\n\n"
-      "√(Σ ln² λ) over the eigenvalues of Z₁⁻¹Z₂, symmetric parts of M, B and K each: 0 where both are\n"
-      "equal, √2 ln 7 = 2.75 where the second is seven times the first in every direction; the same in\n"
-      "whatever axes and units, at hand or joints. Beside it how many times the second is the first, least\n"
-      "and most, and along which direction from x. A matrix that is not positive definite has no width\n"
-      "(exit code 4). Of more than two, each is compared with the first.");
+      "      every result of a folder: side by side on a page, and each compared with the first\n\n"
+      "The width is √(Σ ln² λ) over the eigenvalues λ of Z₁⁻¹Z₂, for the symmetric parts of M, B and K\n"
+      "each: 0 if both are equal, √2 ln 7 = 2.75 if the second is seven times the first in every\n"
+      "direction. It does not depend on axes and units, nor on hand or joint coordinates. The minimum and\n"
+      "maximum ratio of the second to the first are reported with their directions from x. A matrix that\n"
+      "is not positive definite has no width (exit code 4). Each of several results is compared with the\n"
+      "first.");
   add_measure_options(command, *arguments);
   command.get_option("FILE").description("results of 'mbk measure --json', recordings, or folders of results");
-  // They join files or add what a width does not show.
+  // They join files or add what a comparison does not show.
   for (const char* name : {"--parts", "--pool", "--bootstrap", "--seed", "--decimate-check", "--threads"}) {
     command.remove_option(name);
   }

@@ -30,17 +30,16 @@ struct ConvertArguments {
 
 Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output, bool parts,
                          bool to_data_set) {
-  if (inputs.empty()) return bad_usage("one file is named where two are needed", "mbk convert IN OUT");
+  if (inputs.empty()) return bad_usage("one file is named, but two are needed", "write mbk convert IN OUT");
   if (inputs.size() > 1 && !parts) {
-    return bad_usage(fmt::format("{} files to read, and one to write", inputs.size()),
-                     "pass --parts where they are numbered parts of one record, else convert each one separately");
+    return bad_usage(fmt::format("{} input files are named for one output file", inputs.size()),
+                     "pass --parts if they are numbered parts of one recording, or convert each one separately");
   }
   if (to_data_set) return {};
   std::error_code code;
   if (std::filesystem::is_directory(*output.file, code)) {
-    return fail(ErrorKind::usage, "is a folder",
-                "name a file, or say with --bids what the recording is in a BIDS data set, as in --bids "
-                "sub-07_task-reach_run-1",
+    return fail(ErrorKind::usage, "this is a folder",
+                "name a file, or pass the BIDS name of the recording: --bids sub-07_task-reach_run-1",
                 output.file->string());
   }
   return check_new_file(*output.file, "OUT", output.overwrite, inputs);
@@ -50,8 +49,9 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
 Result<Recording> read_one(const ReadRequest& reading, const SensorRequest& sensor) {
   const auto reader = MBK_TRY(open_recordings(reading, sensor));
   if (reader.count() > 1) {
-    return fail(ErrorKind::usage, fmt::format("holds {} recordings, and one is converted", reader.count()),
-                "say which with --trial; 'mbk info' lists them", reading.files.front().string());
+    return fail(ErrorKind::usage,
+                fmt::format("the file contains {} recordings, but only one can be converted", reader.count()),
+                "choose one with --trial; 'mbk info' lists them", reading.files.front().string());
   }
   return reader.read(0);
 }
@@ -68,7 +68,7 @@ std::string summary_line(const Recording& recording, const std::filesystem::path
                      count(recording.metadata.size(), "entry", "entries"));
 }
 
-/// Says what was not written, what was noted in reading, and what there is now.
+/// Reports what was not written, the notes of reading, and the file that was written.
 int report(const ConvertArguments& arguments, const Recording& recording, const std::filesystem::path& file,
            std::string_view format, const std::vector<std::string>& lost,
            const std::function<void(const std::string&)>& say_note) {
@@ -79,7 +79,7 @@ int report(const ConvertArguments& arguments, const Recording& recording, const 
   return kFine;
 }
 
-/// What a command converts, and to what.
+/// The inputs and the output format of a conversion.
 struct Conversion {
   const ConvertArguments& arguments;
   recording::Format format;
@@ -92,7 +92,7 @@ void say_of(const Conversion& job, int k, std::string_view note) {
   say("mbk: {}{}: {}\n", job.reader.file(k).string(), trial.empty() ? "" : ", trial " + trial, note);
 }
 
-/// Every array as it stands, where no channel is recognised.
+/// Copies every array unchanged if no channel is recognised.
 int copy_arrays(const Conversion& job, int k, const std::filesystem::path& file, const Error& unrecognised) {
   const auto contents = job.reader.read_contents(k);
   if (!contents) return report_error(contents.error());
@@ -101,13 +101,13 @@ int copy_arrays(const Conversion& job, int k, const std::filesystem::path& file,
                                               job.arguments.readers.value_or(Readers::owner));
   if (!said) return report_error(said.error());
   say_of(job, k,
-         fmt::format("{}: every array was written as it stands, under its own name and in its own unit",
+         fmt::format("{}: every array was copied unchanged, under its own name and in its own unit",
                      unrecognised.message.substr(0, unrecognised.message.find(';'))));
   for (const std::string& one : *said) say("mbk: {}: {}\n", file.string(), one);
   if (job.arguments.quiet) return kFine;
   for (const std::string& note : contents->notes) say_of(job, k, note);
   const std::size_t count = contents->arrays.size();
-  const std::string line = fmt::format("{}: {}, {} {} as they stand\n", file.string(), recording::text(job.format),
+  const std::string line = fmt::format("{}: {}, {} {} copied unchanged\n", file.string(), recording::text(job.format),
                                        count, count == 1 ? "array" : "arrays");
   if (auto ok = print_text(line); !ok) return report_error(ok.error());
   return kFine;
@@ -132,7 +132,7 @@ int convert_one(const Conversion& job, int k, const std::filesystem::path& file)
 /// Adds the recording to a data set.
 int run_bids(const ConvertArguments& arguments, const std::filesystem::path& folder) {
   if (!arguments.format.empty()) {
-    return report_error(bad_usage("--bids and --format say two formats", "leave one of them out").value());
+    return report_error(bad_usage("--bids and --format name two formats", "omit one of the two").value());
   }
   const auto recording = read_one(arguments.reading, arguments.sensor);
   if (!recording) return report_error(recording.error());
@@ -178,40 +178,40 @@ int run(ConvertArguments arguments) {
 
 Action add_convert(Command app) {
   auto arguments = std::make_shared<ConvertArguments>();
-  const Command command = app.add_command("convert", "a recording in another format: HDF5, MAT, CSV, BIDS");
+  const Command command = app.add_command("convert", "convert a recording to another format: HDF5, MAT, CSV, BIDS");
   command.footer(
       "Examples:\n"
       "  mbk convert log.mat log.h5\n"
-      "      the end of the second name says the format: .h5 (or .hdf5), .mat (v5) or .csv\n"
+      "      the extension of the second name determines the format: .h5 (or .hdf5), .mat (v5) or .csv\n"
       "  mbk convert trial.csv trial.mat --format mat73\n"
       "  mbk convert --parts log_1.mat log_2.mat log_3.mat whole.h5\n"
       "  mbk convert log.h5 data_set --bids sub-07_ses-2_task-reach_run-1\n"
-      "      adds the recording to a BIDS data set (Motion), or makes a new one\n"
+      "      adds the recording to a BIDS data set (Motion), or creates one\n"
       "  mbk convert drive.csv drive.h5 --channels time=1:ms,x=2:mm,F=-3 --axes 1\n"
-      "      units and signs are put right on the way: what is written is SI\n"
+      "      converts units and signs: the file is in SI units\n"
       "  mbk convert exam.zip out_{trial}.h5\n"
-      "      of a file that holds several trials, one file for each; {trial} is its name (--trial takes one of them)\n"
+      "      writes one file for each of several trials; {trial} stands for its name (--trial selects one)\n"
       "  mbk convert other.mat other.csv\n"
-      "      where no channel is recognised, every array is written as it stands, under its own name and in its own "
-      "unit\n\n"
-      "Numbers come over to the last bit, with units, frames, events and metadata. Nothing is resampled or repaired.\n"
-      "What was ignored in reading, or has no place in the new format, is said on standard error.");
+      "      if no channel is recognised, every array is copied unchanged, under its own name and in its own unit\n\n"
+      "Numbers are preserved to the last bit, with units, frames, events and metadata. Nothing is\n"
+      "resampled or repaired. What was ignored in reading, or cannot be stored in the new format, is\n"
+      "reported on standard error.");
   arguments->reading.options.own_samples = false;
   add_reading_options(command, arguments->reading);
   add_sensor_options(command, arguments->sensor);
-  command.get_option("FILE").description("the recording to read (several with --parts), and last the one to write");
-  command.add_option("--format", arguments->format, "of the file to write; otherwise by the end of its name")
+  command.get_option("FILE").description("the recording to read (several with --parts), then the file to write");
+  command.add_option("--format", arguments->format, "format of the file to write (default: from its extension)")
       .type_name(fmt::format("{}", fmt::join(kWordList<recording::Format>, "|")))
       .check(not_empty());
   command
       .add_option("--bids", arguments->bids,
-                  "the last FILE is the folder of a BIDS data set: what the recording is in it, as "
+                  "name of the recording in a BIDS data set, of which the last FILE is the folder: "
                   "sub-LABEL[_ses-LABEL]_task-LABEL[_tracksys-LABEL][_acq-LABEL][_run-NUMBER]")
       .type_name("NAME")
       .check(not_empty());
-  command.add_flag("--overwrite", arguments->overwrite, "replace the file to write where it is there");
+  command.add_flag("--overwrite", arguments->overwrite, "replace an existing file");
   add_readers_option(command, arguments->readers);
-  command.add_flag("--quiet", arguments->quiet, "only say what is lost");
+  command.add_flag("--quiet", arguments->quiet, "report only what is lost");
   return [arguments] { return run(*arguments); };
 }
 

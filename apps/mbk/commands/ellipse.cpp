@@ -37,7 +37,7 @@ int run(const EllipseArguments& arguments) {
     if (identification.usable) {
       shown += report::ellipses_text(*findings);
     } else {
-      shown += "  NOT USABLE: no ellipse is shown; 'mbk measure' says why. --json holds the numbers.\n";
+      shown += "  NOT USABLE: no ellipse is shown; 'mbk measure' reports the reason. --json contains the numbers.\n";
       code = kNotUsable;
     }
   }
@@ -50,14 +50,16 @@ int run(const EllipseArguments& arguments) {
 
 Action add_ellipse(Command app) {
   auto arguments = std::make_shared<EllipseArguments>();
-  const Command command = app.add_command("ellipse", "impedance ellipses of a stored result, with 95 % intervals");
+  const Command command =
+      app.add_command("ellipse", "compute the impedance ellipses of a stored result, with 95 % intervals");
   command.footer(
-      "Example:\n"
+      "Examples:\n"
       "  mbk ellipse result.json\n"
-      "      what 'mbk measure log.mat --json --out result.json' wrote\n\n"
-      "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x; symmetric parts only.");
-  command.add_option("RESULT.json", arguments->file, "a file that 'mbk measure --json' wrote").required();
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.ellipse/1");
+      "      a result written by 'mbk measure log.mat --json --out result.json'\n\n"
+      "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x, each of the symmetric\n"
+      "part.");
+  command.add_option("RESULT.json", arguments->file, "a result written by 'mbk measure --json'").required();
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.ellipse/1");
   arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }

@@ -43,14 +43,14 @@ Explored explored_here(const workflow::ExploringEach& each, const ExploreArgumen
                                  [&](int done, int of, const std::string& file) { progress.count(done, of, file); });
 }
 
-/// @param code  what the command ends with where the job did not come to its end
+/// @param code  exit code of the command if the job did not finish
 Explored explored_elsewhere(const workflow::ExploringEach& each, const ExploreArguments& arguments,
                             std::optional<int>& code) {
   auto job = MBK_TRY(workflow::explore_request(each));
   job.folder = job_folder_here(job.kind, job.specification);
   const auto carried = MBK_TRY(carry_out(arguments.engine, job, arguments.to.quiet));
   code = carried.code;
-  if (code) return bad_data("some recordings are missing");
+  if (code) return bad_data("some recordings were not processed");
   auto all = MBK_TRY(workflow::explored_of(*carried.folder));
   MBK_TRY(batch::remove_job(*carried.folder, arguments.engine));
   return all;
@@ -62,7 +62,8 @@ int run_each(Command command, const ExploreArguments& arguments) {
     return report_error(ok.error());
   }
   if (arguments.reading.parts) {
-    return report_error({ErrorKind::usage, "--parts joins recordings, and --each keeps them apart", "pass one", ""});
+    return report_error({ErrorKind::usage, "--parts joins recordings, but --each processes them separately",
+                         "omit one of the two", ""});
   }
   const workflow::ExploringEach each{arguments, given_options(command, request::explore_table()), arguments.to.json};
   std::optional<int> code;
@@ -90,7 +91,7 @@ int run_each(Command command, const ExploreArguments& arguments) {
   return worst != kFine ? worst : all_usable ? kFine : kNotUsable;
 }
 
-/// What can be said before the work begins.
+/// Checks that need no computation.
 Result<void> check(const ExploreArguments& a) {
   if (auto ok = check_files(a.reading.files, a.to.to, a.report); !ok || !a.beside.charts) return ok;
   return ChartFiles::check(*a.beside.charts, a.to.to.overwrite, {a.reading.files.front()},
@@ -128,30 +129,33 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
 
 Action add_explore(Command app, const std::string& typed) {
   auto arguments = std::make_shared<ExploreArguments>();
-  const Command command = app.add_command("explore", "what the limb does before anyone assumes M, B and K");
+  const Command command = app.add_command("explore", "describe the response of the limb without assuming M, B and K");
   command.footer(
       "Examples:\n"
       "  mbk explore log.mat\n"
-      "      how the force answers motion at each frequency: dynamic stiffness −F/X and coherence\n"
+      "      dynamic stiffness −F/X and coherence at each frequency\n"
       "  mbk explore first.mat second.mat third.mat --json\n"
-      "      repetitions of one condition, averaged\n"
+      "      averages repetitions of one condition\n"
       "  mbk explore log.mat --report log.html\n"
-      "      the same to be looked at: Bode plots with bands, coherence, Nyquist plots, impulse responses\n"
+      "      the same as plots: Bode plots with confidence bands, coherence, Nyquist plots, impulse responses\n"
       "  mbk explore --each trials/*.h5 --json --engine local\n"
-      "      a result for each file, by as many processes as there are cores; or by slurm\n"
+      "      one result for each file, computed by one process for each core; or with --engine slurm\n"
       "  mbk explore ankle.csv --channels x=2,F=3 --method welch --max-frequency 30\n"
       "  mbk explore arm.mat --input torque --output acceleration --rate 500\n\n"
-      "FILEs are of one limb in one condition. Trials with other phases of a periodic perturbation are\n"
-      "realisations: they tell nonlinear distortion from noise, and two axes from each other.\n\n"
+      "All FILEs are of one limb in one condition. Trials with different phases of a periodic\n"
+      "perturbation are realisations: they separate nonlinear distortion from noise, and the two axes\n"
+      "from each other.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_files_option(command, arguments->reading);
+  add_main_options(command, request::explore_table(), *arguments,
+                   {"--channels", "--input", "--output", "--reference", "--only", "--method", "--from", "--to"});
   add_options(command, request::explore_table(), *arguments);
   const Option each =
-      command.add_flag("--each", arguments->each, "a result for each recording, in place of one of all together");
-  add_threads_option(command, arguments->threads, "with --each: recordings").needs(each);
-  add_output_options(command, arguments->to, "mbk.explore/1, with --each mbk.explorations/1");
+      command.add_flag("--each", arguments->each, "one result for each recording instead of one for all together");
+  add_threads_option(command, arguments->threads, "number of recordings processed in parallel").needs(each);
   add_report_options(command, arguments->report);
+  add_output_options(command, arguments->to, "mbk.explore/1, with --each mbk.explorations/1");
   add_charts_option(command, arguments->beside);
   add_engine_options(command, arguments->engine);
   command.get_option("--report").excludes(each);

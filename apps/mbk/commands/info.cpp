@@ -30,10 +30,10 @@ std::string formats_text() {
   for (const recording::FileFormat& format : recording::file_formats()) {
     text += fmt::format("{:<13}{:<24}{}\n", format.name, format.extensions, format.about);
   }
-  return text + "The content of a file decides, not its name.\n";
+  return text + "The format is recognised by the content of a file, not by its name.\n";
 }
 
-/// A file that is sound but speaks of no channel still shows what it holds; everything else is an error.
+/// Lists the contents of an intact file without recognised channels; everything else is an error.
 int list_unrecognised(const InfoArguments& arguments, const RecordingReader& reader, const Error& error,
                       const std::string& before = "") {
   if (arguments.reading.files.size() != 1 || !arguments.reading.channels.empty()) return report_error(error);
@@ -47,7 +47,7 @@ int list_unrecognised(const InfoArguments& arguments, const RecordingReader& rea
   return error.code == recording::kUnbelievableTime ? kBadData : kFine;
 }
 
-/// What a journal holds so far, as the recording that it would become.
+/// The contents of a journal so far, as the recording that it would become.
 Result<Recording> read_journal(const std::filesystem::path& file) {
   const auto journal = journal::read(file);
   if (!journal) return tl::unexpected(journal.error());
@@ -58,7 +58,7 @@ Result<Recording> read_journal(const std::filesystem::path& file) {
   return recording;
 }
 
-/// A recording, and whether its numbers are those of a limb as a note.
+/// Inspects a recording, and adds a note if its values are implausible for a limb.
 Inspection inspected(Recording& recording) {
   Inspection inspection = recording::inspect(recording);
   if (const auto size = analyse::check_size(recording, inspection)) {
@@ -67,13 +67,13 @@ Inspection inspected(Recording& recording) {
   return inspection;
 }
 
-/// What a file of several trials holds: all of them by name, and one in full.
+/// The contents of a file with several trials: all of them by name, and one in full.
 int show_trials(const InfoArguments& arguments, const RecordingReader& reader,
                 const std::vector<recording::TrialName>& trials) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const recording::TrialName& trial : trials) names.emplace_back(trial.name, trial.description);
   const std::string list =
-      report::trials_text(arguments.reading.files.front().string(), names) + "\nThe first of them:\n";
+      report::trials_text(arguments.reading.files.front().string(), names) + "\nThe first trial:\n";
   auto first = reader.read(0);
   if (!first) return list_unrecognised(arguments, reader, first.error(), list);
   const Inspection inspection = inspected(*first);
@@ -89,7 +89,7 @@ int run(const InfoArguments& arguments) {
     return kFine;
   }
   if (reading.files.empty()) {
-    return report_error({ErrorKind::usage, "FILE is missing", "name a recording, or see --help", ""});
+    return report_error({ErrorKind::usage, "FILE is missing", "name a recording; see 'mbk info --help'", ""});
   }
   if (auto ok = arguments.output.to.check(reading.files); !ok) return report_error(ok.error());
   int code = kFine;
@@ -140,17 +140,17 @@ int run(const InfoArguments& arguments) {
 
 Action add_info(Command app) {
   auto arguments = std::make_shared<InfoArguments>();
-  const Command command = app.add_command("info", "what is in a recording: channels, rate, gaps, problems");
+  const Command command = app.add_command("info", "list the channels, rate, gaps and problems of a recording");
   command.footer(
       "Examples:\n"
       "  mbk info log.mat\n"
-      "      where no channel is recognised, the variables or columns of the file are listed\n"
+      "      if no channel is recognised, the variables or columns of the file are listed\n"
       "  mbk info --parts log_1.mat log_2.mat\n"
       "  mbk info exam.kinarm\n"
-      "      every trial by its number, and the first in full; --trial 3 shows another\n"
+      "      lists all trials and shows the first; --trial 3 shows another\n"
       "  mbk info --channels time=1,x=2:mm,F=3 --axes 1 trial.csv\n"
       "  mbk info --formats\n"
-      "      every format that mbk reads\n\n"
+      "      lists every format that mbk reads\n\n"
       "Nothing is repaired: gaps, repeated or backward time and non-finite values are reported.");
   arguments->reading.options.own_samples = false;
   add_reading_options(command, arguments->reading);

@@ -26,11 +26,11 @@ struct MeasureCommandArguments : MeasureArguments {
   ReportArguments report;
   FilesBeside beside;
 
-  /// Whether what shows how good a result is will be drawn.
+  /// Whether the plots that show the quality of a result are needed.
   [[nodiscard]] bool draws() const { return report.file || beside.charts; }
 };
 
-/// A result, with the diagnostics where a report will show them: those of one recording.
+/// A result, with the diagnostics of the recording if a report will show them.
 Result<Examined> measure_one(std::span<const Recording> recordings, const measurement::Options& options,
                              bool with_diagnostics) {
   if (with_diagnostics && recordings.size() == 1) return measurement::examine(recordings, options);
@@ -44,8 +44,8 @@ struct MeasuredOne {
   result::RecordingFacts facts;
 };
 
-/// One result for each FILE, several at a time: of no more than are worked on at once are the samples in memory. The
-/// order is that of the files.
+/// One result for each FILE, in the order of the files. Several are measured in parallel; only their samples are in
+/// memory.
 std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, const measurement::Options& options,
                                               const MeasureCommandArguments& arguments) {
   const int count = reader.count();
@@ -73,7 +73,7 @@ std::vector<Result<MeasuredOne>> measure_each(const RecordingReader& reader, con
 
 /// Everything that a run of the command found.
 struct MeasuredTrials {
-  std::vector<result::RecordingFacts> facts;  ///< of the recordings that are behind `measured`; for a report
+  std::vector<result::RecordingFacts> facts;  ///< of the recordings of `measured`; for a report
   std::vector<Measurement> measured;
   std::vector<std::optional<Diagnostics>> diagnostics;  ///< one for each result
   bool several = false;                                 ///< more than one result was asked for
@@ -86,7 +86,7 @@ struct MeasuredTrials {
   }
 };
 
-/// One fit over all of them: what cannot be read is missing in it, so that there is none.
+/// One fit over all recordings. It needs all of them: one that cannot be read is an error.
 Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, const measurement::Options& options) {
   auto recordings = MBK_TRY(read_perturbations(reading_for(arguments.reading, options), arguments.sensor));
   for (Recording& recording : recordings) add_arm(arguments.arm, recording);
@@ -99,7 +99,7 @@ Result<MeasuredTrials> measure_pooled(const MeasureCommandArguments& arguments, 
   return found;
 }
 
-/// One result for each: a recording that cannot be measured costs only itself.
+/// One result for each recording. One that cannot be measured does not stop the others.
 Result<MeasuredTrials> measure_apart(const MeasureCommandArguments& arguments, const measurement::Options& options) {
   const auto reader = MBK_TRY(open_recordings(reading_for(arguments.reading, options), arguments.sensor));
   MeasuredTrials found;
@@ -141,7 +141,7 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
   return {};
 }
 
-/// What can be said before the work begins.
+/// Checks that need no measurement.
 Result<void> check(const MeasureCommandArguments& arguments) {
   MBK_TRY(check_files(arguments.reading.files, arguments.output.to, arguments.report, arguments.beside));
   if (!arguments.beside.charts) return {};
@@ -149,7 +149,7 @@ Result<void> check(const MeasureCommandArguments& arguments) {
                            {"force", "force-x"});
 }
 
-/// The work of `measure` and `identify`, which leaves out ellipses, passivity and what they take to compute.
+/// Runs `measure`, or `identify`, which computes no ellipses and no passivity.
 int run(const MeasureCommandArguments& given, const std::string& typed, bool with_findings) {
   MeasureCommandArguments arguments = given;
   auto files = recording::named_files(given.reading.files);
@@ -195,8 +195,8 @@ Action add(Command app, const char* name, const char* summary, const std::string
   command.footer(footer);
   add_measure_options(command, *arguments);
   add_options(command, request::arm_table(), *arguments);
-  add_output_options(command, arguments->output, "mbk.result/2");
   if (with_findings) add_report_options(command, arguments->report);
+  add_output_options(command, arguments->output, "mbk.result/2");
   add_summary_option(command, arguments->beside);
   add_charts_option(command, arguments->beside);
   return [arguments, typed, with_findings] { return run(*arguments, typed, with_findings); };
@@ -205,29 +205,31 @@ Action add(Command app, const char* name, const char* summary, const std::string
 }  // namespace
 
 Action add_measure(Command app, const std::string& typed) {
-  return add(app, "measure", "recording → M, B, K, x0 with intervals, ellipses, warnings",
-             "Examples:\n"
-             "  mbk measure log.mat\n"
-             "      a 19-row log of a planar robot; protocol, window and filters are chosen and printed\n"
-             "  mbk measure --mode reference log.mat\n"
-             "      the published procedure, sample for sample\n"
-             "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
-             "      one joint from a CSV file, the first 40 s to identify, the rest held out\n"
-             "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
-             "      several trials: one result each, and the mean of the usable ones with its 95 % interval\n"
-             "  mbk measure trials --summary trials.csv --charts charts\n"
-             "      every recording in a folder, or in 'S0?/relaxed_*.mat'; one row each; charts as SVG files\n"
-             "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
-             "      at shoulder and elbow too; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
-             "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
-             "      one file for the browser or the printer: the result in plain words, ellipses, plots, glossary\n\n"
-             "Exit codes: " +
-                 std::string(kExitCodes),
-             typed, true);
+  return add(
+      app, "measure", "measure M, B, K and x0 from a recording, with confidence intervals, ellipses and warnings",
+      "Examples:\n"
+      "  mbk measure log.mat\n"
+      "      a log of a planar robot with 19 rows; protocol, window and filters are chosen automatically and reported\n"
+      "  mbk measure --mode reference log.mat\n"
+      "      reproduces the published procedure sample for sample\n"
+      "  mbk measure --axes 1 --channels x=position_rad,F=torque_Nm --split 40 ankle.csv\n"
+      "      one joint from a CSV file; the first 40 s identify the model, the rest validates it\n"
+      "  mbk measure trial_1.mat trial_2.mat trial_3.mat --json --out results.json\n"
+      "      several trials: one result each, and the mean of the usable results with its 95 % interval\n"
+      "  mbk measure trials --summary trials.csv --charts charts\n"
+      "      every recording of a folder, or of a pattern such as 'S0?/relaxed_*.mat'; one row each; charts as SVG "
+      "files\n"
+      "  mbk measure log.mat --domain joint --arm 0.30,-0.57,0.31,0.34\n"
+      "      also at shoulder and elbow; shoulder at (0.30, -0.57) m, upper arm 0.31 m, forearm 0.34 m\n"
+      "  mbk measure log.mat --report log.html --report-note \"Ward 3, 4 May\"\n"
+      "      one HTML file to read or print: results in plain language and in numbers, ellipses, plots, glossary\n\n"
+      "Exit codes: " +
+          std::string(kExitCodes),
+      typed, true);
 }
 
 Action add_identify(Command app) {
-  return add(app, "identify", "only the model: M, B, K, x0 with intervals and fit",
+  return add(app, "identify", "fit the model only: M, B, K and x0 with confidence intervals and goodness of fit",
              "Examples:\n"
              "  mbk identify log.mat --json\n"
              "  mbk identify --structure mass-spring rig.mat\n"

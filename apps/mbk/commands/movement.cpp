@@ -27,15 +27,16 @@ OptionTable<measurement::MovementQualityOptions> options_table() {
   OptionTable<measurement::MovementQualityOptions> table;
   table.group(request::kWindowGroup)
       .add(
-          {"--from", "S", "first second of the recording that counts", not_negative()},
+          {"--from", "S", "start of the analysed interval, in seconds from the start of the recording", not_negative()},
           [](auto& options) -> auto& { return options.window.from_s; })
       .add(
-          {"--to", "S", "last second that counts", positive()},
+          {"--to", "S", "end of the analysed interval, in seconds from the start of the recording", positive()},
           [](auto& options) -> auto& { return options.window.to_s; })
       .group("")
       .add(request::resample_option(), &measurement::MovementQualityOptions::resample)
       .add(
-          {"--cutoff", "HZ", "of the Savitzky–Golay filter behind the speed, Hz (20)", positive()},
+          {"--cutoff", "HZ", "cutoff frequency of the Savitzky–Golay filter of the speed, in Hz (default: 20)",
+           positive()},
           [](auto& options) -> auto& { return options.movement.cutoff_hz; });
   return table;
 }
@@ -73,11 +74,11 @@ Action add_movement(Command app) {
   using namespace movement_command;
   auto arguments = std::make_shared<MovementArguments>();
   const Command command =
-      app.add_command("movement", "quality of reaches: smoothness, path, speed, endpoint, work, force");
+      app.add_command("movement", "assess reaching movements: smoothness, path, speed, endpoint, work and force");
   command.footer(
       "Examples:\n"
       "  mbk movement reaches.csv\n"
-      "      each reach from rest to rest: SPARC, LDLJ, peaks of speed, path ratio\n"
+      "      SPARC, LDLJ, speed peaks and path ratio of each reach from rest to rest\n"
       "  mbk movement before.csv after.csv --json\n\n"
       "Exit codes: " +
       std::string(kExitCodes));

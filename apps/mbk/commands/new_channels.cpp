@@ -31,7 +31,7 @@ struct NewChannelsArguments {
   Output output;
 };
 
-/// Every signal with its range, as far as a person reads on.
+/// The first signals, each with its range.
 std::string signals_text(const std::vector<recording::FileSignal>& signals) {
   constexpr std::size_t kShown = 40;
   std::string text;
@@ -53,7 +53,7 @@ Result<Recording> read_with(const recording::RecordingFile& file, const NewChann
   return recording::read(file, options);
 }
 
-/// What a person has to see before saying yes.
+/// Shows what a person needs to see before answering.
 void tell(const std::string& text) {
   say_text(for_people(text, terminal_at(STDERR_FILENO)));
 }
@@ -66,17 +66,18 @@ int run(const NewChannelsArguments& arguments) {
   if (!contents) return report_error(contents.error());
   const auto signals = recording::signals_of(*contents);
   if (signals.empty()) {
-    return report_error({ErrorKind::data, "holds no signal that a channel map can name",
-                         "'mbk info' says what is in it", arguments.file.string()});
+    return report_error({ErrorKind::data, "the file contains no signal that a channel map can name",
+                         "see 'mbk info' for its contents", arguments.file.string()});
   }
   tell(fmt::format("{}, {}\n{}", arguments.file.string(), contents->format, signals_text(signals)));
   const recording::ChannelGuess guess = recording::guess_channels(signals);
   std::string text = guess.reasons.empty() ? "" : "guessed\n";
   for (const std::string& reason : guess.reasons) text += "  " + reason + "\n";
-  if (!guess.missing.empty()) text += fmt::format("  not found by name: {}\n", fmt::join(guess.missing, ", "));
-  tell(
-      text +
-      "Two axes have x, y, Fx, Fy and xr, yr of the reference; one axis has x, F, xr. x=2:mm converts, Fx=-4 flips.\n");
+  if (!guess.missing.empty()) text += fmt::format("  not recognised: {}\n", fmt::join(guess.missing, ", "));
+  tell(text +
+       "Two axes have x, y, Fx, Fy and the reference xr, yr; one axis has x, F, xr. x=2:mm converts a unit, Fx=-4 "
+       "reverses "
+       "a sign.\n");
 
   std::optional<Recording> recording;
   const auto check = [&](const std::string& map) -> std::string {
@@ -89,7 +90,7 @@ int run(const NewChannelsArguments& arguments) {
   if (!map) return report_error(map.error().in(arguments.file.string()));
   for (const Chart& chart : report::first_seconds(*recording, arguments.seconds))
     tell("\n" + report::chart_text(chart));
-  tell("The force is that of the hand on the robot; 'mbk measure' says where its sign is reversed.\n");
+  tell("The force must be that of the hand on the robot; 'mbk measure' reports a reversed sign.\n");
   const std::string rate = arguments.rate_hz ? fmt::format(" --rate {:g}", *arguments.rate_hz) : "";
   const std::string line = fmt::format("--channels {}{}", shell_word(*map), rate);
   tell(fmt::format("next: mbk measure {} {}\n", shell_word(arguments.file.string()), line));
@@ -101,23 +102,26 @@ int run(const NewChannelsArguments& arguments) {
 
 Action add_new_channels(Command group) {
   auto arguments = std::make_shared<NewChannelsArguments>();
-  const Command command = group.add_command("channels", "which column of a file is what: the option --channels for it");
+  const Command command =
+      group.add_command("channels", "find which column of a file is which channel; prints the option --channels");
   command.footer(
       "Examples:\n"
       "  mbk new channels log.csv\n"
-      "      lists the columns, guesses by their names, asks, and draws the first seconds\n"
+      "      lists the columns, guesses from their names, asks, and plots the first seconds\n"
       "  mbk measure log.csv $(mbk new channels log.csv --yes)\n"
-      "      where the guess is trusted; without one this fails\n"
+      "      accepts the guess; fails if there is none\n"
       "  echo time=1:ms,x=2:mm,F=5 | mbk new channels log.csv --out channels.txt\n\n"
-      "What is asked and drawn goes to standard error, the option alone to standard output. The map is printed only\n"
-      "after the file was read with it.");
+      "Questions and plots go to standard error, the option alone to standard output. The map is printed\n"
+      "only after the file was read with it.");
   command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
       .required();
-  command.add_option("--rate", arguments->rate_hz, "sample rate, where the file holds no time")
+  command.add_option("--rate", arguments->rate_hz, "sample rate, in Hz, if the file contains no time")
       .type_name("HZ")
       .check(positive());
-  command.add_option("--seconds", arguments->seconds, "so much is drawn (3)").type_name("S").check(positive());
-  command.add_flag("--yes", arguments->yes, "ask nothing: take what is guessed");
+  command.add_option("--seconds", arguments->seconds, "length of the plots, in seconds (default: 3)")
+      .type_name("S")
+      .check(positive());
+  command.add_flag("--yes", arguments->yes, "ask no questions; accept the guess");
   arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }

@@ -12,7 +12,7 @@ struct NewFileArguments {
   bool yes = false, overwrite = false;
 };
 
-/// --out, whose default stands in `arguments`, --overwrite and --yes.
+/// --out, whose default is in `arguments`, --overwrite and --yes.
 void add_new_file_options(Command command, NewFileArguments& arguments);
 
 /// The parts of 'mbk new'. Each adds itself to the group.

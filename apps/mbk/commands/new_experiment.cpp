@@ -27,22 +27,24 @@ struct OfferedPerturbation {
 };
 
 constexpr OfferedPerturbation kOffered[] = {
-    {"sines", "position", "multisine", "peak_deg", "deg of a joint", "2", "a sum of sines, the joints follow it", true},
-    {"pulses", "position", "pulses", "amplitude_mm", "mm of the hand", "15", "short pulses of position, with pauses",
+    {"sines", "position", "multisine", "peak_deg", "deg of a joint", "2", "a sum of sines that the joints follow",
+     true},
+    {"pulses", "position", "pulses", "amplitude_mm", "mm of the hand", "15", "short position pulses, with pauses",
      false},
-    {"force", "force", "multisine", "peak_N", "N at the hand", "3", "a sum of sines, the hand feels it", true},
+    {"force", "force", "multisine", "peak_N", "N at the hand", "3", "a sum of sines, applied to the hand", true},
 };
 
 Result<std::string> robot_section(const Questions& questions) {
-  const auto robot =
-      MBK_TRY(questions.ask("Robot: simulated, or one behind udp", "simulated", word_of_these({"simulated", "udp"})));
+  const auto robot = MBK_TRY(
+      questions.ask("Robot: simulated, or a real one over udp", "simulated", word_of_these({"simulated", "udp"})));
   if (robot == "simulated") {
     return std::string(
-        "# Without [device] the robot is simulated, with this participant at its handle. See docs/guide/own_robot.md.\n"
+        "# Without [device] the robot is simulated, with this participant holding its handle. See "
+        "docs/guide/own_robot.md.\n"
         "[participant]\nkind = \"arm\"\nnumber = 1\n");
   }
   const auto address = MBK_TRY(questions.ask("Address of the robot", "127.0.0.1", [](const std::string& given) {
-    return given.find_first_not_of("0123456789.") == std::string::npos ? "" : quoted(given) + " is no IPv4 address";
+    return given.find_first_not_of("0123456789.") == std::string::npos ? "" : quoted(given) + " is not an IPv4 address";
   }));
   const auto port = MBK_TRY(questions.ask("Its port", "25000", whole_number(1, 65535).wrong));
   std::string lengths;
@@ -55,13 +57,13 @@ Result<std::string> robot_section(const Questions& questions) {
   const auto place = [](const std::string& given) {
     double x = 0.0, y = 0.0;
     char more = 0;
-    return std::sscanf(given.c_str(), "%lf , %lf %c", &x, &y, &more) == 2 ? "" : quoted(given) + " is no 'x, y' in mm";
+    return std::sscanf(given.c_str(), "%lf , %lf %c", &x, &y, &more) == 2 ? "" : quoted(given) + " is not 'x, y' in mm";
   };
-  const auto home = MBK_TRY(questions.ask("Where the hand is measured, x, y in mm from the base", "300, -50", place));
+  const auto home = MBK_TRY(questions.ask("Test location of the hand, x, y in mm from the base", "300, -50", place));
   lengths += fmt::format("home_mm = [{}]\n", home);
   return fmt::format(
       "[robot]                        # angles, inertia and friction: docs/guide/own_robot.md\n{}\n"
-      "# Check it before anyone sits down: mbk robot check FILE --live 5\n"
+      "# Check the robot before a participant sits down: mbk robot check FILE --live 5\n"
       "[device]\nkind = \"udp\"\naddress = \"{}\"\nport = {}\n",
       lengths, address, port);
 }
@@ -77,7 +79,7 @@ Result<std::string> trial_sections(const Questions& questions) {
                   offered.control, offered.remark, offered.kind, offered.peak_key, peak);
   if (!offered.has_duration) return text;
   const auto duration = MBK_TRY(questions.ask("Duration, s", "62.1", positive_number()));
-  return text + fmt::format("duration_s = {}\nmoving_in_s = 5              # in which it grows, and fades at the end\n",
+  return text + fmt::format("duration_s = {}\nmoving_in_s = 5              # fade-in time, and fade-out at the end\n",
                             duration);
 }
 
@@ -85,19 +87,19 @@ Result<std::string> experiment_text(const Questions& questions) {
   const auto robot = MBK_TRY(robot_section(questions));
   const auto trial = MBK_TRY(trial_sections(questions));
   const auto condition =
-      MBK_TRY(questions.ask("Condition, as it is to stand in the recording", "relaxed", [](const std::string& given) {
-        return given.find_first_of("\"\\") == std::string::npos ? "" : "without quotes and backslashes";
+      MBK_TRY(questions.ask("Condition, as stored in the recording", "relaxed", [](const std::string& given) {
+        return given.find_first_of("\"\\") == std::string::npos ? "" : quoted(given) + " contains a quote or backslash";
       }));
-  const auto repetitions = MBK_TRY(questions.ask("Trials of it", "3", whole_number(1, 100).wrong));
+  const auto repetitions = MBK_TRY(questions.ask("Number of trials", "3", whole_number(1, 100).wrong));
   std::string text = fmt::format(
-      "# An experiment for 'mbk run'. examples/experiments/study.toml has every key with its default, the limits of\n"
-      "# [safety] among them. Look at it first:  mbk run FILE --dry-run\n"
+      "# An experiment for 'mbk run'. examples/experiments/study.toml lists every key with its default, including the\n"
+      "# limits of [safety]. Check it first:  mbk run FILE --dry-run\n"
       "[recording]\nrate_hz = 1000\ncondition = \"{}\"\n\n{}\n{}",
       condition, robot, trial);
   for (int k = 1; k <= std::stoi(repetitions); ++k) {
     text += fmt::format(
-        "\n[[trial]]\nname = \"trial_{0}\"\n[trial.recording]\nseed = {0}                      # other phases "
-        "than the other trials\n",
+        "\n[[trial]]\nname = \"trial_{0}\"\n[trial.recording]\nseed = {0}                      # phases that differ "
+        "between trials\n",
         k);
   }
   return text;
@@ -123,7 +125,7 @@ int run(const NewFileArguments& arguments) {
 Action add_new_experiment(Command group) {
   auto arguments = std::make_shared<NewFileArguments>();
   arguments->out = "experiment.toml";
-  const Command command = group.add_command("experiment", "an experiment for 'mbk run', from a few answers");
+  const Command command = group.add_command("experiment", "write an experiment for 'mbk run' from a few answers");
   command.footer(
       "Examples:\n"
       "  mbk new experiment --out mine.toml\n"
@@ -131,7 +133,7 @@ Action add_new_experiment(Command group) {
       "  mbk new experiment --yes && mbk run experiment.toml --dry-run\n"
       "  printf 'udp\\n192.168.1.10\\n25000\\n300\\n280\\n300,-50\\npulses\\n10\\nrigid\\n5\\n' |\n"
       "      mbk new experiment --out rigid.toml\n\n"
-      "The file is written only after it was read as 'mbk run' reads it, and has comments.");
+      "The file has comments. It is written only after it was read as 'mbk run' reads it.");
   add_new_file_options(command, *arguments);
   return [arguments] { return run(*arguments); };
 }

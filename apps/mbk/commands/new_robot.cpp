@@ -22,10 +22,10 @@ struct NewRobotArguments : NewFileArguments {
 };
 
 constexpr const char* kHead =
-    "# A robot for mbk. docs/guide/own_robot.md has every key.\n"
-    "#   mbk robot describe FILE    what mbk understands of it\n";
+    "# A robot for mbk. docs/guide/own_robot.md lists every key.\n"
+    "#   mbk robot describe FILE    shows how mbk understands it\n";
 
-/// The section of a kind, question by question.
+/// A question whose answer is the value of a key.
 struct Asked {
   const char *question, *key, *by_default;
   std::size_t numbers;  ///< with commas between them
@@ -46,14 +46,15 @@ Result<std::string> planar(const Questions& questions) {
       questions, {{"Length of the first link, mm", "d1_mm", "254", 1},
                   {"Length of the second link to the handle, mm", "d2_mm", "266.7", 1},
                   {"Range of the first joint, low,high, deg", "theta1_deg", "-55,90", 2},
-                  {"Range of the second link's angle against the base, low,high, deg", "theta2_deg", "0,145", 2},
+                  {"Range of the second link's angle relative to the base, low,high, deg", "theta2_deg", "0,145", 2},
                   {"Inertia parameters alpha1,alpha2,alpha3, kg m² ('mbk robot identify' finds them)", "alpha_kg_m2",
                    "0.06929,0.04217,0.04416", 3}}));
   return std::string(kHead) + "[robot]\nkind = \"planar\"\n" + keys;
 }
 
 Result<std::string> one_axis(const Questions& questions) {
-  const auto slides = MBK_TRY(questions.ask("Does it slide or turn", "turn", word_of_these({"slide", "turn"})));
+  const auto slides =
+      MBK_TRY(questions.ask("Motion of the axis: slide or turn", "turn", word_of_these({"slide", "turn"})));
   const bool sliding = slides == "slide";
   const auto keys = MBK_TRY(sliding ? answered(questions, {{"Limits low,high, mm", "limits_mm", "-350,350", 2},
                                                            {"Moving mass, kg", "mass_kg", "", 1}})
@@ -62,7 +63,7 @@ Result<std::string> one_axis(const Questions& questions) {
   return std::string(kHead) + fmt::format("[robot]\nkind = \"one_axis\"\nslides = {}\n", sliding) + keys;
 }
 
-/// From a URDF: what the file says stays there.
+/// A description that refers to a URDF and adds what the URDF cannot contain.
 Result<std::string> from_urdf(const Questions& questions, const NewRobotArguments& arguments) {
   std::error_code ignored;
   MBK_TRY(robot_file::read_robot_description(arguments.urdf));
@@ -72,10 +73,11 @@ Result<std::string> from_urdf(const Questions& questions, const NewRobotArgument
       MBK_TRY(questions.ask("Gravity along x,y,z of the base frame, m/s²", "0,0,-9.81", numbers_with_commas(3)));
   const auto folder = std::filesystem::absolute(arguments.out, ignored).parent_path();
   const auto file = std::filesystem::absolute(arguments.urdf, ignored).lexically_proximate(folder);
-  return std::string(kHead) + fmt::format(
-                                  "[robot]\nkind = \"urdf\"\nfile = \"{}\"             # from the folder of this file\n"
-                                  "gravity_m_per_s2 = [{}]\nhand_axes = [\"{}\", \"{}\"]\n",
-                                  file.generic_string(), gravity, axes.substr(0, 1), axes.substr(2, 1));
+  return std::string(kHead) +
+         fmt::format(
+             "[robot]\nkind = \"urdf\"\nfile = \"{}\"             # relative to the folder of this file\n"
+             "gravity_m_per_s2 = [{}]\nhand_axes = [\"{}\", \"{}\"]\n",
+             file.generic_string(), gravity, axes.substr(0, 1), axes.substr(2, 1));
 }
 
 Result<std::string> robot_text(const Questions& questions, const NewRobotArguments& arguments) {
@@ -104,16 +106,16 @@ int run(const NewRobotArguments& arguments) {
 
 Action add_new_robot(Command group) {
   auto arguments = std::make_shared<NewRobotArguments>();
-  const Command command = group.add_command("robot", "the description of a robot, from a few answers or a URDF");
+  const Command command = group.add_command("robot", "write the description of a robot from a few answers or a URDF");
   command.footer(
       "Examples:\n"
       "  mbk new robot --out robot.toml\n"
       "      two links in a plane, or one axis: asks for lengths, ranges and inertia\n"
       "  mbk new robot arm.urdf --out arm.toml\n"
-      "      looks at the URDF, and asks for the plane of the hand and for gravity\n"
+      "      reads the URDF, and asks for the plane of the hand and for gravity\n"
       "  mbk new robot --yes && mbk robot describe robot.toml\n\n"
       "The file is written only after it was read as 'mbk robot describe' reads it.");
-  command.add_option("ARM.urdf", arguments->urdf, "a robot's URDF, where there is one");
+  command.add_option("ARM.urdf", arguments->urdf, "the robot's URDF, if there is one");
   add_new_file_options(command, *arguments);
   return [arguments] { return run(*arguments); };
 }

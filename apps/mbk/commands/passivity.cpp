@@ -39,8 +39,8 @@ Result<AskedBand> band_of(const std::string& text) {
   const auto second = colon ? std::from_chars(first.ptr + 1, end, high) : first;
   if (!colon || second.ec != std::errc() || second.ptr != end || !(low > 0.0) || !(high > low) ||
       !std::isfinite(high)) {
-    return bad_usage(fmt::format("--band: {} is not LOW:HIGH in Hz with 0 < LOW < HIGH", quoted(text)),
-                     "as in --band 0.3:3");
+    return bad_usage(fmt::format("--band {} is not LOW:HIGH in Hz with 0 < LOW < HIGH", quoted(text)),
+                     "write it as --band 0.3:3");
   }
   return std::pair{Hertz(low), Hertz(high)};
 }
@@ -54,7 +54,7 @@ struct LimbAnswer {
   Motion motion = Motion::translation;
 };
 
-/// Answers, and what could not be had; each error names its file.
+/// Answers and failures; each error names its file.
 struct PassivityAnswers {
   std::vector<LimbAnswer> found;
   std::vector<Error> failed;
@@ -138,8 +138,9 @@ int run(const PassivityArguments& arguments) {
   if (!band) return report_error(band.error());
   const bool stored = arguments.reading.files.front().extension() == ".json";
   if (stored && arguments.sensor.file) {
-    return report_error({ErrorKind::usage, "--sensor needs the voltages of a recording, and a stored result has none",
-                         "leave it out, or name the recording", ""});
+    return report_error({ErrorKind::usage,
+                         "--sensor needs the voltages of a recording, which a stored result does not contain",
+                         "omit --sensor, or name the recording", ""});
   }
   const Result<PassivityAnswers> answers = stored ? from_results(arguments, *band) : from_recordings(arguments, *band);
   if (!answers) return report_error(answers.error());
@@ -162,25 +163,26 @@ int run(const PassivityArguments& arguments) {
 
 Action add_passivity(Command app) {
   auto arguments = std::make_shared<PassivityArguments>();
-  const Command command = app.add_command("passivity", "what energy the limb absorbed, and what its model predicts");
+  const Command command = app.add_command(
+      "passivity", "report the energy that the limb absorbed and the passivity that its model predicts");
   command.footer(
       "Examples:\n"
       "  mbk passivity log.mat\n"
-      "      the energy of the trial with its interval, every condition of the model, energy over time\n"
+      "      the energy of the trial with its interval, the passivity conditions of the model, energy over time\n"
       "  mbk passivity log.mat --band 0.5:3\n"
-      "      the model's prediction in a band of one's own choice; beyond the data it is extrapolated\n"
+      "      the model's prediction in a band of your choice; beyond the data it is an extrapolation\n"
       "  mbk passivity result.json\n"
-      "      of the models and the energy that 'mbk measure --json' stored\n\n"
-      "Two statements. What happened: passive, the limb absorbed energy in this trial; active, it\n"
-      "delivered some; undecided, the 95 % interval holds zero. What the model predicts, in the band\n"
-      "in which the perturbation moves all axes and explains force and motion: passive, active,\n"
-      "undecided, or none where no model is usable.\n"
-      "Neither is a promise that a machine is stable with this person.");
+      "      from the model and the energy stored by 'mbk measure --json'\n\n"
+      "There are two statements. The energy of the trial: passive if the hand absorbed energy, active if\n"
+      "it delivered energy, undecided if the 95 % interval contains zero. The prediction of the model, in\n"
+      "the band in which the perturbation moves all axes and explains force and motion: passive, active,\n"
+      "undecided, or none if no model is usable. Neither statement guarantees that a robot coupled to\n"
+      "this person is stable.");
   add_measure_options(command, *arguments);
   command
       .add_option("--band", arguments->band,
-                  "frequencies for which the model is asked; otherwise those at which "
-                  "the perturbation explains position and force")
+                  "frequency band of the prediction, in Hz (default: the band in which the perturbation explains "
+                  "position and force)")
       .type_name("LOW:HIGH")
       .check(not_empty())
       .group("Analysed interval");

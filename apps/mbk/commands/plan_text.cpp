@@ -21,18 +21,18 @@ std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehea
   std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,
                                  trial.condition.empty() ? "" : ": " + trial.condition);
   text += fmt::format(
-      "  in all        {:.1f} s: soft start {:g} s, way to the test location, {:g} s of rest,\n"
-      "                perturbation {:.1f} s, way back, soft stop {:g} s\n",
+      "  total         {:.1f} s: soft start {:g} s, move to the test location, {:g} s of rest,\n"
+      "                perturbation {:.1f} s, move back, soft stop {:g} s\n",
       rehearsal.duration, trial.sequence.soft_start, trial.sequence.settle, perturbation, trial.sequence.soft_start);
   text += report::schedule_text(plan.schedule);
-  text += "  peaks in a rehearsal on the simulated robot, and the gate's limits\n";
+  text += "  peaks in a rehearsal on the simulated robot, and the limits of the gate\n";
   text += limit_line("force of the motors at the handle", rehearsal.handle_force, limits.handle_force, "N");
   text += limit_line("torque of joint 1", rehearsal.joint_torque[0], limits.joint_torque[0], "N·m");
   text += limit_line("torque of joint 2", rehearsal.joint_torque[1], limits.joint_torque[1], "N·m");
   text += limit_line("measured force", rehearsal.measured_force, limits.measured_force, "N");
   text += limit_line("speed of the hand", 1e3 * rehearsal.speed, 1e3 * limits.speed, "mm/s");
   if (limits.excursion > 0.0) {
-    text += limit_line("way from the test location", 1e3 * rehearsal.excursion, 1e3 * limits.excursion, "mm");
+    text += limit_line("distance from the test location", 1e3 * rehearsal.excursion, 1e3 * limits.excursion, "mm");
   }
   for (const std::string& one : safety::weakened(limits)) text += fmt::format("  ! {}\n", one);
   if (rehearsal.trip.reason != safety::Reason::none) {

@@ -6,7 +6,7 @@
 
 namespace mbk::app {
 
-/// Schedule, times, limits and what a rehearsal came to, for people.
+/// Schedule, times, limits and the results of a rehearsal, for people.
 [[nodiscard]] std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehearsal);
 
 }  // namespace mbk::app

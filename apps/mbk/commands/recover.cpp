@@ -36,7 +36,7 @@ std::string outcome_text(const session::Recovered& recovered, const RecoverArgum
                                  detail == metadata.end() ? "" : ": " + detail->second);
   if (!recovered.damage.any()) return text;
   for (const std::string& sentence : recovered.damage.sentences()) text += paragraph("!", sentence);
-  if (!recovered.damage.lost.empty()) text += "  the recording has a row of NaN for each missing tick\n";
+  if (!recovered.damage.lost.empty()) text += "  the recording contains a row of NaN for each missing tick\n";
   return text + fmt::format("  the journal is kept: {}\n", arguments.journal.string());
 }
 
@@ -54,29 +54,31 @@ int run(const RecoverArguments& arguments) {
   if (auto ok = print_text(outcome_text(*recovered, arguments, out)); !ok) return report_error(ok.error());
   if (!recovered->incomplete) return kFine;
   return report_error({ErrorKind::data, recovered->recording.metadata.at("ended"),
-                       "'mbk info' of the recording shows where; keep the journal", out.string()});
+                       "run 'mbk info' on the recording to see where; keep the journal", out.string()});
 }
 
 }  // namespace
 
 Action add_recover(Command app) {
   auto arguments = std::make_shared<RecoverArguments>();
-  const Command command = app.add_command("recover", "make the recording of a session that was cut off");
+  const Command command =
+      app.add_command("recover", "recover the recording of an interrupted session from its journal");
   command.footer(
       "Examples:\n"
       "  mbk recover p07_relaxed.h5.journal\n"
-      "      writes p07_relaxed.h5 and then removes the journal\n"
+      "      writes p07_relaxed.h5, then removes the journal\n"
       "  mbk recover p07_relaxed.h5.journal --out p07.mat --keep\n\n"
-      "Every block of the journal has a checksum, and its ticks are numbered. Every whole block comes back,\n"
-      "wherever it stands. A tick that is missing becomes a row of NaN and is said, here and in the recording\n"
-      "('ended', 'ticks_lost', 'gaps'; see 'mbk info'). A journal that is not exactly as it was written is\n"
-      "never removed.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost (what is left is then\n"
-      "in the recording).");
-  command.add_option("JOURNAL", arguments->journal, "NAME.h5.journal, beside where the recording should be").required();
-  command.add_option("--out", arguments->out, "the recording to write (NAME.h5)").type_name("REC").check(not_empty());
-  command.add_flag("--overwrite", arguments->options.overwrite, "replace a recording that is there");
-  command.add_flag("--keep", arguments->options.keep, "leave the journal where it is");
+      "Every block of the journal has a checksum, and its ticks are numbered. Every intact block is\n"
+      "recovered, wherever it is. A missing tick becomes a row of NaN and is reported, here and in the\n"
+      "recording ('ended', 'ticks_lost', 'gaps'; see 'mbk info'). A damaged journal is never removed.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or lost ticks (the recording contains\n"
+      "the others).");
+  command.add_option("JOURNAL", arguments->journal, "journal of the session: NAME.h5.journal").required();
+  command.add_option("--out", arguments->out, "recording to write (default: NAME.h5)")
+      .type_name("REC")
+      .check(not_empty());
+  command.add_flag("--overwrite", arguments->options.overwrite, "replace an existing recording");
+  command.add_flag("--keep", arguments->options.keep, "keep the journal");
   add_readers_option(command, arguments->options.readers);
   return [arguments] { return run(*arguments); };
 }

@@ -41,7 +41,7 @@ std::string list_of_exhibits() {
   return text;
 }
 
-/// The id of an erratum by its name of before, "slip-4", which is taken for one version; any other as it is.
+/// The id of an erratum for its former name "slip-4", which is accepted for one version; any other id unchanged.
 std::string current_id(const std::string& id) {
   constexpr std::string_view kBefore = "slip-";
   return id.starts_with(kBefore) ? "erratum-" + id.substr(kBefore.size()) : id;
@@ -52,7 +52,7 @@ std::string table_file(const Exhibit& exhibit, std::size_t k) {
   return exhibit.tables.size() == 1 ? exhibit.id : fmt::format("{}-{}", exhibit.id, k + 1);
 }
 
-/// What one exhibit leaves in the folders tables and figures.
+/// Writes one exhibit into the folders tables and figures.
 Result<void> write_exhibit(const Exhibit& exhibit, const ReproduceArguments& arguments) {
   for (std::size_t k = 0; k < exhibit.tables.size(); ++k) {
     const fs::path file = arguments.folder / "tables" / table_file(exhibit, k);
@@ -72,7 +72,7 @@ Result<void> make_folders(const ReproduceArguments& arguments) {
     std::error_code error;
     fs::create_directories(arguments.folder / folder, error);
     if (error)
-      return fail(ErrorKind::usage, error.message(), "name a folder that can be made", arguments.folder.string());
+      return fail(ErrorKind::usage, error.message(), "name a folder that can be created", arguments.folder.string());
   }
   return {};
 }
@@ -97,10 +97,10 @@ std::string summary_text(const Reproduction& made, const fs::path& folder) {
       "  {} follow from other printed numbers: {} agree within their rounding, {} are errata of the source, {} "
       "differ\n",
       agree + errata + differ, agree, errata, differ);
-  text += fmt::format("  {} make a round trip: ours was computed from the printed number itself\n",
-                      made.count(Agreement::round_trip));
-  text += fmt::format("  {} are not compared: {} stand beside simulated numbers, {} are or stand beside words\n",
-                      not_compared, made.beside_simulated(), not_compared - made.beside_simulated());
+  text +=
+      fmt::format("  {} are round trips: computed from the printed number itself\n", made.count(Agreement::round_trip));
+  text += fmt::format("  {} are not compared: {} correspond to simulated numbers, {} to text\n", not_compared,
+                      made.beside_simulated(), not_compared - made.beside_simulated());
   return text;
 }
 
@@ -133,32 +133,37 @@ int run(const ReproduceArguments& arguments) {
 
 Action add_reproduce(Command app) {
   auto arguments = std::make_shared<ReproduceArguments>();
-  const Command command = app.add_command("reproduce", "the thesis mbk grew from, table by table and figure by figure");
+  const Command command =
+      app.add_command("reproduce", "reproduce the tables and figures of the thesis that mbk is based on");
   command.footer(
       "Every table and figure of M. Dyck, Measuring the Dynamic Impedance of the Human Arm (MSc thesis,\n"
-      "University of Alberta, 2013) that can be reproduced, beside the printed numbers: recomputed from\n"
-      "other printed numbers, or simulated by mechanism, or not recoverable, with the reason; the errata\n"
-      "in the source, its research questions and its future work.\n\n"
+      "University of Alberta, 2013), compared with the printed numbers: recomputed from other printed\n"
+      "numbers, or simulated with the same mechanism, or not recoverable, with the reason; also errata of\n"
+      "the source, its research questions and its future work.\n\n"
       "Examples:\n"
-      "  mbk reproduce --out thesis              thesis/index.html, and tables and figures as files\n"
-      "  mbk reproduce --list                    what there is\n"
+      "  mbk reproduce --out thesis\n"
+      "      writes thesis/index.html, and tables and figures as files\n"
+      "  mbk reproduce --list\n"
+      "      lists the exhibits\n"
       "  mbk reproduce --only table-3.6 --only erratum-1 --out excess\n\n"
       "Exit codes: 0 every printed number that follows from others agrees or is a known erratum, 1 one\n"
       "differs, 2 wrong usage, 3 bad data.");
-  const Option out = command.add_option("--out", arguments->folder, "the folder that everything goes to (thesis)")
+  const Option out = command.add_option("--out", arguments->folder, "output folder (default: thesis)")
                          .type_name("FOLDER")
                          .check(not_empty());
-  command.add_option("--only", arguments->only, "only this exhibit; may be given several times (see --list)")
+  command.add_option("--only", arguments->only, "reproduce only this exhibit of --list; may be repeated")
       .type_name("ID");
-  command.add_flag("--list", arguments->list, "name the exhibits and stop").excludes(out);
-  command.add_option("--seed", arguments->seed, "of everything simulated; the same seed gives the same numbers (1)")
+  command.add_flag("--list", arguments->list, "list the exhibits and exit").excludes(out);
+  command
+      .add_option("--seed", arguments->seed,
+                  "random seed of the simulations; the same seed gives the same numbers (default: 1)")
       .type_name("N")
       .check(whole_number(1, 1'000'000'000));
-  add_threads_option(command, arguments->threads, "trials");
+  add_threads_option(command, arguments->threads, "number of trials simulated in parallel");
   command.add_flag("--without-printed", arguments->without_printed,
-                   "leave the printed numbers out; ours stay the same");
-  command.add_flag("--json", arguments->json, "also on standard output: schema mbk.reproduction/2");
-  command.add_flag("--overwrite", arguments->overwrite, "replace files that are there");
+                   "omit the printed numbers; the reproduced numbers are unchanged");
+  command.add_flag("--json", arguments->json, "also print JSON on standard output: schema mbk.reproduction/2");
+  command.add_flag("--overwrite", arguments->overwrite, "replace existing files");
   command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
   return [arguments] { return run(*arguments); };
 }

@@ -28,7 +28,7 @@ struct RobotArguments {
 /// "X,Y" in millimetres as metres.
 Result<Eigen::Vector2d> place(const std::string& given) {
   const auto wrong = [&] {
-    return bad_usage(fmt::format("--at: {} is not two numbers", quoted(given)), "give x and y in mm, as --at 300,50");
+    return bad_usage(fmt::format("--at {} is not two numbers", quoted(given)), "write x and y in mm: --at 300,50");
   };
   const std::size_t comma = given.find(',');
   if (comma == std::string::npos) return wrong();
@@ -49,7 +49,7 @@ int run_workspace(const RobotArguments& arguments) {
   const bool drawing = arguments.output.file && arguments.output.file->extension() == ".svg";
   if (drawing && arguments.json) {
     return report_error(
-        {ErrorKind::usage, "--json does not go into a file named .svg", "name it .json, or omit --json", ""});
+        {ErrorKind::usage, "--json cannot be written to an .svg file", "name a .json file, or omit --json", ""});
   }
   robot::PlanarRobot robot;
   if (arguments.d1_mm) robot.geometry.d1 = 1e-3 * *arguments.d1_mm;
@@ -76,28 +76,38 @@ int run_workspace(const RobotArguments& arguments) {
 
 Action add_workspace(Command group) {
   auto arguments = std::make_shared<RobotArguments>();
-  const Command command = group.add_command("workspace", "where the hand can be, and the robot at one place");
+  const Command command =
+      group.add_command("workspace", "show the workspace of the hand, and the robot's state at one position");
   command.footer(
       "Examples:\n"
       "  mbk robot workspace\n"
       "  mbk robot workspace --at 300,50\n"
       "  mbk robot workspace --at 300,50 --out workspace.svg\n\n"
-      "x and y are those of the robot's base: θ₁ turns the first link from x, θ₂ the last from −y.\n"
-      "A place that the robot cannot reach is refused with the limit that forbids it (exit code 2).");
-  command.add_option("--at", arguments->at, "also the joint angles, Jacobian, inertia and margins with the hand here")
+      "x and y are in the robot's base frame; θ₁ is the angle of the first link from x, θ₂ that of the\n"
+      "last from −y. A position that the robot cannot reach is rejected with the limit that excludes it\n"
+      "(exit code 2).");
+  command
+      .add_option("--at", arguments->at,
+                  "also report joint angles, Jacobian, inertia and margins with the hand at this position, in mm")
       .type_name("X,Y[mm]");
-  command.add_option("--d1-mm", arguments->d1_mm, "length of the first link (254)").type_name("MM").check(positive());
-  command.add_option("--d2-mm", arguments->d2_mm, "length of the last link (266.7)").type_name("MM").check(positive());
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.workspace/1");
+  command.add_option("--d1-mm", arguments->d1_mm, "length of the first link, in mm (default: 254)")
+      .type_name("MM")
+      .check(positive());
+  command.add_option("--d2-mm", arguments->d2_mm, "length of the last link, in mm (default: 266.7)")
+      .type_name("MM")
+      .check(positive());
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.workspace/1");
   arguments->output.add_options(command);
-  command.get_option("--out").description("write to this file instead; a name in .svg gets the drawing");
+  command.get_option("--out").description(
+      "write to this file instead of standard output; an .svg file gets the drawing");
   return [arguments] { return run_workspace(*arguments); };
 }
 
 }  // namespace
 
 Action add_robot(Command app) {
-  const Command group = app.add_command("robot", "its workspace, its inertia and friction, force without a sensor");
+  const Command group =
+      app.add_command("robot", "describe, check and identify a robot; estimate the hand force without a sensor");
   group.footer(
       "Examples:\n"
       "  mbk robot workspace --at 300,50\n"

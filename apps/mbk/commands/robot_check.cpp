@@ -19,7 +19,7 @@ namespace mbk::app {
 namespace {
 
 constexpr int kNotAllTested = 6;
-constexpr double kSaySo = 2.0;  // what takes longer is said [s]
+constexpr double kSaySo = 2.0;  // a longer measurement is announced [s]
 
 struct RobotCheckArguments {
   std::string file;
@@ -40,7 +40,7 @@ Result<drivers::UdpAddress> address_of(const std::string& given) {
   const char* const end = given.data() + given.size();
   const auto [at, error] = std::from_chars(given.data() + colon + 1, end, port);
   if (error != std::errc() || at != end || port == 0) {
-    return bad_usage(fmt::format("--link: {} names no port from 1 to 65535", quoted(given)),
+    return bad_usage(fmt::format("--link {} has no port from 1 to 65535", quoted(given)),
                      "write it as 192.168.7.2:25000");
   }
   return drivers::UdpAddress::find(given.substr(0, colon), port);
@@ -50,8 +50,8 @@ Result<session::RobotCheckReport::Setup> check_setup(const RobotCheckArguments& 
   const auto text = MBK_TRY(laboratory::read_scenario_text(arguments.file));
   const auto setup = MBK_TRY(session::read_robot_setup(text.text, text.file, laboratory::read_simulation));
   if (arguments.live && !setup.has_device) {
-    return tl::unexpected(
-        Error{ErrorKind::usage, "it names no robot to connect to", "add [device], or omit --live", arguments.file});
+    return tl::unexpected(Error{ErrorKind::usage, "the file names no robot to connect to",
+                                "add [device], or omit --live", arguments.file});
   }
   session::RobotCheckReport::Setup found{
       arguments.file, session::setup_text(setup), session::check_setup(setup), "", {}};
@@ -69,7 +69,7 @@ Result<session::RobotCheckReport::Link> check_link(const RobotCheckArguments& ar
   drivers::BridgeCheckOptions options;
   options.rate = arguments.rate_hz;
   options.motors = arguments.motors;
-  if (options.motors && !arguments.output.quiet) say("the motors of {} go on, with command 0\n", robot.text());
+  if (options.motors && !arguments.output.quiet) say("switching the motors of {} on, with command 0\n", robot.text());
   auto report = MBK_TRY(drivers::check_bridge(wire, options));
   return session::RobotCheckReport::Link{robot.text(), options, std::move(report)};
 }
@@ -100,7 +100,7 @@ int run(const RobotCheckArguments& arguments) {
   if (auto ok = arguments.output.to.check({}); !ok) return report_error(ok.error());
   if (arguments.file.empty() && arguments.link.empty() && !arguments.timing) {
     return report_error({ErrorKind::usage, "there is nothing to check",
-                         "name a FILE, or give --link ADDRESS or --rt; --help says more", ""});
+                         "name a FILE, or pass --link ADDRESS or --rt; see 'mbk robot check --help'", ""});
   }
   const auto report = check_all(arguments);
   if (!report) return report_error(report.error());
@@ -116,53 +116,61 @@ int run(const RobotCheckArguments& arguments) {
 
 Action add_robot_check(Command group) {
   auto arguments = std::make_shared<RobotCheckArguments>();
-  const Command command = group.add_command("check", "whether a robot is described, wired and reached as it should be");
+  const Command command = group.add_command("check", "check the description, wiring and communication of a robot");
   command.footer(
       "Examples:\n"
       "  mbk robot check my_experiment.toml\n"
-      "      geometry, limits, wiring and device as understood, and what cannot be meant\n"
+      "      shows geometry, limits, wiring and device as understood, and what is implausible\n"
       "  mbk robot check my_experiment.toml --live 5\n"
-      "      also five seconds of readings, motors off; turn the joints, press the stop button\n"
+      "      also reads for five seconds with the motors off; turn the joints, press the stop button\n"
       "  mbk robot check --link 192.168.7.2:25000 --motors\n"
-      "      whether the robot's program keeps every rule of the link: a bridge of your own\n"
+      "      tests whether the robot's program, such as your own bridge, follows every rule of the link\n"
       "  mbk robot check --rt 60\n"
-      "      how punctually this machine wakes a session's loop, and what holds it up\n\n"
-      "Do all of it before anyone sits down at a new robot. docs/guide/own_robot.md has a bridge to start\n"
-      "from, the keys of [device] and the rules of the link.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not all tested.");
-  const Option file =
-      command
-          .add_option("FILE", arguments->file, "a robot's description, or an experiment: .toml, or a ready one's name")
-          .check(suggests(laboratory::ready_scenario_names()));
-  command.add_option("--live", arguments->live, "connect, and watch the readings for so long with the motors off (2)")
+      "      measures how punctually this computer wakes the control loop, and what delays it\n\n"
+      "Run all of these before a participant sits down at a new robot. docs/guide/own_robot.md has a\n"
+      "bridge to start from, the keys of [device] and the rules of the link.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not everything\n"
+      "was tested.");
+  const Option file = command
+                          .add_option("FILE", arguments->file,
+                                      "description of a robot, or an experiment: .toml, or the name of a built-in one")
+                          .check(suggests(laboratory::ready_scenario_names()));
+  command
+      .add_option("--live", arguments->live,
+                  "connect, and watch the readings for this time, in seconds, with the motors off (default: 2)")
       .type_name("S")
       .expected(0, 1)
       .default_str("2")
       .option_text("S")
       .check(positive())
       .needs(file);
-  const Option link = command
-                          .add_option("--link", arguments->link,
-                                      "a robot's program behind UDP, every rule that it has to keep (port 25000)")
-                          .type_name("ADDRESS")
-                          .check(not_empty());
+  const Option link =
+      command
+          .add_option("--link", arguments->link,
+                      "test a robot's program over UDP against every rule of the link (default port: 25000)")
+          .type_name("ADDRESS")
+          .check(not_empty());
   command
-      .add_flag("--motors", arguments->motors,
-                "also the rules for which its motors go on, with command 0: nobody at the robot, a hand on its stop "
-                "button")
+      .add_flag(
+          "--motors", arguments->motors,
+          "also test the rules that need its motors on, with command 0; keep everyone away from the robot and a hand "
+          "on the stop button")
       .needs(link);
-  command.add_option("--local-port", arguments->local_port, "where --link listens; 0: any that is free (0)")
+  command.add_option("--local-port", arguments->local_port, "local port of --link (default: 0, any free port)")
       .type_name("N")
       .check(whole_number(0, 65535))
       .needs(link);
   command
-      .add_option("--rt", arguments->timing, "wake a loop for so long as a session does, and say how late it was (10)")
+      .add_option("--rt", arguments->timing,
+                  "wake a loop as a session does for this time, in seconds, and report its lateness (default: 10)")
       .type_name("S")
       .expected(0, 1)
       .default_str("10")
       .option_text("S")
       .check(positive());
-  command.add_option("--rate", arguments->rate_hz, "of --link and --rt, Hz (1000)").type_name("HZ").check(positive());
+  command.add_option("--rate", arguments->rate_hz, "rate of --link and --rt, in Hz (default: 1000)")
+      .type_name("HZ")
+      .check(positive());
   add_output_options(command, arguments->output, "mbk.robot_check/1");
   return [arguments] { return run(*arguments); };
 }

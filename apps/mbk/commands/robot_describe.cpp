@@ -32,16 +32,16 @@ int run(const RobotDescribeArguments& arguments) {
 
 Action add_robot_describe(Command group) {
   auto arguments = std::make_shared<RobotDescribeArguments>();
-  const Command command = group.add_command("describe", "what mbk understands of a robot's description or URDF");
+  const Command command = group.add_command("describe", "show how mbk understands the description or URDF of a robot");
   command.footer(
       "Examples:\n"
       "  mbk robot describe my_robot.toml\n"
       "  mbk robot describe arm.urdf\n"
       "      the whole chain, from the root of the URDF to its only leaf\n\n"
-      "Look at the limits, and at where the hand is with every joint at zero, before you record.\n"
+      "Check the limits, and the hand position with every joint at zero, before you record.\n"
       "docs/guide/own_robot.md lists the keys of a description.");
-  command.add_option("FILE", arguments->file, "description of a robot: .toml, or a .urdf alone").required();
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.robot_description/1");
+  command.add_option("FILE", arguments->file, "description of a robot: .toml, or only a .urdf").required();
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.robot_description/1");
   arguments->output.add_options(command);
   return [arguments] { return run(*arguments); };
 }

@@ -34,7 +34,8 @@ int run(const RobotForceArguments& arguments) {
   }
   if (auto ok = check_files(arguments.reading.files, arguments.output.to); !ok) return report_error(ok.error());
   if (arguments.reading.files.size() > 1 && !arguments.reading.parts) {
-    return report_error({ErrorKind::usage, "one recording at a time", "or join numbered parts with --parts", ""});
+    return report_error({ErrorKind::usage, "several recordings are named, but only one can be processed",
+                         "name one FILE, or join numbered parts with --parts", ""});
   }
   measurement::Options options = arguments.options;
   preprocess::Options& p = options.preprocess;
@@ -61,29 +62,29 @@ int run(const RobotForceArguments& arguments) {
 
 Action add_robot_force(Command group) {
   auto arguments = std::make_shared<RobotForceArguments>();
-  const Command command = group.add_command("force", "the force at the hand without a force sensor");
+  const Command command = group.add_command("force", "estimate the force at the hand without a force sensor");
   command.footer(
       "Examples:\n"
       "  mbk robot force log.h5 --robot robot.json\n"
-      "      how large it is, how sure, and beside the force sensor where there is one\n"
+      "      its size and uncertainty, compared with the force sensor if there is one\n"
       "  mbk robot force log.h5 --robot robot.json --out with_force.h5\n"
-      "      a recording with force_x and force_y computed; those of a sensor become sensor_force_x …\n\n"
-      "'mbk measure --force-source virtual' does the same on its way.\n\n"
+      "      writes a recording with the computed force_x and force_y; those of a sensor become sensor_force_x …\n\n"
+      "'mbk measure --force-source virtual' uses the same estimate.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(command, arguments->reading);
   command
       .add_option("--robot", arguments->robot,
-                  "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot")
+                  "the robot's dynamics, as written by 'mbk robot identify --json' (default: the robot of the thesis)")
       .type_name("FILE")
       .check(not_empty());
   arguments->options.preprocess.force_source = ForceSource::virtual_sensor;
-  add_choice(command, "--force-source", arguments->options.preprocess.force_source,
-             {ForceSource::virtual_sensor, ForceSource::observer},
-             "virtual: from the whole motion, not causal; observer: as it could be had while the robot runs "
-             "(virtual)");
+  add_choice(
+      command, "--force-source", arguments->options.preprocess.force_source,
+      {ForceSource::virtual_sensor, ForceSource::observer},
+      "virtual: from the whole motion, not causal; observer: causal, as while the robot runs (default: virtual)");
   add_choice(command, "--acceleration", arguments->options.preprocess.acceleration,
-             "where the acceleration comes from (derivative)");
+             "source of the acceleration (default: derivative)");
   add_options(command, request::window_table(), arguments->options.preprocess.window);
   add_options(command, request::filter_table(), arguments->options.preprocess);
   add_option(command, request::resample_option(request::kFilterGroup), arguments->options.resample);

@@ -39,12 +39,12 @@ Result<std::optional<double>> number_or_auto(const std::string& given, const cha
   double value = 0.0;
   const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), value);
   if (error != std::errc() || end != given.data() + given.size() || !(std::abs(value) < 1e6)) {
-    return bad_usage(fmt::format("{}: {} is neither a number nor 'auto'", option, quoted(given)));
+    return bad_usage(fmt::format("{} {} is neither a number nor 'auto'", option, quoted(given)));
   }
   return value;
 }
 
-/// Sets the terms that a list names; a coefficient that stays keeps its value.
+/// Sets the terms that a list names; remaining coefficients keep their values.
 Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) {
   robot::DynamicModel& model = robot.model;
   robot::DriveTerms& drive = model.drive;
@@ -57,8 +57,8 @@ Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) 
     begin = end + 1;
     const auto term = std::ranges::find(robot::kDriveTermNames, word, &robot::DriveTermName::word);
     if (term == robot::kDriveTermNames.end()) {
-      return bad_usage(fmt::format("--terms: there is no term {}", quoted(word)),
-                       "take of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
+      return bad_usage(fmt::format("--terms contains the unknown term {}", quoted(word)),
+                       "use viscous, coulomb, stribeck, cable, offset, motor_inertia, or none");
     }
     drive.*term->requested = true;
   }
@@ -78,7 +78,7 @@ Result<void> set_terms(const std::string& list, robot::RobotDescription& robot) 
   return {};
 }
 
-/// The robot's structure with what the options say of its drives.
+/// The robot's structure, with the drive terms that the options choose.
 Result<void> choose(const RobotIdentifyArguments& arguments, robot::RobotDescription& robot,
                     measurement::RobotOptions& options) {
   const bool usual = !arguments.robot && arguments.terms.empty();
@@ -92,9 +92,9 @@ Result<void> choose(const RobotIdentifyArguments& arguments, robot::RobotDescrip
   if (delay) model.delay = 1e-3 * *delay;
   if (!arguments.stribeck_velocity.empty()) {
     const auto velocity = MBK_TRY(number_or_auto(arguments.stribeck_velocity, "--stribeck-velocity"));
-    if (velocity && !(*velocity > 0.0)) return bad_usage("--stribeck-velocity: not above 0");
+    if (velocity && !(*velocity > 0.0)) return bad_usage("--stribeck-velocity is not a positive number");
     if (!model.drive.stribeck) {
-      return bad_usage("--stribeck-velocity without a Stribeck term", "add --terms viscous,coulomb,stribeck,offset");
+      return bad_usage("--stribeck-velocity needs a Stribeck term", "add --terms viscous,coulomb,stribeck,offset");
     }
     options.stribeck_velocity = !velocity;
     if (velocity) model.drive.stribeck_velocity = *velocity;
@@ -115,12 +115,13 @@ Result<std::vector<Index>> indices_of(const std::string& list, const robot::Robo
     if (found == known.end()) {
       std::vector<std::string> names;
       for (const robot::Coefficient& one : known) names.push_back(one.name);
-      return bad_usage(fmt::format("--fix: the robot has no coefficient {}", quoted(name)),
-                       fmt::format("there are {}", fmt::join(names, ", ")));
+      return bad_usage(fmt::format("--fix names the unknown coefficient {}", quoted(name)),
+                       fmt::format("use one of {}", fmt::join(names, ", ")));
     }
     if (std::ranges::find(robot.unstated, name) != robot.unstated.end()) {
-      return bad_usage(fmt::format("--fix: the description of the robot has no value of {}", quoted(name)),
-                       "state it in the file of --robot");
+      return bad_usage(
+          fmt::format("--fix names {}, but the description of the robot has no value for it", quoted(name)),
+          "add it to the file of --robot");
     }
     indices.push_back(found - known.begin());
   }
@@ -163,45 +164,51 @@ OptionTable<RobotIdentifyArguments> model_table() {
   OptionTable<Arguments> table;
   table.group("Model")
       .add({"--terms", "LIST",
-            "what each drive adds, of viscous, coulomb, stribeck, cable, offset, motor_inertia, or none "
-            "(viscous,coulomb,offset)",
+            "terms of the drive model: viscous, coulomb, stribeck, cable, offset, motor_inertia, or none (default: "
+            "viscous,coulomb,offset)",
             not_empty()},
            &Arguments::terms)
-      .add({"--fix", "LIST",
-            "coefficients that are known: they keep the value of the robot's description, as in "
-            "--fix link_1.mass_x,link_2.mass_x for links that are symmetric",
+      .add(
+          {"--fix", "LIST",
+           "known coefficients, which keep the value of the robot's description: --fix link_1.mass_x,link_2.mass_x for "
+           "symmetric links",
+           not_empty()},
+          &Arguments::fixed)
+      .add(
+          {"--friction-smoothing", "V",
+           "velocity over which the sign of dry friction is smoothed, in rad/s or m/s; 0: not smoothed (default: 0.02)",
+           not_negative()},
+          &Arguments::smoothing)
+      .add({"--stribeck-velocity", "V|auto", "Stribeck velocity, in rad/s or m/s; auto estimates it (default: 0.05)",
             not_empty()},
-           &Arguments::fixed)
-      .add({"--friction-smoothing", "V",
-            "velocity over which the sign of dry friction is smoothed, rad/s or m/s; 0 takes the sign "
-            "(0.02)",
-            not_negative()},
-           &Arguments::smoothing)
-      .add({"--stribeck-velocity", "V|auto", "rad/s or m/s; auto finds it (0.05)", not_empty()},
            &Arguments::stribeck_velocity)
       .add({"--motor-delay", "MS|auto",
-            "by which the motors act after the torque that is recorded; a torque that is held for a sample counts "
-            "as half of one (auto: found)",
+            "delay of the motors after the recorded torque, in ms; a torque that is held for one sample counts as half "
+            "a "
+            "sample; auto estimates it (default: auto)",
             not_empty()},
            &Arguments::delay)
       .add(
           {"--method", "",
-           "wls: least squares, each joint weighted by its noise; ls: unweighted; iv: instrumental variables, which "
-           "noise of the motion does not bias"},
+           "wls: least squares, each joint weighted by its noise; ls: unweighted least squares; iv: instrumental "
+           "variables, "
+           "which noise of the motion does not bias (default: wls)"},
           [](auto& a) -> auto& { return a.options.fit.method; })
       .add(
           {"--consistent", "",
-           "find bodies that can exist, each with a mass above 0 and an inertia of some distribution of mass, "
-           "and drives that do not feed the motion; what the data leave open stays near the description"},
+           "require physically consistent parameters: each link with a positive mass and a possible inertia, drives "
+           "that "
+           "dissipate energy; parameters that the data do not determine stay near the description"},
           [](auto& a) -> auto& { return a.options.fit.consistent; })
       .add(
           {"--motion-cutoff", "HZ",
-           "with iv: the smoothed motion serves as instrument, low-passed here; otherwise the recorded "
-           "reference, or without one the band of the torque",
+           "with iv: use the smoothed motion, low-pass filtered at this frequency in Hz, as instrument (default: the "
+           "recorded reference; without one the motion in the band of the torque)",
            positive()},
           [](auto& a) -> auto& { return a.options.preprocess.motion_cutoff; })
       .add(
-          {"--hac-lag", "S", "reach of the residual's correlation in the standard errors (1)", positive()},
+          {"--hac-lag", "S",
+           "correlation time of the residual, in seconds, that the standard errors allow for (default: 1)", positive()},
           [](auto& a) -> auto& { return a.options.fit.hac_lag_s; });
   return table;
 }
@@ -210,30 +217,33 @@ OptionTable<RobotIdentifyArguments> model_table() {
 
 Action add_robot_identify(Command group) {
   auto arguments = std::make_shared<RobotIdentifyArguments>();
-  const Command command = group.add_command("identify", "the robot's own inertia and friction, from its motion alone");
+  const Command command =
+      group.add_command("identify", "identify the inertia and friction of a robot from its free motion");
   command.footer(
       "Examples:\n"
       "  mbk simulate free_motion --out free.h5\n"
       "  mbk robot identify free.h5\n"
-      "      the thesis's robot: alpha1 … alpha3, friction, and how well the torque is explained\n"
+      "      the robot of the thesis: alpha1 … alpha3, friction, and how well the model explains the torque\n"
       "  mbk robot identify free_1.h5 free_2.h5 --held-out free_3.h5 --json --out robot.json\n"
-      "      several recordings in one fit, another to judge it; robot.json is what a virtual force needs\n"
+      "      fits several recordings and validates on another; a virtual force sensor needs robot.json\n"
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml\n"
       "      your own robot, from its URDF\n"
       "  mbk robot identify free.h5 --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto\n"
       "  mbk robot identify swing_*.csv --robot examples/robots/double_pendulum.toml --consistent\n"
-      "      each link with a mass, a centre and an inertia that a body can have\n\n"
-      "Record with nothing at the hand, every joint moving, fast and slow, through the places where you\n"
-      "will measure. Torque and motion are filtered alike; what the data cannot distinguish is reported.\n\n"
+      "      each link with a physically possible mass, centre of mass and inertia\n\n"
+      "Record with nothing at the handle and every joint moving, fast and slow, through the positions\n"
+      "where you will measure. Torque and motion are filtered alike; parameters that cannot be\n"
+      "distinguished are reported.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(command, arguments->reading);
   const Option held_out =
-      command.add_option("--held-out", arguments->held_out, "recordings that only judge the fit").type_name("FILE");
+      command.add_option("--held-out", arguments->held_out, "validation recordings, which do not enter the fit")
+          .type_name("FILE");
   command.accept_former_name(held_out, "--held-back");
   command
       .add_option("--robot", arguments->robot,
-                  "which robot it is: a description in TOML or a URDF; without it the thesis's robot")
+                  "description of the robot: TOML or URDF (default: the robot of the thesis)")
       .type_name("FILE")
       .check(not_empty());
   preprocess::Options& signals = arguments->options.preprocess.signals;

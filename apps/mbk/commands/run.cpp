@@ -56,7 +56,8 @@ Result<std::vector<Trial>> trials_of(const RunArguments& arguments) {
   for (const std::string& name : arguments.trials) {
     const auto found = std::ranges::find(trials, name, &Trial::name);
     if (found == trials.end()) {
-      return bad_usage(fmt::format("there is no trial '{}'", name), "see the [[trial]] names in the file");
+      return bad_usage(fmt::format("the experiment has no trial '{}'", name),
+                       "use the name of a [[trial]] in the file");
     }
     chosen.push_back(*found);
   }
@@ -69,7 +70,7 @@ Result<std::vector<Trial>> trials_of(const RunArguments& arguments) {
   return chosen;
 }
 
-/// One line on standard error, written over itself where that is a terminal; else one a second.
+/// One line on standard error: rewritten in place at a terminal, otherwise once a second.
 class StatusLine {
  public:
   StatusLine(std::string_view trial, bool quiet)
@@ -106,7 +107,7 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
   if (!outcome.ending.detail.empty()) text += ": " + outcome.ending.detail;
   text += "\n  motors: " + safety::sentence(outcome.motors);
   for (const std::string& note : outcome.notes) {
-    if (outcome.unrecorded) text += "\n  note that is in no recording: " + note;
+    if (outcome.unrecorded) text += "\n  note that is not in a recording: " + note;
   }
   text += fmt::format("\n  {} ticks, {} dropped; compute per tick: {}\n", outcome.times.ticks, outcome.ending.dropped,
                       time_text(outcome.times.compute));
@@ -114,14 +115,14 @@ std::string outcome_text(const session::TrialOutcome& outcome, const session::Pa
     text += fmt::format("  lateness: {}; {} ticks missed\n", time_text(outcome.times.lateness), outcome.times.missed);
     text += fmt::format("  time between commands: {}\n", time_text(outcome.times.interval));
     if (outcome.times.early > 0) {
-      text += fmt::format("  ! the clock woke the loop too early {} times; it waited on\n", outcome.times.early);
+      text += fmt::format("  ! the clock woke the loop too early {} times; it waited again\n", outcome.times.early);
     }
     if (!outcome.setup.refused.empty()) text += fmt::format("  {}\n", outcome.setup.refused);
   }
   return text;
 }
 
-/// What is wrong with the journal, which was kept then.
+/// Damage of the journal, which is then kept.
 std::string damage_text(const session::TrialOutcome& outcome) {
   std::string text;
   for (const std::string& sentence : outcome.damage.sentences()) text += fmt::format("  ! {}\n", sentence);
@@ -139,7 +140,7 @@ int dry_run(const session::Experiment& experiment, const std::string& file) {
   return kFine;
 }
 
-/// Of a real robot, what the gate does not watch as closely as by default, and what of it is not known: each once.
+/// For a real robot: limits that are weaker than by default, and facts that are assumed. Each is listed once.
 std::vector<std::string> robot_warnings(const session::Experiment& experiment) {
   std::vector<std::string> all;
   for (const session::Plan& plan : experiment.plans) {
@@ -153,7 +154,7 @@ std::vector<std::string> robot_warnings(const session::Experiment& experiment) {
   return all;
 }
 
-/// At a terminal. What was typed before the question is no answer to it.
+/// At a terminal. Discards what was typed before the question.
 bool ask(const char* question, const session::LoopFlags& flags) {
   tcflush(STDIN_FILENO, TCIFLUSH);
   say("{} [y/N] ", question);
@@ -169,14 +170,14 @@ bool ask(const char* question, const session::LoopFlags& flags) {
   return false;
 }
 
-/// What standard error did not take, for standard output and the recording.
+/// Messages that standard error did not accept, for standard output and the recording.
 std::string lost_messages_text(const LostMessages& lost) {
   if (lost.count == 0) return {};
   return fmt::format("{} message{} of mbk to standard error lost: {}", lost.count, lost.count == 1 ? "" : "s",
                      lost.why);
 }
 
-/// The loudest thing that this program says.
+/// The alarm that the motors are not confirmed off.
 std::string alarm(const safety::MotorsOff& motors) {
   constexpr std::size_t kAlarmWidth = 78;  // any terminal's
   const std::string line(kAlarmWidth, '!');
@@ -186,14 +187,14 @@ std::string alarm(const safety::MotorsOff& motors) {
       line, report::wrapped("The motors are " + safety::sentence(motors) + ".", kAlarmWidth));
 }
 
-/// Exit code of what was performed; what is worst counts.
+/// Exit code of the session: that of its worst event.
 int code_of(const session::Conclusion& conclusion) {
   const int code = conclusion.failure ? report_error(*conclusion.failure) : kFine;
   if (conclusion.motors.state == safety::MotorsOff::State::missing) return kMotorsNotOff;
   return conclusion.trip.reason != safety::Reason::none ? kSafetyStop : code;
 }
 
-/// Signals and keys that stop a trial while it runs, and a line that shows how far it is, beside the page.
+/// Signals and keys that stop a running trial, and a status line beside the page.
 class TrialWatcher : public session::Watcher {
  public:
   TrialWatcher(std::unique_ptr<session::Watcher> page, const session::Attempt& attempt, session::LoopFlags& flags,
@@ -216,10 +217,10 @@ class TrialWatcher : public session::Watcher {
   StatusLine line_;
 };
 
-/// The operator at the terminal, and at the page where there is one: it is asked where it decides.
+/// The operator at the terminal, and at the page if there is one, which then makes the decisions that are its own.
 class TerminalOperator : public session::Operator {
  public:
-  /// @param warnings  said before the first trial
+  /// @param warnings  printed before the first trial
   TerminalOperator(const RunConsole& console, session::LoopFlags& flags, const session::Pace& pace, bool quiet,
                    std::vector<std::string> warnings)
       : page_(console.page()),
@@ -251,7 +252,7 @@ class TerminalOperator : public session::Operator {
     const auto written = print_text(outcome_text(outcome, pace_));
     if (!written) report_error(written.error());
     if (outcome.unrecorded) report_error(*outcome.unrecorded);
-    say("mbk: the robot's driver still does not return. Press Ctrl-C, or send SIGTERM, to end mbk with exit code {}.\n",
+    say("mbk: the robot's driver still does not return. Press Ctrl-C or send SIGTERM to end mbk with exit code {}.\n",
         kMotorsNotOff);
   }
 
@@ -276,7 +277,7 @@ class TerminalOperator : public session::Operator {
     }
     if (performed.attempt.plan.schedule.reaches() != nullptr && !performed.outcome.unrecorded) {
       text_ +=
-          fmt::format("  reaches: 'mbk explore {}' measures the stiffness\n", performed.outcome.recording.string());
+          fmt::format("  reaches: 'mbk explore {}' estimates the stiffness\n", performed.outcome.recording.string());
     }
     const auto written = print_text(text_);
     if (page_ != nullptr) {
@@ -290,14 +291,14 @@ class TerminalOperator : public session::Operator {
     const bool terminal = isatty(STDIN_FILENO) == 1;
     if (performed.stopped()) return terminal ? after_stop(session) : Next::end;
     if (!performed.poor()) return Next::go_on;
-    if (terminal) return ask("The data are poor. Do the trial again?", flags_) ? Next::repeat : Next::go_on;
-    say("mbk: the data of {} are poor; think of repeating the trial\n", performed.attempt.target.string());
+    if (terminal) return ask("The data are poor. Repeat the trial?", flags_) ? Next::repeat : Next::go_on;
+    say("mbk: {}: the data are poor; consider repeating the trial\n", performed.attempt.target.string());
     return Next::go_on;
   }
 
  private:
   Next after_stop(Session& session) {
-    while (ask("Is the reason gone? Reset the gate and do the trial again?", flags_)) {
+    while (ask("Cause cleared? Reset and repeat the trial?", flags_)) {
       const auto reset = session.reset();
       if (reset) return Next::repeat;
       report_error(reset.error());
@@ -314,7 +315,7 @@ class TerminalOperator : public session::Operator {
   std::string text_, lost_;  // of the trial that is being judged; messages that were lost while it ran
 };
 
-/// @returns  the exit code, where no signal ended the session outside of a trial
+/// @returns  the exit code, unless a signal ended the session outside of a trial
 int conduct_experiment(Session& session, const session::Experiment& experiment, const session::Pace& pace,
                        const RunArguments& arguments) {
   const auto console = RunConsole::open(arguments.console, experiment, session.flags());
@@ -328,7 +329,7 @@ int conduct_experiment(Session& session, const session::Experiment& experiment, 
   const int code = code_of(session::conduct(experiment, session, conductor, measure));
   if (auto ok = console->end(); !ok) {
     const int lost = report_error(ok.error());
-    return code == kFine ? lost : code;  // motors that are not off are worse than notes that are not kept
+    return code == kFine ? lost : code;  // motors that are not off are worse than lost notes
   }
   return code;
 }
@@ -365,40 +366,41 @@ Action add_run(Command app) {
   command.footer(
       "Examples:\n"
       "  mbk run relaxed_sinusoidal --out relaxed.h5\n"
-      "      a simulated robot and participant, in real time; needs nothing\n"
+      "      a simulated robot and participant, in real time; needs no hardware\n"
       "  mbk run mine.toml --dry-run\n"
-      "      schedule, peaks, duration and limits, before anyone sits down\n"
+      "      schedule, peaks, duration and limits; run it before a participant sits down\n"
       "  mbk run mine.toml --participant 7 --out p07.h5\n"
-      "      every [[trial]] of the file in turn: p07_NAME.h5\n"
+      "      every [[trial]] of the file in turn, into p07_NAME.h5\n"
       "  mbk run relaxed_sinusoidal --fast --out relaxed.h5\n"
-      "      the same on a virtual clock, as fast as the machine can; --speed 20 for twenty times\n"
+      "      the same on a virtual clock, as fast as possible; --speed 20: twenty times real time\n"
       "  mbk run mine.toml --wait\n"
-      "      nothing moves before its operator says so in the console, a page whose address is printed\n\n"
-      "The space bar and Ctrl-C stop the robot, e ends a trial early. What is recorded goes to\n"
-      "NAME.h5.journal first; where the program or the machine went down, 'mbk recover' makes a recording of it.\n"
-      "The gate limits force, torque, speed and place in software; it is no certified safety function. With people,\n"
-      "a stop button that cuts the motors' power stays necessary (docs/guide/run.md).\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or ticks were lost, 4 computed but not usable,\n"
-      "5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
-  command.add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a ready one")
+      "      nothing moves until the operator starts it in the console, a page whose address is printed\n\n"
+      "The space bar and Ctrl-C stop the robot; e ends a trial early. Data are first written to\n"
+      "NAME.h5.journal; if the program or the computer crashed, 'mbk recover' makes a recording of it.\n"
+      "The gate limits force, torque, speed and position in software; it is not a certified safety\n"
+      "function. With people, a stop button that cuts the motors' power remains necessary\n"
+      "(docs/guide/run.md).\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 bad or unreadable data, or lost ticks, 4 computed but not\n"
+      "usable, 5 safety stop, 7 the robot did not confirm that its motors are off: cut their power.");
+  command.add_option("EXPERIMENT", arguments->experiment, "a .toml file, or the name of a built-in experiment")
       .required()
       .check(suggests(laboratory::ready_scenario_names()));
-  command.add_option("--out", arguments->out, "the recording to write (NAME.h5); several trials get suffixes")
+  command.add_option("--out", arguments->out, "recording to write (default: NAME.h5); several trials get suffixes")
       .type_name("REC")
       .check(not_empty());
-  command.add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
+  command.add_option("--trial", arguments->trials, "run only this [[trial]] of the file; may be repeated")
       .type_name("NAME");
-  command.add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the experiment's")
+  command.add_option("--seed", arguments->seed, "random seed; overrides the experiment file")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<long>::max()));
-  command.add_option("--participant", arguments->person, "number of the person, instead of the file's")
+  command.add_option("--participant", arguments->person, "number of the participant; overrides the experiment file")
       .type_name("N")
       .check(whole_number(1, 999'999));
-  command.add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: as fast as the machine can");
-  command.add_option("--speed", arguments->speed, "virtual clock: so many seconds for each second").type_name("X");
+  command.add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: run as fast as possible");
+  command.add_option("--speed", arguments->speed, "virtual clock: run X times faster than real time").type_name("X");
   add_readers_option(command, arguments->readers);
-  command.add_flag("--dry-run", arguments->dry_run, "say what would be done; nothing moves");
-  command.add_flag("!--no-measure", arguments->measure, "record only");
+  command.add_flag("--dry-run", arguments->dry_run, "print what would be done; nothing moves");
+  command.add_flag("!--no-measure", arguments->measure, "record without measuring");
   command.add_flag("--quiet", arguments->quiet, "no status line");
   add_console_options(command, arguments->console);
   return [arguments] { return run(*arguments); };

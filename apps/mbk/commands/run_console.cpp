@@ -16,14 +16,16 @@ namespace mbk::app {
 void add_console_options(Command command, ConsoleArguments& arguments) {
   command.add_flag_callback(
       "--console", [&arguments] { arguments.requested = true; },
-      "serve a page to watch and stop it, on this machine only; the default at a terminal");
+      "serve pages for watching and stopping the run, on this machine only (default: at a terminal)");
   command.add_flag_callback(
-      "--no-console", [&arguments] { arguments.requested = false; }, "no such page");
-  command.add_option("--port", arguments.port, "of the console, instead of any that is free")
+      "--no-console", [&arguments] { arguments.requested = false; }, "do not serve the console");
+  command.add_option("--port", arguments.port, "port of the console (default: any free port)")
       .type_name("N")
       .check(whole_number(0, 65535));
-  command.add_flag("--wait", arguments.wait, "the console starts each trial; nothing moves before");
-  command.add_option("--texts", arguments.texts, "of the participant's page: en, de, or a .toml file with your own")
+  command.add_flag("--wait", arguments.wait, "start each trial from the console; nothing moves before");
+  command
+      .add_option("--texts", arguments.texts,
+                  "texts of the participant's page: en, de, or your own .toml file (default: en)")
       .type_name("TEXTS")
       .check(not_empty());
 }
@@ -40,7 +42,7 @@ Result<RunConsole> RunConsole::open(const ConsoleArguments& arguments, const ses
     return bad_usage("--wait waits for the console, which --no-console omits", "omit one of the two");
   }
   if (!arguments.texts.empty() && arguments.requested == false) {
-    return bad_usage("--texts are those of the console, which --no-console omits", "omit one of the two");
+    return bad_usage("--texts applies to the console, which --no-console omits", "omit one of the two");
   }
   std::vector<std::string> names;
   for (const session::Plan& plan : experiment.plans) names.push_back(plan.trial.name);
@@ -89,7 +91,7 @@ Result<Measurement> RunConsole::measured(const Recording& recording) const {
 Result<void> RunConsole::end() const {
   if (!console_) return {};
   if (console_->status().viewers > 0) {
-    say("the console stays until its pages are closed; Ctrl-C ends it too\n");
+    say("the console stays open until its pages are closed; Ctrl-C also ends it\n");
     console_->wait_until_left();
   }
   return page_->keep_notes();

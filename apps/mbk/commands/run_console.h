@@ -23,23 +23,23 @@ void add_console_options(Command command, ConsoleArguments& arguments);
 /// "median 4.3 µs, p99.9 …, worst …"
 [[nodiscard]] std::string time_text(const realtime::CycleRecord& record);
 
-/// The console beside a run; every call is fine where there is none.
+/// The console of a run; every call is valid without one.
 class RunConsole {
  public:
-  /// Opens it where it is wanted, and prints its addresses.   @fails  as Console::open
+  /// Opens it if requested, and prints its addresses.   @fails  as Console::open
   [[nodiscard]] static Result<RunConsole> open(const ConsoleArguments& arguments, const session::Experiment& experiment,
                                                session::LoopFlags& flags);
 
-  /// Who decides there; null where there is none.
+  /// The operator at the page; null if there is none.
   [[nodiscard]] console::PageOperator* page() const { return page_.get(); }
 
-  /// @returns  what pages cost the loop in the last trial, where there were any for a part of the time; else nothing
+  /// @returns  loop times of the last trial with and without open pages, if there were both; otherwise nothing
   [[nodiscard]] std::string times_text() const;
 
-  /// Measures, and where there is a page that could open it makes the report too.   @fails  as measurement::measure
+  /// Measures, and also writes the report if there is a page to show it.   @fails  as measurement::measure
   [[nodiscard]] Result<Measurement> measured(const Recording& recording) const;
 
-  /// Stays while somebody looks.   @fails  as session::annotate
+  /// Waits until its pages are closed.   @fails  as session::annotate
   [[nodiscard]] Result<void> end() const;
 
  private:

@@ -56,47 +56,52 @@ OptionTable<SensorCalibrateArguments> calibrate_table() {
   OptionTable<SensorCalibrateArguments> table;
   table
       .add(
-          {"--lever-arm-mm", "MM", "from the gauges to the load, kept for --sensor", positive()},
+          {"--lever-arm-mm", "MM", "lever arm from the strain gauges to the load, in mm; stored for --sensor",
+           positive()},
           [](auto& a) -> auto& { return a.options.lever_arm; }, kMillimetres)
       .add(
-          {"--bits", "N", "of the converter; otherwise its step is looked for in the data", whole_number(2, 32)},
+          {"--bits", "N", "resolution of the converter, in bits (default: its step is estimated from the data)",
+           whole_number(2, 32)},
           [](auto& a) -> auto& { return a.converter.bits; })
       .add(
-          {"--range", "V", "of the converter, ± volts", positive(), "--bits"},
+          {"--range", "V", "range of the converter, ± volts", positive(), "--bits"},
           [](auto& a) -> auto& { return a.converter.range; })
       .add({"--sensor-frame", "",
-            "link: the reference's force is turned into the axes of the last link, at q2; base: it is not; auto: "
-            "link where q2 is there"},
+            "link: the reference force is rotated into the axes of the last link, at angle q2; base: it is not; auto: "
+            "link if q2 was recorded (default: auto)"},
            &SensorCalibrateArguments::frame)
       .add(
-          {"--longest-delay-ms", "MS", "by which the voltage may come after a reference, either way (50; 0: none)",
-           not_negative()},
+          {"--longest-delay-ms", "MS",
+           "maximum lag between voltage and reference, either way, in ms (default: 50; 0: none)", not_negative()},
           [](auto& a) -> auto& { return a.options.longest_delay; }, kMilliseconds)
       .add(
-          {"--hac-lag", "S", "reach of the residual's correlation in the standard errors, s (1)", not_negative()},
+          {"--hac-lag", "S",
+           "correlation time of the residual, in seconds, that the standard errors allow for (default: 1)",
+           not_negative()},
           [](auto& a) -> auto& { return a.options.hac_lag_s; });
   return table;
 }
 
 Action add_sensor_calibrate(Command sensor) {
   auto arguments = std::make_shared<SensorCalibrateArguments>();
-  const Command command = sensor.add_command("calibrate", "slope, zero, crosstalk and noise from known loads");
+  const Command command =
+      sensor.add_command("calibrate", "calibrate slope, zero, crosstalk and noise of a sensor with known loads");
   command.footer(
       "Examples:\n"
       "  mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10\n"
-      "      columns Fx, Fy in N and Vx, Vy in V, one row a load; repeats and both signs are welcome\n"
+      "      columns Fx, Fy in N and Vx, Vy in V, one row for each load; repeat loads and use both signs\n"
       "  mbk sensor calibrate --channels Fx=mass*9.81,Vx=volt x_loads.csv --axes 1\n"
-      "      a hung mass in kg, one axis\n"
+      "      one axis, loaded with hanging masses in kg\n"
       "  mbk sensor calibrate trial.csv --json --out cell.json\n"
-      "      a reference sensor's Fx, Fy over time beside Vx, Vy; 'mbk measure --sensor cell.json' uses it\n\n"
-      "Each FILE is a run with a zero of its own; the slopes come from all runs, the zero from the last.");
+      "      Fx, Fy of a reference sensor over time beside Vx, Vy; used by 'mbk measure --sensor cell.json'\n\n"
+      "Each FILE is a run with its own zero; the slopes come from all runs, the stored zero from the last.");
   ReadRequest& reading = arguments->reading;
   add_reading_options(command, reading);
-  command.get_option("--axes").description("1: each axis separately; otherwise crosstalk is fitted too");
-  command.get_option("FILE").description("tables of loads or recordings: .csv, .h5 or .mat");
+  command.get_option("--axes").description("1: calibrate each axis separately (default: crosstalk is fitted too)");
+  command.get_option("FILE").description("tables of loads, or recordings: .csv, .h5 or .mat");
   add_options(command, calibrate_table(), *arguments);
   command.get_option("--bits").needs(command.get_option("--range"));
-  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor/1, which --sensor reads");
+  command.add_flag("--json", arguments->output.json, "print JSON, as --sensor reads it: schema mbk.sensor/1");
   arguments->output.to.add_options(command);
   return [arguments] { return run_calibrate(*arguments); };
 }
@@ -111,7 +116,8 @@ struct SensorDelayArguments {
 
 Result<MeasuredDelay> find_delay(const SensorDelayArguments& arguments) {
   auto recordings = MBK_TRY(read_recordings(arguments.reading));
-  if (recordings.size() != 1) return bad_usage("a delay is found in one recording", "name one FILE");
+  if (recordings.size() != 1)
+    return bad_usage("several recordings are named, but a delay is found in one", "name one FILE");
   preprocess::Options signals = arguments.signals;
   MBK_TRY(request::check_order(signals.window));
   signals.axes = arguments.reading.options.axes;
@@ -135,26 +141,26 @@ int run_delay(const SensorDelayArguments& arguments) {
 
 Action add_delay(Command sensor) {
   auto arguments = std::make_shared<SensorDelayArguments>();
-  const Command command = sensor.add_command("delay", "by how much the force is read late, from a known mass");
+  const Command command = sensor.add_command("delay", "measure the delay of the force signal with a known mass");
   command.footer(
-      "Fix a known mass to the handle, let the robot move it about for half a minute (a multisine up\n"
-      "to some hertz), and record as in a trial. No hand may touch it.\n\n"
+      "Fix a known mass to the handle, let the robot move it for half a minute (a multisine up to a few\n"
+      "hertz), and record as in a trial. Nobody may touch the handle.\n\n"
       "Examples:\n"
       "  mbk sensor delay mass.h5 --mass 1.194\n"
-      "      1 kg, and 0.194 kg of the handle that is beyond the force sensor\n"
+      "      1 kg, plus 0.194 kg of the handle beyond the force sensor\n"
       "  mbk measure trial.h5 --force-delay-ms 10.2\n"
-      "      a trial with the delay that was found\n\n"
-      "Exit codes: 0 the delay is found, 2 wrong usage, 3 bad or unreadable data, 4 it is not to be\n"
-      "used: something else than that mass is at the handle, or its motion is too slow or short.");
+      "      measures a trial with this delay corrected\n\n"
+      "Exit codes: 0 the delay was found, 2 wrong usage, 3 bad or unreadable data, 4 the delay is not\n"
+      "usable: something other than this mass is at the handle, or its motion is too slow or too short.");
   add_reading_options(command, arguments->reading);
-  command.add_option("--mass", arguments->mass, "beyond the force sensor, the handle's own included, kg")
+  command.add_option("--mass", arguments->mass, "mass beyond the force sensor, including that of the handle, in kg")
       .type_name("KG")
       .check(positive())
       .required();
   add_options(command, request::window_table(), arguments->signals.window);
   add_options(command, request::filter_table(), arguments->signals);
   add_option(command, request::resample_option(request::kFilterGroup), arguments->resample);
-  command.add_flag("--json", arguments->output.json, "for machines: schema mbk.sensor_delay/1");
+  command.add_flag("--json", arguments->output.json, "print JSON: schema mbk.sensor_delay/1");
   arguments->output.to.add_options(command);
   return [arguments] { return run_delay(*arguments); };
 }
@@ -162,7 +168,7 @@ Action add_delay(Command sensor) {
 }  // namespace
 
 Action add_sensor(Command app) {
-  const Command command = app.add_command("sensor", "slope, zero and delay of a force sensor of your own");
+  const Command command = app.add_command("sensor", "calibrate your own force sensor: slope, zero and delay");
   command.require_subcommand();
   command.footer(
       "Examples:\n"

@@ -42,7 +42,7 @@ Result<void> check_files(const Trials& jobs, const SimulateArguments& arguments)
 }
 
 int list() {
-  std::string text = "Ready scenarios (mbk simulate NAME --out REC.mat; --show NAME prints one):\n";
+  std::string text = "Built-in scenarios (mbk simulate NAME --out REC.mat; --show NAME prints one):\n";
   for (const laboratory::ReadyScenario& one : laboratory::ready_scenarios()) {
     const auto scenarios = laboratory::read_scenarios(one.text, std::string(one.name) + ".toml");
     if (!scenarios) return report_error(scenarios.error());
@@ -56,14 +56,14 @@ int list() {
 int show_scenario(const std::string& name) {
   const auto* ready = laboratory::find_ready_scenario(name);
   if (ready == nullptr) {
-    return report_error({ErrorKind::usage, fmt::format("there is no ready scenario '{}'", name),
-                         "'mbk simulate --list' names them", ""});
+    return report_error(
+        {ErrorKind::usage, fmt::format("'{}' is not a built-in scenario", name), "see 'mbk simulate --list'", ""});
   }
   if (auto ok = print_text(std::string(ready->text)); !ok) return report_error(ok.error());
   return kFine;
 }
 
-/// What the perturbation of each trial demands; nothing is simulated.
+/// Prints the properties of the perturbation of each trial; simulates nothing.
 int show_facts(const SimulateArguments& arguments) {
   const auto jobs = workflow::simulated_trials(arguments);
   if (!jobs) return report_error(jobs.error());
@@ -136,60 +136,64 @@ int run(const SimulateArguments& arguments) {
 Action add_simulate(Command app) {
   auto arguments = std::make_shared<SimulateArguments>();
   auto shown = std::make_shared<std::string>();
-  const Command command = app.add_command("simulate", "a simulated trial: a recording with the truth in it");
+  const Command command =
+      app.add_command("simulate", "simulate a trial and write a recording that contains the true parameters");
   command.footer(
       "Examples:\n"
       "  mbk simulate --list\n"
-      "      the ready scenarios, one for each experiment of the thesis\n"
+      "      lists the built-in scenarios, one for each experiment of the thesis\n"
       "  mbk simulate relaxed_sinusoidal --out relaxed.mat\n"
-      "      the end of the name says the format: .h5, .mat (v5) or .csv\n"
+      "      the extension determines the format: .h5, .mat (v5) or .csv\n"
       "  mbk simulate --show relaxed_sinusoidal > mine.toml\n"
-      "      a commented file to begin your own with; every key carries its unit\n"
+      "      prints a commented file to start your own from; every key has its unit in its name\n"
       "  mbk simulate mine.toml --out mine.mat --seeds 20\n"
-      "      mine_seed1.mat … mine_seed20.mat, as many at a time as there are cores\n"
+      "      mine_seed1.mat … mine_seed20.mat, one at a time on each core\n"
       "  mbk simulate mine.toml --out mine.h5 --seeds 10000 --engine slurm\n"
       "      as a job array on the cluster\n"
       "  mbk simulate rig_table_5_1 --trial K5_M5 --out rig.mat\n"
       "  mbk simulate mine.toml --facts\n"
-      "      peaks, speed, crest factor and band of the perturbation, before anything moves\n\n"
-      "The recording holds the truth (truth_M, truth_B, truth_K, …) as metadata, which 'mbk info' shows and\n"
-      "nothing that measures reads; --blind leaves it out. The same scenario and seed give the same bytes.\n"
-      "Arms that correct their position or force do so with gains that are tuned, not fitted to people.");
-  command.add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a ready scenario")
+      "      peaks, speed, crest factor and band of the perturbation; simulates nothing\n\n"
+      "The metadata of the recording contain the true parameters (truth_M, truth_B, truth_K, …). 'mbk\n"
+      "info' shows them, no measuring command reads them, and --blind omits them. The same scenario and\n"
+      "seed give the same bytes. Arms that correct their position or force do so with tuned gains, which\n"
+      "are not fitted to people.");
+  command.add_option("SCENARIO", arguments->scenario, "a .toml file, or the name of a built-in scenario")
       .check(suggests(laboratory::ready_scenario_names()));
   command
       .add_option("--out", arguments->out,
-                  "the recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
+                  "recording to write: .h5, .mat or .csv; several trials or seeds get suffixes")
       .type_name("REC")
       .check(not_empty());
-  command.add_option("--trial", arguments->trials, "only this [[trial]] of the file; may be repeated")
+  command.add_option("--trial", arguments->trials, "simulate only this [[trial]] of the file; may be repeated")
       .type_name("NAME");
-  command.add_option("--seed", arguments->seed, "of phases, decisions and noise, instead of the scenario's")
+  command.add_option("--seed", arguments->seed, "random seed; overrides the scenario file")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<long>::max()));
-  command.add_option("--seeds", arguments->seeds, "so many recordings, with seeds from there on (1)")
+  command.add_option("--seeds", arguments->seeds, "number of recordings, with consecutive seeds (default: 1)")
       .type_name("N")
       .check(whole_number(1, 100'000));
-  add_threads_option(command, arguments->threads, "recordings");
-  command.add_flag("--blind", arguments->blind, "leave the truth and the scenario's name out");
-  command.add_flag("--overwrite", arguments->overwrite, "replace recordings that are there");
+  add_threads_option(command, arguments->threads, "number of recordings simulated in parallel");
+  command.add_flag("--blind", arguments->blind, "omit the true parameters and the name of the scenario");
+  command.add_flag("--overwrite", arguments->overwrite, "replace existing recordings");
   add_readers_option(command, arguments->readers);
   add_engine_options(command, arguments->engine);
-  command.add_flag("--list", arguments->list, "the ready scenarios");
-  command.add_flag("--facts", arguments->facts, "what the perturbation demands: peaks, speed, band; simulates nothing");
-  command.add_option("--show", *shown, "print a ready scenario")
+  command.add_flag("--list", arguments->list, "list the built-in scenarios");
+  command.add_flag("--facts", arguments->facts, "print peaks, speed and band of the perturbation; simulate nothing");
+  command.add_option("--show", *shown, "print a built-in scenario")
       .type_name("NAME")
       .check(suggests(laboratory::ready_scenario_names()));
-  command.add_flag("--quiet", arguments->quiet, "no progress and no summary");
+  command.add_flag("--quiet", arguments->quiet, "print no progress and no summary");
   return [arguments, shown] {
     if (arguments->list) return list();
     if (!shown->empty()) return show_scenario(*shown);
     if (arguments->scenario.empty()) {
-      return report_error({ErrorKind::usage, "no scenario", "name a TOML file, or one of 'mbk simulate --list'", ""});
+      return report_error(
+          {ErrorKind::usage, "SCENARIO is missing", "name a TOML file, or a scenario of 'mbk simulate --list'", ""});
     }
     if (arguments->facts) return show_facts(*arguments);
     if (arguments->out.empty()) {
-      return report_error({ErrorKind::usage, "no --out", "name the recording to write: --out recording.mat", ""});
+      return report_error(
+          {ErrorKind::usage, "--out is missing", "name the recording to write: --out recording.mat", ""});
     }
     if (auto format = recording::format_of(arguments->out); !format) return report_error(format.error());
     return run(*arguments);

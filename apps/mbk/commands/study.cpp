@@ -4,19 +4,20 @@
 namespace mbk::app {
 
 Action add_study(Command app) {
-  const Command group = app.add_command("study", "many people and trials: store, measure what is new, sum up, pass on");
+  const Command group =
+      app.add_command("study", "manage a study of many participants and trials: store, measure, summarise, export");
   group.footer(
       "Examples:\n"
       "  mbk study init arms --title \"Stiffness at rest\"\n"
-      "      a folder with a database and the recordings by their hash; in it, or with --study arms:\n"
+      "      creates a folder for a database and the recordings; then, in this folder or with --study arms:\n"
       "  mbk study add p07_relaxed.h5 --participant 7 --session 2 --condition relaxed\n"
       "  mbk study import 'recordings of mbk run'/*.h5\n"
       "  mbk study measure\n"
-      "      only what is new, or whose options changed\n"
+      "      measures only recordings that are new or whose options changed\n"
       "  mbk study summary\n"
       "  mbk study check\n\n"
-      "Participants are numbers. Names of files are not kept, and a recording whose metadata name a person is\n"
-      "refused. Everything that changes a study is a line of its log ('mbk study log').");
+      "Participants are numbers. File names are not stored, and a recording whose metadata name a person\n"
+      "is rejected. Every change of a study is recorded in its log ('mbk study log').");
   group.require_subcommand();
   const Actions actions = {{"init", add_study_init(group)},       {"defaults", add_study_defaults(group)},
                            {"add", add_study_add(group)},         {"import", add_study_import(group)},

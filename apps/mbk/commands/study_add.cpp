@@ -32,11 +32,11 @@ std::string added_line(const AddedRecording& added) {
   const store::StoredRecording& r = added.recording;
   return fmt::format("recording {}: participant {}, session {}, {}trial {}, {:.1f} s{}{}\n", r.number, r.participant,
                      r.session, r.condition.empty() ? "" : r.condition + ", ", r.trial, r.duration_s,
-                     added.there_before ? " (there already)" : "",
+                     added.there_before ? " (already stored)" : "",
                      r.excluded_why ? ", excluded: " + *r.excluded_why : "");
 }
 
-/// Adds all of them; one that cannot be added costs only itself.
+/// Adds all recordings. One that cannot be added does not stop the others.
 int add_all(const AddArguments& arguments, const std::vector<store::SheetRow>& rows) {
   auto study = open_study(arguments.study);
   if (!study) return report_error(study.error());
@@ -67,7 +67,8 @@ int add_all(const AddArguments& arguments, const std::vector<store::SheetRow>& r
 
 int run_add(const AddArguments& arguments) {
   if (arguments.facts.trial && arguments.files.size() > 1) {
-    return report_error({ErrorKind::usage, "--trial numbers one file", "leave it out: trials are counted", ""});
+    return report_error({ErrorKind::usage, "--trial numbers one file, but several are named",
+                         "omit --trial; trials are numbered automatically", ""});
   }
   std::vector<store::SheetRow> rows;
   for (const std::filesystem::path& file : arguments.files) rows.push_back({file, arguments.facts});
@@ -79,20 +80,20 @@ int run_import(const AddArguments& arguments) {
   int code = kFine;
   if (arguments.sheet) {
     if (!arguments.files.empty()) {
-      return report_error({ErrorKind::usage, "the sheet names the files", "name no FILE beside --sheet", ""});
+      return report_error({ErrorKind::usage, "both FILE and --sheet name recordings", "omit FILE or --sheet", ""});
     }
     const auto text = read_text(*arguments.sheet);
     if (!text) return report_error(text.error());
     auto sheet = store::read_sheet(*text, arguments.sheet->parent_path());
     if (!sheet) return report_error(sheet.error().in(arguments.sheet->string()));
     if (!sheet->ignored.empty() && !arguments.quiet) {
-      say("mbk: {}: columns that are not kept: {}\n", arguments.sheet->string(),
+      say("mbk: {}: columns that are not stored: {}\n", arguments.sheet->string(),
           fmt::format("{}", fmt::join(sheet->ignored, ", ")));
     }
     rows = std::move(sheet->rows);
   } else {
     if (arguments.files.empty()) {
-      return report_error({ErrorKind::usage, "nothing to import", "name recordings, or a table with --sheet", ""});
+      return report_error({ErrorKind::usage, "no recording is named", "name recordings, or a table with --sheet", ""});
     }
     auto import = workflow::rows_of_files(arguments.files, arguments.pattern);
     if (!import) return report_error(import.error());
@@ -105,45 +106,47 @@ int run_import(const AddArguments& arguments) {
 
 void add_fact_options(Command command, KnownFacts& facts) {
   constexpr long kLargest = 999999999;
-  command.add_option("--session", facts.session, "which of the participant's sessions (as recorded, or 1)")
+  command.add_option("--session", facts.session, "number of the participant's session (default: as recorded, or 1)")
       .type_name("N")
       .check(whole_number(1, kLargest));
   command
-      .add_option("--condition", facts.condition,
-                  "what was asked of the participant: relaxed (as recorded, or none); name nobody")
+      .add_option(
+          "--condition", facts.condition,
+          "instruction to the participant, such as relaxed (default: as recorded, or none); not a person's name")
       .type_name("WORD")
       .check(not_empty());
 }
 
 void add_common_options(Command command, AddArguments& arguments) {
   command.add_flag("--strip", arguments.strip,
-                   "of a recording whose metadata may identify a person store a copy (HDF5) without those entries; "
-                   "otherwise it is refused");
+                   "if metadata may identify a person, store a copy (HDF5) without these entries (default: reject the "
+                   "recording)");
   add_study_and_role(command, arguments.study);
-  command.add_flag("--quiet", arguments.quiet, "no progress and no notes on standard error");
+  command.add_flag("--quiet", arguments.quiet, "print no progress and no notes on standard error");
 }
 
 }  // namespace
 
 Action add_study_add(Command group) {
   auto arguments = std::make_shared<AddArguments>();
-  const Command command = group.add_command("add", "recordings of one participant, session and condition");
+  const Command command = group.add_command("add", "add recordings of one participant, session and condition");
   command.footer(
       "Examples:\n"
       "  mbk study add p07_relaxed.h5 --participant 7 --session 2 --condition relaxed\n"
       "  mbk study add trial_*.mat --participant 7\n"
-      "      trials are counted on within participant, session and condition\n"
+      "      numbers the trials within participant, session and condition\n"
       "  mbk study add p07.h5\n"
-      "      a recording of 'mbk run' says itself whose it is\n\n"
-      "A file is copied into the study's folder; of its name only the end (.h5) is kept. One that is there\n"
-      "already is not stored twice. The study's default options (mbk study defaults) say how it is read.");
+      "      a recording of 'mbk run' contains participant and condition\n\n"
+      "A file is copied into the folder of the study; only the extension of its name (.h5) is kept. A\n"
+      "file is not stored twice. The default options of the study (mbk study defaults) determine how it\n"
+      "is read.");
   command.add_option("FILE", arguments->files, "recordings: " + recording::readable_files()).required();
   constexpr long kLargest = 999999999;
-  command.add_option("--participant", arguments->facts.participant, "a number, never a name")
+  command.add_option("--participant", arguments->facts.participant, "number of the participant, never a name")
       .type_name("N")
       .check(whole_number(1, kLargest));
   add_fact_options(command, arguments->facts);
-  command.add_option("--trial", arguments->facts.trial, "its number within participant, session and condition")
+  command.add_option("--trial", arguments->facts.trial, "number of the trial within participant, session and condition")
       .type_name("N")
       .check(whole_number(1, kLargest));
   add_common_options(command, *arguments);
@@ -153,25 +156,25 @@ Action add_study_add(Command group) {
 Action add_study_import(Command group) {
   auto arguments = std::make_shared<AddArguments>();
   const Command command =
-      group.add_command("import", "many recordings: whose they are from names, a sheet or metadata");
+      group.add_command("import", "add many recordings, assigned to participants by file name, table or metadata");
   command.footer(
       "Examples:\n"
       "  mbk study import recordings/*.h5\n"
-      "      of 'mbk run': their metadata say participant and condition\n"
+      "      recordings of 'mbk run', whose metadata contain participant and condition\n"
       "  mbk study import data/*.mat --pattern 'p{participant}_s{session}_{condition}_*.mat'\n"
       "      {participant}, {session}, {trial}: digits; {condition}: letters, digits and -; * anything\n"
       "  mbk study import --sheet trials.csv\n"
-      "      columns file, participant and, where they are there, session, condition, trial\n"
+      "      columns file, participant and optionally session, condition, trial\n"
       "  mbk study import data_set\n"
       "      a BIDS data set (Motion): sub-07_ses-2_task-relaxed_run-1 is participant 7, session 2, condition\n"
       "      relaxed, trial 1\n\n"
-      "What neither name, sheet nor options say is taken from the recording's metadata.");
+      "Facts that are in neither name, table nor options are taken from the metadata of the recording.");
   command.add_option("FILE", arguments->files, "recordings: " + recording::readable_files());
   const Option pattern =
-      command.add_option("--pattern", arguments->pattern, "what the names of the files say; nothing else is kept")
+      command.add_option("--pattern", arguments->pattern, "pattern of the file names; nothing else of them is stored")
           .type_name("PATTERN")
           .check(not_empty());
-  command.add_option("--sheet", arguments->sheet, "a CSV table that names the files, relative to its own folder")
+  command.add_option("--sheet", arguments->sheet, "CSV table that lists the files, relative to its own folder")
       .type_name("SHEET.csv")
       .check(not_empty())
       .excludes(pattern);

@@ -31,9 +31,9 @@ std::string check_text(const store::CheckReport& report, bool quick) {
   for (const std::string& note : report.notes) text += "  " + note + "\n";
   text += fmt::format("{}, {:.1f} MB: ", counted(report.recordings, "recording", "recordings"),
                       1e-6 * static_cast<double>(report.bytes));
-  text += fmt::format("{} with the hash it was added with\n", counted(report.files, "file", "files"));
+  text += fmt::format("{} with an unchanged hash\n", counted(report.files, "file", "files"));
   text += counted(report.results, "result", "results");
-  text += quick ? ", none measured again\n" : fmt::format(", {} measured again and the same\n", report.repeated);
+  text += quick ? ", not measured again\n" : fmt::format(", {} reproduced by measuring again\n", report.repeated);
   text += fmt::format("{} of the log, head {}\n", counted(report.log_lines, "line", "lines"), report.head);
   return text + (report.problems.empty() ? "sound\n"
                                          : counted(std::ssize(report.problems), "problem", "problems") +
@@ -102,7 +102,7 @@ int run_exclude(const CheckArguments& arguments) {
                                    : study->exclude(arguments.number, arguments.why, arguments.study.role);
   if (!done) return report_error(done.error());
   const std::string text =
-      fmt::format("recording {} {}\n", arguments.number, arguments.undo ? "counts again" : "excluded");
+      fmt::format("recording {} {}\n", arguments.number, arguments.undo ? "included again" : "excluded");
   if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
 }
@@ -124,7 +124,8 @@ int run_forget(const CheckArguments& arguments) {
                         "'mbk study log' shows them; if one names a person, only a new study leaves it out");
   }
   if (!forgotten->log_of_changes_emptied) {
-    text += "another process is reading: erased rows stand in study.sqlite-wal until it ends and a command follows\n";
+    text +=
+        "another process is reading: erased rows remain in study.sqlite-wal until it ends and another command runs\n";
   }
   if (auto ok = print_text(text); !ok) return report_error(ok.error());
   return kFine;
@@ -143,7 +144,7 @@ int run_backup(const CheckArguments& arguments) {
 }
 
 void add_why_option(Command command, std::string& why) {
-  command.add_option("--why", why, "the reason, which stays in the log: name nobody")
+  command.add_option("--why", why, "reason, recorded in the log; do not name a person")
       .type_name("TEXT")
       .required()
       .check(not_empty());
@@ -153,17 +154,17 @@ void add_why_option(Command command, std::string& why) {
 
 Action add_study_exclude(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  const Command command = group.add_command("exclude", "leave a recording out of summaries, with the reason");
+  const Command command = group.add_command("exclude", "exclude a recording from summaries, with the reason");
   command.footer(
       "Examples:\n"
       "  mbk study exclude 12 --why \"hand slipped off the handle\"\n"
       "  mbk study exclude 12 --undo --why \"it was trial 13\"\n\n"
-      "Nothing is erased. The recording stays in lists and exports, with the reason.");
-  command.add_option("N", arguments->number, "its number, as 'mbk study list' shows it")
+      "Nothing is erased. The recording remains in lists and exports, with the reason.");
+  command.add_option("N", arguments->number, "number of the recording, as shown by 'mbk study list'")
       .required()
       .check(whole_number(1, 999999999));
   add_why_option(command, arguments->why);
-  command.add_flag("--undo", arguments->undo, "let it count again");
+  command.add_flag("--undo", arguments->undo, "include the recording again");
   add_study_and_role(command, arguments->study);
   return [arguments] { return run_exclude(*arguments); };
 }
@@ -174,10 +175,10 @@ Action add_study_forget(Command group) {
   command.footer(
       "Examples:\n"
       "  mbk study forget --participant 7 --why \"consent withdrawn\"\n\n"
-      "Recordings and results are removed, and what they took in the database is overwritten with zeros. The log\n"
-      "keeps that they were there and that they were forgotten, without data. Not promised: that a disk keeps no\n"
-      "trace of removed files. Backups are not touched.");
-  command.add_option("--participant", arguments->number, "whose")
+      "Recordings and results are removed, and their rows in the database are overwritten with zeros. The\n"
+      "log keeps a record without data that they existed and were erased. A disk may still contain traces\n"
+      "of removed files. Backups are not changed.");
+  command.add_option("--participant", arguments->number, "number of the participant")
       .type_name("N")
       .required()
       .check(whole_number(1, 999999999));
@@ -188,19 +189,19 @@ Action add_study_forget(Command group) {
 
 Action add_study_check(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  const Command command = group.add_command("check", "whether everything is as it was stored, and comes out again");
+  const Command command = group.add_command("check", "check that the data are unchanged and the results reproducible");
   command.footer(
       "Examples:\n"
       "  mbk study check\n"
-      "      every file's hash, the database, the log, and every result of this version measured again\n"
+      "      checks the hash of every file, the database and the log; measures every result of this version again\n"
       "  mbk study check --quick\n"
-      "      nothing is measured again\n\n"
-      "What an interrupted process left half-written is removed and said.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 something is missing or not as it was stored.");
+      "      does not measure again\n\n"
+      "Incomplete files of an interrupted process are removed and reported.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 something is missing or has changed.");
   command.add_flag("--quick", arguments->quick, "do not measure again");
   command.add_flag("--remove-leftovers", arguments->remove_leftovers,
-                   "also remove whole files that no recording refers to");
-  add_threads_option(command, arguments->threads, "recordings measured");
+                   "also remove complete files that no recording refers to");
+  add_threads_option(command, arguments->threads, "number of recordings measured in parallel");
   add_study_option(command, arguments->study);
   add_output_options(command, arguments->output, "mbk.study_check/1");
   return [arguments] { return run_check(*arguments); };
@@ -208,19 +209,19 @@ Action add_study_check(Command group) {
 
 Action add_study_log(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  const Command command = group.add_command("log", "who did what, when and why");
+  const Command command = group.add_command("log", "show the log: who did what, when and why");
   command.footer(
       "Examples:\n"
       "  mbk study log\n"
-      "      the last line is the head: note it where nobody can change both\n"
+      "      the last line is the head: keep a copy of it where nobody can change both\n"
       "  mbk study log --verify --head 3f0c…\n"
-      "      also that the log still holds the line that was noted\n\n"
-      "Each line holds the hash of the one before, so that a line that is changed, taken out or put in shows. Who\n"
-      "can write the file can write the whole log anew, or cut its end: only a head that was noted elsewhere, or a\n"
-      "backup, shows that. Reading a study is not logged.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 the log is not as it was written.");
-  const Option verify = command.add_flag("--verify", arguments->verify, "recompute every hash");
-  command.add_option("--head", arguments->head, "a head that was noted: 64 hexadecimal digits")
+      "      also checks that the log still contains the line with this head\n\n"
+      "Each line contains the hash of the previous one, so that a changed, removed or inserted line is\n"
+      "detected. Anyone who can write the file can rewrite the whole log or cut its end; only a head that\n"
+      "was kept elsewhere, or a backup, reveals that. Reading a study is not logged.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 the log has been changed.");
+  const Option verify = command.add_flag("--verify", arguments->verify, "recompute and check every hash");
+  command.add_option("--head", arguments->head, "a head that was kept: 64 hexadecimal digits")
       .type_name("HASH")
       .check([](const std::string& given) {
         const bool fits = given.size() == 64 && given.find_first_not_of("0123456789abcdef") == std::string::npos;
@@ -234,15 +235,15 @@ Action add_study_log(Command group) {
 
 Action add_study_backup(Command group) {
   auto arguments = std::make_shared<CheckArguments>();
-  const Command command = group.add_command("backup", "a copy of the whole study, checked");
+  const Command command = group.add_command("backup", "copy the whole study and check the copy");
   command.footer(
       "Examples:\n"
       "  mbk study backup /media/backup/arms-2026-05-04\n"
       "  mbk study backup ../arms-before --link\n"
-      "      on the same disk without taking room: against mistakes, not against a broken disk\n\n"
-      "It can be made while others work. To restore, copy the folder back.");
-  command.add_option("FOLDER", arguments->to, "which is not there yet").required();
-  command.add_flag("--link", arguments->link, "recordings become further names of the same files, where possible");
+      "      on the same disk without using space: protects against mistakes, not against a disk failure\n\n"
+      "Others can work during the backup. To restore, copy the folder back.");
+  command.add_option("FOLDER", arguments->to, "folder of the backup, which must not exist yet").required();
+  command.add_flag("--link", arguments->link, "create hard links to the recordings instead of copies, if possible");
   add_study_option(command, arguments->study);
   return [arguments] { return run_backup(*arguments); };
 }

@@ -18,11 +18,11 @@ struct InitArguments {
   request::MeasureRequest measuring;
 };
 
-/// The options that were given, where a study can keep them.
+/// The given options, if a study can store them.
 Result<std::string> kept_options(Command command) {
   const OptionTexts given = given_options(command, workflow::measuring_table());
   if (workflow::names_files(given)) {
-    return bad_usage("--robot and --sensor name files, which a study does not keep",
+    return bad_usage("--robot and --sensor name files, which a study does not store",
                      "pass them to 'mbk study measure'");
   }
   MBK_TRY(workflow::measuring_of(given));
@@ -63,16 +63,18 @@ int run_defaults(Command command, const InitArguments& arguments) {
 
 Action add_study_init(Command group) {
   auto arguments = std::make_shared<InitArguments>();
-  const Command command = group.add_command("init", "a new study in a folder of its own");
+  const Command command = group.add_command("init", "create a new study in its own folder");
   command.footer(
       "Examples:\n"
       "  mbk study init arms --title \"Stiffness at rest\"\n"
       "  mbk study init ankles --axes 1 --channels x=position_rad,F=torque_Nm --protocol free\n"
-      "      how its recordings are read and measured unless 'mbk study measure' is told otherwise\n\n"
-      "Only the owner of the folder can read what is in it. It belongs on a local disk: network file systems\n"
-      "do not lock files as the database needs it.");
-  command.add_option("FOLDER", arguments->folder, "which is not there yet, or empty").required();
-  command.add_option("--title", arguments->title, "one line; name nobody").type_name("TEXT").check(not_empty());
+      "      also sets the default options for reading and measuring its recordings\n\n"
+      "Only the owner can read the folder. Create it on a local disk: network file systems do not lock\n"
+      "files as the database requires.");
+  command.add_option("FOLDER", arguments->folder, "folder of the study, which must be new or empty").required();
+  command.add_option("--title", arguments->title, "title, one line; do not name a person")
+      .type_name("TEXT")
+      .check(not_empty());
   add_choice_of_role(command, arguments->study);
   add_measuring_options(command, arguments->measuring);
   return [command, arguments] { return run_init(command, *arguments); };
@@ -80,13 +82,13 @@ Action add_study_init(Command group) {
 
 Action add_study_defaults(Command group) {
   auto arguments = std::make_shared<InitArguments>();
-  const Command command = group.add_command("defaults", "show or change how a study's recordings are measured");
+  const Command command = group.add_command("defaults", "show or change the default options for measuring recordings");
   command.footer(
       "Examples:\n"
       "  mbk study defaults\n"
-      "      shows them\n"
+      "      shows the defaults\n"
       "  mbk study defaults --mode reference --protocol sinusoidal\n"
-      "      replaces all of them; the next 'mbk study measure' measures everything with these");
+      "      replaces all defaults; the next 'mbk study measure' measures everything with these");
   add_study_and_role(command, arguments->study);
   add_measuring_options(command, arguments->measuring);
   return [command, arguments] { return run_defaults(command, *arguments); };

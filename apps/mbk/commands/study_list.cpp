@@ -61,7 +61,7 @@ std::string counts_text(const StudyList& list) {
 
 std::string list_text(const StudyList& list) {
   std::string text = study_head_text(list);
-  if (list.recordings.empty()) return text + "  'mbk study add' and 'mbk study import' bring recordings in\n";
+  if (list.recordings.empty()) return text + "  add recordings with 'mbk study add' or 'mbk study import'\n";
   std::size_t width = 9;
   for (const ListedRecording& one : list.recordings) width = std::max(width, one.recording.condition.size());
   text += fmt::format("\n{:>9}  {:>11}  {:>7}  {:<{}}  {:>5}  {:>6}  state\n", "recording", "participant", "session",
@@ -96,7 +96,7 @@ std::string show_text(const store::ShownRecording& shown) {
     text += result.usable   ? "  usable\n"
             : result.failed ? "  could not be measured: " + result.reason + "\n"
                             : "  not usable: " + result.reason + "\n";
-    // Of a model that is not usable no number is shown; --json holds them.
+    // Numbers of an unusable model are not shown; --json contains them.
     if (!result.usable) continue;
     text += fmt::format("    {:<24}  {:>12}  {:>15}\n", "outcome", "value", "standard error");
     for (const store::Outcome& one : outcomes) text += outcome_line(one);
@@ -146,7 +146,7 @@ int run_show(const ListArguments& arguments) {
     return write(arguments, *study, *document + "\n");
   }
   return report_error({ErrorKind::data, fmt::format("recording {} has no result", arguments.recording),
-                       "'mbk study measure' makes one; 'mbk study list' shows the state", ""});
+                       "run 'mbk study measure'; 'mbk study list' shows the state", ""});
 }
 
 int export_bids(const store::Store& study, const StudyList& list, const std::filesystem::path& folder) {
@@ -156,8 +156,7 @@ int export_bids(const store::Store& study, const StudyList& list, const std::fil
   for (const Error& error : exported->failed) code = std::max(code, report_error(error));
   for (const std::string& one : exported->lost) say("mbk: {}: not written: {}\n", folder.string(), one);
   if (!exported->excluded.empty()) {
-    say("mbk: {} left out, since they are excluded: {}\n",
-        counted(std::ssize(exported->excluded), "recording", "recordings"),
+    say("mbk: {} omitted because excluded: {}\n", counted(std::ssize(exported->excluded), "recording", "recordings"),
         fmt::format("{}", fmt::join(exported->excluded, ", ")));
   }
   const std::string line =
@@ -186,7 +185,7 @@ int run_export(const ListArguments& arguments) {
 }  // namespace
 
 void add_analysis_option(Command command, AnalysisArguments& arguments) {
-  command.add_option("--analysis", arguments.analysis, "by its number (the one of the newest result)")
+  command.add_option("--analysis", arguments.analysis, "number of the analysis (default: that of the newest result)")
       .type_name("N")
       .check(whole_number(1, 999999999));
 }
@@ -210,13 +209,13 @@ Result<StudyList> listed_study(const AnalysisArguments& arguments, std::optional
 
 Action add_study_list(Command group) {
   auto arguments = std::make_shared<ListArguments>();
-  const Command command = group.add_command("list", "its recordings, and whether each has a usable result");
+  const Command command = group.add_command("list", "list the recordings and the state of their results");
   command.footer(
       "Examples:\n"
       "  mbk study list\n"
       "  mbk study list --study arms --json\n"
       "  mbk study list --analysis 1\n"
-      "      under other options than the newest");
+      "      states in an earlier analysis, with other options");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
   add_output_options(command, arguments->output, "mbk.study_list/1");
@@ -225,17 +224,17 @@ Action add_study_list(Command group) {
 
 Action add_study_show(Command group) {
   auto arguments = std::make_shared<ListArguments>();
-  const Command command = group.add_command("show", "one recording with its results");
+  const Command command = group.add_command("show", "show one recording with its results");
   command.footer(
       "Examples:\n"
       "  mbk study show 12\n"
       "  mbk study show 12 --result --out result.json\n"
-      "      the whole result, which 'mbk ellipse', 'mbk passivity' and 'mbk compare' read");
-  command.add_option("N", arguments->recording, "its number, as 'mbk study list' shows it")
+      "      writes the whole result, for 'mbk ellipse', 'mbk passivity' and 'mbk compare'");
+  command.add_option("N", arguments->recording, "number of the recording, as shown by 'mbk study list'")
       .required()
       .check(whole_number(1, 999999999));
   add_study_option(command, arguments->study);
-  command.add_flag("--result", arguments->document, "the result as 'mbk measure --json' writes it (mbk.result/2)");
+  command.add_flag("--result", arguments->document, "print the result as 'mbk measure --json' does (mbk.result/2)");
   add_analysis_option(command, *arguments);
   add_output_options(command, arguments->output, "mbk.study_show/1");
   return [arguments] { return run_show(*arguments); };
@@ -243,7 +242,7 @@ Action add_study_show(Command group) {
 
 Action add_study_export(Command group) {
   auto arguments = std::make_shared<ListArguments>();
-  const Command command = group.add_command("export", "every number, for R, pandas, a paper");
+  const Command command = group.add_command("export", "export every number, for R, pandas or a paper");
   command.footer(
       "Examples:\n"
       "  mbk study export --out outcomes.csv\n"
@@ -252,17 +251,20 @@ Action add_study_export(Command group) {
       "  mbk study export --format latex\n"
       "      a table of means and standard deviations by condition\n"
       "  mbk study export --bids data_set\n"
-      "      the recordings as a BIDS data set (Motion), but for excluded ones; condition is the task, trial the "
+      "      the recordings as a BIDS data set (Motion), without excluded ones; condition is the task, trial the "
       "run\n\n"
-      "Results that are not usable and excluded recordings are in it with their state: select state == 'usable'.");
+      "The export also contains unusable results and excluded recordings, with their state: select state\n"
+      "== 'usable'.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
   const Option format =
-      add_choice(command, "--format", arguments->format, "csv: a tidy table; json: schema mbk.study_export/1 (csv)");
+      add_choice(command, "--format", arguments->format,
+                 "csv: a tidy table; json: schema mbk.study_export/1; latex: a table of means (default: csv)");
   arguments->output.to.add_options(command);
   command
       .add_option("--bids", arguments->bids,
-                  "instead of numbers the recordings, in a new folder as BIDS Motion; forces are channels of type MISC")
+                  "export the recordings instead of numbers, to a new folder in BIDS Motion format; forces are "
+                  "channels of type MISC")
       .type_name("FOLDER")
       .check(not_empty())
       .excludes(format)

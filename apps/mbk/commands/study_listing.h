@@ -19,7 +19,7 @@ struct AnalysisArguments {
   std::optional<std::int64_t> analysis;
 };
 
-/// What is compared with what.
+/// The groups, conditions or sessions to compare.
 struct ComparingArguments {
   std::vector<std::string> compare, groups;
 };

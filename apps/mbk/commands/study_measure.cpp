@@ -44,7 +44,7 @@ int said_of(const Tally& tally, std::optional<int> code = {}) {
   return tally.not_usable > 0 && tally.usable == 0 ? kNotUsable : kFine;
 }
 
-/// Measures as a job of many processes. A job that was begun before is finished first, with its own recordings.
+/// Measures as a job of many processes. An unfinished earlier job is finished first, with its own recordings.
 int measure_as_job(store::Store& study, const std::string& key, const OptionTexts& options,
                    const std::shared_ptr<const workflow::Measuring>& measuring,
                    const StudyMeasureArguments& arguments) {
@@ -66,7 +66,7 @@ int measure_as_job(store::Store& study, const std::string& key, const OptionText
     tally += *collected;
     if (carried->code) return said_of(tally, carried->code);
     if (auto ok = batch::remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
-    // What could not be read is not tried again at once.
+    // Recordings that could not be read are not retried immediately.
     if (arguments.engine.keep || tally.unread > 0) return said_of(tally);
   }
 }
@@ -94,25 +94,26 @@ int run(Command command, const StudyMeasureArguments& arguments) {
 
 Action add_study_measure(Command group) {
   auto arguments = std::make_shared<StudyMeasureArguments>();
-  const Command command = group.add_command("measure", "what is new, or whose options or version changed");
+  const Command command =
+      group.add_command("measure", "measure recordings that are new or whose options or version changed");
   command.footer(
       "Examples:\n"
       "  mbk study measure\n"
-      "      with the study's default options (mbk study defaults)\n"
+      "      uses the default options of the study (mbk study defaults)\n"
       "  mbk study measure --mode reference\n"
-      "      another analysis beside the first; 'mbk study list' shows both\n"
+      "      adds another analysis; 'mbk study list' shows both\n"
       "  mbk study measure --again-failed\n"
       "  mbk study measure --engine slurm --tasks 40\n"
       "      as a job array on the cluster, 40 tasks at a time; the results are the same to the byte\n\n"
-      "The options are those of 'mbk measure'; one that is given takes the place of the study's default. Each\n"
-      "result is stored under the recording's hash, the options and the version of mbk. An interrupted run is\n"
-      "taken up where it ended; the results are the same for any number of threads.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 a recording could not be measured, 4 none of the new results is usable.");
+      "The options are those of 'mbk measure'; a given option overrides the default of the study. Each\n"
+      "result is stored with the hash of the recording, the options and the version of mbk. An\n"
+      "interrupted run continues where it stopped. The results do not depend on the number of threads.\n\n"
+      "Exit codes: 0 fine, 2 wrong usage, 3 a recording could not be measured, 4 no new result is usable.");
   add_study_and_role(command, arguments->study);
-  command.add_flag("--again-failed", arguments->again_failed, "try again what could not be measured");
-  command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  command.add_flag("--again-failed", arguments->again_failed, "retry recordings that could not be measured");
+  command.add_flag("--quiet", arguments->quiet, "print no progress on standard error");
   add_measuring_options(command, arguments->measuring);
-  add_threads_option(command, arguments->threads, "recordings measured").group("Model");
+  add_threads_option(command, arguments->threads, "number of recordings measured in parallel").group("Model");
   add_engine_options(command, arguments->engine);
   return [command, arguments] { return run(command, *arguments); };
 }

@@ -21,7 +21,7 @@ struct StudyReportArguments : AnalysisArguments {
   ComparingArguments comparing;
 };
 
-/// What makes the page again, without the names of files, which may name people.
+/// The command that reproduces the page, without file names, which may name people.
 std::string command_of(const StudyReportArguments& arguments, const store::StudyList& list) {
   std::string text = "mbk study report";
   if (arguments.participant) text += fmt::format(" --participant {}", *arguments.participant);
@@ -72,30 +72,33 @@ int run_report(const StudyReportArguments& arguments) {
 
 Action add_study_report(Command group) {
   auto arguments = std::make_shared<StudyReportArguments>();
-  const Command command = group.add_command("report", "one HTML page of the study, or of one participant");
+  const Command command = group.add_command("report", "write an HTML report of the study, or of one participant");
   command.footer(
       "Examples:\n"
       "  mbk study report --out study.html\n"
-      "      reliability, participants, sessions, ellipses, what does not count and why\n"
+      "      reliability, participants, sessions, ellipses, exclusions with their reasons\n"
       "  mbk study report --participant 7 --out participant_7.html\n"
-      "      what changed since the first session, and whether it is more than the minimal detectable change\n"
+      "      changes since the first session, compared with the minimal detectable change\n"
       "  mbk study report --outcome K_xx --compare condition relaxed tensed --out study.html\n\n"
-      "A page is one file that needs no network; it prints on A4, and its data can be saved from it. It holds\n"
-      "health data: pass it on as such. The page of a participant holds no numbers of other people.");
+      "A report is one file that needs no network. It prints on A4, and its data can be saved from it. It\n"
+      "contains health data: treat it as such. The report of a participant contains no numbers of other\n"
+      "people.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
-  const Option participant = command.add_option("--participant", arguments->participant, "a page of this one")
+  const Option participant = command.add_option("--participant", arguments->participant, "report on this participant")
                                  .type_name("N")
                                  .check(whole_number(1, 999999999));
-  command.add_option("--outcome", arguments->outcome, "is shown first (stiffness_lambda_max, or a stiffness)")
+  command
+      .add_option("--outcome", arguments->outcome,
+                  "outcome shown first (default: stiffness_lambda_max, or another stiffness)")
       .type_name("NAME")
       .check(not_empty());
   add_comparing_options(command, arguments->comparing);
   command.get_option("--compare").excludes(participant);
-  command.add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none of its own")
+  command.add_option("--note", arguments->note, "a line below the title, such as a date; mbk adds none")
       .type_name("TEXT");
   add_output_options(command, arguments->output, "mbk.study_report/1, mbk.participant_report/1");
-  command.get_option("--out").required().description("the page to write");
+  command.get_option("--out").required().description("the report to write");
   return [arguments] { return run_report(*arguments); };
 }
 

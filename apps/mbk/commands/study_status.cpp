@@ -38,7 +38,7 @@ Result<std::vector<fs::path>> jobs_of(const StatusArguments& arguments) {
 int run(const StatusArguments& arguments) {
   const auto jobs = jobs_of(arguments);
   if (!jobs) return report_error(jobs.error());
-  std::string text = jobs->empty() ? "no job is under way\n" : "";
+  std::string text = jobs->empty() ? "no job is running\n" : "";
   std::vector<batch::JobStatus> all;
   for (const fs::path& one : *jobs) {
     const auto folder = batch::JobFolder::open(one);
@@ -57,19 +57,21 @@ int run(const StatusArguments& arguments) {
 
 Action add_study_status(Command group) {
   auto arguments = std::make_shared<StatusArguments>();
-  const Command command = group.add_command("status", "how far the jobs are that --engine began");
+  const Command command = group.add_command("status", "show the progress of jobs started with --engine");
   command.footer(
       "Examples:\n"
       "  mbk study status\n"
       "  mbk study status --json\n"
-      "      with the time that each finished task took\n"
+      "      includes the duration of each finished task\n"
       "  mbk study status --job mbk-jobs/validate-recovery-0123456789ab/stage-0\n"
       "      a job of another command");
   add_study_option(command, arguments->study);
-  command.add_option("--job", arguments->job, "the folder of one job, in a study or elsewhere")
+  command
+      .add_option("--job", arguments->job,
+                  "folder of one job, in a study or elsewhere (default: all jobs of the study)")
       .type_name("FOLDER")
       .check(not_empty());
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.study_status/1");
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.study_status/1");
   return [arguments] { return run(*arguments); };
 }
 

@@ -31,8 +31,8 @@ struct SummaryArguments : AnalysisArguments {
 /// "patients=1-10,12": a name and the numbers of its people.
 Result<statistics::PeopleGroup> group_of(const std::string& text) {
   const auto wrong = [&] {
-    return bad_usage(fmt::format("{} is no group", quoted(text)),
-                     "write a name and its participants, as in patients=1-10,12");
+    return bad_usage(fmt::format("{} is not a group", quoted(text)),
+                     "write its name and participants: --group patients=1-10,12");
   };
   const std::size_t equal = text.find('=');
   if (equal == 0 || equal == std::string::npos) return wrong();
@@ -75,40 +75,43 @@ Result<statistics::StatisticsOptions> statistics_options(const ComparingArgument
   }
   if (arguments.compare.empty()) {
     if (!options.groups.empty())
-      return bad_usage("--group says who is in which group, and nothing compares them", "pass --compare group");
+      return bad_usage("--group is valid only with --compare group", "add --compare group, or omit --group");
     return options;
   }
   const auto by = value_of<statistics::ComparedBy>(arguments.compare.front());
   if (!by) {
-    return bad_usage(fmt::format("{} cannot be compared", quoted(arguments.compare.front())),
-                     "pass --compare condition, group or session, and then which, if not all");
+    return bad_usage(fmt::format("--compare {} is unknown", quoted(arguments.compare.front())),
+                     "pass --compare condition, group or session, followed by names unless all are to be compared");
   }
   if (*by != statistics::ComparedBy::group && !options.groups.empty()) {
-    return bad_usage("--group says who is in which group, and nothing compares them", "pass --compare group");
+    return bad_usage("--group is valid only with --compare group", "add --compare group, or omit --group");
   }
   options.comparing = {*by, {arguments.compare.begin() + 1, arguments.compare.end()}};
   return options;
 }
 
 void add_comparing_options(Command command, ComparingArguments& arguments) {
-  command.add_option("--compare", arguments.compare, "condition, group or session, and which of them (all)")
+  command
+      .add_option("--compare", arguments.compare,
+                  "what to compare: condition, group or session, and optionally which of them (default: all)")
       .type_name("WHAT");
-  command.add_option("--group", arguments.groups, "who is in a group: patients=1-10,12").type_name("NAME=N,...");
+  command.add_option("--group", arguments.groups, "a group and its participants: patients=1-10,12")
+      .type_name("NAME=N,N-N");
 }
 namespace {
 
 std::string summary_text(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
                          const statistics::StudyStatistics& found, bool details) {
   const std::string text = study_head_text(list);
-  if (!list.analysis) return text + "  nothing was measured: 'mbk study measure'\n";
-  if (outcomes.empty()) return text + "  no result is usable: 'mbk study list' says why\n";
+  if (!list.analysis) return text + "  no results yet; run 'mbk study measure'\n";
+  if (outcomes.empty()) return text + "  no result is usable; 'mbk study list' shows the reasons\n";
   return text + statistics::outcomes_text(outcomes) + statistics::reliability_text(found, details) +
          statistics::comparison_text(found, details) + statistics::bootstrap_text(found) +
          statistics::notes_text(found.notes);
 }
 
-/// Resamples people, in this process or as --engine says.
-/// @returns  what the command is to end with, where the draws are not all there
+/// Resamples people, in this process or with --engine.
+/// @returns  exit code of the command if not all resamples were computed
 Result<std::optional<int>> resample(const SummaryArguments& arguments, const store::Store& study,
                                     statistics::StudyStatistics& found) {
   const workflow::Bootstrap bootstrap{statistics::people_tables(found), arguments.seed, *arguments.draws};
@@ -129,7 +132,7 @@ Result<std::optional<int>> resample(const SummaryArguments& arguments, const sto
 
 Result<void> check_bootstrap(const SummaryArguments& arguments) {
   if (arguments.engine.kind && !arguments.draws) {
-    return bad_usage("only resampling is done by --engine", "pass --bootstrap 2000, or leave out --engine");
+    return bad_usage("--engine is valid only with --bootstrap", "add --bootstrap 2000, or omit --engine");
   }
   return {};
 }
@@ -172,35 +175,36 @@ int run_summary(const SummaryArguments& arguments) {
 
 Action add_study_summary(Command group) {
   auto arguments = std::make_shared<SummaryArguments>();
-  const Command command = group.add_command("summary", "each outcome: its size, how reliable it is, what differs");
+  const Command command = group.add_command("summary", "summarise each outcome: mean, reliability, differences");
   command.footer(
       "Examples:\n"
       "  mbk study summary\n"
       "  mbk study summary --outcome K_xx\n"
       "      every form of ICC, limits of agreement, trials within a session, the mixed model\n"
       "  mbk study summary --compare condition relaxed tensed\n"
-      "      in the same people where they have both, else between two sets of people\n"
+      "      within the same people if they have both conditions, otherwise between two groups of people\n"
       "  mbk study summary --compare group --group patients=1-10 --group controls=11-20\n"
       "  mbk study summary --compare session 1 2 --outcome K_xx K_yy\n"
-      "      p-values are adjusted for as many tests as there are: name the outcomes before you look\n"
+      "      p-values are adjusted for the number of tests: choose the outcomes before looking at the results\n"
       "  mbk study summary --bootstrap 2000 --compare condition relaxed tensed\n"
-      "      intervals that suppose no distribution, by drawing the people again 2000 times\n"
+      "      bootstrap intervals, which assume no distribution, from 2000 resamples of the people\n"
       "  mbk study summary --bootstrap 100000 --engine slurm\n"
       "      on the cluster; the intervals are the same to the last bit\n"
       "  mbk study summary --json --out summary.json\n\n"
-      "Only usable results of recordings that are not excluded count; how many do not is said.");
+      "The summary includes only usable results of recordings that are not excluded; the number of others\n"
+      "is reported.");
   add_study_option(command, arguments->study);
   add_analysis_option(command, *arguments);
-  command.add_option("--outcome", arguments->outcomes, "only these, with all of their numbers (all)")
-      .type_name("NAME...");
+  command.add_option("--outcome", arguments->outcomes, "report only these outcomes, with all statistics (default: all)")
+      .type_name("NAME");
   add_comparing_options(command, arguments->comparing);
   const Option bootstrap =
       command
           .add_option("--bootstrap", arguments->draws,
-                      "also intervals of reliability and differences by drawing people again, so many times")
+                      "also compute bootstrap intervals of reliability and differences, from N resamples of the people")
           .type_name("N")
           .check(whole_number(1000, 100'000));
-  command.add_option("--seed", arguments->seed, "of these draws (1)")
+  command.add_option("--seed", arguments->seed, "random seed of the bootstrap (default: 1)")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<long>::max()))
       .needs(bootstrap);

@@ -126,49 +126,50 @@ int run(const TeleopArguments& arguments) {
 Action add_teleop(Command app) {
   auto arguments = std::make_shared<TeleopArguments>();
   const Command command =
-      app.add_command("teleop", "absolute stability of a teleoperator, decided exactly (Llewellyn)");
+      app.add_command("teleop", "decide the absolute stability of a teleoperator exactly (Llewellyn)");
   command.footer(
       "Examples:\n"
       "  mbk teleop design.toml\n"
-      "      Llewellyn's conditions, where they are violated, and how much an operator may lack\n"
+      "      Llewellyn's conditions, where they are violated, and the maximum lack of passivity of the operator\n"
       "  mbk teleop design.toml --operator result.json\n"
-      "      the modified criterion, with the passivity index that 'mbk measure --json' found; a\n"
-      "      result that is not usable is refused\n"
+      "      the modified criterion, with the passivity index that 'mbk measure --json' found; an\n"
+      "      unusable result is rejected\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000\n"
-      "      every value of the slave's stiffness in N/m that is stable, as intervals\n"
+      "      intervals of the slave's stiffness in N/m for which the design is stable\n"
       "  mbk teleop design.toml --parameter slave.k=0:1000 --excess 0:10 --operator result.json\n"
-      "      those values against the operator's excess of passivity, with the one that was measured\n"
+      "      those intervals over the operator's excess of passivity, with the measured excess\n"
       "  mbk teleop design.toml --simulate\n"
-      "      both arms over the line in time, and the worst hand and environment where one is unstable\n\n"
-      "Complete designs stand in examples/teleop; docs/guide/teleoperation.md has every key.");
-  command.add_option("DESIGN.toml", arguments->design, "an [architecture] or a [two_port]").required();
+      "      simulates both arms over the line, with the worst-case hand and environment if the design is unstable\n\n"
+      "examples/teleop has complete designs; docs/guide/teleoperation.md lists every key.");
+  command.add_option("DESIGN.toml", arguments->design, "a design with an [architecture] or a [two_port]").required();
   command
       .add_option("--operator", arguments->operator_result,
-                  "result of the operator's arm: a is minus the lower bound of its smallest passivity index")
+                  "result of the operator's arm; a is the negative lower bound of its smallest passivity index")
       .type_name("RESULT.json")
       .check(not_empty());
   command
       .add_option("--parameter", arguments->parameter,
-                  "find all values of one parameter, in SI units, that are stable, as in slave.k=0:1000")
+                  "find all values of a parameter, in SI units, for which the design is stable: slave.k=0:1000")
       .type_name("NAME=LOW:HIGH")
       .check(not_empty());
   command
       .add_option("--excess", arguments->excess,
-                  "find them for operators with these excesses of passivity in N·s/m, as in 0:10 or 0:10:21")
+                  "find them for operators with these excesses of passivity, in N·s/m: 0:10 or 0:10:21")
       .type_name("LOW:HIGH[:STEPS]")
       .check(not_empty());
-  command.add_flag("--simulate", arguments->simulate, "run the design in time, with the arms of its [simulation]");
+  command.add_flag("--simulate", arguments->simulate,
+                   "simulate the design over time, with the arms of its [simulation]");
   command
       .add_option("--charts", arguments->charts,
                   "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg, _excess.svg, _simulated-1.svg, …")
       .type_name("PREFIX")
       .check(not_empty());
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.teleop/1");
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.teleop/1");
   command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
   arguments->output.add_options(command);
   const Option overwrite = command.get_option("--overwrite");
   overwrite.remove_needs(command.get_option("--out"));
-  overwrite.description("replace the files of --out and --charts where they are there");
+  overwrite.description("replace existing files of --out and --charts");
   return [arguments] { return run(*arguments); };
 }
 

@@ -56,7 +56,7 @@ std::vector<std::filesystem::path> files_of(const TfArguments& arguments) {
   return files;
 }
 
-/// What can be said of every file that is to be written before the work begins.
+/// Checks every file that is to be written, before the work begins.
 Result<void> check_written(const TfArguments& arguments) {
   Output output = arguments.to.to;
   const bool charts_alone = !output.file && !arguments.report.file && !arguments.charts.empty();
@@ -115,46 +115,48 @@ int run(const TfArguments& given, const std::string& typed) {
 
 Action add_tf(Command app, const std::string& typed) {
   auto arguments = std::make_shared<TfArguments>();
-  const Command command = app.add_command("tf", "a transfer function from one signal to another");
+  const Command command = app.add_command("tf", "fit a transfer function from one signal to another");
   command.footer(
       "Examples:\n"
       "  mbk tf arm.csv --input torque_Nm --output acceleration --poles 6 --zeros 5\n"
       "  mbk tf log.mat --input Fx --output x --orders 1:4\n"
-      "      a table of all models of 1 to 4 poles, and the one that the data support\n"
+      "      a table of all models with 1 to 4 poles, and the model that the data support\n"
       "  mbk tf log.csv --input 2 --output 3 --rate 500 --poles 2 --zeros 0 --delay auto --json\n"
       "  mbk tf loop.csv --input motor --output angle --reference wanted --method clsrivc --poles 3\n"
       "  mbk tf arm.csv --input torque --output angle --method bj --poles 2 --zeros 2 --sample-rate 50\n"
       "  mbk tf log.mat --input -Fx --output x --poles 2 --zeros 0 --invert position --report log.html\n"
-      "      from the force on the hand to where it moves, and turned round: the impedance with M, B, K\n\n"
-      "FILEs are one system: they are fitted together. What did not settle, or settled on an unstable\n"
-      "model, is refused.\n\n"
+      "      from the force on the hand to its position; the inverse is the impedance with M, B and K\n\n"
+      "All FILEs are of one system: one model is fitted to them. A fit that did not converge, or\n"
+      "converged to an unstable model, is rejected.\n\n"
       "Exit codes: " +
       std::string(kExitCodes));
   add_reading_options(command, arguments->reading);
   add_options(command, request::transfer_function_signal_table(), *arguments);
   const Option held_out =
-      command.add_option("--held-out", arguments->held_out, "recordings that only judge the fit").type_name("FILE");
+      command.add_option("--held-out", arguments->held_out, "validation recordings, which do not enter the fit")
+          .type_name("FILE");
   command.accept_former_name(held_out, "--held-back");
   add_options(command, request::transfer_function_clock_table(), *arguments);
+  add_main_options(command, request::transfer_function_model_table(), *arguments,
+                   {"--poles", "--zeros", "--orders", "--method", "--delay"});
   add_options(command, request::transfer_function_model_table(), *arguments);
   command.accept_former_name(command.get_option("--max-delay"), "--most-delay");
   const char* const model = "Model";
   command
       .add_option("--start-pole", arguments->start_poles_hz,
-                  "a frequency at which the search begins, tried beside six over the band")
+                  "additional start of the search, as a frequency in Hz, beside six over the band; may be repeated")
       .type_name("HZ")
       .check(positive())
       .expected(1)
       .take_all()
       .group(model);
-  add_threads_option(command, arguments->options.fit.threads, "starts tried").group(model);
-  add_output_options(command, arguments->to, "mbk.tf/1");
+  add_threads_option(command, arguments->options.fit.threads, "number of starts tried in parallel").group(model);
   add_report_options(command, arguments->report);
+  add_output_options(command, arguments->to, "mbk.tf/1");
   command.add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
       .type_name("PREFIX")
       .check(not_empty());
-  command.get_option("--overwrite")
-      .description("replace the files of --out, --report and --charts where they are there");
+  command.get_option("--overwrite").description("replace existing files of --out, --report and --charts");
   return [arguments, typed] { return run(*arguments, typed); };
 }
 

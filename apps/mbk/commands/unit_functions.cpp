@@ -1,4 +1,4 @@
-// What the units of jobs are, by the kind of job.
+// The function that computes the units of a job, for each kind of job.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use) {
   const std::string& kind = folder.job().kind;
   const auto json = nlohmann::json::parse(folder.job().specification, nullptr, false);
   Result<batch::UnitFunction> compute =
-      bad_data(fmt::format("this mbk does not know jobs of the kind '{}'", kind), "use the mbk that began it");
+      bad_data(fmt::format("the job is of the unknown kind '{}'", kind), "use the version of mbk that started it");
   try {
     if (kind == kValidateKind) return with_validation_units(json, folder, use);
     if (kind == workflow::kMeasureKind) compute = workflow::measure_units(json);
@@ -24,7 +24,7 @@ Result<void> with_units(const batch::JobFolder& folder, const UseUnits& use) {
     if (kind == workflow::kExploreKind) compute = workflow::explore_units(json);
     if (kind == workflow::kSimulateKind) compute = workflow::simulate_units(json);
   } catch (const nlohmann::json::exception&) {
-    return bad_data("the job's specification cannot be read", "begin the job again", folder.folder().string());
+    return bad_data("the specification of the job cannot be read", "start the job again", folder.folder().string());
   }
   if (!compute) return tl::unexpected(compute.error());
   return use(*compute);

@@ -35,7 +35,7 @@ int exit_code(RowVerdict verdict) {
   return verdict == RowVerdict::met ? kFine : kNotShown;
 }
 
-/// Over what the faulty robots of a study are driven.
+/// How the faulty robots of a study are driven.
 enum class Link { function, udp };
 
 constexpr auto word_table(Link) {
@@ -53,7 +53,7 @@ struct ValidateArguments {
   std::vector<std::string> faults, conditions;
   EngineArguments engine;
   bool json = false, quiet = false, overwrite = false, page = false;
-  bool all = false;  ///< one of all studies: it may draw no chart
+  bool all = false;  ///< one of all studies; it may have no charts
 };
 
 std::vector<std::string> fault_names() {
@@ -75,7 +75,7 @@ std::vector<std::string> study_names() {
   return names;
 }
 
-/// One line for each study, as they stand in the help.
+/// One line for each study, for the help.
 std::string study_lines() {
   std::string lines;
   for (const validation::Study& study : validation::studies()) {
@@ -96,7 +96,7 @@ std::string runs_lines() {
 /// "FOLDER/coverage-1.svg", "FOLDER/coverage-2.svg", …
 Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, bool overwrite) {
   if (table.charts.empty()) {
-    return bad_usage(fmt::format("the study '{}' draws no chart", table.study), "omit --charts");
+    return bad_usage(fmt::format("the study '{}' has no chart", table.study), "omit --charts");
   }
   const auto files = MBK_TRY(ChartFiles::in(folder, overwrite, {}));
   for (std::size_t k = 0; k < table.charts.size(); ++k) {
@@ -109,15 +109,16 @@ Result<ValidationTable> perform(const validation::Study& study, const validation
                                 const ValidateArguments& arguments) {
   if (!arguments.conditions.empty()) {
     if (study.name == "misspecification") return validation::misspecification_study(options, arguments.conditions);
-    return bad_usage("--condition belongs to 'mbk validate misspecification'", "leave it out");
+    return bad_usage("--condition is valid only with 'mbk validate misspecification'", "omit it");
   }
   if (arguments.link == Link::function && arguments.faults.empty()) return study.perform(options);
   if (study.name != "faults" || arguments.link != Link::udp) {
-    return bad_usage("--link and --fault belong to 'mbk validate faults --link udp'", "leave them out");
+    return bad_usage("--link and --fault are valid only with 'mbk validate faults --link udp'", "omit them");
   }
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return bad_data(error.message(), "it names this program", "/proc/self/exe");
+  if (error)
+    return bad_data(error.message(), "make this link readable; it names the running program", "/proc/self/exe");
   return validation::udp_faults_study({options, program, arguments.faults});
 }
 
@@ -156,12 +157,12 @@ class RunsElsewhere {
     if (!carried) return tl::unexpected(carried.error());
     if (carried->code) {
       code = carried->code;
-      return bad_data("some runs are missing");
+      return bad_data("some runs were not computed");
     }
     return batch::results_of(*carried->folder);
   }
 
-  /// Removes the jobs, unless they are to be kept.
+  /// Removes the jobs, unless --keep-job is given.
   void clear() const {
     if (arguments_.engine.keep) return;
     std::error_code ignored;
@@ -169,12 +170,12 @@ class RunsElsewhere {
       const auto folder = batch::JobFolder::open(stage_folder(folder_, stage));
       if (folder) std::ignore = folder->remove();
     }
-    std::filesystem::remove(folder_, ignored);  // where nothing else stands in it
+    std::filesystem::remove(folder_, ignored);  // if it is empty
     if (!arguments_.engine.folder) std::filesystem::remove(folder_.parent_path(), ignored);
   }
 
   int stages = 0;
-  std::optional<int> code;  ///< what the command ends with where a job did not come to its end
+  std::optional<int> code;  ///< exit code of the command if a job did not finish
 
  private:
   const ValidateArguments& arguments_;
@@ -185,7 +186,8 @@ class RunsElsewhere {
 int run_one(const ValidateArguments& arguments) {
   const validation::Study& study = *find_study(arguments.study);
   if (arguments.page) {
-    if (study.name != "faults") return report_error({ErrorKind::usage, "--page belongs to 'faults'", "", ""});
+    if (study.name != "faults")
+      return report_error({ErrorKind::usage, "--page is valid only with 'faults'", "omit it", ""});
     const auto written = print_text(validation::safety_page());
     return written ? kFine : report_error(written.error());
   }
@@ -198,8 +200,8 @@ int run_one(const ValidateArguments& arguments) {
   std::optional<RunsElsewhere> elsewhere;
   if (arguments.engine.kind) {
     if (arguments.link != Link::function || !arguments.faults.empty()) {
-      return report_error(
-          {ErrorKind::usage, "robots behind UDP run in real time, in this process alone", "leave out --engine", ""});
+      return report_error({ErrorKind::usage, "robots behind UDP run in real time, so that --engine cannot be used",
+                           "omit --engine", ""});
     }
     elsewhere.emplace(arguments, options);
     options.elsewhere = [&](int count, const std::function<Result<std::string>(int)>& work) {
@@ -219,10 +221,10 @@ int run_one(const ValidateArguments& arguments) {
   return exit_code(table->verdict());
 }
 
-/// What stands in the place of STUDY for all of them.
+/// The word for all studies.
 constexpr const char* kAll = "all";
 
-/// The worst that came of any of them: what could not be done, then what falls short, then what is not shown.
+/// The worse of two exit codes: an error, then a row that fails, then one that is not shown.
 int worse(int a, int b) {
   const auto rank = [](int code) {
     return code == kNotShown ? 1 : code == kFallsShort ? 2 : code == kFine ? 0 : 2 + code;
@@ -233,7 +235,7 @@ int worse(int a, int b) {
 /// Every study in turn, in the order of the list.
 int run_all(ValidateArguments arguments) {
   if (arguments.json || arguments.page || arguments.engine.folder) {
-    return report_error({ErrorKind::usage, "a document, a page and a job are of one study each",
+    return report_error({ErrorKind::usage, "--json, --page and --job-folder are valid only for one study",
                          "name the study; 'mbk validate' lists them", ""});
   }
   arguments.all = true;
@@ -248,10 +250,10 @@ int run_all(ValidateArguments arguments) {
 }
 
 std::string list_of_studies() {
-  return "Studies, each a method against known truth:\n" + study_lines() +
-         "\n  mbk validate coverage            one of them, by as many runs as its rows need\n"
-         "  mbk validate coverage --runs 20  a look at it; what so few runs do not show is said\n"
-         "  mbk validate all                 every one in turn, which takes long\n";
+  return "Studies, each of which validates a method against known truth:\n" + study_lines() +
+         "\n  mbk validate coverage            one study, with the default number of runs\n"
+         "  mbk validate coverage --runs 20  a quick look; rows that need more runs are reported as not shown\n"
+         "  mbk validate all                 every study in turn, which takes long\n";
 }
 
 int run(const ValidateArguments& arguments, bool bare) {
@@ -270,7 +272,7 @@ Result<void> with_validation_units(const nlohmann::json& specification, const ba
   arguments.study = specification.at("study");
   arguments.conditions = specification.at("conditions").get<std::vector<std::string>>();
   const validation::Study* const study = find_study(arguments.study);
-  if (study == nullptr) return bad_data(fmt::format("there is no study '{}'", arguments.study));
+  if (study == nullptr) return bad_data(fmt::format("'{}' is not a study", arguments.study));
   validation::StudyOptions options;
   options.runs = specification.at("runs");
   options.seed = specification.at("seed");
@@ -280,35 +282,36 @@ Result<void> with_validation_units(const nlohmann::json& specification, const ba
   std::optional<Result<void>> used;
   options.elsewhere = [&](int /*count*/,
                           const std::function<Result<std::string>(int)>& work) -> Result<std::vector<std::string>> {
-    if (stage < requested) {  // is done, and stands beside this one
+    if (stage < requested) {  // is done, in a folder beside this one
       const auto earlier = batch::JobFolder::open(stage_folder(folder.folder().parent_path(), stage++));
       return earlier ? batch::results_of(*earlier) : tl::unexpected(earlier.error());
     }
     used = use([&](std::int64_t number, const std::string&) { return work(static_cast<int>(number)); });
-    return bad_data("the study goes on in the process that began the job");
+    return bad_data("the study continues in the process that started the job");
   };
   const auto table = perform(*study, options, arguments);
   if (used) return *used;
-  return table ? bad_data("the study has no such part") : Result<void>(tl::unexpected(table.error()));
+  return table ? bad_data("the study has no such stage") : Result<void>(tl::unexpected(table.error()));
 }
 
 Action add_validate(Command app) {
   auto arguments = std::make_shared<ValidateArguments>();
-  const Command command = app.add_command("validate", "a method against known truth, as a table");
-  // Made where it is asked for: the numbers of runs are computed.
+  const Command command = app.add_command("validate", "validate a method against known truth; prints a table");
+  // Made on demand: the numbers of runs are computed.
   command.footer([] {
-    return "Studies:\n" + study_lines() + "\nRuns by default, and those that it takes to meet every row:\n" +
-           runs_lines() +
-           "\nExamples:\n"
+    return "Studies:\n" + study_lines() +
+           "\nDefault number of runs, and the minimum with which every row can be met:\n" + runs_lines() +
+           "\n"
+           "Examples:\n"
            "  mbk validate coverage --runs 2000 --seed 7 --json\n"
            "  mbk validate participant --charts charts\n"
            "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
            "  mbk validate recovery --runs 5000 --engine slurm --tasks 200\n"
-           "      on the cluster; the table is the same to the byte\n"
+           "      on a cluster; the table is identical to the byte\n"
            "  mbk validate faults --link udp --runs 2\n"
-           "      robots that misbehave, as processes behind UDP, in real time; four trials side by side\n\n"
-           "A row is met where its 95 % interval lies inside what is expected. It falls short where\n"
-           "the whole interval lies outside. Otherwise it is not shown: that takes more runs.\n\n"
+           "      robots that misbehave, as separate processes over UDP, in real time; four trials at a time\n\n"
+           "A row is met if its 95 % interval lies within the expected range, and falls short if the whole\n"
+           "interval lies outside it. Otherwise it is not shown: more runs are needed.\n\n"
            "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data,\n"
            "6 not shown by this many runs.";
   });
@@ -316,40 +319,44 @@ Action add_validate(Command app) {
   std::vector<std::string> words = study_names();
   words.emplace_back(kAll);
   command
-      .add_option("STUDY", arguments->study,
-                  fmt::format("one of {}; or all; with nothing at all they are listed, with options alone it is {}",
-                              names, arguments->study))
+      .add_option(
+          "STUDY", arguments->study,
+          fmt::format(
+              "study to run: one of {}, or all (default: {}); without any argument or option, the studies are listed",
+              names, arguments->study))
       .check([names](const std::string& study) {
         return study == kAll || find_study(study) != nullptr
                    ? ""
-                   : fmt::format("'{}' is no study; there are: {}", study, names);
+                   : fmt::format("'{}' is not a study; choose one of {}", study, names);
       })
       .check(suggests(words));
-  command.add_option("--runs", arguments->runs, "how many seeds (as many as the study needs)")
+  command.add_option("--runs", arguments->runs, "number of runs, each with its own seed (default: as listed below)")
       .type_name("N")
       .check(whole_number(1, 1'000'000));
-  command.add_option("--seed", arguments->seed, "the same seed gives the same table (1)")
+  command.add_option("--seed", arguments->seed, "random seed; the same seed gives the same table (default: 1)")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<long>::max()));
-  add_threads_option(command, arguments->threads, "trials");
+  add_threads_option(command, arguments->threads, "number of trials run in parallel");
   add_choice(command, "--link", arguments->link,
-             "of 'faults': function, or udp for a robot in a process of its own (function)")
+             "with 'faults': function, or udp for a robot in a separate process (default: function)")
       .type_name("LINK");
-  command.add_option("--fault", arguments->faults, "of 'faults --link udp': only this one; may be repeated")
+  command.add_option("--fault", arguments->faults, "with 'faults --link udp': run only this fault; may be repeated")
       .type_name("NAME")
       .check(suggests(fault_names()));
-  command.add_option("--condition", arguments->conditions, "of 'misspecification': only this one; may be repeated")
+  command
+      .add_option("--condition", arguments->conditions,
+                  "with 'misspecification': run only this condition; may be repeated")
       .type_name("NAME");
   command.add_flag("--page", arguments->page,
-                   "of 'faults': writes docs/guide/safety.md, from the tables of both links");
-  command.add_flag("--json", arguments->json, "for machines: schema mbk.validation/2");
+                   "with 'faults': print docs/guide/safety.md, from the tables of both links");
+  command.add_flag("--json", arguments->json, "print JSON: schema mbk.validation/2");
   const Option charts =
       command
-          .add_option("--charts", arguments->charts, "also write the charts of the study as SVG files into this folder")
+          .add_option("--charts", arguments->charts, "also write the charts of the study to this folder as SVG files")
           .type_name("FOLDER")
           .check(not_empty());
-  command.add_flag("--overwrite", arguments->overwrite, "replace those files where they are there").needs(charts);
-  command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
+  command.add_flag("--overwrite", arguments->overwrite, "replace existing charts").needs(charts);
+  command.add_flag("--quiet", arguments->quiet, "print no progress on standard error");
   add_engine_options(command, arguments->engine);
   return [arguments, command] { return run(*arguments, command.is_bare() && Caller::current() == nullptr); };
 }

@@ -51,14 +51,14 @@ int run(const WorkArguments& arguments) {
     if (::getppid() == 1) return kBadData;  // it is gone already
   }
   if (auto ok = folder->check_program(); !ok) return report_error(ok.error());
-  // Before anything computes: processors of different kinds then give the same digits.
+  // Before any computation: processors of different kinds then give the same digits.
   const std::string& simd_of_job = folder->job().simd;
   ::setenv("MBK_SIMD", simd_of_job.c_str(), 1);
   if (word_of(simd()) != simd_of_job) {
     return report_error({ErrorKind::data,
-                         fmt::format("the job was begun on a processor of kind {}, and this one is of kind {}",
-                                     simd_of_job, word_of(simd())),
-                         fmt::format("begin it with MBK_SIMD={}", word_of(simd())), folder->folder().string()});
+                         fmt::format("the job was started with SIMD level {}, but this processor uses {}", simd_of_job,
+                                     word_of(simd())),
+                         fmt::format("start the job with MBK_SIMD={}", word_of(simd())), folder->folder().string()});
   }
   const auto done = [](std::int64_t chunk, const batch::ChunkDone& did) {
     return print_text(fmt::format("chunk {}: {} units, {} failed\n", chunk, did.units, did.failed));
@@ -77,32 +77,34 @@ int run(const WorkArguments& arguments) {
 
 Action add_work(Command app) {
   auto arguments = std::make_shared<WorkArguments>();
-  const Command command = app.add_command("work", "work on a job that --engine began");
+  const Command command = app.add_command("work", "work on a job started with --engine, or show its progress");
   command.footer(
       "Examples:\n"
       "  mbk work arms/jobs/measure --status\n"
-      "      how far it is\n"
+      "      shows its progress\n"
       "  mbk work arms/jobs/measure --chunk 12\n"
-      "      what a task of Slurm does; by hand, too\n"
+      "      does one chunk, as each Slurm task does\n"
       "  mpirun -n 64 mbk work arms/jobs/measure\n"
-      "      64 workers, by MPI or by srun: each does chunks that nobody has begun, until there are none\n"
+      "      64 workers, started by MPI or srun: each takes unstarted chunks until none are left\n"
       "  mbk work arms/jobs/measure --cancel\n"
-      "      ends the tasks that wait or run in Slurm; what they finished stays\n\n"
-      "A chunk's results stand in the job's folder, shards/CHUNK.*.shard; the command that began the job collects\n"
-      "them. A chunk that is done twice gives the same bytes.");
+      "      cancels waiting and running Slurm tasks; finished chunks are kept\n\n"
+      "The results of a chunk are in the job's folder, shards/CHUNK.*.shard; the command that started the\n"
+      "job collects them. Repeating a chunk gives the same bytes.");
   command.add_option("FOLDER", arguments->folder, "the job's folder").required().check(not_empty());
   const Option chunk =
-      command.add_option("--chunk", arguments->chunk, "only this part, from 0 (all that nobody has begun)")
+      command
+          .add_option("--chunk", arguments->chunk, "do only this chunk, counted from 0 (default: all unstarted chunks)")
           .type_name("K")
           .check(whole_number(0, 1'000'000'000));
-  command.add_option("--heartbeat", arguments->heartbeat_s, "between two signs of life in the shard (20)")
+  command
+      .add_option("--heartbeat", arguments->heartbeat_s,
+                  "time between two heartbeats in the shard, in seconds (default: 20)")
       .type_name("S")
       .check(positive());
-  command.add_flag("--with-parent", arguments->with_parent, "end when the process that started this one ends")
-      .needs(chunk);
-  const Option status = command.add_flag("--status", arguments->status, "how far the job is").excludes(chunk);
-  command.add_flag("--cancel", arguments->cancel, "end its tasks in Slurm").excludes(chunk).excludes(status);
-  command.add_flag("--json", arguments->json, "of --status, for machines: schema mbk.job_state/1").excludes(chunk);
+  command.add_flag("--with-parent", arguments->with_parent, "end when the parent process ends").needs(chunk);
+  const Option status = command.add_flag("--status", arguments->status, "show the progress of the job").excludes(chunk);
+  command.add_flag("--cancel", arguments->cancel, "cancel its Slurm tasks").excludes(chunk).excludes(status);
+  command.add_flag("--json", arguments->json, "print the progress as JSON: schema mbk.job_state/1").excludes(chunk);
   return [arguments] { return run(*arguments); };
 }
 

@@ -29,8 +29,8 @@ Result<void> ChartFiles::check(const std::filesystem::path& folder, bool overwri
   std::error_code ignored;
   if (!std::filesystem::exists(folder, ignored)) return {};
   if (!std::filesystem::is_directory(folder, ignored)) {
-    return fail(ErrorKind::usage, "--charts: this is no folder", "name one; it is made where it is not there",
-                folder.string());
+    return fail(ErrorKind::usage, "--charts names a file, not a folder",
+                "name a folder; it is created if it does not exist", folder.string());
   }
   for (const std::filesystem::path& input : inputs) {
     for (const char* const name : names) {
@@ -45,7 +45,7 @@ Result<ChartFiles> ChartFiles::in(const std::filesystem::path& folder, bool over
                                   std::vector<std::filesystem::path> sources) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be made", folder.string());
+  if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be created", folder.string());
   ChartFiles files;
   files.folder_ = folder;
   files.sources_ = std::move(sources);

@@ -14,18 +14,18 @@ namespace mbk::app {
 /// The charts of one command as files of one folder, "FOLDER/NAME.svg".
 class ChartFiles {
  public:
-  /// What can be said before the work begins.   @param names  of charts that there will be of each of `inputs`
-  /// @fails  usage: FOLDER is something else; it holds such a chart, which may not be overwritten.
+  /// Checks before the work begins.   @param names  of the charts of each of `inputs`
+  /// @fails  usage: FOLDER is not a folder; it contains such a chart, which may not be overwritten.
   [[nodiscard]] static Result<void> check(const std::filesystem::path& folder, bool overwrite,
                                           const std::vector<std::filesystem::path>& inputs,
                                           std::initializer_list<const char*> names);
 
-  /// Makes the folder.    @param sources  as Output::write
-  /// @fails  usage: it cannot be made.
+  /// Creates the folder.    @param sources  as Output::write
+  /// @fails  usage: it cannot be created.
   [[nodiscard]] static Result<ChartFiles> in(const std::filesystem::path& folder, bool overwrite,
                                              std::vector<std::filesystem::path> sources);
 
-  /// "trial_3-force.svg" of a result of "data/trial_3.mat"; where an earlier result has that name,
+  /// "trial_3-force.svg" of a result of "data/trial_3.mat"; if an earlier result has that name,
   /// "trial_3-2-force.svg".
   /// @fails  as recording::write_file
   [[nodiscard]] Result<void> write(const SourceFile& source, const std::vector<report::NamedChart>& charts);

@@ -22,7 +22,7 @@ void note_signal(int signal) {
   signal_that_came = signal;
 }
 
-/// While it lives, a request to end is noted, and a second one ends the program.
+/// During its lifetime a request to end is noted, and a second one ends the program.
 class NotedSignals {
  public:
   NotedSignals() {
@@ -50,7 +50,7 @@ void add_engine_options(Command command, EngineArguments& arguments) {
   add_options(command, batch::job_table(), arguments);
   command
       .add_flag("--progress-json", arguments.progress_json,
-                "progress as JSON lines on standard error: schema mbk.job_state/1")
+                "print progress as JSON lines on standard error: schema mbk.job_state/1")
       .group("Many processes and computers");
 }
 
@@ -61,7 +61,8 @@ fs::path job_folder_here(const std::string& kind, const std::string& specificati
 Result<fs::path> this_program() {
   std::error_code error;
   auto program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return bad_data(error.message(), "it names this program", "/proc/self/exe");
+  if (error)
+    return bad_data(error.message(), "make this link readable; it names the running program", "/proc/self/exe");
   return program;
 }
 
@@ -91,17 +92,18 @@ Result<Carried> carry_out(const EngineArguments& arguments, const batch::JobRequ
   const std::string where = folder.folder().string();
   switch (report.end) {
     case batch::RunEnd::detached:
-      say("mbk: the tasks go on without this process; 'mbk work {} --status' tells how far they are, and the same "
-          "command collects what they did\n",
+      say("mbk: the tasks continue without this process; 'mbk work {} --status' shows their progress, and repeating "
+          "this "
+          "command collects their results\n",
           where);
       carried.code = kFine;
       break;
     case batch::RunEnd::stopped:
-      say("mbk: stopped; the same command goes on where it ended\n");
+      say("mbk: stopped; repeat the command to continue\n");
       carried.code = 128 + signal_that_came;
       break;
     default:
-      say("mbk: {} of {} chunks could not be done; the logs stand in {}\n", report.state.given_up, report.state.chunks,
+      say("mbk: {} of {} chunks failed; see the logs in {}\n", report.state.given_up, report.state.chunks,
           folder.logs().string());
       carried.folder = std::move(folder);
       carried.code = kBadData;

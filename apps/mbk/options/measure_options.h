@@ -18,6 +18,10 @@ struct MeasureArguments : request::MeasureRequest {
   OutputArguments output;
 };
 
+/// What most people need of request::measure_table(), before the sections of --help.
+inline constexpr auto kMainMeasureOptions = {"--channels", "--method", "--mode",       "--cutoff",
+                                             "--from",     "--to",     "--handle-mass"};
+
 /// Adds FILE, the options of reading, sensor, preprocessing and identification, --pool and --threads.
 void add_measure_options(Command command, MeasureArguments& arguments);
 /// Adds --ranges, which prints them.

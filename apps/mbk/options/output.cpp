@@ -43,7 +43,7 @@ void Output::add_options(Command command) {
   const Option out = command.add_option("--out", file, "write to this file instead of standard output")
                          .type_name("FILE")
                          .check(not_empty());
-  command.add_flag("--overwrite", overwrite, "replace that file where it is there").needs(out);
+  command.add_flag("--overwrite", overwrite, "replace an existing file").needs(out);
 }
 
 Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,
@@ -52,24 +52,24 @@ Result<void> check_new_file(const std::filesystem::path& file, const char* optio
   if (!std::filesystem::exists(file, error)) return {};
   for (const std::filesystem::path& input : inputs) {
     if (std::filesystem::equivalent(file, input, error)) {
-      return fail(ErrorKind::usage, "is what is read, and would be lost",
+      return fail(ErrorKind::usage, "this is an input file, which would be overwritten",
                   fmt::format("choose another name for {}", option), file.string());
     }
   }
   if (overwrite) return {};
-  return fail(ErrorKind::usage, "the file is there already", "pass --overwrite to replace it", file.string());
+  return fail(ErrorKind::usage, "the file already exists", "pass --overwrite to replace it", file.string());
 }
 
 namespace {
 
 Result<void> write_to_stdout(const std::string& text) {
-  flush_messages();  // at a terminal both stand below one another, in the order in which they came
+  flush_messages();  // so that both are in order at a terminal
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
   const int error = errno;
   return bad_data(fmt::format("standard output could not be written: {}", std::strerror(error)),
                   error == ENOSPC  ? "free space on the disk"
-                  : error == EPIPE ? "what it was piped into has ended before it had read everything"
-                                   : "see where it goes");
+                  : error == EPIPE ? "the reader of the pipe ended before it had read everything"
+                                   : "check where it is redirected to");
 }
 
 }  // namespace

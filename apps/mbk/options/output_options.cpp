@@ -9,63 +9,66 @@
 namespace mbk::app {
 namespace output_options {
 
-/// --overwrite speaks of every file that the command may write.
-void replaces_too(Command command) {
+/// --overwrite applies to every file that the command may write.
+void update_overwrite(Command command) {
   std::vector<std::string> names;
   for (const char* const name : {"--out", "--report", "--summary", "--charts"}) {
     if (command.find_option(name)) names.emplace_back(name);
   }
-  const Option overwrite = command.get_option("--overwrite");
-  overwrite.remove_needs(command.get_option("--out"));
-  overwrite.description(fmt::format("replace the files of {} where they are there", fmt::join(names, ", ")));
+  const auto overwrite = command.find_option("--overwrite");
+  if (!overwrite || names.size() < 2) return;
+  overwrite->remove_needs(command.get_option("--out"));
+  overwrite->description(fmt::format("replace existing files of {}", fmt::join(names, ", ")));
 }
 
 }  // namespace output_options
 
-using output_options::replaces_too;
+using output_options::update_overwrite;
 
 void add_output_options(Command command, OutputArguments& arguments, const std::string& schema) {
-  command.add_flag("--json", arguments.json, fmt::format("for machines: schema {}, SI units, every digit", schema));
+  command.add_flag("--json", arguments.json, fmt::format("print JSON: schema {}, SI units, full precision", schema));
   arguments.to.add_options(command);
+  update_overwrite(command);
   command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
 }
 
 void add_report_options(Command command, ReportArguments& arguments) {
-  const Option report = command
-                            .add_option("--report", arguments.file,
-                                        "also write everything, with plots, as one HTML file to read, print or pass on")
-                            .type_name("FILE")
-                            .check(not_empty());
+  const Option report =
+      command
+          .add_option("--report", arguments.file,
+                      "also write a report with all results and plots as one HTML file, to read, print or share")
+          .type_name("FILE")
+          .check(not_empty());
   command
       .add_option(
           "--report-note", arguments.note,
-          "a line below the report's title, such as a date and a name; mbk adds no date of its own, so that the "
-          "same inputs give the same report")
+          "a line below the title of the report, such as a date; mbk adds none, so that the same inputs give the same "
+          "report")
       .type_name("TEXT")
       .check(not_empty())
       .needs(report);
-  replaces_too(command);
+  update_overwrite(command);
 }
 
 void add_summary_option(Command command, FilesBeside& beside) {
   command
       .add_option(
           "--summary", beside.summary,
-          "also write a table with one row a trial and units in its header, as FILE.csv or, for LaTeX, FILE.tex")
+          "also write a table with one row for each trial and units in its header, as FILE.csv or, for LaTeX, FILE.tex")
       .type_name("FILE")
       .check([](const std::string& file) {
         return file.ends_with(".csv") || file.ends_with(".tex")
                    ? ""
-                   : fmt::format("{} ends in neither .csv nor .tex", quoted(file));
+                   : fmt::format("{} does not end in .csv or .tex", quoted(file));
       });
-  replaces_too(command);
+  update_overwrite(command);
 }
 
 void add_charts_option(Command command, FilesBeside& beside) {
-  command.add_option("--charts", beside.charts, "also write the charts as SVG files into this folder")
+  command.add_option("--charts", beside.charts, "also write the charts to this folder as SVG files")
       .type_name("FOLDER")
       .check(not_empty());
-  replaces_too(command);
+  update_overwrite(command);
 }
 
 Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output,

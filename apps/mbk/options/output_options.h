@@ -10,12 +10,12 @@
 
 namespace mbk::app {
 
-/// In which form a result is said, and where.
+/// The form of a result, and where it goes.
 struct OutputArguments {
   bool json = false, quiet = false;
   Output to;
 
-  /// A document, or a text for people.
+  /// Writes a document, or a text for people.
   /// @param sources  as Output::write
   [[nodiscard]] Result<void> write(const std::string& text, const std::vector<std::filesystem::path>& sources) const {
     return json ? to.write(text, sources) : to.show(text, sources);
@@ -36,16 +36,16 @@ struct FilesBeside {
 /// Adds --json, --out, --overwrite, --quiet.
 void add_output_options(Command command, OutputArguments& arguments, const std::string& schema);
 
-/// Adds --report and --report-note; --overwrite then speaks of the report too.
+/// Adds --report and --report-note; --overwrite then applies to the report too.
 void add_report_options(Command command, ReportArguments& arguments);
 
-/// Adds --summary; --overwrite then speaks of it too.
+/// Adds --summary; --overwrite then applies to it too.
 void add_summary_option(Command command, FilesBeside& beside);
 
-/// Adds --charts; --overwrite then speaks of them too.
+/// Adds --charts; --overwrite then applies to them too.
 void add_charts_option(Command command, FilesBeside& beside);
 
-/// What can be said of --out, --report, --summary and --overwrite before the work begins; of --charts see ChartFiles.
+/// Checks --out, --report, --summary and --overwrite before the work begins; for --charts see ChartFiles.
 [[nodiscard]] Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const Output& output,
                                        const ReportArguments& report = {}, const FilesBeside& beside = {});
 

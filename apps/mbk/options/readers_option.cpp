@@ -5,7 +5,7 @@
 namespace mbk::app {
 
 void add_readers_option(Command command, std::optional<Readers>& readers) {
-  add_choice(command, "--readable-by", readers, "who may read the recording (owner)");
+  add_choice(command, "--readable-by", readers, "who may read the recording (default: owner)");
 }
 
 }  // namespace mbk::app

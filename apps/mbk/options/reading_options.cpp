@@ -23,9 +23,9 @@ void add_sensor_options(Command command, SensorRequest& sensor) {
 void say_exclusions(const Recording& recording, bool leaves_windows_out) {
   const std::string exclusions = preprocess::exclusions_text(recording);
   if (exclusions.empty()) return;
-  say("mbk: {}: the operator said of this recording: {}; {}\n",
+  say("mbk: {}: the operator noted: {}; {}\n",
       recording.sources.empty() ? "recording" : recording.sources.front().label(), exclusions,
-      leaves_windows_out ? "windows are left out" : "nothing is left out here: --from and --to can");
+      leaves_windows_out ? "windows are excluded" : "nothing is excluded here; use --from and --to");
 }
 
 }  // namespace mbk::app

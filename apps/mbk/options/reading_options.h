@@ -20,10 +20,10 @@ void add_reading_options(Command command, ReadRequest& reading);
 /// Adds --sensor, --lever-arm-mm, --sensor-zero, --sensor-frame and --sensor-delay.
 void add_sensor_options(Command command, SensorRequest& sensor);
 
-/// Adds FILE… alone.
+/// Adds only FILE….
 void add_files_option(Command command, ReadRequest& reading);
 
-/// Says what the operator excluded of a recording, for commands whose results have no place for it.
+/// Reports what the operator excluded of a recording, for commands whose results do not contain it.
 /// @param leaves_windows_out  whether the command does so
 void say_exclusions(const Recording& recording, bool leaves_windows_out);
 

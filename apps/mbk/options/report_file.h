@@ -19,7 +19,7 @@ namespace mbk::app {
 /// What a shell takes as one word, as it is or quoted.
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-/// What a report says of a recording that was measured.
+/// The facts about a measured recording for a report.
 /// @param identification  of that recording, or of several pooled    @param which  of its recordings this is
 [[nodiscard]] result::RecordingFacts facts_of(const Recording& recording, const Identification& identification,
                                               std::size_t which = 0);
@@ -27,8 +27,8 @@ namespace mbk::app {
 /// The document of a report, with everything in it.
 /// @param facts  one for each result, or all of one pooled result    @param diagnostics  one for each result
 /// @param typed       the command line
-/// @param note        of whoever made it
-/// @param together    of several recordings; null where one result was asked for
+/// @param note        of its author
+/// @param together    of several recordings; null for a single result
 [[nodiscard]] std::string report_json(const std::string& typed, const std::string& note,
                                       const std::vector<result::RecordingFacts>& facts,
                                       const std::vector<Measurement>& measured,

@@ -28,7 +28,7 @@ void add_study_and_role(Command command, StudyArguments& arguments);
 /// The study of --study, or the one that the current folder is in.
 [[nodiscard]] Result<store::Store> open_study(const StudyArguments& arguments);
 
-/// Adds the options of `mbk measure` that say how one recording is measured, and --ranges.
+/// Adds the options of `mbk measure` for measuring one recording, and --ranges.
 void add_measuring_options(Command command, request::MeasureRequest& measuring);
 
 }  // namespace mbk::app

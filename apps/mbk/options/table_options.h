@@ -13,17 +13,32 @@ namespace mbk::app {
 Option add_table_option(Command command, const OptionFacts& facts,
                         std::function<void(const std::vector<std::string>&)> take);
 
-/// Adds every option of a table; what is given goes into `options`.
+/// Adds every option of a table that the command does not have yet; the values go into `options`.
 template <class Options, class Into>
 void add_options(Command command, const OptionTable<Options>& table, Into& options) {
   for (const auto& row : table.rows()) {
+    if (command.find_option(row.facts.name)) continue;
     add_table_option(command, row.facts, [&into = static_cast<Options&>(options), set = row.set](const auto& values) {
       set(into, values);
     });
   }
 }
 
-/// Adds an option that stands in no table with others.
+/// Adds the options that most people need, in this order and before the sections of --help; add_options adds the rest.
+template <class Options, class Into>
+void add_main_options(Command command, const OptionTable<Options>& table, Into& options,
+                      std::initializer_list<const char*> names) {
+  for (const char* const name : names) {
+    const auto& row = *table.find(name);
+    OptionFacts facts = row.facts;
+    facts.group.clear();
+    add_table_option(command, facts, [&into = static_cast<Options&>(options), set = row.set](const auto& values) {
+      set(into, values);
+    });
+  }
+}
+
+/// Adds a single option.
 template <class Value>
 void add_option(Command command, const OptionFacts& facts, Value& into) {
   add_table_option(command, facts, [&into](const auto& values) { option_values::set(into, values, 1.0); });

@@ -5,7 +5,7 @@
 namespace mbk::app {
 
 Option add_threads_option(Command command, unsigned& threads, const std::string& what) {
-  return command.add_option("--threads", threads, what + " at a time (as many as there are cores)")
+  return command.add_option("--threads", threads, what + " (default: number of cores)")
       .type_name("N")
       .check(whole_number(1, 1024));
 }

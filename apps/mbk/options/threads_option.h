@@ -6,7 +6,7 @@
 
 namespace mbk::app {
 
-/// Adds --threads, 0 where it is not given: as many as there are cores.   @param what  "files measured"
+/// Adds --threads, 0 if it is not given: the number of cores.   @param what  "number of files measured in parallel"
 Option add_threads_option(Command command, unsigned& threads, const std::string& what);
 
 }  // namespace mbk::app

@@ -66,7 +66,7 @@ std::string assignments(const Values& values) {
                      single_quoted(files_of(values)));
 }
 
-/// All arguments of a command as one: which of them is being typed, bash is not told.
+/// All arguments of a command as one, since the script does not know which of them is being typed.
 Values together(const std::vector<OptionText>& positionals) {
   Values all;
   bool any_file = false;

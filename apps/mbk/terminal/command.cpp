@@ -137,7 +137,10 @@ std::vector<std::string> Option::words() const {
 }
 
 Command Command::add_command(const std::string& name, const std::string& summary) const {
-  return Command(*app_->add_subcommand(name, summary));
+  CLI::App* const below = app_->add_subcommand(name, summary);
+  // The parser does not pass the name of an option that it does not list on to commands below.
+  if (app_->get_help_all_ptr() != nullptr) below->set_help_all_flag(kHelpAll)->group("");
+  return Command(*below);
 }
 
 template <class T>

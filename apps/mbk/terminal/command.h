@@ -20,16 +20,19 @@ namespace mbk::app {
 
 using Check = OptionCheck;
 
-/// An option, flag or positional argument of a command. A handle: copies are the same option. What sets something
-/// returns it, for the next call.
+/// Prints the same as --help; read, but not listed.
+inline constexpr const char* kHelpAll = "--help-all";
+
+/// An option, flag or positional argument of a command. A handle: copies refer to the same option. Setters return it,
+/// so that calls can be chained.
 class Option {
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
 
   Option type_name(const std::string& placeholder) const;
-  Option option_text(const std::string& placeholder) const;  ///< in place of all that --help says behind the name
+  Option option_text(const std::string& placeholder) const;  ///< replaces the placeholder in --help
   Option description(const std::string& help) const;
-  Option group(const std::string& heading) const;  ///< of --help that it stands under; "": nowhere
+  Option group(const std::string& heading) const;  ///< its heading in --help; "": not listed
   Option check(const Check& check) const;
   Option check(std::function<std::string(const std::string& given)> wrong) const;
   Option required(bool yes = true) const;
@@ -38,17 +41,17 @@ class Option {
   Option excludes(Option other) const;
   Option expected(int values) const;
   Option expected(int least, int most) const;
-  Option default_str(const std::string& value) const;  ///< where it is given without a value
+  Option default_str(const std::string& value) const;  ///< its value if it is given without one
   Option delimiter(char between_values) const;
-  Option allow_extra_args(bool allow) const;  ///< whether it takes more values than one each time that it is given
-  Option take_all() const;                    ///< it may be given several times, and all values count
+  Option allow_extra_args(bool allow) const;  ///< whether it takes several values each time it is given
+  Option take_all() const;                    ///< it may be given several times, and all values are kept
 
   [[nodiscard]] std::string name() const;  ///< "--cutoff", "FILE"
   [[nodiscard]] bool is_flag() const;
   [[nodiscard]] bool is_given() const;
-  [[nodiscard]] bool takes_following() const;             ///< several words may follow it at once
-  [[nodiscard]] std::vector<std::string> values() const;  ///< that were given; of a flag none
-  [[nodiscard]] std::vector<std::string> words() const;   ///< of every Check that it has
+  [[nodiscard]] bool takes_following() const;             ///< several words may follow it
+  [[nodiscard]] std::vector<std::string> values() const;  ///< the given values; none for a flag
+  [[nodiscard]] std::vector<std::string> words() const;   ///< the possible words of all its checks
 
   [[nodiscard]] CLI::Option& cli() const { return *option_; }
 
@@ -74,24 +77,24 @@ class Command {
                              const std::string& help) const;
   Option add_flag(const std::string& name, bool& variable, const std::string& help) const;
   Option add_flag_callback(const std::string& name, std::function<void()> given, const std::string& help) const;
-  /// A flag that is answered with a text, in place of what the command does.
+  /// A flag that prints a text instead of running the command.
   Option add_text_flag(const std::string& name, std::function<std::string()> text, const std::string& help) const;
-  /// The name that `option` had until the version before: still read, but listed nowhere.
+  /// The former name of `option`: still read, but not listed.
   void accept_former_name(Option option, const std::string& former) const;
   void remove_option(const std::string& name) const;
 
   void footer(const std::string& text) const;
-  void footer(std::function<std::string()> text) const;  ///< made where it is asked for
-  void require_subcommand() const;                       ///< it does nothing by itself
+  void footer(std::function<std::string()> text) const;  ///< made on demand
+  void require_subcommand() const;                       ///< it does nothing without one
 
   [[nodiscard]] std::string name() const;
   [[nodiscard]] Option get_option(const std::string& name) const;  ///< one that it has
   [[nodiscard]] std::optional<Option> find_option(const std::string& name) const;
   [[nodiscard]] std::vector<Option> options() const;
-  [[nodiscard]] std::vector<std::string> option_names() const;   ///< as they are typed: "--cutoff", "-o"
-  [[nodiscard]] std::vector<Command> commands() const;           ///< those right below it
-  [[nodiscard]] bool has_typed(const std::string& below) const;  ///< whether that command below it was typed
-  [[nodiscard]] bool is_bare() const;                            ///< it was typed without any option or argument
+  [[nodiscard]] std::vector<std::string> option_names() const;   ///< as typed: "--cutoff", "-o"
+  [[nodiscard]] std::vector<Command> commands() const;           ///< its direct subcommands
+  [[nodiscard]] bool has_typed(const std::string& below) const;  ///< whether this subcommand was typed
+  [[nodiscard]] bool is_bare() const;  ///< whether it was typed without any option or argument
 
   [[nodiscard]] CLI::App& cli() const { return *app_; }
 
@@ -99,15 +102,15 @@ class Command {
   CLI::App* app_;
 };
 
-/// Why the words of a command line were not taken.
+/// Why the words of a command line were not accepted.
 struct NotTaken {
-  std::string what;                        ///< in the parser's words
-  std::string usage;                       ///< the same in one sentence without a stop, with what was probably meant
-  std::string command;                     ///< that was typed, with its parts: "mbk study add"; "mbk" where none was
-  std::optional<std::string> answer = {};  ///< nothing is wrong: they ask for this text, as --help does
+  std::string what;     ///< in the parser's words
+  std::string usage;    ///< the same in one sentence without a full stop, with a suggestion
+  std::string command;  ///< the typed command with its parents: "mbk study add"; "mbk" if there is none
+  std::optional<std::string> answer = {};  ///< not an error: they request this text, as --help does
 };
 
-/// What words are parsed by: a command that stands above all others, or alone.
+/// Parses words: the command above all others, or a single command.
 class Parser {
  public:
   explicit Parser(const std::string& name = "", const std::string& description = "");
@@ -117,7 +120,7 @@ class Parser {
 
   [[nodiscard]] Command command() const { return Command(*app_); }
 
-  /// Sets what the options stand for.
+  /// Sets the variables of the options.
   [[nodiscard]] tl::expected<void, NotTaken> parse(std::vector<std::string> words) const;
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 using Commands = std::vector<std::pair<std::string_view, std::function<Action(Command)>>>;
 
-/// Every command, in the order in which --help lists them.
+/// Every command, in the order of --help.
 Commands all_commands(const std::string& typed) {
   return {
       {"measure", [typed](Command app) { return add_measure(app, typed); }},

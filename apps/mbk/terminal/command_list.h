@@ -8,9 +8,10 @@
 
 namespace mbk::app {
 
-/// Adds every command to `app`, in the order in which --help lists them, and gives what they do. The options of all
-/// commands are half of what it takes to start: where `first` names a command, only that one is made, unless it is one
-/// that speaks of all; for "--version", none.
+/// Adds every command to `app`, in the order of --help, and returns their actions. Adding the options of all commands
+/// takes half of the start-up time: if `first` names a command, only that one is added, unless it needs all of them;
+/// for
+/// "--version", none.
 /// @param first  the first word on the command line    @param typed  all of it, which a report repeats
 [[nodiscard]] Actions add_commands(std::string_view first, Command app, const std::string& typed);
 

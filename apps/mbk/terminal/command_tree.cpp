@@ -13,7 +13,7 @@
 namespace mbk::app {
 namespace {
 
-/// "HZ|none" → none: what is written in small letters stands for itself.
+/// "HZ|none" → none: words in small letters are typed as they are.
 std::vector<std::string> words_of(const std::string& placeholder) {
   static const std::regex kWords("[^|]+");
   static const std::regex kWord("[a-z][a-z0-9_-]*");
@@ -71,10 +71,11 @@ OptionText describe_option(CLI::Option& option) {
   }
   text.needs = names_of(option.get_needs());
   text.excludes = names_of(option.get_excludes());
+  text.conditions = conditions_of(option);
   return text;
 }
 
-/// What --help lists; a former name is not.
+/// The commands that --help lists; former names are not listed.
 std::vector<CLI::App*> listed_commands(CLI::App& app) {
   return app.get_subcommands([](CLI::App* one) { return !one->get_group().empty(); });
 }
@@ -93,7 +94,7 @@ CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
   text.description = app.get_description();
   text.footer = app.get_footer();
   for (CLI::Option* option : app.get_options()) {
-    if (option->get_group().empty()) continue;  // kept out of --help too
+    if (option->get_group().empty()) continue;  // not listed by --help either
     (option->get_positional() ? text.positionals : text.options).push_back(describe_option(*option));
   }
   for (CLI::App* below : listed_commands(app)) {
@@ -103,6 +104,14 @@ CommandText describe_command(CLI::App& app, std::vector<std::string> path) {
 }
 
 }  // namespace
+
+std::string conditions_of(const CLI::Option& option) {
+  std::string text;
+  if (!option.get_needs().empty()) text += fmt::format("; only with {}", fmt::join(names_of(option.get_needs()), ", "));
+  const std::vector<std::string> excludes = names_of(option.get_excludes());
+  if (!excludes.empty()) text += fmt::format("; not with {}", fmt::join(excludes, ", "));
+  return text;
+}
 
 int run_chosen(Command parent, const Actions& actions) {
   for (const auto& [name, action] : actions) {

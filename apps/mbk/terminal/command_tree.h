@@ -7,24 +7,28 @@
 
 namespace mbk::app {
 
-/// What may stand in the place of a value, as far as a shell can know it.
+/// The possible values of an option, as far as a shell can know them.
 struct Values {
   std::vector<std::string> words;       ///< fixed values, such as "default" and "reference"
-  bool files = false, folders = false;  ///< also names of files, or of folders alone
+  bool files = false, folders = false;  ///< also names of files, or only of folders
   std::vector<std::string> extensions;  ///< of those files, without the dot; empty: any file
 };
 
-/// One option, flag or positional argument of a command, in the words of --help.
+/// "; only with --report; not with --list": what an option needs and excludes, to follow its description.
+[[nodiscard]] std::string conditions_of(const CLI::Option& option);
+
+/// One option, flag or positional argument of a command, as --help describes it.
 struct OptionText {
-  std::vector<std::string> names;          ///< "-h", "--help"; none where it is positional
+  std::vector<std::string> names;          ///< "-h", "--help"; none for a positional argument
   std::string value;                       ///< placeholder, "HZ" or "default|reference"; empty for a flag
-  std::string description, group;          ///< group: the heading in --help that it stands under
+  std::string description, group;          ///< group: its heading in --help
   bool required = false, repeats = false;  ///< repeats: takes several values, or may be given several times
   std::vector<std::string> needs, excludes;
+  std::string conditions;  ///< as conditions_of
   Values values;
 };
 
-/// One command with everything below it.
+/// One command with its subcommands.
 struct CommandText {
   std::vector<std::string> path;  ///< "mbk", "springs", "field"
   std::string description, footer;
@@ -35,10 +39,10 @@ struct CommandText {
   [[nodiscard]] std::string joined(const char* separator) const;
 };
 
-/// The name of every command below this one, each before those below it; no help is made for that.
+/// The name of every command below this one, each before its subcommands; builds no help text.
 [[nodiscard]] std::vector<std::string> names_below(Command app);
 
-/// Everything that --help says on every level, as values. Fixed values come from a placeholder with words in small
+/// The help of every command as values. Fixed values come from a placeholder with words in small
 /// letters between bars ("HZ|none": none), from suggests() and, for files, from extensions: in the placeholder
 /// ("REC.mat") or in the description of a positional argument (".mat or .csv").
 [[nodiscard]] CommandText describe(Command app);

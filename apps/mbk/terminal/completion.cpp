@@ -41,16 +41,17 @@ std::string single_quoted(const std::string& text) {
 
 Action add_completion(Command app) {
   auto arguments = std::make_shared<CompletionArguments>();
-  const Command command = app.add_command("completion", "a script that lets the shell complete commands and options");
+  const Command command =
+      app.add_command("completion", "print a script that lets the shell complete commands and options");
   command.footer(
       "Examples:\n"
       "  mbk completion bash --out ~/.local/share/bash-completion/completions/mbk\n"
-      "      or, for one shell alone: source <(mbk completion bash)\n"
+      "      or, for the current shell only: source <(mbk completion bash)\n"
       "  mbk completion zsh --out ~/.zfunc/_mbk\n"
       "      with fpath+=~/.zfunc before compinit in ~/.zshrc\n"
       "  mbk completion fish --out ~/.config/fish/completions/mbk.fish\n\n"
-      "Where mbk came as a package, or by 'cmake --install', the scripts are in place.");
-  add_choice(command, "SHELL", arguments->shell, "bash, zsh or fish").type_name("TEXT").required();
+      "If mbk was installed from a package or with 'cmake --install', the scripts are already installed.");
+  add_choice(command, "SHELL", arguments->shell, "the shell: bash, zsh or fish").type_name("TEXT").required();
   arguments->output.add_options(command);
   return [arguments, app] { return run(*arguments, app); };
 }

@@ -6,7 +6,7 @@
 
 namespace mbk::app {
 
-/// What a shell reads to complete the command line of `root`: a script that stands alone.
+/// A self-contained script with which a shell completes the command line of `root`.
 [[nodiscard]] std::string bash_completion(const CommandText& root);
 [[nodiscard]] std::string zsh_completion(const CommandText& root);
 [[nodiscard]] std::string fish_completion(const CommandText& root);

@@ -14,10 +14,10 @@ namespace folded {
 
 constexpr std::size_t kGap = 2;             // blanks between columns
 constexpr std::size_t kMin = 3;             // columns of a table
-constexpr std::size_t kShort = 7;           // width of what stands in each part
-constexpr std::size_t kNarrowestText = 20;  // of what is broken between words
+constexpr std::size_t kShort = 7;           // maximum width of a column that is repeated in each part
+constexpr std::size_t kNarrowestText = 20;  // minimum width of text that is broken between words
 
-/// Characters of a line, each as its bytes; all are taken to be one column wide.
+/// Characters of a line, each as its bytes; every character is assumed to be one column wide.
 std::vector<std::string_view> characters_of(std::string_view line) {
   std::vector<std::string_view> characters;
   for (std::size_t begin = 0; begin < line.size();) {
@@ -35,7 +35,7 @@ struct Column {
   [[nodiscard]] std::size_t width() const { return end - begin; }
 };
 
-/// Which places of any line are taken.
+/// Marks the columns of the terminal that any line occupies.
 void take_places(const std::vector<std::string_view>& line, std::vector<bool>& taken) {
   taken.resize(std::max(taken.size(), line.size()));
   for (std::size_t k = 0; k < line.size(); ++k) taken[k] = taken[k] || line[k] != " ";
@@ -93,7 +93,7 @@ Grid grid_of(std::span<const std::string_view> lines) {
   return grid;
 }
 
-/// How many lines from the first are one table: as long as none of them closes a gap between columns.
+/// Number of lines from the first that form one table: until a line closes a gap between columns.
 std::size_t lines_of_table(std::span<const std::string_view> lines) {
   std::vector<bool> taken;
   std::size_t count = 0, columns = kMin;
@@ -121,10 +121,10 @@ std::size_t lines_of_drawings(std::span<const std::string_view> lines) {
 /// Some of the columns beside the first one.
 struct Part {
   std::vector<Column> columns;
-  std::size_t last_width = 0;  ///< of its last column, where that is broken between words
+  std::size_t last_width = 0;  ///< of its last column if that is broken between words
 };
 
-/// As many columns as fit, part by part; empty where one never does.
+/// As many columns as fit, part by part; empty if one cannot fit.
 std::vector<Part> parts_of(const std::vector<Column>& columns, std::size_t room) {
   std::vector<Part> parts;
   std::size_t left = 0;
@@ -146,7 +146,7 @@ std::vector<Part> parts_of(const std::vector<Column>& columns, std::size_t room)
   return parts;
 }
 
-/// One row of a part, on several lines where its last cell is broken.
+/// One row of a part, on several lines if its last cell is broken.
 std::string row_of(const std::string& label, const std::vector<std::string_view>& line, const Part& part,
                    const std::string& units) {
   std::string text = label, more;
@@ -203,7 +203,7 @@ std::string folded_drawings(const Grid& grid, std::size_t terminal) {
   return text;
 }
 
-/// Where one drawing ends and the next begins is told by the captions.
+/// Whether the captions show where each drawing begins.
 bool are_drawings(const Grid& grid) {
   constexpr std::size_t kNarrowest = 16;
   return grid.columns.size() > 1 && std::ranges::all_of(grid.columns, [&](const Column& column) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/mbk/terminal/command_tree.h"
 #include "apps/mbk/terminal/terminal.h"
 #include "mbk/present/report/text.h"
 
@@ -20,10 +21,27 @@ class HelpFormatter : public CLI::Formatter {
   HelpFormatter() { column_width(columns_ < kNarrow ? 24 : 30); }
 
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode /*all*/) const override {
-    return fitted(Formatter::make_help(app, std::move(name), CLI::AppFormatMode::Normal), columns_);
+    const std::string help = Formatter::make_help(app, std::move(name), CLI::AppFormatMode::Normal);
+    return fitted(CLI::detail::find_and_replace(help, "\n\n\n", "\n\n"), columns_);
   }
 
-  std::string make_option_desc(const CLI::Option* option) const override { return wrapped(option->get_description()); }
+  std::string make_option_name(const CLI::Option* option, bool positional) const override {
+    std::string name = Formatter::make_option_name(option, positional);
+    return name.substr(0, name.find('{'));  // a flag that sets false is called "--no-measure{false}"
+  }
+
+  /// The value alone. Which arguments are required is visible in the usage line; what an option needs and excludes is
+  /// in its description.
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (option->get_type_size() == 0 || option->get_positional()) return "";
+    const std::string& text = option->get_option_text();
+    const bool several = option->get_expected_max() == CLI::detail::expected_max_vector_size;
+    return " " + (text.empty() ? option->get_type_name() : text) + (several ? " ..." : "");
+  }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(option->get_description() + conditions_of(*option));
+  }
 
   std::string make_subcommand(const CLI::App* command) const override {
     std::stringstream out;
@@ -45,7 +63,7 @@ class HelpFormatter : public CLI::Formatter {
 
 void add_help(Command app) {
   app.cli().formatter(std::make_shared<HelpFormatter>());
-  app.cli().set_help_all_flag("--help-all", "print every option, in sections, with all there is to say");
+  app.cli().set_help_all_flag(kHelpAll)->group("");
 }
 
 }  // namespace mbk::app

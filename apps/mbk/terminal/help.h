@@ -4,7 +4,8 @@
 
 namespace mbk::app {
 
-/// --help and --help-all, as wide as the terminal, here and in commands that are added from then on.
+/// --help, as wide as the terminal, for `app` and for commands that are added to it later. --help-all prints the same;
+/// it is still read, but not listed.
 void add_help(Command app);
 
 }  // namespace mbk::app

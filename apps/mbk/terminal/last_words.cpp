@@ -26,19 +26,19 @@ extern "C" void on_fatal_signal(int signal) {
   raise(signal);  // taken once this handler is left
 }
 
-/// Made before the handler that reads it is registered, so that it is there longer.
+/// Constructed before the handler that reads it is registered, so that it outlives the handler.
 std::string& journal_at_work() {
   static std::string journal;
   return journal;
 }
 
-/// Somebody calls exit() while a trial runs: a driver, since nothing of mbk does.
+/// exit() was called during a trial: by a driver, since mbk never does.
 void on_exit_in_trial() {
   if (robot_at_work == nullptr) return;
   LastWords::say();
   const std::string what =
       "\a\nmbk: MOTORS NOT CONFIRMED OFF: the robot's driver ended the program. Press the hardware stop button. "
-      "What was recorded: mbk recover " +
+      "Recover the data with: mbk recover " +
       journal_at_work() + "\n";
   static_cast<void>(!::write(STDERR_FILENO, what.data(), what.size()));
   std::_Exit(kMotorsNotOff);

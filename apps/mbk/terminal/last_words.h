@@ -14,23 +14,23 @@ namespace mbk::app {
 
 inline constexpr int kMotorsNotOff = 7;  ///< exit code: the robot did not confirm that its motors are off
 
-/// While it lives, a signal that means the end of the program (a wild pointer, a division by zero, abort, and with it
-/// an exception that nobody catches) first switches the robot's motors off, where the device can say so from there
-/// (Device::emergency_off), and gives the terminal its keys back. Then it acts as it does without: core dump and exit
-/// status stay. A driver that calls exit() does the same, and the program ends with kMotorsNotOff. Neither SIGKILL nor
-/// a machine that stands still leaves time for it; the robot's watchdog does.
+/// During its lifetime a fatal signal (an invalid pointer, a division by zero, abort, and with it an uncaught
+/// exception) first switches the robot's motors off, if the device can do so from a signal handler
+/// (Device::emergency_off), and restores the terminal. Then the signal acts as usual: core dump and exit status are
+/// unchanged. A driver that calls exit() has the same effect, and the program ends with kMotorsNotOff. SIGKILL and a
+/// frozen computer leave no time for this; the robot's watchdog covers them.
 class LastWords {
  public:
-  /// @param robot  outlives this    @param journal  of the trial, for those who come to look
+  /// @param robot  outlives this    @param journal  of the trial, named in the alarm
   LastWords(device::Device& robot, const std::filesystem::path& journal);
   LastWords(const LastWords&) = delete;
   LastWords& operator=(const LastWords&) = delete;
   ~LastWords();
 
-  /// What a fatal signal does first, for an end that is none. Nothing where nobody waits for one.
+  /// What a fatal signal does first, for other abrupt ends. Does nothing if no LastWords exists.
   static void say() noexcept;
 
-  /// How standard input's terminal was; null: it is left as it is. Stays valid while it is set.
+  /// The settings of the terminal to restore; null: none. Stays valid while it is set.
   static void restore_terminal(const termios* before);
 
  private:

@@ -23,7 +23,7 @@ struct ManualArguments {
   bool json = false, overwrite = false;
 };
 
-/// The command that the words lead to, from `root` down; nullptr where there is none.
+/// The command that the words name, from `root` down; nullptr if there is none.
 const CommandText* find_command(const CommandText& root, const std::vector<std::string>& words) {
   const CommandText* at = &root;
   for (const std::string& word : words) {
@@ -39,7 +39,7 @@ int write_pages(const CommandText& root, const std::filesystem::path& folder, bo
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    return report_error({ErrorKind::usage, error.message(), "name a folder that can be made", folder.string()});
+    return report_error({ErrorKind::usage, error.message(), "name a folder that can be created", folder.string()});
   }
   Result<void> written;
   for_each_command(root, [&](const CommandText& command) {
@@ -58,14 +58,15 @@ int run(const ManualArguments& arguments, Command app) {
   }
   if (arguments.pages) {
     if (arguments.command.empty()) return write_pages(root, *arguments.pages, arguments.overwrite);
-    return report_error({ErrorKind::usage, "--pages writes every page", "omit COMMAND or --pages", ""});
+    return report_error(
+        {ErrorKind::usage, "--pages writes every page, but COMMAND names one", "omit COMMAND or --pages", ""});
   }
   const CommandText* const command = find_command(root, arguments.command);
   if (command == nullptr) {
     return report_error(
         {ErrorKind::usage,
          fmt::format("unknown command {}", quoted(fmt::format("{}", fmt::join(arguments.command, " ")))),
-         "'mbk --help' names them", ""});
+         "see 'mbk --help'", ""});
   }
   if (auto ok = print_text(manual_page(*command, root, std::string(version()))); !ok) return report_error(ok.error());
   return kFine;
@@ -75,25 +76,25 @@ int run(const ManualArguments& arguments, Command app) {
 
 Action add_manual(Command app) {
   auto arguments = std::make_shared<ManualArguments>();
-  const Command command = app.add_command("manual", "the manual page of a command, for man");
+  const Command command = app.add_command("manual", "print the manual page of a command, for man");
   command.footer(
       "Examples:\n"
       "  mbk manual measure | man -l -\n"
       "  mbk manual springs field | man -l -\n"
       "  mbk manual --pages ~/.local/share/man/man1\n"
-      "      all of them, where man finds them: man mbk-measure\n"
+      "      writes every page to a folder where man finds them: man mbk-measure\n"
       "  mbk manual --json\n"
-      "      every command with its options, for programs that call mbk\n\n"
-      "Where mbk came as a package, or by 'cmake --install', the pages are in place.");
+      "      prints every command with its options, for programs that call mbk\n\n"
+      "If mbk was installed from a package or with 'cmake --install', the pages are already installed.");
   const Option named =
-      command.add_option("COMMAND", arguments->command, "which command, as it is typed; without it: mbk itself")
+      command.add_option("COMMAND", arguments->command, "the command, as it is typed (default: mbk itself)")
           .check(suggests(names_below(app)));
   const Option pages =
-      command.add_option("--pages", arguments->pages, "write every page into this folder, as mbk-measure.1")
+      command.add_option("--pages", arguments->pages, "write every page to this folder, as mbk-measure.1 and so on")
           .type_name("FOLDER")
           .check(not_empty());
-  command.add_flag("--overwrite", arguments->overwrite, "replace pages that are there").needs(pages);
-  command.add_flag("--json", arguments->json, "every command with its options, for programs: schema mbk.commands/1")
+  command.add_flag("--overwrite", arguments->overwrite, "replace existing pages").needs(pages);
+  command.add_flag("--json", arguments->json, "print every command with its options as JSON: schema mbk.commands/1")
       .excludes(named)
       .excludes(pages);
   return [arguments, app] { return run(*arguments, app); };

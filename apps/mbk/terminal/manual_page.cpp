@@ -43,14 +43,11 @@ std::string entry_of(const OptionText& option) {
   std::string name;
   for (const std::string& one : option.names) name += (name.empty() ? "" : ", ") + bold(one);
   if (!option.value.empty()) name += (name.empty() ? "" : " ") + roff(option.value);
-  std::string description = option.description;
-  if (!option.needs.empty()) description += fmt::format("; only with {}", fmt::join(option.needs, ", "));
-  if (!option.excludes.empty()) description += fmt::format("; not with {}", fmt::join(option.excludes, ", "));
-  return entry(name + (option.repeats ? "..." : ""), description);
+  return entry(name + (option.repeats ? "..." : ""), option.description + option.conditions);
 }
 
-/// What --help says before and after the options: paragraphs, sections that stand as they are ("Examples:" and lines
-/// below it), and exit codes.
+/// The text of --help before and after the options: paragraphs, sections that are copied as they are ("Examples:" and
+/// the lines below it), and exit codes.
 struct Prose {
   std::vector<std::string> paragraphs;
   std::string sections, exit_codes = kExitCodes;
@@ -63,10 +60,6 @@ struct Prose {
       const bool indented = line.starts_with(' ');
       if (in_section && !indented) sections += ".EE\n";
       in_section = in_section && indented;
-      if (!in_section && !in_paragraph && indented) {  // the root command has lines without a heading
-        sections += ".SH EXAMPLES\n.EX\n";
-        in_section = true;
-      }
       if (in_section) {
         sections += roff(line) + "\n";
       } else if (!indented && line.ends_with(':')) {

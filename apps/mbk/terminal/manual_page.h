@@ -7,7 +7,7 @@
 namespace mbk::app {
 
 /// The manual page of one command in roff (macros of man(7)): its name, synopsis, description, arguments, options by
-/// their groups, examples, exit status, and the pages above and below it. It says what --help says.
+/// their groups, examples, exit status, and the related pages. Its text is that of --help.
 [[nodiscard]] std::string manual_page(const CommandText& command, const CommandText& root, const std::string& version);
 
 /// "mbk-springs-field.1"

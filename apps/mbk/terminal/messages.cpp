@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMaxWaiting = 512;
 constexpr int kNotRead = -1, kNoMemory = -2;  // beside the numbers of errno
 
-/// Never destroyed: a thread that hangs in its last message outlives main.
+/// Never destroyed: a thread that blocks in its last message outlives main.
 struct Messages {
   std::mutex mutex;
   std::condition_variable came;
@@ -48,7 +48,7 @@ int write_whole(std::string_view text) noexcept {
       text.remove_prefix(static_cast<std::size_t>(wrote));
     } else if (wrote == 0) {
       return EIO;
-    } else if (errno == EAGAIN) {  // whoever shares it made it so
+    } else if (errno == EAGAIN) {  // another process that shares it made it non-blocking
       pollfd output{STDERR_FILENO, POLLOUT, 0};
       constexpr int kPatience = 200;  // [ms]
       if (poll(&output, 1, kPatience) == 0) return kNotRead;
@@ -78,7 +78,7 @@ void write_waiting() {
 }
 
 std::string reason(int error) {
-  if (error == kNotRead) return "its reader does not read";
+  if (error == kNotRead) return "the reader of the pipe does not read";
   if (error == kNoMemory) return std::strerror(ENOMEM);
   return std::strerror(error);
 }
@@ -107,7 +107,7 @@ void say_text(std::string_view text) noexcept {
     const int error = write_whole(text);
     const std::scoped_lock lock(all.mutex);
     if (error != 0) all.lose(1, error);
-  } catch (...) {  // no memory to keep it in
+  } catch (...) {  // no memory for the queue
     if (write_whole(text) != 0) count_lost_message();
   }
 }
@@ -117,7 +117,7 @@ void count_lost_message() noexcept {
     Messages& all = messages();
     const std::scoped_lock lock(all.mutex);
     all.lose(1, kNoMemory);
-  } catch (...) {  // a mutex that cannot be had: then not even that can be counted
+  } catch (...) {  // the mutex cannot be locked: the message cannot even be counted
   }
 }
 
@@ -152,14 +152,14 @@ BackgroundMessages::BackgroundMessages() {
     messages().background = true;
   }
   try {
-    std::thread(write_waiting).detach();  // it may hang in its last message for ever
-  } catch (const std::system_error&) {    // no thread to be had: whoever says something waits
+    std::thread(write_waiting).detach();  // it may block in its last message for ever
+  } catch (const std::system_error&) {    // no thread available: callers write and wait
     messages().background = false;
   }
 }
 
 BackgroundMessages::~BackgroundMessages() {
-  if (!flush_messages()) return;  // what is said from now on is lost too, but holds nobody up
+  if (!flush_messages()) return;  // later messages are lost too, but block no thread
   const std::scoped_lock lock(messages().mutex);
   messages().background = false;
   messages().came.notify_all();

@@ -12,11 +12,11 @@
 
 namespace mbk::app {
 
-/// What the program says on standard error goes through here, from any thread. Nothing throws; what could not be
-/// written is counted. Outside of a BackgroundMessages it is written before `say_text` returns.
+/// Writes a message to standard error, from any thread. Never throws; messages that could not be written are counted.
+/// Unless a BackgroundMessages exists, the text is written before `say_text` returns.
 void say_text(std::string_view text) noexcept;
 
-/// One that could not even be put together: there is no memory for it.
+/// Counts a message that could not be formatted for lack of memory.
 void count_lost_message() noexcept;
 
 /// Text as `printable_lines` shows it, anything else as it is.
@@ -29,8 +29,7 @@ template <class Arg>
   }
 }
 
-/// As fmt::print(stderr, …). Text among `args`, such as the name of a file, cannot drive a terminal: what the program
-/// itself says to one stands in `format`.
+/// As fmt::print(stderr, …). Text in `args`, such as a file name, cannot control a terminal; only `format` can.
 template <class... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) noexcept {
   try {
@@ -43,21 +42,21 @@ void say(fmt::format_string<Args...> format, Args&&... args) noexcept {
   }
 }
 
-/// Waits until everything said is written, at most so long; what is not written then never will be, and counts as lost.
-/// @returns  whether all is written
+/// Waits until every message is written, for at most this time; the rest is discarded and counted as lost.
+/// @returns  whether every message was written
 bool flush_messages(std::chrono::milliseconds longest = std::chrono::milliseconds(200)) noexcept;
 
-/// Messages that standard error did not take.
+/// Messages that standard error did not accept.
 struct LostMessages {
   std::uint64_t count = 0;
-  std::string why;  ///< the last one's reason: "No space left on device"
+  std::string why;  ///< of the last one: "No space left on device"
 };
 
-/// Since it was last asked; flushes before.
+/// Those since the last call; flushes first.
 [[nodiscard]] LostMessages take_lost_messages();
 
-/// While it lives, a thread of its own writes the messages, so that a pipe that nobody reads, a terminal that is held
-/// by Ctrl-S or a disk that stalls keeps nobody else waiting: a queue takes so many, and more are lost.
+/// During its lifetime a separate thread writes the messages, so that an unread pipe, a terminal stopped by Ctrl-S or a
+/// stalled disk blocks no other thread. Messages beyond the capacity of its queue are lost.
 class BackgroundMessages {
  public:
   BackgroundMessages();

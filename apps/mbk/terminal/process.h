@@ -2,12 +2,12 @@
 
 namespace mbk::app {
 
-/// For the beginning of main, before anything is opened.
-/// - Descriptors 0 to 2 that are closed are held, so that no file that is opened later takes their place and gets what
-///   is meant for standard output or standard error. Reading from such a one finds the end, writing fails.
-/// - A pipe that nobody reads any more and a file that has reached its largest size are errors of whoever writes
-/// (EPIPE,
-///   EFBIG), no signals that end the program.
+/// To be called at the beginning of main, before anything is opened.
+/// - Closed descriptors 0 to 2 are opened, so that no file that is opened later takes their number and receives
+/// standard
+///   output or standard error. Reading from them finds the end, writing fails.
+/// - Writing to a pipe without reader or to a file of maximum size returns an error (EPIPE, EFBIG) instead of a signal
+///   that ends the program.
 void prepare_process() noexcept;
 
 }  // namespace mbk::app

@@ -13,12 +13,12 @@
 
 namespace mbk::app {
 
-/// Says on standard error how far the work is, and where it takes longer how long it will take: nothing in the first
-/// second, then no more than once a second; in a pipe or a file no more than once in ten per cent. A caller in the
-/// process is told every time, and may stop it.   For one thread at a time.
+/// Reports progress and the remaining time on standard error: nothing in the first second, then at most once a second;
+/// in a pipe or file at most once every ten per cent. A caller in the process is notified every time, and may stop the
+/// work.   For one thread at a time.
 class Progress {
  public:
-  /// @param what  goes before the count: "coverage: "
+  /// @param what  printed before the count: "coverage: "
   explicit Progress(bool quiet, std::string_view what = "") : quiet_(quiet), what_(what) {}
 
   /// "what3 of 8: name, about 40 s left".
@@ -32,7 +32,7 @@ class Progress {
     say("{}{} of {}{}{}{}\n", what_, done, of, name.empty() ? "" : ": ", name, left(fraction));
   }
 
-  /// A share of the one that is under way: "what40 %".
+  /// Fraction of a single task: "what40 %".
   void reached(double fraction) {
     if (Caller* const caller = Caller::current(); caller != nullptr) {
       caller->reached(what_, fraction);
@@ -58,7 +58,7 @@ class Progress {
     return true;
   }
 
-  /// As long as what is left takes at the pace so far, where that is more than a moment and enough was done to tell.
+  /// The remaining time at the pace so far, if it is more than a moment and enough has been done to estimate it.
   [[nodiscard]] std::string left(double fraction) const {
     constexpr double kEnough = 0.05, kMoment = 5.0, kMinute = 60.0, kMinutes = 2.0 * kMinute;
     if (fraction < kEnough) return "";

@@ -17,9 +17,9 @@ namespace mbk::app {
 Result<std::string> Questions::ask(const std::string& question, const std::string& by_default,
                                    const CheckAnswer& check) const {
   if (defaults_) {
-    if (by_default.empty()) return bad_usage(fmt::format("no default for: {}", question), "answer it, without --yes");
+    if (by_default.empty()) return bad_usage(fmt::format("'{}' has no default", question), "answer it; omit --yes");
     const std::string wrong = check(by_default);
-    if (!wrong.empty()) return bad_usage(fmt::format("{}: {}", question, wrong), "answer it, without --yes");
+    if (!wrong.empty()) return bad_usage(fmt::format("{}: {}", question, wrong), "answer it; omit --yes");
     return by_default;
   }
   const bool terminal = ::isatty(STDIN_FILENO) == 1;
@@ -28,14 +28,15 @@ Result<std::string> Questions::ask(const std::string& question, const std::strin
     std::string line;
     if (!std::getline(std::cin, line)) {
       say("\n");
-      return bad_usage(fmt::format("the answers end before: {}", question), "pass --yes to take what is proposed");
+      return bad_usage(fmt::format("input ended before '{}' was answered", question),
+                       "pass --yes to accept the defaults");
     }
     if (!terminal) say("{}\n", line);
     std::string answer(trimmed(line, " \t\r"));
     if (answer.empty()) answer = by_default;
     const std::string wrong = answer.empty() ? "an answer is needed" : check(answer);
     if (wrong.empty()) return answer;
-    if (!terminal) return bad_usage(fmt::format("{}: {}", question, wrong), "mend that answer");
+    if (!terminal) return bad_usage(fmt::format("{}: {}", question, wrong), "correct this answer");
     say("  {}\n", wrong);
   }
 }
@@ -44,7 +45,7 @@ CheckAnswer word_of_these(std::vector<std::string> words) {
   return [words = std::move(words)](const std::string& given) {
     return std::ranges::find(words, given) != words.end()
                ? ""
-               : fmt::format("{} is none of {}", quoted(given), fmt::join(words, ", "));
+               : fmt::format("{} is not one of {}", quoted(given), fmt::join(words, ", "));
   };
 }
 
@@ -64,7 +65,7 @@ CheckAnswer numbers_with_commas(std::size_t count) {
     }
     return numbers == count && !given.ends_with(',')
                ? ""
-               : fmt::format("{} is not {} numbers with commas between them", quoted(given), count);
+               : fmt::format("{} is not a list of {} numbers separated by commas", quoted(given), count);
   };
 }
 

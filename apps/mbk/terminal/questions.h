@@ -9,17 +9,18 @@
 
 namespace mbk::app {
 
-/// What is wrong with an answer; "" where nothing is.
+/// The error of an answer; "" if there is none.
 using CheckAnswer = std::function<std::string(const std::string&)>;
 
-/// Asks on standard error and takes answers from standard input, a line each: at a terminal, or out of a pipe.
+/// Asks on standard error and reads answers from standard input, one a line: at a terminal, or from a pipe.
 class Questions {
  public:
-  /// @param defaults  ask nothing, and take what stands in brackets
+  /// @param defaults  ask nothing, and accept the defaults
   explicit Questions(bool defaults) : defaults_(defaults) {}
 
-  /// "QUESTION [by_default]: ". An empty line takes the default. At a terminal a wrong answer is asked for again.
-  /// @fails  usage: no default, and none may be asked for; a wrong answer out of a pipe; the answers have ended.
+  /// "QUESTION [by_default]: ". An empty line accepts the default. At a terminal the question is repeated after a wrong
+  /// answer.
+  /// @fails  usage: there is no default and `defaults` is set; a wrong answer from a pipe; the input has ended.
   [[nodiscard]] Result<std::string> ask(const std::string& question, const std::string& by_default,
                                         const CheckAnswer& check) const;
 

@@ -35,7 +35,7 @@ void StopKeys::watch(session::LoopFlags& flags, const std::stop_token& over) noe
     char key = 0;
     const ssize_t came = ::read(STDIN_FILENO, &key, 1);
     if (came < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (came != 1) {  // closed, and nobody at it can stop the robot any more
+    if (came != 1) {  // closed: nobody can stop the robot from there any more
       flags.end_session = true;
       flags.operator_stop = true;
       return;

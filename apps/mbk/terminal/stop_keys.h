@@ -8,7 +8,7 @@
 
 namespace mbk::app {
 
-/// While it lives, at a terminal: the space bar stops the robot, e ends the trial early, and a terminal that is closed
+/// During its lifetime, at a terminal: the space bar stops the robot, e ends the trial early, and closing the terminal
 /// stops the robot and ends the session.
 class StopKeys {
  public:

@@ -37,7 +37,7 @@ extern "C" void on_stop_signal(int signal) {
     flags->end_session = true;
   }
   if (in_trial) {
-    // The loop does not come back, and a signal has asked for its end before: nothing is left that could end in order.
+    // The loop does not return although a signal has already requested its end: an orderly end is impossible.
     if (flags->silent && stopped_silent.exchange(true)) {
       LastWords::say();
       std::_Exit(kMotorsNotOff);
@@ -45,7 +45,7 @@ extern "C" void on_stop_signal(int signal) {
     if (signal != SIGINT && !flags->operator_stop) flags->stop_signal = signal;
     flags->operator_stop = true;
   } else if (came_outside.exchange(true) && signal != SIGHUP) {
-    act(signal, SIG_DFL, nullptr);  // asked twice; a terminal that is closed asks twice by itself
+    act(signal, SIG_DFL, nullptr);  // requested twice; a closed terminal sends two signals
     std::raise(signal);
   }
 }

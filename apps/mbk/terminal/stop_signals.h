@@ -8,11 +8,11 @@
 
 namespace mbk::app {
 
-/// While it lives, no signal that can be caught suspends the program or ends it by itself: Ctrl-C, Ctrl-\, Ctrl-Z, a
-/// request to end (SIGTERM), a terminal that is closed (SIGHUP, unless nohup has it ignored), and the others that end
-/// programs that do not expect them. Within a trial each is a stop by the operator. All but Ctrl-C within a trial also
-/// end the session (LoopFlags::end_session); a second one outside of a trial ends the program at once, as does a second
-/// one within a trial whose loop does not come back from the robot (LoopFlags::silent), with kMotorsNotOff.
+/// During its lifetime no catchable signal suspends or ends the program directly: Ctrl-C, Ctrl-\, Ctrl-Z, SIGTERM,
+/// SIGHUP (terminal closed, unless ignored by nohup), and the others whose default action ends a program. During a
+/// trial each is a stop by the operator. All but Ctrl-C during a trial also end the session (LoopFlags::end_session). A
+/// second one outside of a trial ends the program at once; so does a second one during a trial whose loop does not
+/// return from the robot (LoopFlags::silent), with kMotorsNotOff.
 class StopSignals {
  public:
   /// @param flags  of the session; outlives this
@@ -24,7 +24,7 @@ class StopSignals {
   /// The signal that ended the session; 0: none.
   [[nodiscard]] int ended_by() const;
 
-  /// A trial goes on while it lives.
+  /// A trial is running during its lifetime.
   class Trial {
    public:
     Trial();
@@ -38,7 +38,7 @@ class StopSignals {
   std::array<struct sigaction, kEnding + kHeld> before_{};
 };
 
-/// Ends the program as the signal ends one that does not catch it, so that shells and supervisors see what it was.
+/// Ends the program as the uncaught signal would, so that shells and supervisors see the cause.
 [[noreturn]] void end_by(int signal);
 
 }  // namespace mbk::app

@@ -35,7 +35,7 @@ std::size_t indent_of(std::string_view line) {
   return std::min(line.find_first_not_of(' '), line.size());
 }
 
-/// Where what a line says begins: behind its first column where it has one, as in "  window    12 s to 62 s".
+/// Where the text of a line begins: after its first column if it has one, as in "  window    12 s to 62 s".
 std::size_t text_begin(std::string_view line, std::size_t columns) {
   const std::size_t indent = indent_of(line), gap = line.find("  ", indent);
   if (gap == std::string_view::npos || 2 * gap > columns) return indent;
@@ -43,9 +43,9 @@ std::size_t text_begin(std::string_view line, std::size_t columns) {
   return 2 * begin > columns ? indent : begin;
 }
 
-/// Whether a line belongs to the one before it, of which `rest` did not fit: it stands as deep, and that one has not
-/// come to an end.
-bool goes_on(std::string_view rest, std::size_t hanging, std::string_view line) {
+/// Whether a line continues the previous one, of which `rest` did not fit: it has the same indentation, and the
+/// previous line did not end a sentence.
+bool continues(std::string_view rest, std::size_t hanging, std::string_view line) {
   constexpr std::string_view kEnds = ".:)";
   return !rest.empty() && kEnds.find(rest.back()) == std::string_view::npos && indent_of(line) == hanging &&
          hanging < line.size() && line.find("  ", hanging) == std::string_view::npos && !line.ends_with(':');
@@ -59,7 +59,7 @@ std::string in_colour(std::string_view text, const char* colour) {
   return colour + std::string(text) + kPlain;
 }
 
-/// Behind the names of an option: two blanks, or the end of the line.
+/// Colours the names of an option, which end at two blanks or at the end of the line.
 std::string with_option(std::string_view line) {
   const std::size_t begin = indent_of(line), end = std::min(line.find("  ", begin), line.size());
   return std::string(line.substr(0, begin)) + in_colour(line.substr(begin, end - begin), kCyan) +
@@ -110,7 +110,7 @@ std::string fitted(std::string_view text, std::size_t columns) {
     rest.clear();
   };
   const std::vector<std::string_view> lines = lines_of(text);
-  std::size_t fit = 0;  // of a table that fits, the end: none of its lines is looked at again
+  std::size_t fit = 0;  // end of a table that fits: its lines are not examined again
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const FoldedTable table = k < fit ? FoldedTable{} : folded_table(std::span(lines).subspan(k), columns);
     if (!table.text.empty()) {
@@ -122,7 +122,7 @@ std::string fitted(std::string_view text, std::size_t columns) {
     fit = std::max(fit, k + table.lines);
     const std::string_view given = lines[k];
     std::string line(given);
-    if (goes_on(rest, hanging, given)) {
+    if (continues(rest, hanging, given)) {
       line = std::string(hanging, ' ') + rest + " " + std::string(given.substr(hanging));
       rest.clear();
     } else {

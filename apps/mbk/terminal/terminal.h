@@ -16,18 +16,17 @@ struct Terminal {
 /// Standard output or standard error, as it is now.   @param descriptor  STDOUT_FILENO or STDERR_FILENO
 [[nodiscard]] Terminal terminal_at(int descriptor);
 
-/// Whether a line holds Braille dots or lines of axes (U+2500 to U+28FF without arrows and letters).
+/// Whether a line contains Braille dots or lines of axes (U+2500 to U+28FF without arrows and letters).
 [[nodiscard]] bool is_drawing(std::string_view line);
 
-/// Tables that are too wide come in parts (folded_table.h). Lines that are too long are broken between words; what goes
-/// on stands under the text of its line, and flows into the line that goes on there already. Lines of drawings stay as
-/// they are.
+/// Splits tables that are too wide (folded_table.h). Long lines are broken between words; the rest is indented like the
+/// text of its line, and merges with an existing continuation. Lines of drawings are unchanged.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t columns);
 
-/// With headings, names of options, warnings and verdicts that nobody may miss in colour.
+/// Colours headings, names of options, warnings and critical verdicts.
 [[nodiscard]] std::string coloured(std::string_view text);
 
-/// The text as this terminal shows it best; nothing in it can drive one (`printable_lines`).
+/// The text in the best form for this terminal; nothing in it can control the terminal (`printable_lines`).
 [[nodiscard]] std::string for_people(const std::string& given, const Terminal& terminal);
 
 }  // namespace mbk::app

@@ -30,28 +30,26 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
   return meant.empty() ? "" : fmt::format("; did you mean '{}'?", meant);
 }
 
-/// Of a word that no option or argument takes.
+/// The message for a word that no option or argument takes.
 std::string unknown_word(Command command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
-  const std::string title = typed_command(command);
   if (name.size() > 1 && name.front() == '-') {
-    return fmt::format("'{}' is no option of '{}'{}", name, title, did_you_mean(name, command.option_names()));
+    return fmt::format("unknown option '{}'{}", name, did_you_mean(name, command.option_names()));
   }
   if (const std::vector<std::string> parts = part_names(command); !parts.empty()) {
-    const std::string meant = did_you_mean(word, parts);
-    return fmt::format("'{}' is an unknown command{}", word, meant);
+    return fmt::format("unknown command '{}'{}", word, did_you_mean(word, parts));
   }
-  return fmt::format("'{}' is one word too many for '{}'", word, title);
+  return fmt::format("unexpected argument '{}' for '{}'", word, typed_command(command));
 }
 
-/// The words before and after `between`; nothing where it does not stand there.
+/// The words before and after `between`; nothing if `text` does not contain it.
 std::optional<std::pair<std::string, std::string>> split_at(std::string_view text, std::string_view between) {
   const std::size_t at = text.find(between);
   if (at == std::string_view::npos) return std::nullopt;
   return std::pair(std::string(text.substr(0, at)), std::string(text.substr(at + between.size())));
 }
 
-/// What the parser says of how many words an option takes, said as a person would.
+/// The parser's message about the number of values of an option, in plain words.
 std::string count_message(const std::string& said) {
   constexpr std::string_view kReceived = " required but received ";
   for (const auto& [between, how] : {std::pair(": At Most ", "at most"), std::pair(": At least ", "at least")}) {
@@ -59,14 +57,14 @@ std::string count_message(const std::string& said) {
     if (!name_and_counts) continue;
     const auto counts = split_at(name_and_counts->second, kReceived);
     if (!counts) continue;
-    return fmt::format("{} takes {} {}, and {} {} given", name_and_counts->first, how, counts->first, counts->second,
-                       counts->second == "1" ? "was" : "were");
+    return fmt::format("{} takes {} {} value{}, but {} {} given", name_and_counts->first, how, counts->first,
+                       counts->first == "1" ? "" : "s", counts->second, counts->second == "1" ? "was" : "were");
   }
   constexpr std::string_view kMissing = " missing";
   const auto name_and_type = split_at(said, ": 1 required ");
   if (name_and_type && name_and_type->second.ends_with(kMissing)) {
     const std::string& type = name_and_type->second;
-    return fmt::format("{} needs a value, {}", name_and_type->first, type.substr(0, type.size() - kMissing.size()));
+    return fmt::format("{} needs a value ({})", name_and_type->first, type.substr(0, type.size() - kMissing.size()));
   }
   return said;
 }
@@ -85,15 +83,16 @@ std::string usage_message(Command app, const CLI::ParseError& error) {
     return left.empty() ? said : unknown_word(command, left.front());
   }
   if (is(CLI::ExitCodes::RequiredError) && wants_part) {
-    return &command.cli() == &app.cli() ? "no command"
-                                        : fmt::format("no command; there are {}", fmt::join(parts, ", "));
+    return &command.cli() == &app.cli()
+               ? "the command is missing"
+               : fmt::format("the subcommand is missing; choose one of {}", fmt::join(parts, ", "));
   }
   if (is(CLI::ExitCodes::ArgumentMismatch)) return count_message(said);
   if (const auto both = is(CLI::ExitCodes::ExcludesError) ? split_at(said, " excludes ") : std::nullopt) {
     return fmt::format("{} and {} cannot be given together", both->first, both->second);
   }
   if (const auto both = is(CLI::ExitCodes::RequiresError) ? split_at(said, " requires ") : std::nullopt) {
-    return fmt::format("{} needs {} beside it", both->first, both->second);
+    return fmt::format("{} is valid only with {}", both->first, both->second);
   }
   return said;
 }

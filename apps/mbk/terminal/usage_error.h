@@ -6,10 +6,10 @@
 
 namespace mbk::app {
 
-/// What is wrong with the words of a command line, with what was probably meant, in one sentence without a stop.
+/// The error of a command line in one sentence without a full stop, with a suggestion.
 [[nodiscard]] std::string usage_message(Command app, const CLI::ParseError& error);
 
-/// The command that was typed, with its parts: "mbk study add"; "mbk" where none was.
+/// The typed command with its parents: "mbk study add"; "mbk" if there is none.
 [[nodiscard]] std::string typed_command(Command app);
 
 }  // namespace mbk::app

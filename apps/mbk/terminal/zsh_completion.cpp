@@ -31,7 +31,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// "(default reference)", "_files -g ...": how the value is completed; " " where nothing is known of it.
+/// "(default reference)", "_files -g ...": how the value is completed; " " if unknown.
 std::string action_of(const Values& values) {
   std::string files;
   if (values.folders) files = "_files -/";

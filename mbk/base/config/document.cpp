@@ -17,7 +17,7 @@
 namespace mbk::config {
 namespace {
 
-constexpr std::size_t kLongestShown = 60;  ///< bytes of a text from the file that a message repeats
+constexpr std::size_t kLongestShown = 60;  ///< bytes of a text from the file that a message quotes
 constexpr std::string_view kTrialKey = "trial";
 constexpr std::string_view kNameKey = "name";
 
@@ -85,7 +85,7 @@ struct UnknownKey {
 
 }  // namespace
 
-/// What the sections of one document share: the tree, and what was asked for.
+/// State shared by the sections of one document: the tree and the requested keys.
 class Reading {
  public:
   struct Missing {
@@ -98,7 +98,7 @@ class Reading {
   std::shared_ptr<const Node> tree;
   const Node* overlay = nullptr;                   ///< table of a trial, in `tree`
   std::map<std::string, Keys, std::less<>> asked;  ///< section → keys
-  Keys left_to_others;                             ///< tables whose keys nobody here judges
+  Keys left_to_others;                             ///< tables whose keys are not checked here
   std::optional<Error> problem;                    ///< the first
   std::optional<Missing> missing;                  ///< the first required key that is not there
   std::vector<std::shared_ptr<Reading>> trials;
@@ -112,7 +112,7 @@ class Reading {
     const std::optional<UnknownKey> unknown = first_unknown();
     for (const Reading* reading : family()) {
       const auto& absent = reading->missing;
-      // A key that is misspelt is a better answer than one that is missing.
+      // A misspelt key is reported instead of the missing one.
       if (absent && !(unknown && unknown->section == absent->section && unknown->meant == absent->key)) {
         return tl::unexpected(absent->error);
       }
@@ -171,14 +171,14 @@ class Reading {
     Keys known = known_in(unknown.section);
     std::string remedy;
     if (!unknown.meant.empty()) {
-      remedy = fmt::format("'{}' is", unknown.meant);
+      remedy = fmt::format("did you mean '{}'?", unknown.meant);
     } else if (known.empty()) {
-      remedy = "nothing is read from it";
+      remedy = "remove it; no key is read here";
     } else {
-      remedy = fmt::format("its keys are {}", fmt::join(known, ", "));
+      remedy = fmt::format("use one of {}", fmt::join(known, ", "));
     }
     const std::string owner = unknown.section.empty() ? "this file" : fmt::format("[{}]", shown(unknown.section));
-    return {ErrorKind::data, fmt::format("{} is no key of {}", in_quotes(unknown.key), owner), std::move(remedy),
+    return {ErrorKind::data, fmt::format("unknown key {} in {}", in_quotes(unknown.key), owner), std::move(remedy),
             fmt::format("{}, line {}", file, unknown.line)};
   }
 };
@@ -207,7 +207,8 @@ Result<std::vector<Trial>> Document::trials() const {
   if (reading_->problem) return tl::unexpected(*reading_->problem);
   if (tables.empty()) return std::vector<Trial>{{"", *this}};
   if (tables.size() > kMaxTrials) {
-    return tl::unexpected(top.error(kTrialKey, fmt::format("{} trials are more than {}", tables.size(), kMaxTrials)));
+    return tl::unexpected(top.error(
+        kTrialKey, fmt::format("the file has {} trials, more than the maximum of {}", tables.size(), kMaxTrials)));
   }
   reading_->trials.clear();
   std::vector<Trial> trials;
@@ -221,15 +222,15 @@ Result<std::vector<Trial>> Document::trials() const {
     trial.name = own.required_text(kNameKey);
     const auto allowed = [](unsigned char c) { return (c < 0x80 && std::isalnum(c) != 0) || c == '_' || c == '-'; };
     if (!reading->problem && !reading->missing && (trial.name.empty() || !std::ranges::all_of(trial.name, allowed))) {
-      own.reject(kNameKey, fmt::format("{} is no name of a trial", in_quotes(trial.name)),
-                 "use letters, digits, _ and -: it becomes part of file names");
+      own.reject(kNameKey, fmt::format("{} is not a valid name of a trial", in_quotes(trial.name)),
+                 "use letters, digits, _ and -, since it becomes part of file names");
     }
     if (std::ranges::find(trials, trial.name, &Trial::name) != trials.end()) {
-      own.reject(kNameKey, fmt::format("another trial is called {}", in_quotes(trial.name)), "give each its own name");
+      own.reject(kNameKey, fmt::format("two trials are named {}", in_quotes(trial.name)), "give each its own name");
     }
     if (reading->problem) return tl::unexpected(*reading->problem);
     if (reading->missing) {
-      return tl::unexpected(own.error_at("", reading->overlay->line, "a trial has no name", "name = \"...\""));
+      return tl::unexpected(own.error_at("", reading->overlay->line, "a trial has no name", "add name = \"...\""));
     }
     reading_->trials.push_back(std::move(reading));
     trials.push_back(std::move(trial));
@@ -241,7 +242,7 @@ Result<void> Document::finish() const {
   return reading_->finish();
 }
 
-// ---- what stands in a section ----
+// ---- contents of a section ----
 
 bool Section::given() const {
   return over_ != nullptr || base_ != nullptr;
@@ -267,7 +268,7 @@ const Node* Section::find(std::string_view key, Need need) const {
     const int line = path_.empty() || table == nullptr ? 0 : table->line;
     const std::string owner = path_.empty() ? "this file" : fmt::format("[{}]", shown(path_));
     reading_->missing = {path_, std::string(key),
-                         error_at("", line, fmt::format("{} has no '{}'", owner, key), "it has to be given")};
+                         error_at("", line, fmt::format("'{}' is missing in {}", key, owner), "add it")};
   }
   return node;
 }
@@ -334,8 +335,7 @@ std::optional<std::vector<double>> Section::checked_list(std::string_view key, c
     return std::nullopt;
   }
   if (count != kAnyCount && list->size() != count) {
-    reject(key, fmt::format("{}{} number{} where {} are expected", place, list->size(), list->size() == 1 ? "" : "s",
-                            count));
+    reject(key, fmt::format("{}expected {} numbers, found {}", place, count, list->size()));
     return std::nullopt;
   }
   std::vector<double> values;
@@ -385,7 +385,8 @@ std::optional<std::ptrdiff_t> Section::find_word(std::string_view key, std::span
   if (!text) return std::nullopt;
   const auto word = std::ranges::find(words, *text);
   if (word != words.end()) return word - words.begin();
-  reject(key, fmt::format("{} is not possible", in_quotes(*text)), fmt::format("use {}", fmt::join(words, ", ")));
+  reject(key, fmt::format("{} is not a valid value", in_quotes(*text)),
+         fmt::format("use one of {}", fmt::join(words, ", ")));
   return std::nullopt;
 }
 
@@ -407,11 +408,12 @@ std::optional<std::vector<std::ptrdiff_t>> Section::find_words(std::string_view 
     }
     const std::ptrdiff_t index = std::ranges::find(words, *text) - words.begin();
     if (index == std::ssize(words)) {
-      reject(key, fmt::format("{} is not possible", in_quotes(*text)), fmt::format("use {}", fmt::join(words, ", ")));
+      reject(key, fmt::format("{} is not a valid value", in_quotes(*text)),
+             fmt::format("use one of {}", fmt::join(words, ", ")));
       return std::nullopt;
     }
     if (std::ranges::find(indices, index) != indices.end()) {
-      reject(key, fmt::format("{} stands there twice", in_quotes(*text)), "keep one");
+      reject(key, fmt::format("{} occurs twice", in_quotes(*text)), "remove one");
       return std::nullopt;
     }
     indices.push_back(index);
@@ -435,7 +437,7 @@ std::optional<Eigen::Matrix2d> Section::find_matrix2(std::string_view key, Range
   if (node == nullptr) return std::nullopt;
   const List* rows = std::get_if<List>(&node->value);
   if (rows == nullptr || rows->size() != 2) {
-    reject(key, "this is no matrix of two rows", "write [[a, b], [c, d]]");
+    reject(key, "this is not a matrix with two rows", "write [[a, b], [c, d]]");
     return std::nullopt;
   }
   Eigen::Matrix2d matrix;
@@ -522,7 +524,7 @@ void Section::reject(std::string_view key, std::string message, std::string reme
 
 void Section::wrong_type(std::string_view key, const Node& node, std::string_view requested,
                          std::string_view place) const {
-  reject(key, fmt::format("{}{} where {} is expected", place, kind_of(node), requested));
+  reject(key, fmt::format("{}expected {}, found {}", place, requested, kind_of(node)));
 }
 
 }  // namespace mbk::config

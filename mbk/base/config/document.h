@@ -27,37 +27,37 @@ class Reading;
 class Section;
 struct Trial;
 
-/// A TOML file. Its sections hand out checked values and remember what was asked for; a value that is wrong is replaced
-/// by its fallback, and finish() gives the first problem, so that code that reads a file says each key once, in a row:
+/// A TOML file. Its sections return checked values and remember the requested keys. A wrong value is replaced by its
+/// fallback, and finish() returns the first problem, so that reading code names each key once, in sequence:
 ///
 ///   Section s = document.root().section("perturbation");
 ///   options.amplitude = s.number("amplitude_mm", options.amplitude, above(0));   // m
 ///   options.directions = s.integer("directions", options.directions, 1, 64);
 ///   if (auto ok = document.finish(); !ok) return tl::unexpected(ok.error());
 ///
-/// Numbers come in SI units: a key carries its unit (unit_of_key). Ranges and messages speak the unit of the key.
-/// Copies share what they remember.
+/// Numbers are returned in SI units: a key ends with its unit (unit_of_key). Ranges and messages use the unit of the
+/// key. Copies share their state.
 class Document {
  public:
-  /// @param file  how messages call it
-  /// @fails  data: what parse_toml refuses, with file, line, column.
+  /// @param file  its name in messages
+  /// @fails  data: as parse_toml, with file, line, column.
   [[nodiscard]] static Result<Document> parse(std::string_view text, std::string_view file);
   /// @fails  data: the same; the file cannot be read.
   [[nodiscard]] static Result<Document> read(const std::filesystem::path& file);
 
   [[nodiscard]] Section root() const;
 
-  /// The experiments that a file describes: one for each [[trial]], whose keys are laid over those of the file, table
-  /// by table; an array is replaced as a whole. Without [[trial]] it is this document, with an empty name. Each trial
-  /// answers with its own finish() for its own lines; the keys that trials share count as known where any of them
-  /// asked, which only finish() of this document can tell. That covers its trials too.
-  /// @fails  data: [[trial]] is no array of tables, or has more than kMaxTrials; a name is missing, used twice or is
-  ///         more than letters, digits, _ and - (it becomes part of file names).
+  /// The experiments that a file describes: one for each [[trial]], whose keys override those of the file, table by
+  /// table; an array is replaced as a whole. Without [[trial]] it is this document, with an empty name. The finish() of
+  /// a trial checks its own lines. Shared keys are known if any trial requests them, which only finish() of this
+  /// document can check; it covers its trials too.
+  /// @fails  data: [[trial]] is not an array of tables, or has more than kMaxTrials; a name is missing, used twice or
+  ///         contains other characters than letters, digits, _ and - (it becomes part of file names).
   [[nodiscard]] Result<std::vector<Trial>> trials() const;
 
-  /// @fails  data, with file, line and key: the first value asked for that is of the wrong type, outside its range or
-  ///         refused by the reader, or is missing and has no fallback; else the first key that nobody asked for, with
-  ///         the nearest one that is known.
+  /// @fails  data, with file, line and key: the first requested value that has the wrong type, is outside its range,
+  ///         is rejected by the reader, or is missing without fallback; otherwise the first unknown key, with the
+  ///         nearest known one.
   [[nodiscard]] Result<void> finish() const;
 
  private:
@@ -72,17 +72,17 @@ struct Trial {
   Document document;
 };
 
-/// A table of a document; one that is not in the file gives fallbacks. Fallbacks are in SI units, like what is
-/// returned, and need not lie in the range.
+/// A table of a document; a missing table returns fallbacks. Fallbacks are in SI units, like the returned values, and
+/// need not be in the range.
 class Section {
  public:
-  /// Words and what they stand for.
+  /// Words and their values.
   template <class Value>
   using Choices = std::initializer_list<std::pair<std::string_view, std::type_identity_t<Value>>>;
 
-  /// Whether the table stands in the file.
+  /// Whether the table is in the file.
   [[nodiscard]] bool given() const;
-  /// Whether the key stands in the file; the key counts as known from then on.
+  /// Whether the key is in the file; the key is known from then on.
   [[nodiscard]] bool has(std::string_view key) const;
 
   /// A finite number in SI units; integers are numbers.
@@ -113,7 +113,7 @@ class Section {
   [[nodiscard]] Value choice(std::string_view key, Choices<Value> options, Value fallback) const {
     return chosen(key, options, Need::optional).value_or(fallback);
   }
-  /// s.required_choice<Kind>("kind", {...}); the first one where it is missing
+  /// s.required_choice<Kind>("kind", {...}); the first one if it is missing
   template <class Value>
   [[nodiscard]] Value required_choice(std::string_view key, Choices<Value> options) const {
     return chosen(key, options, Need::required).value_or(options.begin()->second);
@@ -125,7 +125,7 @@ class Section {
     const auto index = find_word(key, kWordList<Enum>, Need::optional);
     return index ? kWords<Enum>[static_cast<std::size_t>(*index)].value : fallback;
   }
-  /// The first one where it is missing.
+  /// The first one if it is missing.
   template <HasWords Enum>
   [[nodiscard]] Enum required_choice(std::string_view key) const {
     const auto index = find_word(key, kWordList<Enum>, Need::required);
@@ -145,7 +145,7 @@ class Section {
     return values;
   }
 
-  /// [1.0, 2.0, ...] in SI units; `allowed` holds for each, `count` is how many there must be (kAnyCount: any).
+  /// [1.0, 2.0, ...] in SI units; `allowed` applies to each, `count` is their number (kAnyCount: any).
   static constexpr std::size_t kAnyCount = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::vector<double> fallback, Range allowed = any(),
                                             std::size_t count = kAnyCount) const;
@@ -158,18 +158,17 @@ class Section {
   [[nodiscard]] Eigen::Matrix2d required_matrix2(std::string_view key, Range allowed = any()) const;
 
   [[nodiscard]] Section section(std::string_view key) const;
-  /// The table of that name is another reader's: its keys are not judged here.
+  /// The table of this name belongs to another reader: its keys are not checked here.
   void leave_to_others(std::string_view key) const;
   /// The tables of [[key]], in the order of the file.
   [[nodiscard]] std::vector<Section> sections(std::string_view key) const;
 
-  /// `now` was called `former` until the version before, whose files are still read: from here on the old key stands
-  /// for the new one where that is missing.
+  /// `former` is the former name of `now` and is still read: from here on it replaces `now` if that is missing.
   void rename(std::string_view former, std::string_view now);
 
-  /// A problem that the reader finds by itself: "above the Nyquist frequency 500 Hz"
+  /// A problem that the reader finds: "above the Nyquist frequency 500 Hz"
   void reject(std::string_view key, std::string message, std::string remedy = "") const;
-  /// The same as a value, with file, line and key, for a reader that goes no further.
+  /// The same as a value, with file, line and key, for a reader that stops here.
   [[nodiscard]] Error error(std::string_view key, std::string message, std::string remedy = "") const;
 
  private:

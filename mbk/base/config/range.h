@@ -4,7 +4,7 @@
 
 namespace mbk::config {
 
-/// What a number may be, in the unit of its key.
+/// The allowed range of a number, in the unit of its key.
 struct Range {
   enum class Kind { any, above, at_least, between, within };
   Kind kind = Kind::any;
@@ -12,7 +12,7 @@ struct Range {
   double high = 0.0;
 
   [[nodiscard]] bool holds(double value) const;
-  /// "is not above 0": the words that follow a value which it does not hold.
+  /// "is not above 0": the words that follow a value outside the range.
   [[nodiscard]] std::string violation() const;
 };
 

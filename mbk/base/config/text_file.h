@@ -9,7 +9,7 @@
 namespace mbk::config {
 
 /// The first bytes of a text file, one more than `largest` if it is larger.
-/// @fails  data: there is no such file, it cannot be read, or it is a folder, a device or a pipe, whose writer might
+/// @fails  data: the file does not exist or cannot be read, or it is a folder, a device or a pipe, whose writer might
 ///         never come.
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& file, std::size_t largest);
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-// The only file that knows toml++. Version 3.3 asserts, assumes and calls unreachable some things that damaged texts
+// The only file that includes toml++. Version 3.3 asserts, assumes and calls unreachable some things that damaged texts
 // reach: asserts would abort, the others are undefined behaviour (a letter outside ASCII where white space may stand).
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
@@ -57,10 +57,11 @@ class NestingScan {
     }
     if (c == '\n') ++line_;
     if (depth_ > kDeepestNesting) {
-      return bad_data(fmt::format("values are nested more than {} deep", kDeepestNesting), "", here());
+      return bad_data(fmt::format("values are nested more than {} levels deep", kDeepestNesting), "use fewer levels",
+                      here());
     }
     if (parts_ > kLongestDottedKey) {
-      return bad_data(fmt::format("a key has more than {} parts", kLongestDottedKey), "", here());
+      return bad_data(fmt::format("a key has more than {} parts", kLongestDottedKey), "use fewer parts", here());
     }
     return {};
   }
@@ -137,7 +138,7 @@ Node converted(const toml::node& node) {
 
 Result<Node> parse_toml(std::string_view text) {
   if (text.size() > kLargestText) {
-    return bad_data(fmt::format("{} bytes are more than {}", text.size(), kLargestText));
+    return bad_data(fmt::format("the file has {} bytes, more than the maximum of {}", text.size(), kLargestText));
   }
   MBK_TRY(NestingScan(text).run());
   const toml::parse_result parsed = toml::parse(text);

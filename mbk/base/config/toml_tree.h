@@ -19,10 +19,10 @@ struct Node;
 using Table = std::map<std::string, Node, std::less<>>;
 using List = std::vector<Node>;
 
-/// A date or time, which nothing in mbk asks for.
+/// A date or time, which mbk never uses.
 struct Date {};
 
-/// A value of a TOML file and the line where it stands.
+/// A value of a TOML file and its line.
 struct Node {
   int line = 0;  ///< from 1
   std::variant<Table, List, std::string, std::int64_t, double, bool, Date> value;

@@ -9,9 +9,9 @@
 
 namespace mbk::config {
 
-/// What read(root, name) makes of each trial of a file, in the file's order (Document::trials). Every trial and the
-/// whole file are finished, so that a key which nobody asked for is an error.
-/// @param file  how messages call it
+/// The result of read(root, name) for each trial of a file, in the order of the file (Document::trials). Every trial
+/// and the whole file are finished, so that an unknown key is an error.
+/// @param file  its name in messages
 /// @param read  (const Section& root, const std::string& name) → Result<T>
 /// @fails  data: as Document::parse, trials and finish, and as read; the first of them.
 template <class Read>

@@ -6,8 +6,7 @@
 
 namespace mbk {
 
-/// Columns of numbers that stand elsewhere, side by side, without a copy: signals, one row per sample. They must not be
-/// gone before it.
+/// A view of columns of numbers that are stored elsewhere: signals, one row per sample. The storage must outlive it.
 class Columns {
  public:
   using Column = Eigen::Map<const Vector>;

@@ -4,7 +4,7 @@
 
 namespace mbk {
 
-/// A number that is not known.
+/// An unknown number.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace mbk

@@ -4,8 +4,8 @@
 
 namespace mbk {
 
-/// Whether `a` stands before `b`: by their characters, and by the value of numbers in them, so that trial_2 stands
-/// before trial_10.
+/// Whether `a` comes before `b`: by characters, and by the value of numbers in them, so that trial_2 comes before
+/// trial_10.
 [[nodiscard]] bool in_natural_order(std::string_view a, std::string_view b);
 
 }  // namespace mbk

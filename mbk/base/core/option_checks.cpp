@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLargest = 1e12;
 
-/// The number that the whole text is; nothing where it is none.
+/// The number in a text; nothing if the text is not a number as a whole.
 template <class Number>
 std::optional<Number> number(const std::string& given) {
   Number value{};
@@ -78,7 +78,7 @@ OptionCheck not_empty() {
 OptionCheck one_of(const std::vector<std::string>& words) {
   return {[words](const std::string& given) -> std::string {
             if (std::ranges::find(words, given) != words.end()) return "";
-            return fmt::format("{} is none of {}", quoted(given), fmt::join(words, "|"));
+            return fmt::format("{} is not one of {}", quoted(given), fmt::join(words, "|"));
           },
           words};
 }

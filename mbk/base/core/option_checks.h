@@ -6,13 +6,13 @@
 
 namespace mbk {
 
-/// What the value of an option may be.
+/// Checks the value of an option.
 struct OptionCheck {
-  std::function<std::string(const std::string& given)> wrong;  ///< what is wrong with a value; "": nothing
-  std::vector<std::string> words = {};                         ///< that it can be, for a shell to offer
+  std::function<std::string(const std::string& given)> wrong;  ///< the error of a value; "": none
+  std::vector<std::string> words = {};                         ///< possible values, for a shell to offer
 };
 
-/// Each names the value and the limit, and lets neither empty values nor "nan" and "inf" through.
+/// Each error names the value and the limit. Empty values, "nan" and "inf" are rejected.
 [[nodiscard]] OptionCheck positive();
 [[nodiscard]] OptionCheck not_negative();
 [[nodiscard]] OptionCheck number_within(double largest);  ///< from −largest to largest
@@ -20,13 +20,13 @@ struct OptionCheck {
 [[nodiscard]] OptionCheck odd_number(long least, long most);
 [[nodiscard]] OptionCheck not_empty();
 
-/// One of a few words, which a shell offers too.
+/// One of a few words, which a shell also offers.
 [[nodiscard]] OptionCheck one_of(const std::vector<std::string>& words);
 
-/// Words that the value can be, for a shell to offer; anything is let through.
+/// Words for a shell to offer; every value is accepted.
 [[nodiscard]] OptionCheck suggests(const std::vector<std::string>& words);
 
-/// What was given, as it stands in a message: 'abc', cut where it is long.
+/// The given value for a message: 'abc', truncated if it is long.
 [[nodiscard]] std::string quoted(const std::string& given);
 
 }  // namespace mbk

@@ -24,21 +24,21 @@
 /// names in Python and MATLAB.
 namespace mbk {
 
-/// Values that were given, by the name of the option ("--cutoff"); a flag has none.
+/// The given values, by the name of the option ("--cutoff"); a flag has none.
 using OptionTexts = std::map<std::string, std::vector<std::string>>;
 
-/// Everything that is said of an option.
+/// The description of an option.
 struct OptionFacts {
   std::string name;           ///< "--cutoff"
   std::string value;          ///< placeholder, often the unit: "HZ", "S"; "": a flag. An enumeration fills it in itself
   std::string help;           ///< with the default in brackets
   OptionCheck check = {};     ///< which values it may have. An enumeration fills it in itself
-  std::string needs = {};     ///< another option without which it is wrong
-  std::string group = {};     ///< heading in --help; "": the first one
-  std::string excludes = {};  ///< another option beside which it is wrong
-  bool names_file = false;    ///< a result depends on what that file holds, not on its name
-  bool takes_several = false;  ///< values between commas
-  bool repeats = false;        ///< it may be given several times
+  std::string needs = {};     ///< another option that it needs
+  std::string group = {};     ///< heading in --help; "": before all headings
+  std::string excludes = {};  ///< another option that excludes it
+  bool names_file = false;    ///< its value is a file: a result depends on the contents, not on the name
+  bool takes_several = false;  ///< values separated by commas
+  bool repeats = false;        ///< may be given several times
 };
 
 namespace option_values {
@@ -52,9 +52,9 @@ inline constexpr bool kIsSet = false;
 template <class Type>
 inline constexpr bool kIsSet<std::set<Type>> = true;
 
-inline constexpr std::string_view kAuto = "auto";  ///< the word for an absent choice, where it is offered
+inline constexpr std::string_view kAuto = "auto";  ///< the word for "no choice", for options that offer it
 
-/// The enumeration that a value is one of, or several; void where it is none.
+/// The enumeration of a value or of a set of values; void if there is none.
 template <class Value>
 struct ChoiceOf {
   using Type = std::conditional_t<std::is_enum_v<Value>, Value, void>;
@@ -64,7 +64,7 @@ struct ChoiceOf<std::optional<Value>> : ChoiceOf<Value> {};
 template <class Value>
 struct ChoiceOf<std::set<Value>> : ChoiceOf<Value> {};
 
-/// Sets `value` to what a text says that passed its check.   @param scale  of a number: text = scale · value
+/// Sets `value` from a text that passed its check.   @param scale  of a number: text = scale · value
 template <class Value>
 void set(Value& value, const std::string& text, double scale) {
   if constexpr (kIsOptional<Value>) {
@@ -98,7 +98,7 @@ void set(Value& value, const std::vector<std::string>& texts, double scale) {
 
 }  // namespace option_values
 
-/// A number in the shortest way that says it: 5 for 5.0 and 05. Anything else as it is.
+/// A number in its shortest form: 5 for 5.0 and 05. Other texts are unchanged.
 [[nodiscard]] std::string canonical_text(const std::string& value);
 
 template <class Options>
@@ -106,7 +106,7 @@ class OptionTable {
  public:
   struct Row {
     OptionFacts facts;
-    std::function<void(Options&, const std::vector<std::string>&)> set;  ///< gets what passed the check
+    std::function<void(Options&, const std::vector<std::string>&)> set;  ///< receives texts that passed the check
     std::function<bool(const Options&)> is_default;
   };
 
@@ -117,7 +117,7 @@ class OptionTable {
   }
 
   /// @param access  to the value: a pointer to a member, or a function from Options to a reference
-  /// @param scale   of a number: what is typed = scale · value, as kMilliseconds
+  /// @param scale   of a number: typed number = scale · value, as kMilliseconds
   template <class Access>
   OptionTable& add(OptionFacts facts, Access access, double scale = 1.0) {
     using Value = std::remove_cvref_t<std::invoke_result_t<Access, Options&>>;
@@ -139,7 +139,7 @@ class OptionTable {
                     }});
   }
 
-  /// A choice of two words that a bool stands for.
+  /// A choice of two words, stored as a bool.
   template <class Access>
   OptionTable& add_either(OptionFacts facts, const std::string& word_of_false, const std::string& word_of_true,
                           Access access) {
@@ -152,20 +152,20 @@ class OptionTable {
                     [=](const Options& options) { return !std::invoke(access, options); }});
   }
 
-  /// For a value that is not one member.
+  /// For a value that is not a single member.
   OptionTable& add_row(Row row) {
     if (row.facts.group.empty()) row.facts.group = group_;
     rows_.push_back(std::move(row));
     return *this;
   }
 
-  /// Of the row before: another test of its values.
+  /// Replaces the check of the previous row.
   OptionTable& check(std::function<std::string(const std::string& given)> wrong) {
     rows_.back().facts.check.wrong = std::move(wrong);
     return *this;
   }
 
-  /// Of the row before: what means the same as its absence, where that is more than an equal value.
+  /// Replaces the test of the previous row for whether its value means the same as its absence.
   OptionTable& is_default_where(std::function<bool(const Options&)> is_default) {
     rows_.back().is_default = std::move(is_default);
     return *this;
@@ -193,8 +193,8 @@ class OptionTable {
     return found == rows_.end() ? nullptr : &*found;
   }
 
-  /// Options as texts say them.
-  /// @fails  usage: there is no such option; a value that it may not have; what it needs was not given.
+  /// Options from texts.
+  /// @fails  usage: an unknown option; a wrong value; an option that it needs is missing.
   [[nodiscard]] Result<Options> read(const OptionTexts& given) const {
     for (const auto& [name, texts] : given) {
       const Row* const row = find(name);
@@ -204,7 +204,7 @@ class OptionTable {
         if (!wrong.empty()) return bad_usage(fmt::format("{}: {}", name, wrong));
       }
       if (!row->facts.needs.empty() && !given.contains(row->facts.needs)) {
-        return bad_usage(fmt::format("{} needs {} beside it", name, row->facts.needs));
+        return bad_usage(fmt::format("{} is valid only with {}", name, row->facts.needs));
       }
       if (!row->facts.excludes.empty() && given.contains(row->facts.excludes)) {
         return bad_usage(fmt::format("{} and {} cannot be given together", name, row->facts.excludes));
@@ -215,7 +215,7 @@ class OptionTable {
     return options;
   }
 
-  /// What was given without what says a default, numbers in one way of writing: equal for equal options.
+  /// The given options without defaults, numbers in canonical form: equal for equal options.
   [[nodiscard]] OptionTexts without_defaults(OptionTexts given, const Options& options) const {
     for (auto at = given.begin(); at != given.end();) {
       const Row* const row = find(at->first);
@@ -234,7 +234,7 @@ class OptionTable {
   std::vector<Row> rows_;
 };
 
-/// "--cutoff 5 --mode reference"; "" where none is given.
+/// "--cutoff 5 --mode reference"; "" if none is given.
 [[nodiscard]] std::string typed_text(const OptionTexts& given);
 
 }  // namespace mbk

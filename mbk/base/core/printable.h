@@ -5,12 +5,12 @@
 
 namespace mbk {
 
-/// The text as UTF-8 of one line: control characters are replaced, and what is not UTF-8 is taken as Latin-1, which
-/// recorders write.
+/// The text as one line of UTF-8: control characters are replaced, and bytes that are not UTF-8 are read as Latin-1,
+/// which some recorders write.
 [[nodiscard]] std::string printable(std::string text);
 
-/// Text of many lines as UTF-8 that a terminal shows and does not obey: of the control characters only line feeds and
-/// tabs are left, and each byte that is not UTF-8 is taken as Latin-1.
+/// Text of several lines as UTF-8 that cannot control a terminal: all control characters except line feeds and tabs are
+/// removed, and each byte that is not UTF-8 is read as Latin-1.
 [[nodiscard]] std::string printable_lines(std::string_view text);
 
 }  // namespace mbk

@@ -5,12 +5,12 @@
 
 namespace mbk {
 
-/// Thrown where whoever asked for the work no longer wants it. No failure of the work, so no Error: it passes through
-/// everything up to the one who asked, as std::bad_alloc does.
+/// Thrown when the requester cancels the work. This is not a failure of the work, so not an Error: it propagates to the
+/// requester as std::bad_alloc does.
 struct Stopped {};
 
-/// Whom a thread is working for, where that one may change their mind: a notebook whose user pressed Ctrl-C. A thread
-/// of the program itself works for nobody. `numeric::parallel_for` hands it on to its threads.
+/// The requester of a thread's work, which may cancel it: a notebook whose user pressed Ctrl-C. Threads of the program
+/// itself have none. `numeric::parallel_for` passes it on to its threads.
 class Requester {
  public:
   Requester() = default;
@@ -18,16 +18,16 @@ class Requester {
   Requester& operator=(const Requester&) = delete;
   virtual ~Requester() = default;
 
-  /// Whether the work is no longer wanted. Asked often and from several threads at once.
+  /// Whether the work is cancelled. Called often and from several threads at once.
   [[nodiscard]] virtual bool stopped() = 0;
 
-  /// The text that `word` stands for where a file would be named; nullptr: it is the name of a file.
+  /// The text that `word` refers to instead of a file; nullptr: it is a file name.
   [[nodiscard]] virtual const std::string* document(const std::filesystem::path& /*word*/) const { return nullptr; }
 
-  /// That of this thread; nullptr: nobody's.
+  /// The requester of this thread; nullptr: none.
   [[nodiscard]] static Requester* current() noexcept;
 
-  /// While it lives, this thread works for `requester`.
+  /// During its lifetime this thread works for `requester`.
   class Scope {
    public:
     explicit Scope(Requester* requester) noexcept;
@@ -40,7 +40,7 @@ class Requester {
   };
 };
 
-/// Between two steps of long work.   @throws  Stopped where it is no longer wanted
+/// To be called between two steps of long work.   @throws  Stopped if the work is cancelled
 inline void stop_if_cancelled() {
   if (Requester* const requester = Requester::current(); requester != nullptr && requester->stopped()) throw Stopped();
 }

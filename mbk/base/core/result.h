@@ -8,22 +8,22 @@
 
 namespace mbk {
 
-/// Why a call could not give what was asked. The command line turns the kind into its exit code.
+/// The kind of a failure, which determines the exit code of the command line.
 enum class ErrorKind {
   usage,       ///< an option or argument is wrong: exit code 2
   data,        ///< the input is bad, missing or unreadable: exit code 3
-  not_usable,  ///< computed, but the answer must not be used: exit code 4
+  not_usable,  ///< computed, but the result must not be used: exit code 4
 };
 
-/// A failure as a value: what is wrong, where, and what to do about it. Bad data never throws, prints or aborts.
+/// A failure as a value: what is wrong, where, and what to do. Bad data never throws, prints or aborts.
 struct Error {
   ErrorKind kind = ErrorKind::data;
   std::string message;    ///< quantity, value and limit: "cutoff 600 Hz is not below Nyquist 500 Hz"
   std::string remedy;     ///< what to do next; may be empty
-  std::string where;      ///< file, and place in it: "log.mat, variable 'logs'"; may be empty
-  std::string code = {};  ///< for errors on which a caller acts: "nothing-recognised"; else empty
+  std::string where;      ///< file and position in it: "log.mat, variable 'logs'"; may be empty
+  std::string code = {};  ///< for errors that a caller handles: "nothing-recognised"; otherwise empty
 
-  /// The same error with an outer place put before the inner one.
+  /// The same error with an outer place before the inner one.
   [[nodiscard]] Error in(std::string_view place) const;
 
   /// One line: "where: message; remedy".
@@ -34,8 +34,8 @@ struct Error {
 template <class Value>
 using Result = tl::expected<Value, Error>;
 
-/// An Error ready to be returned from a function that returns `Result<…>`. Whatever it quotes becomes printable, so
-/// that an error is one line.
+/// An Error to return from a function that returns `Result<…>`. Its texts are made printable, so that an error is one
+/// line.
 [[nodiscard]] tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string remedy = "",
                                          std::string where = "");
 
@@ -46,7 +46,7 @@ using Result = tl::expected<Value, Error>;
 /// The error with a code.
 [[nodiscard]] tl::unexpected<Error> with_code(std::string_view code, tl::unexpected<Error> error);
 
-/// What MBK_TRY takes out of a result that holds a value.
+/// The value that MBK_TRY takes out of a result.
 template <class Value>
 Value taken(tl::expected<Value, Error>&& result) {
   if constexpr (!std::is_void_v<Value>) return *std::move(result);

@@ -16,13 +16,13 @@ struct Word {
   std::string_view word;
 };
 
-/// An enumeration that has words: beside it, in its namespace, stands the table of them, in the order in which an
-/// option or a message offers them.
+/// An enumeration that has words: its namespace contains their table, in the order in which an option or a message
+/// lists them.
 ///   [[nodiscard]] constexpr auto word_table(Verdict) {
 ///     using enum Verdict;
 ///     return std::to_array<Word<Verdict>>({{passive, "passive"}, {active, "active"}, {undecided, "undecided"}});
 ///   }
-/// That each value has one word, and each word one value, is seen when it is compiled.
+/// The compiler checks that each value has one word, and each word one value.
 template <class Enum>
 concept HasWords = std::is_enum_v<Enum> && requires(Enum value) {
   word_table(value);
@@ -71,8 +71,7 @@ inline constexpr auto kWords = [] {
   return word_table(Enum{});
 }();
 
-/// Words of the version before that are still read, where there are any: beside the table of words stands that of
-/// former ones.
+/// Former words, which are still read: the namespace may contain a table of them too.
 ///   [[nodiscard]] constexpr auto former_word_table(WarningCode) {
 ///     return std::to_array<Word<WarningCode>>({{WarningCode::held_out_fit_poor, "held-back-fit-poor"}});
 ///   }
@@ -81,7 +80,7 @@ concept HasFormerWords = HasWords<Enum> && requires(Enum value) {
   former_word_table(value);
 };
 
-/// The word of a value; "unknown" for a number that is none, as an old reader meets in a newer file.
+/// The word of a value; "unknown" for a number outside the enumeration, as in a file of a newer version.
 template <HasWords Enum>
 [[nodiscard]] constexpr std::string_view word_of(Enum value) {
   for (const auto& [known, word] : kWords<Enum>) {
@@ -90,7 +89,7 @@ template <HasWords Enum>
   return "unknown";
 }
 
-/// The value of a word, or of a former one, where there is one.
+/// The value of a word or of a former word, if there is one.
 template <HasWords Enum>
 [[nodiscard]] constexpr std::optional<Enum> value_of(std::string_view given) {
   for (const auto& [value, word] : kWords<Enum>) {
@@ -104,7 +103,7 @@ template <HasWords Enum>
   return std::nullopt;
 }
 
-/// What a value was called in the version before; empty where it is called the same.
+/// The former word of a value; empty if it has not changed.
 template <HasFormerWords Enum>
 [[nodiscard]] constexpr std::string_view former_word_of(Enum value) {
   for (const auto& [known, word] : former_word_table(Enum{})) {

@@ -29,7 +29,7 @@
 ///       fields.add_or_null("path_ratio", &Reach::path_ratio, "path/distance; null where the hand returns");
 ///     }
 ///
-/// It stands in the namespace of the value or in this one. For the sources of this project; not installed.
+/// It belongs in the namespace of the value or in this one. For the sources of this project; not installed.
 namespace mbk::document {
 
 template <class T>
@@ -64,7 +64,7 @@ class Definitions {
   template <class T>
   [[nodiscard]] Json of();
 
-  /// The schema of what is so described; with a name it becomes a definition and a reference to it.
+  /// The schema of a description; with a name it becomes a definition and a reference to it.
   template <class T>
   [[nodiscard]] Json described(const Fields<T>& fields) {
     if (fields.name().empty()) return fields.schema(*this);
@@ -104,7 +104,7 @@ struct IsVector<std::array<T, n>> : std::true_type {};
 template <class T>
 struct IsVector<std::span<T>> : std::true_type {};
 template <class T>
-inline constexpr std::size_t kLength = 0;  ///< of a list that always has as many elements
+inline constexpr std::size_t kLength = 0;  ///< fixed length of a list; 0: any
 template <class T, std::size_t n>
 inline constexpr std::size_t kLength<std::array<T, n>> = n;
 template <class T>
@@ -116,7 +116,7 @@ struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 
-/// A pointer is a value that stands elsewhere.
+/// A pointer is written as the value that it points to.
 template <class T>
 inline constexpr bool kIsPointer = std::is_pointer_v<T> && !std::is_convertible_v<T, std::string_view>;
 template <class T>
@@ -210,7 +210,7 @@ Json Definitions::of() {
               {"items", of<double>()},
               {"minItems", 2},
               {"maxItems", 2},
-              {"description", "Low and high end."}};
+              {"description", "Lower and upper bound."}};
     });
   } else if constexpr (std::is_same_v<T, Vector> || std::is_same_v<T, std::vector<double>>) {
     return named("Vector", [&]() -> Json { return {{"type", "array"}, {"items", of<double>()}}; });
@@ -250,17 +250,17 @@ template <class First, class Second>
   return [first, second](const auto& from) -> decltype(auto) { return std::invoke(second, std::invoke(first, from)); };
 }
 
-/// What is written of a T, in order.
+/// The fields of a T, in order.
 template <class T>
 class Fields {
  public:
   struct Field {
     std::string name, meaning;
-    bool always = true;  ///< whether every document has it; false too where those of an earlier version lack it
+    bool always = true;  ///< whether every document has it; false if documents of an earlier version lack it
     std::function<void(const T& from, Json& to)> write;
     std::function<Json(Definitions&)> schema;
 
-    /// It is there only where `is_there` says so of a `const T&`.
+    /// The field is present only if `is_there` returns true for a `const T&`.
     template <class If>
     void only_if(If is_there) {
       always = false;
@@ -270,15 +270,15 @@ class Fields {
     }
   };
 
-  /// @param name     in schemas and TypeScript: "Reach"; without it the type stands where it is used
+  /// @param name     in schemas and TypeScript: "Reach"; without it the type is defined where it is used
   /// @param meaning  one sentence
   void type(std::string name, std::string meaning = "") {
     name_ = std::move(name);
     meaning_ = std::move(meaning);
   }
 
-  /// A field; where `get` gives an optional value or a pointer, it is absent without one.
-  /// @param get      a member, or what gives the value of a `const T&`
+  /// A field. If `get` returns an optional value or a pointer, the field is absent without a value.
+  /// @param get      a member, or a function that returns the value of a `const T&`
   /// @param meaning  with its unit: "start of the interval [s]"
   template <class Get>
   Field& add(std::string name, Get get, std::string meaning = "") {
@@ -305,7 +305,7 @@ class Fields {
         [get](const T& from, const std::string& key, Json& to) { to[key] = written(std::invoke(get, from)); });
   }
 
-  /// A field that is there only where `is_there` says so.
+  /// A field that is present only if `is_there` returns true.
   template <class If, class Get>
   Field& add_if(If is_there, std::string name, Get get, std::string meaning = "") {
     Field& field = add(std::move(name), std::move(get), std::move(meaning));
@@ -313,14 +313,14 @@ class Fields {
     return field;
   }
 
-  /// A text or list that is absent where it is empty.
+  /// A text or list that is absent if it is empty.
   template <class Get>
   Field& add_unless_empty(std::string name, Get get, std::string meaning = "") {
     return add_if([get](const T& from) { return !std::invoke(get, from).empty(); }, std::move(name), get,
                   std::move(meaning));
   }
 
-  /// A number that is never undefined; absent where `get` gives an optional one without a value.
+  /// A number that is never undefined; absent if `get` returns an optional one without a value.
   template <class Get>
   Field& add_number(std::string name, Get get, std::string meaning = "") {
     using Value = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
@@ -339,7 +339,7 @@ class Fields {
   }
 
   /// One of two words.
-  /// @param get  gives a bool
+  /// @param get  returns a bool
   template <class Get>
   Field& add_choice(std::string name, Get get, std::string if_true, std::string if_false, std::string meaning = "") {
     Json words = {{"enum", {if_true, if_false}}};
@@ -348,8 +348,8 @@ class Fields {
         [=](const T& from) { return Json(std::invoke(get, from) ? if_true : if_false); }, std::move(meaning));
   }
 
-  /// Numbers with so many digits, which are there only to be looked at; those of a matrix column by column.
-  /// @param get  gives a double, a Vector or a Matrix
+  /// Numbers rounded to a number of digits, for display only; those of a matrix column by column.
+  /// @param get  returns a double, a Vector or a Matrix
   template <class Get>
   Field& add_rounded(std::string name, Get get, int digits = kDigits, std::string meaning = "") {
     using Value = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
@@ -385,17 +385,17 @@ class Fields {
         [part](const T& from, const std::string& key, Json& to) { to[key] = part.write(from); });
   }
 
-  /// A field in the form of a Form, which `get` writes in its own way.
-  /// @param get  gives a Json
+  /// A field with the schema of a Form, whose JSON `get` returns.
+  /// @param get  returns a Json
   template <class Form, class Get>
   Field& add_form(std::string name, Get get, std::string meaning = "") {
     return append(std::move(name), std::move(meaning), &Definitions::of<Form>,
                   [get](const T& from, const std::string& key, Json& to) { to[key] = std::invoke(get, from); });
   }
 
-  /// A field whose form no C++ type says.
-  /// @param schema  its form as JSON Schema
-  /// @param get     gives a Json
+  /// A field whose schema follows from no C++ type.
+  /// @param schema  its JSON Schema
+  /// @param get     returns a Json
   template <class Get>
   Field& add_as(std::string name, Json schema, Get get, std::string meaning = "") {
     return append(
@@ -409,15 +409,15 @@ class Fields {
         std::move(name), {{"enum", {text}}}, [text](const T&) { return Json(text); }, std::move(meaning));
   }
 
-  /// What each document begins with: the name and version of its schema ("mbk.movement/1"), and what wrote it.
+  /// The beginning of each document: name and version of its schema ("mbk.movement/1"), and the program that wrote it.
   void header(const std::string& schema) {
     constant("schema", schema);
     add(
-        "software", [](const T&) { return software(); }, "what wrote it, as in \"mbk 0.1.0\"");
+        "software", [](const T&) { return software(); }, "program that wrote the document: \"mbk 0.1.0\"");
   }
 
   /// All fields of another described value, in this object.
-  /// @param omitted  the name of one that is left out
+  /// @param omitted  the name of a field to omit
   template <class Get>
   void with(Get get, std::string_view omitted = "") {
     using Other = std::remove_cvref_t<std::invoke_result_t<const Get&, const T&>>;
@@ -483,7 +483,7 @@ template <Described T>
   return dumped(written(value));
 }
 
-/// Several documents in one, which has a schema of its own.
+/// Several documents in one, which has its own schema.
 template <class T>
 struct List {
   std::span<const T> results;
@@ -497,7 +497,7 @@ void describe_list(Fields<List<T>>& fields, std::string name, const std::string&
   fields.add("results", &List<T>::results);
 }
 
-/// The only one as a document by itself, or all of them as a list.
+/// A single document as it is, or several as a list.
 template <Described T>
 [[nodiscard]] std::string one_or_list(std::span<const T> all) {
   return all.size() == 1 ? document(all.front()) : document(List<T>{all});

@@ -85,7 +85,7 @@ Json nullable(Json schema) {
 }
 
 Json value_schema() {
-  return {{"type", {"number", "null"}}, {"description", "A number; null where it is undefined."}};
+  return {{"type", {"number", "null"}}, {"description", "A number; null if undefined."}};
 }
 
 Json object_schema(const std::string& meaning, Json properties, Json required) {

@@ -6,19 +6,19 @@
 
 #include "mbk/base/core/linear_algebra.h"
 
-/// What every JSON document of mbk is put together from.
+/// Building blocks of every JSON document of mbk.
 namespace mbk::document {
 
 using Json = nlohmann::ordered_json;
 
-/// null where a number is undefined.
+/// null for an undefined number.
 [[nodiscard]] Json number(double value);
 
 [[nodiscard]] Json list(const Vector& values);
 
-inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of numbers that are there only to be looked at
+inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of numbers for display only
 
-/// The number with so many digits; null where it is undefined.
+/// The number rounded to these digits; null if undefined.
 [[nodiscard]] Json rounded(double value, int digits);
 [[nodiscard]] Json rounded(const Vector& values, int digits = kDigits);
 
@@ -35,14 +35,14 @@ inline constexpr int kDigits = 6, kTimeDigits = 9;  ///< of numbers that are the
 /// {"schema": schema, "software": software()}
 [[nodiscard]] Json header(const std::string& schema);
 
-/// As text that ends with a line end. File and channel names may hold bytes that are not UTF-8, which JSON cannot hold:
-/// each becomes U+FFFD.
+/// As text that ends with a line break. File and channel names may contain bytes that are not UTF-8, which JSON does
+/// not allow: each becomes U+FFFD.
 [[nodiscard]] std::string dumped(const Json& json);
 
-/// The same without blanks and line ends.
+/// The same without blanks and line breaks.
 [[nodiscard]] std::string compact(const Json& json);
 
-/// A schema that takes null, too.
+/// A schema that also allows null.
 [[nodiscard]] Json nullable(Json schema);
 
 /// The schema of a number that may be undefined.

@@ -25,7 +25,7 @@ Vector autocorrelation(const std::vector<Vector>& pieces, Index last) {
     transform.run();
     power += real.cwiseAbs2() + imaginary.cwiseAbs2();
   }
-  // |Z_k|² and |Z_{n−k}|² of a pair differ, but their mean is what counts, and an even sum takes the mean.
+  // |Z_k|² and |Z_{n−k}|² of a pair differ, but only their mean matters, and an even sum uses the mean.
   real = power;
   imaginary.setZero();
   transform.run();

@@ -108,7 +108,7 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
   }
   Index longest = 0;
   for (const Matrix& piece : pieces) {
-    if (piece.cols() != pieces.front().cols()) return bad_data("pieces of different signals have no common spectrum");
+    if (piece.cols() != pieces.front().cols()) return bad_data("the segments have different numbers of signals");
     longest = std::max(longest, piece.rows());
   }
   if (longest < segment) return bad_data(fmt::format("{} samples are too few for a segment of {}", longest, segment));

@@ -15,7 +15,7 @@ struct CrossSpectra {
   Vector frequency;                       ///< [Hz], from 0 to rate/2 or less
   std::vector<Eigen::MatrixXcd> density;  ///< S at each frequency, n×n, Hermitian: S_jk = E[X_j X_k*] [unit²/Hz]
   Index segments = 0;                     ///< that were averaged
-  double independent_segments = 0;        ///< as many that do not overlap would vary as much
+  double independent_segments = 0;        ///< number of non-overlapping segments with the same variance
 };
 
 /// Welch's estimate as in spectrum.h, averaged over pieces of a recording; no segment reaches across a break, and a
@@ -33,7 +33,7 @@ struct CrossSpectra {
 /// Multiple coherence of each output with all inputs together, γ² = S_yx S_xx⁻¹ S_xy/S_yy in [0, 1]: the share of the
 /// output's power that linear responses to the inputs can explain (Bendat & Piersol 2010, ch. 7); of one input it is
 /// the ordinary coherence. With as many segments as inputs or fewer it is 1 whatever the signals are.
-/// @param inputs the first so many signals are inputs, the others outputs
+/// @param inputs number of inputs, which come before the outputs
 /// @returns lines×outputs; NaN where the inputs cannot be distinguished (whatever their units: judged by the coherence
 /// between them) or where a signal has no power.
 [[nodiscard]] Matrix multiple_coherence(const CrossSpectra& spectra, Index inputs);

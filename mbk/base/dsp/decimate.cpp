@@ -7,9 +7,9 @@
 namespace mbk::dsp {
 
 Result<Matrix> decimate(const Matrix& signals, Hertz sample_rate, Index every, Index first) {
-  if (every < 1) return bad_usage(fmt::format("every {} samples cannot be taken", every), "give 1 or more");
+  if (every < 1) return bad_usage(fmt::format("a decimation factor of {} is too small", every), "choose 1 or more");
   if (first < 0 || first >= signals.rows()) {
-    return bad_usage(fmt::format("sample {} is not one of {}", first, signals.rows()), "give an earlier one");
+    return bad_usage(fmt::format("sample {} is not one of {}", first, signals.rows()), "choose an earlier one");
   }
   const Index count = (signals.rows() - first + every - 1) / every;
   const auto rows = Eigen::seqN(first, count, every);

@@ -12,7 +12,7 @@
 #include "mbk/base/dsp/filter_chain.h"
 
 /// @file
-/// Every so many rows of filter_chain, without those between them. For the sources of this module only.
+/// Every Nth row of filter_chain, without computing the others. For the sources of this module only.
 namespace mbk::dsp {
 
 /// Smoothing and zero-phase low-pass of a signal without ends are one weighted sum, whose weights beyond the smoothing
@@ -50,7 +50,7 @@ class DecimatedChain {
   struct Mode {
     Complex p;
     Complex c, rho;
-    double weight;  ///< 2 where it stands for its conjugate, too
+    double weight;  ///< 2 if it also represents its conjugate
   };
   /// One derivative of the smoothing.
   struct Smoothing {

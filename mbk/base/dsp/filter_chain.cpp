@@ -100,7 +100,7 @@ Result<Index> length_of(std::span<const Column> columns) {
   const Index length = columns.empty() ? 0 : columns.front().size();
   for (const Column& column : columns) {
     if (column.size() != length) {
-      return bad_data(fmt::format("signals of {} and {} samples cannot be filtered alike", length, column.size()));
+      return bad_data(fmt::format("signals of {} and {} samples cannot be filtered together", length, column.size()));
     }
   }
   return length;
@@ -112,12 +112,12 @@ Result<Index> smoothed_length(const FilterChain& chain, Index length) {
   if (left < 1) {
     return bad_data(
         fmt::format("{} samples are fewer than the Savitzky–Golay window of {}", length, chain.smoothing.window),
-        "take a longer recording or a smaller --sg-window");
+        "use a longer recording or a smaller --sg-window");
   }
   if (!chain.lowpass.empty() && left <= chain.padding.samples) {
     return bad_data(fmt::format("{} samples are too few for zero-phase filtering with a padding of {}", left,
                                 chain.padding.samples),
-                    "take a longer window");
+                    "use a longer interval");
   }
   return left;
 }
@@ -302,7 +302,7 @@ std::vector<double*> columns_of(Matrix& matrix) {
 }  // namespace
 
 Result<Index> rows_left(const FilterChain& chain, Index samples, Index every) {
-  if (every < 1) return bad_usage(fmt::format("every {}-th sample is none", every), "choose 1 or more");
+  if (every < 1) return bad_usage(fmt::format("a decimation factor of {} is too small", every), "choose 1 or more");
   const auto left = MBK_TRY(smoothed_length(chain, samples));
   return (left - 1) / every + 1;
 }

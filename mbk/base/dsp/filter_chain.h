@@ -32,9 +32,9 @@ using Column = Eigen::Map<const Vector>;
 /// and start anew after each half window, so that rounding has no time to grow; an output is a sum of N + 1 of
 /// them. Four columns go side by side.
 ///
-/// Where only every Nth row is asked for, the outputs are right to kDecimationError of the signals, ends included:
-/// blocks of samples are kept as a few moments, and no other row is computed (decimated_chain.h). Where blocks cannot
-/// do, every row is.
+/// If only every Nth row is requested, the outputs are accurate to kDecimationError of the signals, ends included:
+/// blocks of samples are represented by a few moments, and no other row is computed (decimated_chain.h). Where blocks
+/// cannot do, every row is.
 /// @param columns of equal length L, evenly sampled
 /// @returns ⌈(L − W + 1)/every⌉×outputs; row i belongs to sample half window + i·every.   Offline: allocates.
 /// @fails as savitzky_golay and filter_zero_phase; every < 1.
@@ -44,12 +44,12 @@ using Column = Eigen::Map<const Vector>;
 inline constexpr double kDecimationError = 1e-7;
 
 /// The same, to where it is wanted.
-/// @param to  of each output, room for as many numbers as there are rows
+/// @param to  for each output, room for one number for each row
 [[nodiscard]] Result<void> smooth_then_lowpass(const FilterChain& chain, std::span<const Column> columns,
                                                std::span<const FilterOutput> outputs, Hertz sample_rate, Index every,
                                                std::span<double* const> to);
 
-/// Rows that the filters leave of so many samples.   @fails as smooth_then_lowpass
+/// Number of rows that the filters leave of a number of samples.   @fails as smooth_then_lowpass
 [[nodiscard]] Result<Index> rows_left(const FilterChain& chain, Index samples, Index every);
 
 }  // namespace mbk::dsp

@@ -116,7 +116,7 @@ Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const
   if (count < 1) {
     return bad_data(
         fmt::format("{} samples are fewer than the Savitzky–Golay window of {}", signals.rows(), filter.window),
-        "take a longer recording or a smaller --sg-window");
+        "use a longer recording or a smaller --sg-window");
   }
   weights *= std::pow(sample_rate.value, derivative);
   Matrix filtered(count, signals.cols());

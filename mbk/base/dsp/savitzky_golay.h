@@ -33,7 +33,7 @@ struct SavitzkyGolayWeights {
 /// Their samples alone.
 [[nodiscard]] Result<Vector> savitzky_golay_weights(const SavitzkyGolay& filter, int derivative);
 
-/// Applies the filter where the whole window lies inside the signal.
+/// Applies the filter wherever the whole window is inside the signal.
 /// @param signals N×n, one per column    @returns (N − W + 1)×n; row i belongs to sample i + (W − 1)/2, in units of
 /// the signal per second^derivative.   @fails as the weights; fewer samples than the window.
 [[nodiscard]] Result<Matrix> savitzky_golay(const SavitzkyGolay& filter, int derivative, const Matrix& signals,

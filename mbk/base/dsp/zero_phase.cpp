@@ -54,7 +54,7 @@ Result<Matrix> filter_zero_phase(const SectionCascade& filter, const Matrix& sig
   if (signals.rows() <= padding.samples) {
     return bad_data(fmt::format("{} samples are too few for zero-phase filtering with a padding of {}", signals.rows(),
                                 padding.samples),
-                    "take a longer window");
+                    "use a longer interval");
   }
   Matrix filtered(signals.rows(), signals.cols());
   CausalFilterOf<Sample> running(filter);

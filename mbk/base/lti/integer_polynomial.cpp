@@ -77,8 +77,8 @@ Residues gcd_modulo(Residues a, Residues b, std::uint64_t prime) {
   return b.empty() ? a : b;
 }
 
-/// Of an odd number between 61 and 2³², by the test of Miller and Rabin, which bases 2, 7 and 61 decide there (Jaeschke
-/// 1993).
+/// For an odd number between 61 and 2³², with the Miller–Rabin test, which is exact there with bases 2, 7 and 61
+/// (Jaeschke 1993).
 bool is_prime(std::uint64_t odd) {
   std::uint64_t odd_part = odd - 1;
   while (odd_part % 2 == 0) odd_part /= 2;

@@ -23,7 +23,7 @@ using Rational =
 /// The fraction with the smallest denominator in [low, high] (Stern 1858, Brocot 1861).
 [[nodiscard]] Rational simplest_between(const Rational& low, const Rational& high);
 
-/// p(x) = c₀ + c₁ x + … + cₙ xⁿ, exactly. Coefficients stand in ascending order everywhere.
+/// p(x) = c₀ + c₁ x + … + cₙ xⁿ, exactly. Coefficients are in ascending order everywhere.
 class Polynomial {
  public:
   Polynomial() = default;  ///< zero

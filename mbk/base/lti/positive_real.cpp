@@ -117,7 +117,7 @@ std::string statement(PositiveRealCondition condition) {
     case no_right_poles:
       return "no pole with a positive real part";
     case simple_poles:
-      return "poles on the imaginary axis, 0 and infinity included, are simple";
+      return "poles on the imaginary axis, including 0 and infinity, are simple";
     case residues:
       return "residues of poles on the imaginary axis are Hermitian and positive semidefinite";
     case hermitian_part:
@@ -148,7 +148,7 @@ bool PositiveRealness::holds() const {
 
 Result<PositiveRealness> positive_real(const RationalMatrix& Z) {
   if (Z.size() < 1 || Z.size() > kMaxPorts) {
-    return bad_usage(fmt::format("a matrix of {} rows: it must have 1 to {}", Z.size(), kMaxPorts));
+    return bad_usage(fmt::format("the matrix has {} rows, but must have 1 to {}", Z.size(), kMaxPorts));
   }
   const Polynomial denominator = common_denominator(Z);
   auto [multiple, wrong_residues] = axis_poles(Z, denominator);

@@ -29,7 +29,7 @@ struct FrequencyBand {
 /// One condition, and each place where it is violated: |Im s| of poles, or bands.
 struct ConditionOutcome {
   PositiveRealCondition condition = PositiveRealCondition::no_right_poles;
-  std::vector<FrequencyBand> violated;  ///< ascending, but for poles; empty: the condition holds
+  std::vector<FrequencyBand> violated;  ///< ascending, except for poles; empty: the condition is satisfied
 
   [[nodiscard]] bool holds() const { return violated.empty(); }
   /// One line: "Z(jω) + Z(jω)* ⪰ 0: violated from 9.9 to 10.1 rad/s".

@@ -59,7 +59,8 @@ RationalMatrix RationalMatrix::scalar(Index size, const Rational& value) {
 Result<RationalMatrix> RationalMatrix::impedance(const Matrix& M, const Matrix& B, const Matrix& K) {
   const Index n = M.rows();
   for (const Matrix* matrix : {&M, &B, &K}) {
-    if (matrix->rows() != n || matrix->cols() != n) return bad_usage("M, B and K are not square and of one size");
+    if (matrix->rows() != n || matrix->cols() != n)
+      return bad_usage("M, B and K are not square matrices of the same size");
   }
   RationalMatrix Z(n);
   for (Index i = 0; i < n; ++i) {

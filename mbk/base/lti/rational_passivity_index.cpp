@@ -35,7 +35,7 @@ class Infimum {
     look(coefficients(zeros), 0.0);
     look(coefficients(q_.degree()), kInfinity);
     if (!std::isfinite(lowest_)) {
-      return fail(ErrorKind::not_usable, "values at zero and infinite frequency are beyond the range of a double");
+      return fail(ErrorKind::not_usable, "values at zero or infinite frequency exceed the range of a double");
     }
     std::optional<double> proven;
     for (int test = 0; test < kMaxTests; ++test) {
@@ -50,7 +50,7 @@ class Infimum {
       }
     }
     return fail(ErrorKind::not_usable,
-                fmt::format("the lowest value over all frequencies did not settle in {} steps", kMaxTests));
+                fmt::format("the minimum over all frequencies did not converge in {} steps", kMaxTests));
   }
 
  private:
@@ -162,7 +162,7 @@ Result<PassivityIndex> output_passivity_index(const RationalMatrix& G) {
 Result<PassivityIndex> relative_passivity_index(const RationalMatrix& G) {
   const std::string name = "relative passivity index";
   if (G.size() < 1 || G.size() > kMaxPorts) {
-    return bad_usage(fmt::format("a matrix of {} rows: it must have 1 to {}", G.size(), kMaxPorts));
+    return bad_usage(fmt::format("the matrix has {} rows, but must have 1 to {}", G.size(), kMaxPorts));
   }
   const RationalMatrix one = RationalMatrix::scalar(G.size(), 1);
   const auto inverted = inverse(one + G);

@@ -93,7 +93,7 @@ Result<BlockResampler> BlockResampler::make(const Matrix& Z, const Matrix& R, co
     return bad_data(
         fmt::format("regression shapes differ: Z is {}×{}, R {}×{}, Y {}×{}", n, p, R.rows(), R.cols(), Y.rows(), q));
   }
-  if (block_rows < 1) return bad_usage(fmt::format("a block of {} rows is none", block_rows));
+  if (block_rows < 1) return bad_usage(fmt::format("a block of {} rows is too short", block_rows));
   BlockResampler result;
   result.p_ = p;
   result.q_ = q;
@@ -106,8 +106,8 @@ Result<BlockResampler> BlockResampler::make(const Matrix& Z, const Matrix& R, co
   };
   for (const RowRange& range : ranges) {
     if (range.begin < row || range.end > n || range.size() < 0) {
-      return bad_data(
-          fmt::format("rows {} to {} are not in order, or not in the {} of the regression", range.begin, range.end, n));
+      return bad_data(fmt::format("rows {} to {} are out of order, or not among the {} rows of the regression",
+                                  range.begin, range.end, n));
     }
     if (range.size() == 0) continue;
     skip_to(range.begin);
@@ -129,7 +129,7 @@ Result<BlockResampler> BlockResampler::make(const Matrix& Z, const Matrix& R, co
   }
   skip_to(n);
   if (blocks < 2.0) {
-    return bad_data(fmt::format("{} rows hold fewer than two blocks of {}", result.rows_, block_rows),
+    return bad_data(fmt::format("{} rows contain fewer than two blocks of {}", result.rows_, block_rows),
                     "record longer, or choose shorter blocks");
   }
   return result;
@@ -165,9 +165,10 @@ Moments BlockResampler::moments(const std::vector<RowRange>& rows) const {
 
 Result<BlockBootstrap> block_bootstrap(const Matrix& Z, const Matrix& R, const Matrix& Y, const Matrix& S,
                                        const std::vector<RowRange>& ranges, const BlockBootstrapOptions& options) {
-  if (options.replicates < 1) return bad_usage(fmt::format("{} replicates are none", options.replicates));
+  if (options.replicates < 1) return bad_usage(fmt::format("{} replicates are too few", options.replicates));
   if (S.size() > 0 && S.rows() != Z.cols() * Y.cols()) {
-    return bad_usage(fmt::format("a structure of {} rows does not tie {} coefficients", S.rows(), Z.cols() * Y.cols()));
+    return bad_usage(
+        fmt::format("a structure with {} rows does not fit {} coefficients", S.rows(), Z.cols() * Y.cols()));
   }
   const auto resampler = MBK_TRY(BlockResampler::make(Z, R, Y, ranges, options.block_rows));
   const Moments data = resampler.moments(resampler.ranges());

@@ -17,8 +17,8 @@ struct Moments {
 };
 
 /// Draws samples of rows as long as the data from blocks of rows that follow each other, with replacement, so that the
-/// correlation within a block is kept (moving blocks, Künsch 1989). Blocks overlap and never cross a break; a range
-/// that is not longer than a block is one block, as pulses are. Ranges are drawn in proportion to their rows. The
+/// correlation within a block is preserved (moving blocks, Künsch 1989). Blocks overlap and never cross a break; a
+/// range that is not longer than a block is one block, as pulses are. Ranges are drawn in proportion to their rows. The
 /// moments of any block are a difference of two cumulative sums, so that a sample costs nothing that grows with the
 /// rows.
 class BlockResampler {
@@ -32,7 +32,7 @@ class BlockResampler {
   /// The rows of one sample: the same for the same seed and number on every machine, whatever else was drawn.
   [[nodiscard]] std::vector<RowRange> draw(std::uint64_t seed, std::uint32_t number) const;
 
-  /// Over the rows of every range, as often as it stands there.
+  /// Over the rows of every range, repeated ranges counted repeatedly.
   [[nodiscard]] Moments moments(const std::vector<RowRange>& rows) const;
 
   [[nodiscard]] const std::vector<RowRange>& ranges() const { return ranges_; }
@@ -51,7 +51,7 @@ struct BlockBootstrapOptions {
   Index block_rows = 1;  ///< L; longer than the residuals are correlated
   int replicates = 1000;
   std::uint64_t seed = 1;
-  unsigned threads = 1;  ///< 0: as many as there are cores; the numbers do not depend on it
+  unsigned threads = 1;  ///< 0: number of cores; the results do not depend on it
 };
 
 /// The coefficients as they would have come out in other experiments of the same kind.

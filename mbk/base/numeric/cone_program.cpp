@@ -236,9 +236,9 @@ ConeSolution solution_of(const ConeProgram& program, const Scaled& p, const Poin
 Result<ConeSolution> solve_cone_program(const ConeProgram& program) {
   constexpr int kMaxIterations = 20000, kBetweenPolishes = 25;
   constexpr double kMet = 1e-10, kRelaxation = 1.6, kUnbalanced = 5.0;
-  if (!well_formed(program)) return bad_usage("the shapes of a cone program do not fit, or it is not finite");
+  if (!well_formed(program)) return bad_usage("a cone program has inconsistent sizes or a non-finite number");
   const std::optional<Scaled> p = scaled(program);
-  if (!p) return bad_usage("a cone program has a direction that neither its objective nor a cone sees");
+  if (!p) return bad_usage("a cone program has a direction that neither its objective nor a cone depends on");
 
   Point at{Vector::Zero(p->q.size()), p->b, 1.0};
   const auto factored = [&] { return Cholesky(p->P + at.weight * (p->A.transpose() * p->A)); };
@@ -273,7 +273,7 @@ Result<ConeSolution> solve_cone_program(const ConeProgram& program) {
       factor = factored();
     }
   }
-  return fail(ErrorKind::not_usable, "no point is found that meets every condition of a cone program");
+  return fail(ErrorKind::not_usable, "no point was found that satisfies every condition of a cone program");
 }
 
 }  // namespace mbk::numeric

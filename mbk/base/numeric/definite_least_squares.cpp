@@ -92,7 +92,7 @@ class DefiniteSolver {
 Result<void> DefiniteSolver::prepare() {
   const bool shapes = program_.seen >= 0 && program_.seen <= v_ && program_.linear.size() == v_ &&
                       program_.tether.size() == v_ && program_.gap > 0.0;
-  if (!shapes) return bad_usage("the parts of a definite program do not fit");
+  if (!shapes) return bad_usage("the parts of a definite program have inconsistent sizes");
   if (!program_.start.allFinite() || !program_.linear.allFinite() || !program_.tether.allFinite()) {
     return bad_usage("a number of a definite program is not finite");
   }
@@ -101,7 +101,7 @@ Result<void> DefiniteSolver::prepare() {
     unit.n = one.reference.rows();
     const Index n = unit.n;
     if (n == 0 || one.reference.cols() != n || one.A.rows() != n * n || one.A.cols() != v_ || one.b.size() != n * n) {
-      return bad_usage("the parts of a definite program do not fit");
+      return bad_usage("the parts of a definite program have inconsistent sizes");
     }
     if (!one.A.allFinite() || !one.b.allFinite() || !one.reference.allFinite()) {
       return bad_usage("a number of a definite program is not finite");
@@ -122,7 +122,7 @@ Result<void> DefiniteSolver::prepare() {
   }
   x_ = program_.start;
   auto factors = factors_at(x_);
-  if (!factors) return bad_usage("the start of a definite program does not meet a condition");
+  if (!factors) return bad_usage("the start of a definite program violates a condition");
   factors_ = *std::move(factors);
   return {};
 }
@@ -271,16 +271,16 @@ Result<DefiniteSolution> DefiniteSolver::solve() {
       done = done || (off_centre() < kCentred && newton_ < kSettled);
       continue;
     }
-    // The longer the step that could be taken, the less is asked of the next.
+    // After a long step the next one reduces the weight more.
     const double fall = length_ > 0.9 ? 0.1 : 0.3;
     if (off_centre() < kFollows) weight_ = std::max(last, std::min(weight_, fall * now));
   }
   if (!done) {
     return fail(ErrorKind::not_usable,
-                fmt::format("the program of definite matrices did not settle: after {} steps the weight of the "
-                            "divergence is {:.3g} of the {:.3g} wanted, the last step {:.3g} long",
+                fmt::format("the program of definite matrices did not converge: after {} steps the weight of the "
+                            "divergence is {:.3g}, target {:.3g}, and the length of the last step {:.3g}",
                             steps, weight_, last, length_),
-                "give a description whose bodies are nearer to the true ones, or record more motion");
+                "use a description that is closer to the true robot, or record more motion");
   }
   DefiniteSolution made = solution();
   made.steps = steps;

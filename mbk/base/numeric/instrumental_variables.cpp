@@ -26,8 +26,8 @@ Vector scaling(const Vector& squares) {
 Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const MatrixPart& R, const MatrixPart& Y,
                                                    const Matrix& S) {
   if (Z.rows() != R.rows() || Z.rows() != Y.rows() || Z.cols() != R.cols()) {
-    return bad_usage(fmt::format("regressors {}×{}, instruments {}×{} and outputs {}×{} do not go together", Z.rows(),
-                                 Z.cols(), R.rows(), R.cols(), Y.rows(), Y.cols()));
+    return bad_usage(fmt::format("regressors {}×{}, instruments {}×{} and outputs {}×{} have inconsistent sizes",
+                                 Z.rows(), Z.cols(), R.rows(), R.cols(), Y.rows(), Y.cols()));
   }
   return fit_instrumental_variables(gram_of({R, Z, Y}), Z.cols(), Z.rows(), S);
 }
@@ -35,7 +35,7 @@ Result<InstrumentalFit> fit_instrumental_variables(const MatrixPart& Z, const Ma
 Result<InstrumentalFit> fit_instrumental_variables(const Matrix& gram, Index p, Index N, const Matrix& S) {
   const Index q = gram.cols() - 2 * p;
   if (p < 1 || q < 1 || gram.rows() != gram.cols()) {
-    return bad_usage(fmt::format("products {}×{} are not those of {} instruments, as many regressors and outputs",
+    return bad_usage(fmt::format("products {}×{} do not fit {} instruments, as many regressors and the outputs",
                                  gram.rows(), gram.cols(), p));
   }
   if (N < p) return bad_data(fmt::format("{} samples are too few for {} coefficients", N, p), "record longer");

@@ -13,7 +13,7 @@ struct ScoreProducts {
   std::vector<const double*> left, right;
 };
 
-/// long_run_covariance of several kinds of scores in one pass: Ω of each kind by itself.
+/// long_run_covariance of several kinds of scores in one pass: Ω of each kind separately.
 /// @param k scores of a kind and sample
 /// @param products_of the factors of some rows of a range, which follow each other; each row is asked for again with
 /// the `lags` + 1 behind it. What it points to must stay until the next call.

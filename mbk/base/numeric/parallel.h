@@ -6,7 +6,7 @@
 
 namespace mbk::numeric {
 
-/// Calls work(i) once for each i = 0, …, count − 1, on up to `threads` threads (0: as many as there are cores; fewer
+/// Calls work(i) once for each i = 0, …, count − 1, on up to `threads` threads (0: number of cores; fewer
 /// where the system has no more), and `done(i)` after each, never two at a time. What the calls write must be apart for
 /// each i; then nothing depends on the number of threads or their order.
 /// The threads work for whom the caller works for.

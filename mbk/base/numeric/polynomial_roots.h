@@ -7,8 +7,8 @@
 namespace mbk::numeric {
 
 /// Roots of c₀ + c₁ x + … + cₙ xⁿ: eigenvalues of the companion matrix, x scaled by the geometric mean of the roots.
-/// Leading zeros are left out. The largest modulus comes last; pairs stand together, the positive imaginary part first.
-/// @param ascending finite    @returns as many as the degree; none for a constant
+/// Leading zeros are ignored. The largest modulus comes last; pairs are adjacent, the positive imaginary part first.
+/// @param ascending finite    @returns one for each degree; none for a constant
 [[nodiscard]] Eigen::VectorXcd polynomial_roots(const Vector& ascending);
 
 /// c₀ … cₙ₋₁ of the monic polynomial with these roots, c₀ + … + cₙ₋₁ xⁿ⁻¹ + xⁿ.

@@ -35,7 +35,7 @@ Result<QuadraticSolution> solve_quadratic_program(const QuadraticProgram& progra
   constexpr int kMaxSteps = 100;
   constexpr double kMet = 1e-10;
   constexpr double kBack = 0.995;  // how much of the way to the border a step takes
-  if (!well_formed(program)) return bad_usage("the shapes of a quadratic program do not fit, or it is not finite");
+  if (!well_formed(program)) return bad_usage("a quadratic program has inconsistent sizes or a non-finite number");
   const auto& [H, g, C, b, G, h] = program;
   const Index n = g.size(), p = b.size(), m = h.size();
   QuadraticSolution now;
@@ -90,7 +90,7 @@ Result<QuadraticSolution> solve_quadratic_program(const QuadraticProgram& progra
     s += step * ds;
     now.lambda += step * dlambda;
   }
-  return fail(ErrorKind::not_usable, "no point is found that meets every condition of a quadratic program");
+  return fail(ErrorKind::not_usable, "no point was found that satisfies every condition of a quadratic program");
 }
 
 }  // namespace mbk::numeric

@@ -43,7 +43,7 @@ struct Extremes {
 /// Φ⁻¹(p); −∞ for p ≤ 0, ∞ for p ≥ 1.
 [[nodiscard]] double normal_quantile(double p);
 
-/// The value below which a share p of sorted values lies, by straight lines between them; NaN where there are none.
+/// Quantile p of sorted values, by linear interpolation; NaN without values.
 /// @param sorted rising    @param p in [0, 1]
 [[nodiscard]] double quantile(const Eigen::Ref<const Vector>& sorted, double p);
 
@@ -65,10 +65,10 @@ using EachBlock = std::function<void(const std::function<void(std::span<const do
 /// @param successes 0…trials    @param confidence e.g. 0.99
 [[nodiscard]] std::pair<double, double> binomial_interval(int successes, int trials, double confidence);
 
-/// Probability of at least so many successes.   @param share  of success in one trial, 0…1
+/// Probability of at least this number of successes.   @param share  probability of success in one trial, 0…1
 [[nodiscard]] double binomial_at_least(int successes, int trials, double share);
 
-/// Probability of at most so many successes.   @param share  of success in one trial, 0…1
+/// Probability of at most this number of successes.   @param share  probability of success in one trial, 0…1
 [[nodiscard]] double binomial_at_most(int successes, int trials, double share);
 
 }  // namespace mbk::numeric

@@ -17,7 +17,7 @@ class BoundedRing {
  public:
   explicit BoundedRing(std::size_t capacity) : queue_(capacity), capacity_(capacity) {}
 
-  /// By the producer. False where there is no room: the item is dropped and counted.
+  /// For the producer. False if the ring is full: the item is dropped and counted.
   bool push(const Item& item) noexcept {
     if (queue_.push(item)) return true;
     dropped_.fetch_add(1, std::memory_order_relaxed);

@@ -55,8 +55,8 @@ class WallClock : public Clock {
   std::uint64_t missed_ = 0, early_ = 0;
 };
 
-/// Time that a tick moves on by itself: the same loop as fast as the machine can. `speed` > 0 holds it to so many
-/// seconds for each second, so that it can be watched.
+/// Virtual time, which each tick advances: the same loop runs as fast as possible. `speed` > 0 limits it to this
+/// multiple of real time, so that it can be watched.
 class VirtualClock : public Clock {
  public:
   /// @param period  [s] > 0
@@ -67,7 +67,7 @@ class VirtualClock : public Clock {
   [[nodiscard]] double now() const noexcept override;
   [[nodiscard]] std::uint64_t missed() const noexcept override { return missed_; }
 
-  /// The next tick comes so many periods too late: a machine that stalls. From any thread.
+  /// Delays the next tick by this number of periods, as a stalling computer would. From any thread.
   void stall(std::uint64_t periods) noexcept { stall_.store(periods, std::memory_order_relaxed); }
 
  private:

@@ -5,15 +5,15 @@
 
 namespace mbk::realtime {
 
-/// How long something took, tick by tick, as counts of a logarithmic scale: 16 steps to a doubling from 64 ns on, so
-/// that a quantile is right to 5 %. Nothing allocates.
+/// Histogram of a duration over ticks on a logarithmic scale: 16 bins per doubling from 64 ns on, so that quantiles are
+/// accurate to 5 %. Never allocates.
 class CycleRecord {
  public:
   void add(std::int64_t nanoseconds) noexcept;
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::int64_t worst() const { return worst_; }  ///< [ns]
-  /// The time that a share of the ticks kept within [ns]; 0 without ticks.
+  /// Quantile of the duration for a fraction of the ticks [ns]; 0 without ticks.
   [[nodiscard]] double quantile(double share) const;
 
   static constexpr int kSteps = 16, kDoublings = 30;

@@ -13,36 +13,36 @@
 
 namespace mbk::realtime {
 
-/// What of a machine decides how punctually it wakes a thread. Empty: the system does not say.
+/// Properties of a computer that determine how punctually it wakes a thread. Empty: unknown.
 struct Machine {
-  std::string kernel;                  ///< its version, as uname -v says it
+  std::string kernel;                  ///< its version, as printed by uname -v
   std::optional<bool> preempt_rt;      ///< the kernel was built with PREEMPT_RT
-  std::vector<std::string> governors;  ///< of the processors' frequency, each once
-  std::optional<double> idle_latency;  ///< longest wake-up from an idle state that is in use [s]
+  std::vector<std::string> governors;  ///< frequency governors of the processors, each once
+  std::optional<double> idle_latency;  ///< longest wake-up latency of an enabled idle state [s]
   std::optional<std::uint64_t> swap;   ///< of all swap areas [bytes]
   std::optional<double> timer_slack;   ///< of a thread without real-time scheduling [s]
   std::optional<bool> virtual_machine;
-  std::optional<double> processor_quota;  ///< that the control group allows, in processors
+  std::optional<double> processor_quota;  ///< quota of the control group, in processors
   std::string clock_source;               ///< "tsc"
   unsigned processors = 0;                ///< for this process
-  std::optional<double> load;             ///< processes that run, over one minute
+  std::optional<double> load;             ///< load average over one minute
 };
 
 /// @param root  where /proc and /sys are found
 [[nodiscard]] Machine read_machine(const std::filesystem::path& root = "/");
 
-/// By how much a loop was woken too late.
+/// Lateness of the wake-ups of a loop.
 struct Lateness {
-  /// Upper edges of the histogram [s], 1 µs … 0.1 s; one more count stands for what is above.
+  /// Upper edges of the histogram [s], 1 µs … 0.1 s; one more count is for larger values.
   static constexpr std::array kEdges = {1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4,
                                         5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 5e-2, 1e-1};
   double period = 0.0;    ///< [s]
   double duration = 0.0;  ///< [s]
-  int priority = 0;       ///< that was asked for
-  ThreadSetup setup;      ///< what was granted
+  int priority = 0;       ///< requested
+  ThreadSetup setup;      ///< granted
   CycleRecord record;     ///< of the wake-ups [ns]
   std::array<std::uint64_t, kEdges.size() + 1> histogram{};
-  std::uint64_t missed = 0;  ///< ticks that went by without a wake-up
+  std::uint64_t missed = 0;  ///< ticks without a wake-up
 
   void add(double late) noexcept;
 };

@@ -6,8 +6,8 @@
 
 namespace mbk::realtime {
 
-/// Sleeps for `longest`, or until `done`, which is asked every 5 ms. No clock can hold it up and it keeps no mutex:
-/// where the clock cannot be read, a condition variable with a time limit never ends, and leaves its mutex to nobody.
+/// Sleeps for `longest`, or until `done` returns true, which is called every 5 ms. It depends on no clock and holds no
+/// mutex: if the clock cannot be read, a condition variable with a time limit never returns, nor releases its mutex.
 /// @returns  done()
 template <class Done>
 bool rest(std::chrono::nanoseconds longest, const Done& done) {

@@ -6,8 +6,8 @@
 
 namespace mbk::realtime {
 
-/// A stack for the signal handlers of the calling thread, as long as it lives: where the thread's own has overflowed,
-/// a handler that was installed with SA_ONSTACK still runs. Where it is refused, the thread is as it was before.
+/// A separate stack for the signal handlers of the calling thread, during its lifetime: after a stack overflow a
+/// handler that was installed with SA_ONSTACK still runs. If the stack is refused, the thread is unchanged.
 class SignalStack {
  public:
   SignalStack();

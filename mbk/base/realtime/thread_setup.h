@@ -6,18 +6,18 @@ namespace mbk::realtime {
 
 /// What the operating system granted to the calling thread.
 struct ThreadSetup {
-  bool fifo = false;           ///< scheduled first in, first out, before everything that is not
+  bool fifo = false;           ///< scheduled first in, first out, before all other threads
   bool locked_memory = false;  ///< no page of the process is ever fetched from disk
-  std::string refused;         ///< what was refused, why, and what would allow it; empty where nothing was
+  std::string refused;         ///< what was refused, why, and what would allow it; empty if nothing was
 };
 
-/// Fetches and locks the memory of the process, at the priority of the caller: it may take a tenth of a second, for
-/// which a thread that goes before others would hold a processor. @returns whether it is locked; why not is said by
-/// prepare_thread
+/// Fetches and locks the memory of the process, at the priority of the caller: this may take a tenth of a second,
+/// during which a real-time thread would occupy a processor. @returns whether it is locked; prepare_thread reports why
+/// not
 bool lock_memory() noexcept;
 
 /// Asks for locked memory for the process, then for SCHED_FIFO at `priority` (1–99) for the calling thread, and touches
-/// the stack so that it is there. What is refused is said, never an error: a simulation needs neither.
+/// the stack so that it is in memory. Refusals are reported, never an error: a simulation needs neither.
 [[nodiscard]] ThreadSetup prepare_thread(int priority = 80);
 
 }  // namespace mbk::realtime

@@ -4,8 +4,8 @@
 
 namespace mbk::realtime {
 
-/// Wakes one thread without a lock, so that who asks never waits for it. What is asked, as bits, adds up until it
-/// looks.
+/// Wakes one thread without a lock, so that the caller never blocks. Requests are bits, which accumulate until the
+/// thread takes them.
 class WakeUp {
  public:
   void ask(int what) noexcept {
@@ -13,7 +13,7 @@ class WakeUp {
     asked_.notify_one();
   }
 
-  /// By the thread that is asked: waits until it is, and takes all that it is asked.
+  /// For the thread that is woken: waits for requests, and takes all of them.
   [[nodiscard]] int wait() noexcept {
     asked_.wait(0);
     return asked_.exchange(0);

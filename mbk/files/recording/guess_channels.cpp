@@ -20,8 +20,8 @@ enum class Quantity { time, position, force, torque, reference, acceleration, ot
 /// The meaning of a name.
 struct Meaning {
   Quantity quantity = Quantity::other;
-  char axis = ' ';   ///< 'x', 'y', 'z', or ' ' where none is named
-  std::string unit;  ///< as a map writes it; "" where none is named
+  char axis = ' ';   ///< 'x', 'y', 'z', or ' ' if none is named
+  std::string unit;  ///< as a map writes it; "" if none is named
 };
 
 /// Words in small letters: "PosX_mm" is pos x mm, "Force-Y (N)" is force y n.
@@ -53,18 +53,20 @@ bool begins_with_one_of(std::string_view word, std::initializer_list<std::string
   return std::ranges::any_of(words, [&](std::string_view one) { return word.starts_with(one); });
 }
 
-Quantity quantity_of(std::string_view word) {
+/// @param first  whether it is the first word of its name: "a" alone is an acceleration in "a_x", a channel in "cellA"
+Quantity quantity_of(std::string_view word, bool first) {
   if (is_one_of(word, {"t"}) ||
       begins_with_one_of(word, {"time", "zeit", "clock", "seconds", "tout", "elapsed", "stamp"}))
     return Quantity::time;
   if (begins_with_one_of(word, {"ref", "cmd", "command", "desired", "target", "setpoint", "xr", "yr", "soll"})) {
     return Quantity::reference;
   }
-  if (is_one_of(word, {"f", "fx", "fy", "fz"}) || begins_with_one_of(word, {"force", "kraft", "load", "reaction"})) {
+  if (is_one_of(word, {"f", "fx", "fy", "fz"}) ||
+      begins_with_one_of(word, {"force", "kraft", "load", "cell", "reaction"})) {
     return Quantity::force;
   }
   if (begins_with_one_of(word, {"torque", "moment", "tau", "drehmoment"})) return Quantity::torque;
-  if (is_one_of(word, {"ax", "ay", "az", "a"}) || begins_with_one_of(word, {"acc", "beschl"})) {
+  if (is_one_of(word, {"ax", "ay", "az"}) || (first && word == "a") || begins_with_one_of(word, {"acc", "beschl"})) {
     return Quantity::acceleration;
   }
   if (begins_with_one_of(word, {"pos", "hand", "disp", "angle", "theta", "winkel", "weg", "encoder"}) ||
@@ -93,7 +95,10 @@ Meaning meaning_of(const std::string& name) {
                                              Quantity::force, Quantity::time, Quantity::position});
   const std::vector<std::string> words = words_of(name);
   for (const Quantity quantity : kStrongest) {
-    if (!std::ranges::any_of(words, [&](const std::string& word) { return quantity_of(word) == quantity; })) continue;
+    const auto is_named_by = [&](const std::string& word) {
+      return quantity_of(word, &word == &words.front()) == quantity;
+    };
+    if (std::ranges::none_of(words, is_named_by)) continue;
     meaning.quantity = quantity;
     break;
   }
@@ -111,7 +116,7 @@ Meaning meaning_of(const std::string& name) {
   return meaning;
 }
 
-/// Rises from sample to sample, and by steps that are alike.
+/// The mean step of a signal that rises in nearly equal steps.
 std::optional<double> even_step(const Vector& values) {
   if (values.size() < 3) return std::nullopt;
   const Vector steps = values.tail(values.size() - 1) - values.head(values.size() - 1);
@@ -161,13 +166,13 @@ class Guesser {
     std::optional<std::size_t> rises;
     for (std::size_t k = 0; k < signals_.size(); ++k) {
       if (!even_step(signals_[k].values)) continue;
-      if (rises) return;  // two that could be
+      if (rises) return;  // ambiguous
       rises = k;
     }
     if (rises) add("time", *rises, "the only signal that increases in even steps");
   }
 
-  [[nodiscard]] std::string called(std::size_t k) const { return fmt::format("called '{}'", signals_[k].name); }
+  [[nodiscard]] std::string called(std::size_t k) const { return fmt::format("named '{}'", signals_[k].name); }
 
   /// The k-th signal of that quantity and axis; of those without an axis the one at that place.
   [[nodiscard]] std::optional<std::size_t> find(Quantity quantity, char axis, int place) const {
@@ -256,7 +261,7 @@ class Guesser {
   std::vector<std::string> missing_;
 };
 
-/// A name that a map can hold as it is.
+/// Whether a map can contain the name unchanged.
 bool is_plain(std::string_view name) {
   return !name.empty() && name.find_first_of(",=:*+-@[]'\"\\ ") == std::string_view::npos &&
          name.find_first_not_of("0123456789") != std::string_view::npos;

@@ -21,7 +21,7 @@ struct FileSignal {
 /// A channel map suggested by names and numbers of a file.
 struct ChannelGuess {
   std::string map;                   ///< "time=1,x=2:mm,…"; contains the channels found, even if some are missing
-  std::vector<std::string> reasons;  ///< one for each entry: "Fx = 4: called 'force_x (N)'"
+  std::vector<std::string> reasons;  ///< one for each entry: "Fx = 4: named 'force_x (N)'"
   std::vector<std::string> missing;  ///< channels without which nothing is measured: "x", "F"
 };
 

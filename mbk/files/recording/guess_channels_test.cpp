@@ -57,6 +57,15 @@ TEST(GuessChannels, OneAxisHasAForceOrATorque) {
             "time=1,x=2:deg,F=3:N.m");
 }
 
+TEST(GuessChannels, ALetterBehindAWordIsNoQuantity) {
+  const ChannelGuess guess = guessed(
+      {{"t", rising(0.01)}, {"enc1", moving(1)}, {"enc2", moving(1)}, {"cellA", moving(2)}, {"cellB", moving(2)}});
+  EXPECT_EQ(guess.map, "time=1,F=4");
+  EXPECT_THAT(guess.missing, ElementsAre("x"));
+  EXPECT_EQ(guessed({{"t", rising(0.01)}, {"x", moving(1)}, {"F", moving(2)}, {"a", moving(1)}}).map,
+            "time=1,x=2,F=3,a=4");
+}
+
 TEST(GuessChannels, StampsSince1970AreInTheUnitOfTheirSize) {
   const auto since_1970 = [](double scale) {
     return Vector((1.7e9 * scale + 0.01 * scale * rising(1.0).array()).matrix());

@@ -463,7 +463,7 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     if (!facts.stale.empty()) problems.push_back(facts.stale);
   }
   if (!std::isfinite(inspection.rate_hz)) problems.emplace_back("no rate can be told from the time");
-  text += problems.empty() ? "\n  no gap, no jitter to speak of, time runs on\n" : "\n";
+  text += problems.empty() ? "\n  no gaps, no significant jitter, time increases monotonically\n" : "\n";
   for (const std::string& problem : problems) text += paragraph("  ! ", problem);
   for (const std::string& note : recording.notes) text += paragraph("  note: ", note);
   if (!recording.metadata.empty()) {

@@ -18,7 +18,8 @@ Result<void> name_signals(ExploreRequest& request, measurement::ExploreOptions& 
     return {};
   }
   if (request.input.empty() || request.output.empty()) {
-    return bad_usage("a response needs --input and --output", "name both, or neither for that of force to motion");
+    return bad_usage("a response needs both --input and --output",
+                     "name both, or omit both for the response of force to motion");
   }
   measurement::ExploredSignals& signals = options.signals.emplace();
   const SignalName names[] = {{request.input, "input", signals.input, &signals.input_sign},
@@ -34,17 +35,22 @@ OptionTable<explore::FrequencyResponseOptions> response_table() {
   using Options = explore::FrequencyResponseOptions;
   OptionTable<Options> table;
   table.group("Frequency response")
-      .add({"--method", std::string(option_values::kAuto),
-            "robust: periods and realisations of a periodic perturbation, noise and nonlinear distortion "
-            "apart; fast: periods of one; local-polynomial: any perturbation, without leakage; welch: averaged "
-            "spectra; auto: the first of these that the data allow, and says why (auto)"},
-           &Options::method)
-      .add({"--period", "S", "of the perturbation, s; otherwise found in the reference or the motion", positive()},
+      .add(
+          {"--method", std::string(option_values::kAuto),
+           "robust: several periods and realisations of a periodic perturbation, separates noise from nonlinear "
+           "distortion; fast: several periods of one realisation; local-polynomial: any perturbation, without leakage; "
+           "welch: averaged spectra; auto: the first of these that the data allow, with the reason (default: auto)"},
+          &Options::method)
+      .add({"--period", "S", "period of the perturbation, in seconds (default: found in the reference or the motion)",
+            positive()},
            &Options::period_s)
       .add({"--segment", "S",
-            "length of the segments that welch averages; local polynomials reach over its inverse, s (2)", positive()},
+            "length, in seconds, of the segments that welch averages; its inverse is the bandwidth of the local "
+            "polynomials "
+            "(default: 2)",
+            positive()},
            &Options::segment_s)
-      .add({"--max-frequency", "HZ", "highest frequency that is shown, Hz (50)", positive()},
+      .add({"--max-frequency", "HZ", "highest frequency of the result, in Hz (default: 50)", positive()},
            &Options::max_frequency_hz);
   return table;
 }
@@ -55,23 +61,25 @@ OptionTable<measurement::ExploreOptions> course_table() {
   table.group("Ramps and holds")
       .add(
           {"--plateau-from", "MS",
-           "begin of the window in which the force is averaged, ms after the onset (when the hand rests; 140 "
-           "in a reach)",
+           "start of the window in which the force is averaged, in ms after the onset (default: when the hand is at "
+           "rest; "
+           "in a reach 140)",
            not_negative()},
           [](auto& options) -> auto& { return options.plateau.from_s; }, kMilliseconds)
       .add(
-          {"--plateau-to", "MS", "its end, ms after the onset (300; 200 in a reach)", positive()},
+          {"--plateau-to", "MS", "end of that window, in ms after the onset (default: 300; in a reach 200)",
+           positive()},
           [](auto& options) -> auto& { return options.plateau.to_s; }, kMilliseconds)
       .add(
           {"--trigger", "EVENT",
-           "event of each reach at which the hand is displaced, or would be, relative to its predicted way "
-           "(trigger)",
+           "event of each reach at which the hand is displaced, or would be, relative to its predicted path (default: "
+           "trigger)",
            not_empty()},
           [](auto& options) -> auto& { return options.reaches.trigger; })
       .group("Change over time")
       .add({"--after-onset", "MS",
-            "M, B and K from so long after each step or pulse of the reference, before the person can "
-            "answer, ms; 100 to 150",
+            "estimate M, B and K from the first MS milliseconds after each step or pulse of the reference, before the "
+            "person can respond; 100 to 150",
             positive()},
            &Options::after_onset_s, kMilliseconds);
   return table;
@@ -87,11 +95,13 @@ const OptionTable<ExploreRequest>& explore_table() {
     const char* const in_time = "Change over time";
     OptionTable<ExploreRequest> table;
     table.include(read_table(), &ExploreRequest::reading)
-        .add({"--input", "NAME",
-              "another response than that of force to motion: from this channel, column, row or variable", not_empty()},
-             &ExploreRequest::input)
-        .add({"--output", "NAME", "to this, likewise", not_empty()}, &ExploreRequest::output)
-        .add({"--reference", "NAME", "what drives both, likewise", not_empty()}, &ExploreRequest::reference)
+        .add(
+            {"--input", "NAME",
+             "input of another response than that of force to motion: a channel, column, row or variable", not_empty()},
+            &ExploreRequest::input)
+        .add({"--output", "NAME", "its output, named likewise", not_empty()}, &ExploreRequest::output)
+        .add({"--reference", "NAME", "the signal that drives both, named likewise", not_empty()},
+             &ExploreRequest::reference)
         .include(sensor_table(), &ExploreRequest::sensor)
         .add(
             protocol_option(kWindowGroup), [](auto& request) -> auto& { return request.options.preprocess.protocol; })
@@ -105,22 +115,23 @@ const OptionTable<ExploreRequest>& explore_table() {
             force_rotation_option(kWindowGroup), [](auto& request) -> auto& { return request.options.force_rotation; },
             kDegrees)
         .add(
-            {"--only", "", "nothing but this part (all of them)"},
+            {"--only", "", "compute only this part (default: all)"},
             [](auto& request) -> auto& { return request.options.only; })
         .include(
             response_table(), [](auto& request) -> auto& { return request.options.frequency_response; })
         .include(course_table(), options)
         .group(in_time)
         .add({"--schedule", "NAME",
-              "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction, "
-              "not over time",
+              "follow M, B and K over this channel, column, row or variable, such as an angle or a co-contraction "
+              "level, "
+              "instead of over time",
               not_empty()},
              &ExploreRequest::schedule)
         .add(
             {.name = "--align",
              .value = "EVENT",
-             .help = "count time from this event, repetition by repetition, or from the onsets of the reference "
-                     "(reference)",
+             .help =
+                 "event that time is counted from in each repetition (default: reference, the onsets of the reference)",
              .check = not_empty(),
              .excludes = "--schedule"},
             [](auto& request) -> auto& { return request.options.align; });

@@ -41,10 +41,12 @@ OptionTable<preprocess::Options> protocol_table() {
   using preprocess::Options;
   OptionTable<Options> table;
   table.group(kWindowGroup)
-      .add({"--mode", "", "reference: the published procedure, sample for sample"}, &Options::mode)
+      .add({"--mode", "",
+            "default, or reference: reproduce the published procedure sample for sample (default: default)"},
+           &Options::mode)
       .add({"--procedure", "",
-            "in reference mode: W 101, 5 Hz, ẍ from the position (this one unless said) | W 151, 4.5 Hz, ẍ from "
-            "the accelerometer"},
+            "with --mode reference. chapter3: Savitzky–Golay window 101, cutoff 5 Hz, ẍ from the position; chapter5: "
+            "window 151, cutoff 4.5 Hz, ẍ from the accelerometer (default: chapter3)"},
            &Options::procedure)
       .is_default_where([](const Options& options) { return options.procedure != Procedure::chapter5; })
       .add(protocol_option(kWindowGroup), &Options::protocol)
@@ -57,10 +59,12 @@ OptionTable<preprocess::Options> source_table() {
   using preprocess::Options;
   OptionTable<Options> table;
   table.group(kFilterGroup)
-      .add({"--acceleration", "", "where ẍ comes from"}, &Options::acceleration)
+      .add({"--acceleration", "", "source of ẍ: the accelerometer, or the derivative of the position"},
+           &Options::acceleration)
       .add({"--force-source", "",
-            "virtual: without a force sensor, from motion, motor torques and the robot's dynamics; observer: the same "
-            "as it could be had while the robot runs, for comparison"},
+            "source of the force. virtual: no force sensor; from motion, motor torques and the robot's dynamics; "
+            "observer: "
+            "the same estimated causally, as while the robot runs, for comparison (default: sensor)"},
            &Options::force_source);
   return table;
 }
@@ -83,7 +87,8 @@ const OptionTable<MeasureRequest>& measure_table() {
         .group(kFilterGroup)
         .add({.name = "--robot",
               .value = "FILE",
-              .help = "the robot's dynamics, from 'mbk robot identify --json'; without it those of the thesis's robot",
+              .help =
+                  "the robot's dynamics, as written by 'mbk robot identify --json' (default: the robot of the thesis)",
               .check = not_empty(),
               .names_file = true},
              &MeasureRequest::robot)
@@ -99,7 +104,7 @@ const OptionTable<MeasureRequest>& measure_table() {
         .add(
             {.name = "--ignore-range",
              .value = "NAMES",
-             .help = "plausible ranges that are not checked, by name, as in --ignore-range stiffness,motion",
+             .help = "plausible ranges not to check, by name: --ignore-range stiffness,motion",
              .takes_several = true},
             [](auto& request) -> auto& { return request.options.ignored_ranges; });
     return table;
@@ -113,16 +118,19 @@ const OptionTable<MeasureRequest>& arm_table() {
     table.group("Model")
         .add_either(
             {"--domain", "",
-             "joint: M, B and K at shoulder and elbow too (or at the joints of the robot, where the arm is not "
-             "known), in the posture of the recording"},
+             "joint: also M, B and K at shoulder and elbow, or at the robot's joints if the arm is unknown, in the "
+             "posture of "
+             "the recording (default: hand)"},
             "hand", "joint", [](auto& request) -> auto& { return request.options.joint_domain; })
         .add({"--arm",
               "X,Y,UPPER,FORE",
-              "the person's arm, where the recording does not hold it: place of the shoulder in the robot's frame, "
-              "lengths of upper arm and forearm (to the grip), in metres; the elbow is to the right unless ',left' "
-              "follows",
+              "the person's arm, if the recording does not contain it: shoulder position in the robot's frame and "
+              "lengths "
+              "of upper arm and forearm (to the grip), in metres; the elbow points to the right unless ',left' follows",
               {[](const std::string& given) {
-                return arm_metadata(given) ? "" : fmt::format("{} is not X,Y,UPPER,FORE in metres", quoted(given));
+                return arm_metadata(given)
+                           ? ""
+                           : fmt::format("{} is not of the form X,Y,UPPER,FORE in metres", quoted(given));
               }}},
              &MeasureRequest::arm);
     return table;
@@ -135,24 +143,25 @@ Result<measurement::Options> measurement_options(const MeasureRequest& request, 
   preprocess::Options& p = options.preprocess;
   MBK_TRY(check_order(p.window));
   if (p.procedure && p.mode != Mode::reference) {
-    return bad_usage(fmt::format("--procedure {} belongs to --mode reference", word_of(*p.procedure)),
-                     "add that, or leave --procedure out");
+    return bad_usage(fmt::format("--procedure {} is valid only with --mode reference", word_of(*p.procedure)),
+                     "add --mode reference, or omit --procedure");
   }
   if (!request.arm.empty() && !options.joint_domain && !draws_arm) {
-    return bad_usage("--arm belongs to --domain joint, or to --report, which draws it", "add one, or leave --arm out");
+    return bad_usage("--arm is valid only with --domain joint or --report", "add one of them, or omit --arm");
   }
   p.axes = request.reading.options.axes;
   if (p.force_source != ForceSource::sensor) {
     auto robot = MBK_TRY(robot_of(request.robot));
     p.robot = std::make_shared<const robot::DynamicModel>(std::move(robot));
     if (options.force_delay != 0.0) {
-      return bad_usage("--force-delay-ms belongs to a force that was measured", "leave it out");
+      return bad_usage("--force-delay-ms is valid only for a measured force", "omit it");
     }
     if (options.force_rotation != 0.0) {
-      return bad_usage("--force-rotation-deg belongs to a force that was measured", "leave it out");
+      return bad_usage("--force-rotation-deg is valid only for a measured force", "omit it");
     }
   } else if (request.robot) {
-    return bad_usage("--robot belongs to --force-source virtual or observer", "add that, or leave --robot out");
+    return bad_usage("--robot is valid only with --force-source virtual or observer",
+                     "add --force-source, or omit --robot");
   }
   return options;
 }

@@ -12,7 +12,7 @@
 
 namespace mbk::request {
 
-/// What is asked of a measurement: the options of every stage, and what is named in words.
+/// A measurement to perform: the options of every stage, and inputs by name.
 struct MeasureRequest {
   ReadRequest reading;
   SensorRequest sensor;

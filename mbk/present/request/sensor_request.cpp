@@ -54,21 +54,26 @@ const OptionTable<SensorRequest>& sensor_table() {
     const std::string sensor = "--sensor";
     OptionTable<SensorRequest> table;
     table.group("Force sensor")
-        .add({.name = sensor,
-              .value = "FILE.json",
-              .help = "calibration that makes the force of the recording's voltages Vx, Vy; 'mbk sensor calibrate "
-                      "--json' writes it",
-              .check = not_empty(),
-              .names_file = true},
-             &SensorRequest::file)
+        .add(
+            {.name = sensor,
+             .value = "FILE.json",
+             .help =
+                 "calibration that converts the recorded voltages Vx, Vy to force, as written by 'mbk sensor calibrate "
+                 "--json'",
+             .check = not_empty(),
+             .names_file = true},
+            &SensorRequest::file)
         .add(
             {"--lever-arm-mm", "MM",
-             "from the gauges to the hand; the slope is scaled with it, the zero is not (as in the calibration)",
+             "lever arm from the strain gauges to the hand, in mm; scales the slope but not the zero (default: as in "
+             "the "
+             "calibration)",
              positive(), sensor},
             [](auto& request) -> auto& { return request.use.lever_arm; }, kMillimetres)
         .add_row({{"--sensor-zero",
                    "VX,VY|auto:S",
-                   "voltage of no force in these recordings: auto:S is the mean of the first S seconds (as in the "
+                   "voltage at zero force in these recordings; auto:S takes the mean of the first S seconds (default: "
+                   "as in the "
                    "calibration)",
                    {wrong_zero},
                    sensor},
@@ -79,14 +84,16 @@ const OptionTable<SensorRequest>& sensor_table() {
         .add(
             {"--sensor-frame",
              "",
-             "link: the sensor turns with the last link, at q2; base: it does not; auto: link where q2 is there",
+             "link: the sensor rotates with the last link, at angle q2; base: it does not; auto: link if q2 was "
+             "recorded "
+             "(default: auto)",
              {},
              sensor},
             [](auto& request) -> auto& { return request.use.frame; })
         .add_either(
             {"--sensor-delay",
              "",
-             "undo: move the force earlier by the delay that the calibration saw (keep)",
+             "undo: advance the force by the delay that the calibration found (default: keep)",
              {},
              sensor},
             "keep", "undo", [](auto& request) -> auto& { return request.use.undo_delay; });

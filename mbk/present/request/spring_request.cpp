@@ -47,7 +47,7 @@ std::optional<std::pair<double, double>> two_numbers(std::string_view text) {
   return std::pair{*first, *second};
 }
 
-constexpr const char* kExample = "write --spring k=120,l=90mm,anchor=565:183 with N/m and mm";
+constexpr const char* kExample = "write it as --spring k=120,l=90mm,anchor=565:183, in N/m and mm";
 
 tl::unexpected<Error> bad_spring(const std::string& given, const std::string& what) {
   return bad_usage(fmt::format("--spring {}: {}", quoted(given), what), kExample);
@@ -62,7 +62,7 @@ Result<Spring> parse_spring(const std::string& given) {
     if (equals == std::string_view::npos)
       return bad_spring(given, fmt::format("{} has no '='", quoted(std::string(part))));
     const std::string value(part.substr(equals + 1));
-    if (!seen.insert(key).second) return bad_spring(given, fmt::format("'{}' is there twice", key));
+    if (!seen.insert(key).second) return bad_spring(given, fmt::format("'{}' occurs twice", key));
     const bool is_place = key == "anchor" || key == "hole";
     if (is_place) {
       const auto place = two_numbers(value);
@@ -129,19 +129,20 @@ const OptionTable<SpringFieldRequest>& spring_field_table() {
     table
         .add({.name = "--spring",
               .value = "k=K,l=L,anchor=X:Y[,hole=X:Y]",
-              .help = "k in N/m, rest length l in mm, anchor, and hole; once for each",
+              .help = "one spring: stiffness k in N/m, rest length l in mm, anchor and hole in mm; may be repeated",
               .excludes = "SCENARIO.toml",
               .repeats = true},
              &Request::springs)
-        .add({"--radius", "MM", "circle in mm in which K is compared with the force (30)", positive()},
-             &Request::radius, kMillimetres)
-        .add({"--start", "X:Y", "where the search for the equilibrium begins, mm"}, &Request::start)
-        .add({"--rotation", "DEG", "of the disc, degrees anticlockwise (0)", number_within(kAny)},
-             &Request::rotation_deg)
-        .add({"--grid-step", "MM", "also the published procedure, on a grid of so many mm (0.15 in Dyck 2013)",
+        .add({"--radius", "MM", "radius, in mm, of the circle in which K is compared with the force (default: 30)",
               positive()},
+             &Request::radius, kMillimetres)
+        .add({"--start", "X:Y", "start of the search for the equilibrium, in mm"}, &Request::start)
+        .add({"--rotation", "DEG", "rotation of the disc, in degrees anticlockwise (default: 0)", number_within(kAny)},
+             &Request::rotation_deg)
+        .add({"--grid-step", "MM",
+              "also apply the published procedure on a grid with this step, in mm (0.15 in Dyck 2013)", positive()},
              &Request::grid_step, kMillimetres)
-        .add({"--push", "", "springs shorter than at rest push; otherwise they go slack"}, &Request::push);
+        .add({"--push", "", "springs shorter than their rest length push (default: they go slack)"}, &Request::push);
     return table;
   }();
   return kTable;
@@ -151,32 +152,35 @@ const OptionTable<SpringDesignRequest>& spring_design_table() {
   using Request = SpringDesignRequest;
   static const auto kTable = [] {
     OptionTable<Request> table;
-    table.add({"--stiffness", "KXX,KYY,KS", "target kxx, kyy and ks in N/m"}, &Request::stiffness)
-        .add({"--at", "X:Y", "target equilibrium, mm (the middle of the frame)"}, &Request::at)
-        .add({"--frame", "X:Y", "middle of the frame, mm (390:0)"}, &Request::frame)
+    table.add({"--stiffness", "KXX,KYY,KS", "target stiffness kxx, kyy and ks, in N/m"}, &Request::stiffness)
+        .add({"--at", "X:Y", "target equilibrium, in mm (default: centre of the frame)"}, &Request::at)
+        .add({"--frame", "X:Y", "centre of the frame, in mm (default: 390:0)"}, &Request::frame)
         .add({.name = "--eye",
               .value = "X:Y",
-              .help = "a screw eye, mm; once for each of up to 12 (the published frame: corners and middles of the "
-                      "sides of 350 by 366 mm)",
+              .help = "position of a screw eye, in mm; up to 12 (default: the published frame, 350 by 366 mm, corners "
+                      "and middles "
+                      "of the sides)",
               .repeats = true},
              &Request::eyes)
         .add({"--disc", "",
-              "hang each spring in the facing hole of the published disc, 2.25 cm across; otherwise all at its "
-              "middle"},
+              "hang each spring in the facing hole of the published disc, 2.25 cm in diameter (default: all at its "
+              "centre)"},
              &Request::disc)
-        .add({"--spring-stiffness", "FROM:TO", "springs that can be had, N/m (20:400)"}, &Request::spring_stiffness)
-        .add({"--spring-length", "FROM:TO", "their rest lengths, mm (60:160)"}, &Request::spring_length)
+        .add({"--spring-stiffness", "FROM:TO", "available spring constants, in N/m (default: 20:400)"},
+             &Request::spring_stiffness)
+        .add({"--spring-length", "FROM:TO", "available rest lengths, in mm (default: 60:160)"}, &Request::spring_length)
         .add(
-            {"--travel", "MM", "radius in mm in which all stay in tension (30)", positive()},
+            {"--travel", "MM", "radius, in mm, within which all springs stay in tension (default: 30)", positive()},
             [](auto& request) -> auto& { return request.options.travel; }, kMillimetres)
         .add(
-            {"--min-extension", "MM", "by how much each stays longer than at rest in there, mm (2)", not_negative()},
+            {"--min-extension", "MM", "minimum extension of each spring within that radius, in mm (default: 2)",
+             not_negative()},
             [](auto& request) -> auto& { return request.options.min_extension; }, kMillimetres)
         .add(
-            {"--max-springs", "N", "no more springs than this (8)", whole_number(3, 12)},
+            {"--max-springs", "N", "maximum number of springs (default: 8)", whole_number(3, 12)},
             [](auto& request) -> auto& { return request.options.max_springs; })
         .add(
-            {"--payload", "KG", "mass in kg, to see the natural frequencies", positive()},
+            {"--payload", "KG", "mass, in kg, for which natural frequencies are reported", positive()},
             [](auto& request) -> auto& { return request.options.payload; });
     return table;
   }();

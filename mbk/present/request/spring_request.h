@@ -11,7 +11,7 @@
 
 namespace mbk::request {
 
-/// Of which springs the field is asked, and where.
+/// A spring field to compute: the springs, and the options of the search.
 struct SpringFieldRequest {
   std::vector<std::string> springs;  ///< "k=120,l=90mm,anchor=565:183[,hole=8:8]"
   std::string start;                 ///< "X:Y" in mm; "": the centre of the anchors

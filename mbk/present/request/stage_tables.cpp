@@ -11,11 +11,16 @@ const OptionTable<preprocess::WindowLimits>& window_table() {
   static const auto kTable = [] {
     OptionTable<WindowLimits> table;
     table.group(kWindowGroup)
-        .add({"--from", "S", "first second that counts, from the start of the recording", not_negative()},
+        .add({"--from", "S", "start of the analysed interval, in seconds from the start of the recording",
+              not_negative()},
              &WindowLimits::from_s)
-        .add({"--split", "S", "data before it identify, data after it are held out", positive()},
+        .add({"--split", "S",
+              "use the data before this time, in seconds, to identify the model and the data after it as validation "
+              "data",
+              positive()},
              &WindowLimits::split_s)
-        .add({"--to", "S", "last second that counts", positive()}, &WindowLimits::to_s);
+        .add({"--to", "S", "end of the analysed interval, in seconds from the start of the recording", positive()},
+             &WindowLimits::to_s);
     return table;
   }();
   return kTable;
@@ -26,31 +31,33 @@ const OptionTable<preprocess::Options>& filter_table() {
   static const auto kTable = [] {
     OptionTable<Options> table;
     table.group(kFilterGroup)
-        .add({"--sg-window", "W", "Savitzky–Golay window W in samples, odd", odd_number(3, 1'000'001)},
+        .add({"--sg-window", "W", "Savitzky–Golay window: an odd number of samples", odd_number(3, 1'000'001)},
              &Options::smoothing_window)
-        .add({"--sg-order", "N", "Savitzky–Golay order N (6)", whole_number(1, 1000)}, &Options::smoothing_order)
-        .add_row({{"--cutoff",
-                   "HZ|none",
-                   "zero-phase Butterworth low-pass; otherwise by the excited band",
-                   {[](const std::string& given) -> std::string {
-                     const bool good = given == "none" || positive().wrong(given).empty();
-                     return good ? "" : fmt::format("{} is neither a positive number nor 'none'", quoted(given));
-                   }}},
-                  [](Options& options, const std::vector<std::string>& texts) {
-                    options.no_lowpass = texts.back() == "none";
-                    options.cutoff.reset();
-                    if (!options.no_lowpass) option_values::set(options.cutoff, texts, 1.0);
-                  },
-                  [](const Options& options) { return !options.no_lowpass && !options.cutoff; }})
+        .add({"--sg-order", "N", "Savitzky–Golay order (default: 6)", whole_number(1, 1000)}, &Options::smoothing_order)
+        .add_row(
+            {{"--cutoff",
+              "HZ|none",
+              "cutoff frequency of the zero-phase Butterworth low-pass filter, in Hz (default: from the excited band)",
+              {[](const std::string& given) -> std::string {
+                const bool good = given == "none" || positive().wrong(given).empty();
+                return good ? "" : fmt::format("{} is neither a positive number nor 'none'", quoted(given));
+              }}},
+             [](Options& options, const std::vector<std::string>& texts) {
+               options.no_lowpass = texts.back() == "none";
+               options.cutoff.reset();
+               if (!options.no_lowpass) option_values::set(options.cutoff, texts, 1.0);
+             },
+             [](const Options& options) { return !options.no_lowpass && !options.cutoff; }})
         .add(
-            {"--extension", "", "how signals are continued at their ends for the zero-phase filter (odd)"},
+            {"--extension", "", "how signals are extended at their ends for the zero-phase filter (default: odd)"},
             [](auto& options) -> auto& { return options.padding.extension; })
         .add(
-            {"--padding", "N", "by how many samples (15)", whole_number(0, 1'000'000)},
+            {"--padding", "N", "samples that signals are extended by at each end (default: 15)",
+             whole_number(0, 1'000'000)},
             [](auto& options) -> auto& { return options.padding.samples; })
         .add({"--every", "N",
-              "the fit takes every so many of the filtered samples; otherwise ten for each period of the cutoff, and "
-              "all in reference mode",
+              "fit every Nth filtered sample (default: ten samples for each period of the cutoff; all samples in "
+              "reference mode)",
               whole_number(1, 1'000'000)},
              &Options::every);
     return table;
@@ -63,29 +70,41 @@ const OptionTable<identify::Options>& identify_table() {
   static const auto kTable = [] {
     OptionTable<Options> table;
     table.group("Model")
-        .add({"--method", "",
-              "ls: least squares; iv: instrumental variables, which need the reference and hold in closed loop too; "
-              "otherwise iv where the reference is a force and they hold, else ls"},
-             &Options::method)
-        .add({"--structure", "", "full; symmetric: M and K symmetric; mass-spring: M = m I, no damping, K symmetric"},
+        .add(
+            {"--method", "",
+             "ls: least squares; iv: instrumental variables, which need the recorded reference and are unbiased in "
+             "closed "
+             "loop too (default: iv if the reference is a strong instrument, with every first-stage F above 104.7, and "
+             "the result is usable; otherwise ls; in reference mode always ls)"},
+            &Options::method)
+        .add({"--structure", "",
+              "structure of M, B and K. full: unconstrained; symmetric: M and K symmetric; mass-spring: M = m I, no "
+              "damping, K "
+              "symmetric"},
              &Options::structure)
         .add({"--parameters-from", "",
-              "all: parameters from every window, fit judged on the held-out half (default for underdamped)"},
+              "all: estimate the parameters from every window and judge the fit on the held-out half (default for "
+              "underdamped)"},
              &Options::parameters_from)
         .add({"--handle-mass", "KG",
-              "mass between sensor and hand, subtracted from the inertia; otherwise what the recording says, and "
-              "none in reference mode",
+              "mass between force sensor and hand, in kg, subtracted from the inertia (default: the mass in the "
+              "recording; "
+              "in reference mode none)",
               not_negative()},
              &Options::handle_mass)
-        .add({"--hac-lag", "S", "reach of the residual's correlation in the standard errors (1)", positive()},
+        .add({"--hac-lag", "S",
+              "correlation time of the residual, in seconds, that the standard errors allow for (default: 1)",
+              positive()},
              &Options::hac_lag_s)
         .add({"--bootstrap", "N",
-              "so many fits to data drawn anew from blocks of 2.5 s, for intervals of every parameter, ellipse, "
-              "eigenvalue and the excess of passivity that rest on no formula (0: none; 1000 take a moment)",
+              "number of block-bootstrap resamples (blocks of 2.5 s) for confidence intervals of the parameters, "
+              "ellipses, "
+              "eigenvalues and the excess of passivity (default: 0, none; 1000 take a moment)",
               whole_number(0, 1'000'000)},
              &Options::bootstrap)
-        .add({"--seed", "N", "of the bootstrap (1)", whole_number(0, 2'000'000'000)}, &Options::seed)
-        .add({"--decimate-check", "", "fit again at 100 Hz and say what changes"}, &Options::decimate_check);
+        .add({"--seed", "N", "random seed of the bootstrap (default: 1)", whole_number(0, 2'000'000'000)},
+             &Options::seed)
+        .add({"--decimate-check", "", "fit again at 100 Hz and report what changes"}, &Options::decimate_check);
     return table;
   }();
   return kTable;
@@ -94,7 +113,7 @@ const OptionTable<identify::Options>& identify_table() {
 OptionFacts resample_option(const char* group) {
   return {.name = "--resample",
           .value = "HZ",
-          .help = "put an uneven clock right first, by straight lines; never done unasked",
+          .help = "resample unevenly sampled data to this rate by linear interpolation (default: never)",
           .check = positive(),
           .group = group};
 }
@@ -103,23 +122,25 @@ OptionFacts force_delay_option(const char* group) {
   constexpr double kLongestDelayMs = 1000.0;
   return {.name = "--force-delay-ms",
           .value = "MS",
-          .help = "by which the force was read late, as 'mbk sensor delay' finds it: undone first (0)",
+          .help = "delay of the force signal, as 'mbk sensor delay' measures it, in ms; corrected first (default: 0)",
           .check = number_within(kLongestDelayMs),
           .group = group};
 }
 
 OptionFacts force_rotation_option(const char* group) {
-  return {.name = "--force-rotation-deg",
-          .value = "DEG",
-          .help = "turn the force by this angle from x to y first: for a force sensor mounted at an angle (0)",
-          .check = number_within(180.0),
-          .group = group};
+  return {
+      .name = "--force-rotation-deg",
+      .value = "DEG",
+      .help =
+          "rotate the force by this angle from x towards y first, for a force sensor mounted at an angle (default: 0)",
+      .check = number_within(180.0),
+      .group = group};
 }
 
 OptionFacts protocol_option(const char* group) {
   return {.name = "--protocol",
           .value = std::string(option_values::kAuto),
-          .help = "how the limb was perturbed; auto looks at the reference and says what it saw",
+          .help = "how the limb was perturbed; auto decides from the reference and reports its choice (default: auto)",
           .group = group};
 }
 

@@ -20,7 +20,7 @@ inline constexpr const char* kFilterGroup = "Filters";
 /// --method, --structure, --parameters-from, --handle-mass, --hac-lag, --bootstrap, --seed, --decimate-check.
 [[nodiscard]] const OptionTable<identify::Options>& identify_table();
 
-/// --resample, which several requests have in places of their own.
+/// --resample, which several requests place in different groups.
 [[nodiscard]] OptionFacts resample_option(const char* group = "");
 /// --force-delay-ms and --force-rotation-deg, likewise.
 [[nodiscard]] OptionFacts force_delay_option(const char* group = "");

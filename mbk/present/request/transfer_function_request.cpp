@@ -35,8 +35,8 @@ Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given)
   constexpr Index kMax = 12;
   std::vector<std::pair<Index, Index>> orders;
   const auto wrong =
-      bad_usage(fmt::format("--orders: {} is neither FROM:TO nor POLES/ZEROS,…", quoted(given)),
-                fmt::format("as in 2:5 or 4/1,4/2,5/2, with 1 to {} poles and at most as many zeros", kMax));
+      bad_usage(fmt::format("--orders {} is neither FROM:TO nor a list of POLES/ZEROS", quoted(given)),
+                fmt::format("write it as 2:5 or 4/1,4/2,5/2, with 1 to {} poles and no more zeros than poles", kMax));
   std::string_view rest = given;
   for (bool more = true; more;) {
     const auto first = take_number(rest);
@@ -65,7 +65,7 @@ Result<std::vector<std::pair<Index, Index>>> orders_of(const std::string& given)
 Result<void> set_orders(const TransferFunctionRequest& request, identify::TransferFunctionOptions& fit) {
   if (!request.orders.empty()) {
     if (request.poles || request.zeros)
-      return bad_usage("--orders chooses poles and zeros automatically", "leave --poles and --zeros out");
+      return bad_usage("--orders chooses the numbers of poles and zeros automatically", "omit --poles and --zeros");
     fit.orders = MBK_TRY(orders_of(request.orders));
     return {};
   }
@@ -75,9 +75,8 @@ Result<void> set_orders(const TransferFunctionRequest& request, identify::Transf
   fit.poles = *request.poles;
   fit.zeros = request.zeros.value_or(*request.poles - 1);
   if (fit.zeros > fit.poles) {
-    return bad_usage(
-        fmt::format("{} zeros beside {} poles: a system that ends has at most as many", fit.zeros, fit.poles),
-        "exchange input and output, or take fewer zeros");
+    return bad_usage(fmt::format("a model with {} zeros and {} poles is improper", fit.zeros, fit.poles),
+                     "exchange input and output, or use fewer zeros");
   }
   return {};
 }
@@ -89,11 +88,14 @@ const OptionTable<TransferFunctionRequest>& transfer_function_signal_table() {
     OptionTable<TransferFunctionRequest> table;
     table
         .add({"--input", "NAME",
-              "the cause: a channel, or a column's number or name, a row or a variable of the file (input)",
+              "input signal: a channel, the number or name of a column, a row or a variable of the file (default: "
+              "input)",
               not_empty()},
              &TransferFunctionRequest::input)
-        .add({"--output", "NAME", "the effect, likewise (output)", not_empty()}, &TransferFunctionRequest::output)
-        .add({"--reference", "NAME", "what drives the loop, likewise, for clsrivc", not_empty()},
+        .add({"--output", "NAME", "output signal, named likewise (default: output)", not_empty()},
+             &TransferFunctionRequest::output)
+        .add({"--reference", "NAME", "signal that drives the closed loop, named likewise, for --method clsrivc",
+              not_empty()},
              &TransferFunctionRequest::reference);
     return table;
   }();
@@ -104,13 +106,15 @@ const OptionTable<TransferFunctionRequest>& transfer_function_clock_table() {
   static const auto kTable = [] {
     OptionTable<TransferFunctionRequest> table;
     OptionFacts resample = resample_option();
-    resample.help += ", and srivc does without";
+    resample.help += "; srivc does not need it";
     table
         .include(
             window_table(), [](auto& request) -> auto& { return request.options.window; })
         .add(resample, &TransferFunctionRequest::resample)
         .add({"--sample-rate", "HZ|recorded",
-              "leave samples out, behind a low-pass (oe and bj: down to 50 to 100; the others: recorded)", not_empty()},
+              "decimate to this rate, in Hz, after a low-pass filter (default: oe and bj 50 to 100 Hz; the others "
+              "recorded)",
+              not_empty()},
              &TransferFunctionRequest::sample_rate);
     return table;
   }();
@@ -122,41 +126,51 @@ const OptionTable<TransferFunctionRequest>& transfer_function_model_table() {
   static const auto kTable = [] {
     OptionTable<Request> table;
     table.group("Model")
-        .add({"--poles", "N", "how many", whole_number(1, 20)}, &Request::poles)
-        .add({"--zeros", "N", "how many (one fewer than poles)", whole_number(0, 20)}, &Request::zeros)
+        .add({"--poles", "N", "number of poles", whole_number(1, 20)}, &Request::poles)
+        .add({"--zeros", "N", "number of zeros (default: one fewer than poles)", whole_number(0, 20)}, &Request::zeros)
         .add({"--orders", "FROM:TO|LIST",
-              "choose among models: 2:5 for 2 to 5 poles with fewer zeros, or a list POLES/ZEROS", not_empty()},
+              "fit several models and select one: 2:5 for 2 to 5 poles with fewer zeros each, or a list of POLES/ZEROS",
+              not_empty()},
              &Request::orders)
         .add({"--invert", "",
-              "also the inverse: the input is the force on what moves, the output that motion of it; gives the "
-              "impedance"},
+              "also invert the model to an impedance: the input is the force on the moving body, the output this "
+              "quantity of "
+              "its motion"},
              &Request::invert)
         .add(
             {"--method", "",
-             "srivc: refined instrumental variables in continuous time; rivc: with a model of the noise; "
-             "clsrivc: in a loop, with instruments from the reference; oe: output error in discrete time; "
-             "bj: Box-Jenkins, with a model of the noise"},
+             "srivc: refined instrumental variables in continuous time; rivc: the same with a noise model; clsrivc: "
+             "for a "
+             "closed loop, with instruments from the reference; oe: output error in discrete time; bj: Box-Jenkins, in "
+             "discrete time with a noise model (default: srivc)"},
             [](auto& request) -> auto& { return request.options.fit.method; })
         .add(
             {"--hold", std::string(option_values::kAuto),
-             "the input between its samples, for continuous time: zero keeps each value, first moves in "
-             "straight lines; auto sees it in the input's steps (auto)"},
+             "behaviour of the input between samples, for continuous time. zero: constant; first: linear; auto: "
+             "decided from "
+             "the steps of the input (default: auto)"},
             [](auto& request) -> auto& { return request.options.fit.hold; })
-        .add({"--delay", "S|auto", "seconds by which the effect lags; auto finds it (0)", not_empty()}, &Request::delay)
+        .add({"--delay", "S|auto", "delay from input to output, in seconds; auto estimates it (default: 0)",
+              not_empty()},
+             &Request::delay)
         .add(
             {"--max-delay", "S",
-             "how far --delay auto looks, s (0.5, and no more than a tenth of the shortest recording)", positive()},
+             "longest delay that --delay auto tries, in seconds (default: 0.5, at most a tenth of the shortest "
+             "recording)",
+             positive()},
             [](auto& request) -> auto& { return request.options.max_delay; })
-        .add_row({{"--from-rest", "",
-                   "the system is at rest at zero where a segment begins; otherwise an initial state and an offset are "
-                   "found for each"},
-                  [](Request& request, const auto& /*flag*/) { request.options.fit.free_start = false; },
-                  [](const Request& request) { return request.options.fit.free_start; }})
+        .add_row(
+            {{"--from-rest", "",
+              "the system is at rest at zero at the start of each segment (default: an initial state and an offset are "
+              "estimated for each segment)"},
+             [](Request& request, const auto& /*flag*/) { request.options.fit.free_start = false; },
+             [](const Request& request) { return request.options.fit.free_start; }})
         .add(
-            {"--noise-order", "N", "greatest order of the noise model of rivc and bj (8)", whole_number(1, 50)},
+            {"--noise-order", "N", "maximum order of the noise model of rivc and bj (default: 8)", whole_number(1, 50)},
             [](auto& request) -> auto& { return request.options.fit.max_noise_order; })
         .add(
-            {"--hac-lag", "S", "reach of the residual's correlation in the standard errors; 0 takes it as white (1)",
+            {"--hac-lag", "S",
+             "correlation time of the residual, in seconds, that the standard errors allow for; 0: white (default: 1)",
              not_negative()},
             [](auto& request) -> auto& { return request.options.fit.hac_lag_s; });
     return table;
@@ -170,14 +184,14 @@ Result<measurement::TransferFunctionMeasurement> transfer_function_options(Trans
   identify::TransferFunctionOptions& fit = options.fit;
   MBK_TRY(set_orders(request, fit));
   if (fit.method == TransferFunctionMethod::closed_loop && request.reference.empty()) {
-    return bad_usage("--method clsrivc needs the reference that drives the loop", "name it by --reference");
+    return bad_usage("--method clsrivc needs the reference that drives the loop", "name it with --reference");
   }
   fit.find_delay = request.delay == "auto";
   if (!fit.find_delay) {
     const auto delay = number_in(request.delay);
     if (!delay || !(*delay >= 0.0 && *delay < 1e6)) {
       return bad_usage(
-          fmt::format("--delay: {} is neither a number of seconds from 0 on nor 'auto'", mbk::quoted(request.delay)));
+          fmt::format("--delay {} is neither 'auto' nor a non-negative number of seconds", mbk::quoted(request.delay)));
     }
     fit.delay = *delay;
   }
@@ -186,7 +200,7 @@ Result<measurement::TransferFunctionMeasurement> transfer_function_options(Trans
   } else if (!request.sample_rate.empty()) {
     options.sample_rate_hz = number_in(request.sample_rate);
     if (!options.sample_rate_hz || !(*options.sample_rate_hz > 0.0)) {
-      return bad_usage(fmt::format("--sample-rate: {} is neither a rate in Hz above 0 nor 'recorded'",
+      return bad_usage(fmt::format("--sample-rate {} is neither 'recorded' nor a positive rate in Hz",
                                    mbk::quoted(request.sample_rate)));
     }
   }

@@ -35,8 +35,8 @@ struct TransferFunctionRequest {
 /// Those of the model, but --start-pole.
 [[nodiscard]] const OptionTable<TransferFunctionRequest>& transfer_function_model_table();
 
-/// What the request says; its signals are placed (place_signals), for which its channels may change.
-/// @fails  usage: options that do not belong together, or a word that is none of theirs.
+/// The options of a request; its signals are placed (place_signals), for which its channels may change.
+/// @fails  usage: inconsistent options, or an unknown word.
 [[nodiscard]] Result<measurement::TransferFunctionMeasurement> transfer_function_options(
     TransferFunctionRequest& request);
 
