@@ -85,7 +85,7 @@ function ellipseWords({ ellipse }: StiffnessRegression): string | undefined {
   if (!ellipse) return undefined;
   const [shapeLow, shapeHigh] = ellipse.interval95.shape;
   const [turnLow, turnHigh] = ellipse.interval95.orientation_deg;
-  if (anyAngle(ellipse.interval95.orientation_deg)) return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation undefined: may be a circle`;
+  if (anyAngle(ellipse.interval95.orientation_deg)) return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation any: may be a circle`;
   return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation ${fixed(ellipse.orientation_deg ?? NaN, 1)}° [${fixed(turnLow ?? NaN, 1)}, ${fixed(turnHigh ?? NaN, 1)}]`;
 }
 

@@ -103,7 +103,7 @@ export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): 
       e.area === null ? "none" : h("span", { class: "number" }, withInterval(e.area, e.interval95.area, `${name}-area`, areaDecimals), ` ${unit.includes("·") || unit.includes("/") ? `(${unit})` : unit}²`),
       e.shape === null ? "none" : withInterval(e.shape, e.interval95.shape, `${name}-shape`, 2),
       anyAngle(e.interval95.orientation_deg)
-        ? "undefined: may be a circle"
+        ? "any: may be a circle"
         : h("span", { class: "number" }, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
       h("span", { class: "number" }, ...([["large", 1], ["small", 0]] as const).flatMap(([which, k]) => [
         data(e.eigenvalues[k], significant(e.eigenvalues[k]), `${name}-${which}`),

@@ -116,7 +116,7 @@ function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | 
       h("span", { class: "half" }, from !== null && to !== null ? ` [${significant(from, 3)}, ${significant(to, 3)}]` : "");
     parts.push(
       h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), between(intervals.large), ` ${unit}`, h("span", { class: "half" }, " maximum (along its major axis)")),
-      anyAngle(intervals.angle) ? h("p", {}, "direction undefined: the ellipse may be a circle") : h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
+      anyAngle(intervals.angle) ? h("p", {}, "any direction: the ellipse may be a circle") : h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
         h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
       h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), between(intervals.small), ` ${unit} perpendicular (minor axis)`),
     );
