@@ -61,7 +61,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
   test(`each condition stands with value, bounds and outcome: ${name}`, () => reading(file, async (page) => {
     const read = await numbers(page, "#trial-1-conditions");
     const outcomes = await page.$$eval("#trial-1-conditions .conditions .outcome", (cells) => cells.map((cell) => cell.textContent));
-    const word = { passive: "✓ holds", active: "✕ fails", undecided: "? open" };
+    const word = { passive: "✓ met", active: "✕ not met", undecided: "? undecided" };
     const { models } = json.passivity;
     assert.deepEqual(outcomes, models.flatMap((model) => model.conditions.map((c) => word[c.verdict])));
     for (const { method, conditions, eop } of models) {

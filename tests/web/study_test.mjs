@@ -140,7 +140,7 @@ test("differences have the p that was corrected for all tests, and an effect siz
   const row = await tab.$eval("#comparison tbody tr", (one) => [...one.children].map((cell) => cell.textContent));
   assert.equal(row[1], `${stiffness.first_participants}\u00a0paired`);
   assert.deepEqual(row.slice(3, 6).map(Number), [stiffness.p, stiffness.p_holm, stiffness.permutation.p].map((value) => Number(value.toFixed(3))));
-  assert.equal(row[6], "no difference shown");
+  assert.equal(row[6], "no detectable difference");
   assert.match(await tab.textContent("#comparison caption"), new RegExp(`corrected for ${comparison.tests} tests`));
   assert.ok((await tab.locator("#comparison svg.forest rect.value").count()) > 8);
 }));

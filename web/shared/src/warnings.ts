@@ -194,7 +194,7 @@ export const plainWarnings: PlainWarnings = {
     meaning: "Part of the output follows the input but is not in the model: faster or slower dynamics, or a delay.",
   },
   "pole-outside-band": {
-    title: "The model has a pole or zero outside the excited band",
+    title: "The model has a pole outside the excited band",
     meaning: "The input hardly excited the system there, so this part of the model is extrapolated.",
   },
   "delay-at-limit": {
