@@ -127,7 +127,7 @@ Result<Recording> force_from_voltage(Recording recording, const SensorUse& use) 
   notes.push_back(fmt::format(
       "{} from the voltages by {}; zero at {} V{}{}", fmt::join(names, " and "), use.name, fmt::join(zeros, " and "),
       use.zero_from_s    ? fmt::format(", the mean of the first {:g} s", *use.zero_from_s)
-      : use.zero_voltage ? ", as said"
+      : use.zero_voltage ? ", as given"
                          : "",
       use.lever_arm ? fmt::format("; slope times {:.4g}, for a lever arm of {:g} mm after {:g} mm", arm,
                                   kMillimetres * *use.lever_arm, kMillimetres * *calibration.lever_arm)
