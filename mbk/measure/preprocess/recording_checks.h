@@ -19,7 +19,7 @@ namespace mbk::preprocess {
 
 /// What the reader says of a channel that is not there, to be put behind a message: "; '/ft' is not taken as force_x:
 /// …".
-/// "" where it says nothing.
+/// "" if there is none.
 [[nodiscard]] std::string why_missing(const Recording& recording, std::string_view channel);
 
 /// About three for each parameter of one axis.
@@ -33,7 +33,7 @@ inline constexpr Index kMinSamples = 20;
 [[nodiscard]] Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,
                                        std::vector<Warning>& warnings);
 
-/// No sample may be missing (NaN in every channel) throughout the limits: what a session lost is not bridged.
+/// No sample may be missing (NaN in every channel) within the limits: samples lost by a session are not interpolated.
 [[nodiscard]] Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>& missing,
                                          const WindowLimits& limits);
 
@@ -45,7 +45,7 @@ inline constexpr Index kMinSamples = 20;
 [[nodiscard]] Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan,
                                         const std::vector<Warning>& warnings);
 
-/// A force that never changes is a sensor that did not measure; a position that never changes shows no motion.
+/// A constant force means a dead sensor; a constant position means no motion.
 [[nodiscard]] Result<void> check_alive(const Signals& signals, const WindowPlan& plan);
 
 /// The position must move well beyond the steps in which it is recorded.
