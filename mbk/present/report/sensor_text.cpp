@@ -150,9 +150,7 @@ std::string sensor_text(const SensorCalibration& c) {
     text += paragraph("  ! ", fmt::format("{}: {}", word_of(warning.code), warning.message));
     if (!warning.remedy.empty()) text += paragraph("    try: ", warning.remedy);
   }
-  return text +
-         "\n(± is the 95 % interval; the calibration is the inverted slope of V on F; the regression of F on V is "
-         "shown for comparison)\n";
+  return text + "\n(± is the 95 % interval; the result is the inverted slope of V on F; F on V is for comparison)\n";
 }
 
 std::string sensor_delay_text(const MeasuredDelay& found) {
