@@ -38,7 +38,8 @@ Result<void> check_choices(const Options& options) {
 std::string why_missing(const Recording& recording, std::string_view channel) {
   for (const std::string& note : recording.notes) {
     const std::size_t end = note.find(':');
-    if (note.find("not taken") < end && note.find(channel) < end) return "; " + note;
+    const bool not_used = std::min(note.find("not used"), note.find("not taken")) < end;
+    if (not_used && note.find(channel) < end) return "; " + note;
   }
   return "";
 }

@@ -14,18 +14,17 @@
 
 namespace mbk::preprocess {
 
-/// Settings that no filter can have are refused before anything is sized by them.
+/// Rejects invalid filter settings before memory is allocated from them.
 [[nodiscard]] Result<void> check_choices(const Options& options);
 
-/// What the reader says of a channel that is not there, to be put behind a message: "; '/ft' is not taken as force_x:
-/// …".
-/// "" if there is none.
+/// The note of the reader on a missing channel, to append to a message: "; '/ft' was not used as force_x: …"; "" if
+/// there is none.
 [[nodiscard]] std::string why_missing(const Recording& recording, std::string_view channel);
 
 /// About three for each parameter of one axis.
 inline constexpr Index kMinSamples = 20;
 
-/// Samples enough, on a clock that rises.
+/// Checks for enough samples and increasing time.
 [[nodiscard]] Result<void> check_length(Index samples, const Inspection& inspection);
 
 /// Time inside the cuts must be even enough to be called even: it neither repeats nor runs backwards nor leaves a gap
