@@ -15,7 +15,7 @@ namespace mbk::calibration {
 /// @param centre of the frame, base frame [m]
 [[nodiscard]] std::vector<Eigen::Vector2d> frame_eyes(const Eigen::Vector2d& centre);
 
-/// Where the frame stands unless told otherwise: the equilibria of tables 3.1 and 5.1, 332 … 448 mm by −61 … 61 mm, lie
+/// Default position of the frame: the equilibria of tables 3.1 and 5.1, 332 … 448 mm by −61 … 61 mm, lie
 /// about this point [m].
 inline const Eigen::Vector2d kFrameCentre{0.390, 0.0};
 

@@ -23,7 +23,7 @@ Result<std::string> filled_page(std::string_view page, std::string_view json) {
   const std::size_t place = page.find(kPlaceOfData);
   if (place == std::string_view::npos) {
     return bad_usage("this mbk was built without its pages",
-                     "build it with -DMBK_WEB=ON, which needs Node.js, or do without an HTML file");
+                     "build it with -DMBK_WEB=ON, which needs Node.js, or omit the HTML file");
   }
   std::string html(page.substr(0, place));
   html.reserve(page.size() + json.size() + json.size() / 64);

@@ -101,7 +101,7 @@ function foot(): HTMLElement {
 
 const reproduceSection = (command: string, software: string): HTMLElement =>
   h("section", { id: "reproduce" }, heading(2, "How to reproduce this"),
-    h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
+    h("p", {}, "The same files, options and version give exactly the same numbers and the same page."),
     h("pre", { class: "command" }, command),
     h("p", {}, "Made with ", h("strong", {}, software), "."));
 
@@ -166,5 +166,5 @@ try {
 } catch (error) {
   console.error(error);
   document.getElementById("report")?.replaceWith(
-    h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The numbers in this file cannot be read: ${String(error)}`)));
+    h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The data in this file cannot be read: ${String(error)}`)));
 }
