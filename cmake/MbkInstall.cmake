@@ -105,7 +105,7 @@ function(mbk_install)
   install(FILES apps/misbehaving_robot/mbk_misbehaving_robot.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
   mbk_install_program_texts()
 
-  # What scripts of one's own may rely on: docs/guide/schemas.md.
+  # The JSON schemas that users' scripts may rely on: docs/guide/reference.md.
   install(DIRECTORY ${PROJECT_BINARY_DIR}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/mbk COMPONENT program)
 
   # The folders keep their places beside each other, so that the links between the documents hold.

@@ -370,7 +370,7 @@ Result<ReproducedTable> resolution_table(std::uint64_t seed) {
 constexpr const char* kLoadsCommand =
     "python3 -c \"print('Fx,Fy,Vx,Vy'); [print(f*(a==0), f*(a==1), round((f*(a==0)-0.54)/-8.56*204.8)/204.8, "
     "round((f*(a==1)-2.3)/-8.15*204.8)/204.8, sep=',') for a in (0,1) for f in range(-50,51,10)]\" > loads.csv      # "
-    "or weights of one's own";
+    "or your own weights";
 constexpr const char* kCalibrateCommand = "mbk sensor calibrate loads.csv --lever-arm-mm 68.8 --bits 12 --range 10";
 
 Result<void> table_E_2(Workbench& bench, Draft& exhibit) {

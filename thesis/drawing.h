@@ -12,7 +12,7 @@ namespace mbk::thesis {
 
 inline constexpr Index kDrawnPoints = 600;  ///< of a line, at most about
 
-/// A line through every so many of the points.
+/// A line through every Nth point.
 [[nodiscard]] ChartSeries line(std::string name, const Vector& x, const Vector& y);
 
 /// An empty chart over time.

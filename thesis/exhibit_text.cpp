@@ -85,7 +85,7 @@ class Reader {
   enum class Into { paragraphs, table, chart };
 
   Result<void> misplaced(std::string_view line) const {
-    return bad_data(fmt::format("'{}' may not stand here", line), "", exhibits_.empty() ? "" : exhibits_.back().id);
+    return bad_data(fmt::format("'{}' is not allowed here", line), "", exhibits_.empty() ? "" : exhibits_.back().id);
   }
 
   Result<void> begin_exhibit(std::string_view heading) {

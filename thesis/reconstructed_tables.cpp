@@ -28,7 +28,7 @@ Eigenvalues eigenvalues(const PrintedEllipse& ellipse, double scale_of_largest) 
 
 Result<void> table_3_6(Workbench& bench, Draft& exhibit) {
   exhibit.related = {"erratum-1", "table-3.3", "table-3.5"};
-  exhibit.commands = {"mbk passivity relaxed.h5      # both of a measurement of one's own: \"excess\" in --json"};
+  exhibit.commands = {"mbk passivity relaxed.h5      # both of your own measurement: \"excess\" in --json"};
   ReproducedTable table;
   table.id = "3.6";
   table.provenance = Provenance::recomputed;

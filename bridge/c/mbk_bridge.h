@@ -5,8 +5,8 @@
  *   mbk_bridge_drive   what the motors shall do now: watchdog, stop button and greeting are in it
  *   mbk_bridge_state   what the robot says, as bytes for the network
  *
- * example_robot.c calls them in the loop of a robot. docs/guide/your_own_robot.md says how to go on from there, and
- * docs/guide/devices.md which byte means what. Call them from one thread. */
+ * example_robot.c calls them in the loop of a robot. docs/guide/own_robot.md describes the next steps and lists the
+ * bytes. Call them from one thread. */
 #ifndef MBK_BRIDGE_H
 #define MBK_BRIDGE_H
 

@@ -2,8 +2,7 @@
 
 Copy this file; it needs the standard library alone. `Bridge.take` judges what has come from the network, `Bridge.drive`
 says what the motors shall do now, `Bridge.state` gives the bytes that the robot sends. example_robot.py calls them in
-the loop of a robot; docs/guide/your_own_robot.md says how to go on from there, docs/guide/devices.md which byte means
-what.
+the loop of a robot; docs/guide/own_robot.md describes the next steps and lists the bytes.
 """
 import dataclasses
 import enum

@@ -39,7 +39,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
   for (const std::string& one : command) arguments.push_back(const_cast<char*>(one.c_str()));
   arguments.push_back(nullptr);
   const auto failed = [&](int error) {
-    return bad_data(std::strerror(error), "check that it is there", command.front());
+    return bad_data(std::strerror(error), "check that the program exists", command.front());
   };
   std::array<int, 2> said{};
   if (::pipe2(said.data(), O_CLOEXEC) != 0) return failed(errno);

@@ -89,7 +89,7 @@ Result<std::string> read_whole(const fs::path& file) {
 }
 
 tl::unexpected<Error> damaged(const fs::path& file) {
-  return bad_data("is damaged", "remove the job's folder, and start it again", file.string());
+  return bad_data("is damaged", "remove the job's folder, and start the job again", file.string());
 }
 
 Result<Job> job_from(const fs::path& file) {
@@ -97,7 +97,7 @@ Result<Job> job_from(const fs::path& file) {
   try {
     const auto json = nlohmann::json::parse(text);
     if (json.at("schema") != "mbk.job/1") {
-      return bad_data("is of another version of mbk", "finish it with the version that began it", file.string());
+      return bad_data("is of another version of mbk", "finish it with the version that started it", file.string());
     }
     Job job;
     job.id = json.at("id");
@@ -121,7 +121,7 @@ std::string program_identity() {
   static const std::string kIdentity = [] {
     std::string build;
     dl_iterate_phdr(find_build, &build);
-    return fmt::format("{} {}", version(), build.empty() ? "without a build's identity" : build);
+    return fmt::format("{} {}", version(), build.empty() ? "without a build identity" : build);
   }();
   return kIdentity;
 }
@@ -160,7 +160,7 @@ bool JobFolder::is_there(const fs::path& folder) {
 
 Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<const std::string> keys,
                                     std::span<const std::int64_t> ends, std::span<const double> costs) {
-  if (is_there(folder)) return bad_usage("there is a job already", "name another folder");
+  if (is_there(folder)) return bad_usage("the folder already contains a job", "name another folder");
   std::error_code error;
   if (folder.has_parent_path()) fs::create_directories(folder.parent_path(), error);
   JobFolder made;
@@ -182,7 +182,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
       cost += costs[k];
     }
     const std::string line = fmt::format("{} {} {} {} {:.6g}", first, end - first, offset, units.size() - offset, cost);
-    if (line.size() >= kChunkLine) return bad_data("too many units", "cut the work into several");
+    if (line.size() >= kChunkLine) return bad_data("there are too many units", "split the work into several jobs");
     chunks += fmt::format("{:<{}}\n", line, kChunkLine - 1);
     first = end;
   }
@@ -196,7 +196,7 @@ Result<JobFolder> JobFolder::create(const fs::path& folder, Job job, std::span<c
   job.id = sum.hex();
   MBK_TRY(write_whole(folder / kUnits, units));
   MBK_TRY(write_whole(folder / kChunks, chunks));
-  if (!document::Json::accept(job.specification)) return bad_data("the job's specification is no JSON");
+  if (!document::Json::accept(job.specification)) return bad_data("the job's specification is not JSON");
   // The job is there once this file is.
   MBK_TRY(write_whole(folder / kJob, document::document(job)));
   made.job_ = std::move(job);
@@ -217,8 +217,9 @@ Result<JobFolder> JobFolder::open(const fs::path& folder) {
 Result<void> JobFolder::check_program() const {
   const std::string here = program_identity();
   if (here == job_.program) return {};
-  return bad_data(fmt::format("the job was begun by mbk {}, and this is mbk {}", job_.program, here),
-                  "use the same program on every machine; results of different ones are never mixed", folder_.string());
+  return bad_data(fmt::format("the job was started by mbk {}, but this is mbk {}", job_.program, here),
+                  "use the same program on every computer; results of different programs are never mixed",
+                  folder_.string());
 }
 
 Result<Chunk> JobFolder::chunk(std::int64_t number) const {

@@ -106,7 +106,7 @@ Result<JobFolder> job_of(const JobOptions& options, const JobRequest& request, c
   MBK_TRY(opened.check_program());
   if (opened.job().kind != request.kind ||
       nlohmann::json::parse(opened.job().specification) != nlohmann::json::parse(request.specification)) {
-    return fail(ErrorKind::usage, "there is another job in this folder",
+    return fail(ErrorKind::usage, "the folder contains another job",
                 "finish it, or name another folder with --job-folder", whole.string());
   }
   return opened;
@@ -117,42 +117,42 @@ Result<JobFolder> job_of(const JobOptions& options, const JobRequest& request, c
 const OptionTable<JobOptions>& job_table() {
   static const auto kTable = [] {
     OptionTable<JobOptions> table;
-    table.group("Many processes and machines")
-        .add(
-            {"--engine", "", "processes on this machine (local), a job array (slurm); without it: within this process"},
-            &JobOptions::kind)
+    table.group("Many processes and computers")
+        .add({"--engine", "", "local: processes on this computer; slurm: a job array (default: within this process)"},
+             &JobOptions::kind)
         .check([](const std::string& given) -> std::string {
           if (given != "mpi") return one_of({kWordList<EngineKind>.begin(), kWordList<EngineKind>.end()}).wrong(given);
-          return "mpi is no engine any more; begin the job with local or slurm, and add workers with "
+          return "the engine mpi was removed; start the job with local or slurm, and add workers with "
                  "'mpirun -n N mbk work FOLDER'";
         })
-        .add({"--tasks", "N", "processes at a time (as many as there are cores; slurm: no limit)",
+        .add({"--tasks", "N", "simultaneous processes (default: number of cores; slurm: no limit)",
               whole_number(1, 100'000)},
              &JobOptions::tasks)
         .add({"--job-folder", "FOLDER",
-              "where the work is noted, on a disk that every machine sees; a job that stands there is gone on with",
-              not_empty()},
+              "folder of the job, on a disk that every computer sees; a job found there is continued", not_empty()},
              &JobOptions::folder)
-        .add({"--chunk-seconds", "S", "a process does so much at a time (by measured cost)", positive()},
+        .add({"--chunk-seconds", "S", "computing time of a chunk in s (default: from measured cost)", positive()},
              &JobOptions::chunk_s)
-        .add({"--chunk-units", "N", "the same in recordings or runs", whole_number(1, 100'000'000)},
+        .add({"--chunk-units", "N", "size of a chunk in recordings or runs", whole_number(1, 100'000'000)},
              &JobOptions::chunk_units)
-        .add({"--memory-mb", "MB", "of each task of Slurm (by what was measured)", whole_number(1, 10'000'000)},
+        .add({"--memory-mb", "MB", "memory of each Slurm task in MB (default: from measurements)",
+              whole_number(1, 10'000'000)},
              &JobOptions::memory_mb)
-        .add({"--silence", "S", "a process that shows no sign of life for so long is taken for dead (300)", positive()},
+        .add({"--silence", "S", "time in s after which a silent process counts as dead (default: 300)", positive()},
              &JobOptions::silence_s)
-        .add({"--settle", "S", "so long after a task's end its file may take to come into sight (10)", positive()},
+        .add({"--settle", "S", "time in s that a task's file may take to become visible after its end (default: 10)",
+              positive()},
              &JobOptions::settle_s)
-        .add({"--partition", "NAME", "of Slurm (SBATCH_PARTITION)"}, &JobOptions::partition)
-        .add({"--account", "NAME", "of Slurm (SBATCH_ACCOUNT)"}, &JobOptions::account)
+        .add({"--partition", "NAME", "Slurm partition (default: SBATCH_PARTITION)"}, &JobOptions::partition)
+        .add({"--account", "NAME", "Slurm account (default: SBATCH_ACCOUNT)"}, &JobOptions::account)
         .add({.name = "--engine-option",
               .value = "OPTION",
-              .help = "passed on to sbatch; may be repeated",
+              .help = "option passed to sbatch; repeatable",
               .repeats = true},
              &JobOptions::extra)
-        .add({"--detach", "", "of Slurm: hand the tasks out and end; the same command later collects what they did"},
+        .add({"--detach", "", "slurm: submit the tasks and exit; the same command later collects their results"},
              &JobOptions::detach)
-        .add({"--keep-job", "", "leave the job's folder where all is done"}, &JobOptions::keep);
+        .add({"--keep-job", "", "keep the job's folder after completion"}, &JobOptions::keep);
     return table;
   }();
   return kTable;
@@ -161,7 +161,7 @@ const OptionTable<JobOptions>& job_table() {
 Result<CarriedOut> carry_out(const JobOptions& options, const JobRequest& request, const fs::path& program,
                              std::function<Stop()> stop, std::function<void(const JobState&)> progress) {
   if (options.detach && options.kind != EngineKind::slurm) {
-    return bad_usage("--detach belongs to --engine slurm", "leave it out");
+    return bad_usage("--detach needs --engine slurm", "omit it");
   }
   EngineOptions engine_of = engine_options(options, program);
   auto folder = MBK_TRY(job_of(options, request, engine_of));
@@ -183,8 +183,9 @@ Result<std::vector<std::string>> results_of(const JobFolder& folder) {
   const auto merged = MBK_TRY(merge(folder, [&](MergedUnit unit) -> Result<void> {
     if (!unit.differing.empty()) {
       return bad_data(
-          fmt::format("{} gives another result than {}", unit.differing[1].string(), unit.differing[0].string()),
-          "two machines computed it differently; nothing is shown", folder.folder().string());
+          fmt::format("{} gives a different result from {}", unit.differing[1].string(), unit.differing[0].string()),
+          "two computers computed it differently, so nothing is shown; compare the programs and the files",
+          folder.folder().string());
     }
     if (unit.failed) return bad_data(unit.payload);
     results.push_back(std::move(unit.payload));

@@ -7,37 +7,37 @@ namespace mbk::batch {
 using document::Fields;
 
 void describe(Fields<Job>& fields) {
-  fields.type("Job", "job.json in the folder of a job that --engine began.");
+  fields.type("Job", "job.json in the folder of a job started with --engine.");
   fields.constant("schema", "mbk.job/1");
-  fields.add("id", &Job::id, "SHA-256 over all that a result depends on, and the units");
+  fields.add("id", &Job::id, "SHA-256 of everything that a result depends on, and of the units");
   fields.add("title", &Job::title);
-  fields.add("kind", &Job::kind, "which work: \"measure\", \"simulate\"");
-  fields.add("program", &Job::program, "version and build of the mbk that alone does it");
+  fields.add("kind", &Job::kind, "kind of work: \"measure\", \"simulate\"");
+  fields.add("program", &Job::program, "required version and build of mbk");
   fields.add_form<Simd>(
-      "simd", [](const Job& job) { return document::Json(job.simd); }, "processors of that kind or better do it");
+      "simd", [](const Job& job) { return document::Json(job.simd); }, "minimum instruction set of the processors");
   fields.add("units", &Job::units);
   fields.add("chunks", &Job::chunks);
   fields.add("memory_mb", &Job::memory_mb);
   fields.add_as(
       "specification", {{"type", "object"}, {"additionalProperties", true}},
-      [](const Job& job) { return document::Json::parse(job.specification); }, "in the terms of the kind");
+      [](const Job& job) { return document::Json::parse(job.specification); }, "specification, as the kind defines it");
 }
 
 void describe(Fields<JobState>& fields) {
-  fields.type("JobState", "What `mbk work FOLDER --status --json` writes, and each line of a job's progress.jsonl.");
+  fields.type("JobState", "Output of `mbk work FOLDER --status --json`, and each line of a job's progress.jsonl.");
   fields.constant("schema", "mbk.job_state/1");
   fields.add("chunks", &JobState::chunks);
   fields.add("finished", &JobState::finished);
   fields.add("running", &JobState::running);
   fields.add("waiting", &JobState::waiting);
-  fields.add("given_up", &JobState::given_up, "chunks whose processes ended without a result each time");
+  fields.add("given_up", &JobState::given_up, "chunks whose processes always ended without a result");
   fields.add("units", &JobState::units);
   fields.add("finished_units", &JobState::finished_units);
   fields.add("failed_units", &JobState::failed_units);
   fields.add_number("elapsed_s", &JobState::elapsed_s);
-  fields.add_number("units_per_s", &JobState::units_per_s, "0: not known");
-  fields.add_number("left_s", &JobState::left_s, "estimated; 0: not known");
-  fields.add("losses", &JobState::losses, "processes that ended without a result, by the reason");
+  fields.add_number("units_per_s", &JobState::units_per_s, "0: unknown");
+  fields.add_number("left_s", &JobState::left_s, "estimated; 0: unknown");
+  fields.add("losses", &JobState::losses, "processes that ended without a result, by reason");
   fields.add_unless_empty("trouble", &JobState::trouble);
 }
 
@@ -55,7 +55,7 @@ void describe(Fields<JobStatus>& fields) {
   fields.with(&JobStatus::state);
   fields.add("folder", &JobStatus::folder);
   fields.add("title", &JobStatus::title);
-  fields.add("tasks", &JobStatus::tasks, "finished ones, by chunk");
+  fields.add("tasks", &JobStatus::tasks, "finished tasks, by chunk");
 }
 
 namespace {
@@ -65,7 +65,7 @@ struct StudyStatus {
 };
 
 void describe(Fields<StudyStatus>& fields) {
-  fields.type("StudyStatus", "What `mbk study status --json` writes.");
+  fields.type("StudyStatus", "Output of `mbk study status --json`.");
   fields.constant("schema", "mbk.study_status/1");
   fields.add("jobs", &StudyStatus::jobs);
 }

@@ -68,8 +68,8 @@ Result<ShardReader> open_shard_of(const JobFolder& folder, const fs::path& file,
   if (!header) return tl::unexpected(header.error().in(file.string()));
   if (header->program != folder.job().program) {
     return bad_data(
-        fmt::format("it was written by mbk {}, and the job is of mbk {}", header->program, folder.job().program),
-        "use the same program on every machine", file.string());
+        fmt::format("it was written by mbk {}, but the job is of mbk {}", header->program, folder.job().program),
+        "use the same program on every computer", file.string());
   }
   if (header->job != folder.job().id || header->chunk != chunk) {
     return bad_data("it belongs to another job or chunk", "remove it", file.string());

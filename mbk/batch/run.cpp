@@ -50,8 +50,8 @@ class Keeper {
     }
     if (!taken) {
       const ssize_t got = ::read(descriptor, text.data(), text.size() - 1);
-      return bad_data(fmt::format("another mbk looks after this job{}{}", got > 0 ? ": " : "", text.data()),
-                      "wait for it, or end it; what runs goes on", folder.folder().string());
+      return bad_data(fmt::format("another mbk is running this job{}{}", got > 0 ? ": " : "", text.data()),
+                      "wait for it, or end it; running tasks continue", folder.folder().string());
     }
     std::ignore = ::gethostname(text.data(), text.size() - 1);
     const std::string who = fmt::format("process {} on {}", ::getpid(), text.data());
@@ -197,12 +197,12 @@ class Run {
     }
     if (!silent.empty()) {
       engine_.cancel(silent);
-      state_.losses[fmt::format("no sign of life for {:g} s", options_.silence_s)] += std::ssize(silent);
+      state_.losses[fmt::format("silent for {:g} s", options_.silence_s)] += std::ssize(silent);
     }
     if (too_many_losses()) {
       engine_.cancel_all();
       return bad_data(fmt::format("every process ended without a result: {}", most_frequent_loss()),
-                      fmt::format("the logs stand in {}", folder_.logs().string()), folder_.folder().string());
+                      fmt::format("read the logs in {}", folder_.logs().string()), folder_.folder().string());
     }
     if (missing.empty()) return {};
     MBK_TRY(engine_.submit(missing));
@@ -298,7 +298,7 @@ std::string to_text(const JobState& state) {
   if (state.left_s > 0.0 && state.finished < state.chunks) text += fmt::format("; {:.0f} s left", state.left_s);
   std::int64_t losses = 0;
   for (const auto& [why, count] : state.losses) losses += count;
-  if (losses > 0) text += fmt::format("; {} lost and begun again", losses - state.given_up);
+  if (losses > 0) text += fmt::format("; {} lost and restarted", losses - state.given_up);
   if (state.given_up > 0) text += fmt::format("; {} chunks given up", state.given_up);
   if (!state.trouble.empty()) text += "; " + state.trouble;
   return text;

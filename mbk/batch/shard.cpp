@@ -48,7 +48,7 @@ double now() {
 
 tl::unexpected<Error> not_written(const fs::path& file, int code) {
   return bad_data(fmt::format("cannot be written: {}", std::generic_category().message(code)),
-                  code == ENOSPC || code == EDQUOT ? "free space on the disk; finished chunks stay"
+                  code == ENOSPC || code == EDQUOT ? "free space on the disk; finished chunks are kept"
                                                    : "check the disk and the permissions of the folder",
                   file.string());
 }
@@ -121,7 +121,7 @@ Result<void> ShardWriter::write_waiting() {
 }
 
 Result<void> ShardWriter::add(RecordKind kind, std::uint64_t unit, std::string_view payload) {
-  if (payload.size() > kLargestPayload) return bad_data("a result of more than 256 MB", "", part_.string());
+  if (payload.size() > kLargestPayload) return bad_data("a result is larger than 256 MB", "", part_.string());
   const std::lock_guard lock(mutex_);
   append(kind, unit, payload);
   if (waiting_.size() < kWaitingBytes && now() - last_write_ < kLongestWait) return {};
@@ -160,7 +160,7 @@ Result<ShardReader> ShardReader::open(const fs::path& file) {
   std::array<char, kMagic.size()> magic{};
   reader.stream_.read(magic.data(), magic.size());
   if (!reader.stream_ || std::string_view(magic.data(), magic.size()) != kMagic) {
-    return bad_data("is no shard", "", file.string());
+    return bad_data("is not a shard", "", file.string());
   }
   reader.left_ = bytes - kMagic.size();
   return reader;

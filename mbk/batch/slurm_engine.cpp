@@ -32,7 +32,7 @@ Result<std::string> ask(const std::vector<std::string>& command) {
                            cause.find("onnection") != std::string::npos || cause.find("imed out") != std::string::npos;
   return bad_data(
       fmt::format("{}: {}", command.front(), cause.empty() ? fmt::format("exit code {}", said.code) : cause),
-      unreachable ? "ask 'sinfo' whether the controller answers"
+      unreachable ? "check with 'sinfo' whether the controller answers"
                   : "correct what it names: --partition, --account, --memory-mb, --engine-option or --job-folder");
 }
 
@@ -134,7 +134,7 @@ class SlurmEngine : public Engine {
     if (job == job_of_.end()) return "";
     const auto said = ask({"scontrol", "--oneliner", "show", "job", fmt::format("{}_{}", job->second, chunk)});
     const std::string line = last_line(folder_.logs() / fmt::format("{}_{}.txt", job->second, chunk));
-    if (!said) return line.empty() ? "the controller has forgotten the task" : line;
+    if (!said) return line.empty() ? "the controller no longer knows the task" : line;
     const std::string state = field_of(*said, "JobState"), code = field_of(*said, "ExitCode");
     if (state == "TIMEOUT") longer_ *= 2.0;
     if (state == "OUT_OF_MEMORY") larger_ *= 2.0;
@@ -197,7 +197,7 @@ Result<std::int64_t> max_array_size() {
   const auto at = said.find("\nMaxArraySize");
   const auto sign = at == std::string::npos ? at : said.find('=', at);
   const std::int64_t size = sign == std::string::npos ? 0 : std::atoll(said.c_str() + sign + 1);
-  if (size < 2) return bad_data("Slurm's controller allows no job arrays", "ask who runs it to set MaxArraySize");
+  if (size < 2) return bad_data("Slurm's controller allows no job arrays", "ask its administrator to set MaxArraySize");
   return size;
 }
 
@@ -206,10 +206,10 @@ Result<std::unique_ptr<Engine>> make_slurm_engine(const JobFolder& folder, const
   for (const std::string& path : {folder.folder().string(), options.program.string()}) {
     const bool control = std::ranges::any_of(path, [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; });
     if (!control && path.find('\\') == std::string::npos) continue;
-    return fail(ErrorKind::usage,
-                fmt::format("Slurm cannot take this path: it holds a {}", control ? "control character" : "backslash"),
-                path == options.program.string() ? "install mbk elsewhere" : "name another folder with --job-folder",
-                path);
+    return fail(
+        ErrorKind::usage,
+        fmt::format("Slurm cannot use this path: it contains a {}", control ? "control character" : "backslash"),
+        path == options.program.string() ? "install mbk elsewhere" : "name another folder with --job-folder", path);
   }
   return std::make_unique<SlurmEngine>(folder, options);
 }

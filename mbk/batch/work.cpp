@@ -140,7 +140,7 @@ Result<ChunkDone> work(const JobFolder& folder, std::int64_t number, const UnitF
         ++done.found;
       } else if (const auto ended = remains.ended_in.find(unit);
                  ended != remains.ended_in.end() && ended->second >= kEndsOfOneUnit) {
-        written = shard->add(RecordKind::failure, unit, "mbk ended each time it was computed");
+        written = shard->add(RecordKind::failure, unit, "mbk ended each time it computed this unit");
         ++done.failed;
       } else {
         if (remains.processes > 0) {

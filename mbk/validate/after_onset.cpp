@@ -113,7 +113,7 @@ void add_rows(ValidationTable& table, const std::string& name, const std::vector
       judged ? std::optional(kNearlyAlways) : std::nullopt));
   table.rows.push_back(median_row(name + " off by", off, {}, "%"));
   table.rows.push_back(
-      share_row(name + ": entries held by their intervals", static_cast<int>(std::lround(held)), runs, {}));
+      share_row(name + ": entries inside their intervals", static_cast<int>(std::lround(held)), runs, {}));
 }
 
 }  // namespace after_onset_detail
@@ -121,9 +121,10 @@ void add_rows(ValidationTable& table, const std::string& name, const std::vector
 Result<ValidationTable> after_onset_study(const StudyOptions& options) {
   using namespace after_onset_detail;
   const auto runs = MBK_TRY(seeded_runs(options, run_of));
-  ValidationTable table{"after-onset",
-                        "what do the first 120 ms after a pulse tell of a rigid arm, and what is called known of it?",
-                        "% of the runs", options.runs, options.seed};
+  ValidationTable table{
+      "after-onset",
+      "what do the first 120 ms after a pulse show of a rigid arm, and is it correctly called identifiable?",
+      "% of the runs", options.runs, options.seed};
   for (std::size_t p = 0; p < kPools.size(); ++p) {
     const auto of = [&](MatrixFound PoolRun::*matrix) {
       std::vector<MatrixFound> found;
@@ -138,7 +139,7 @@ Result<ValidationTable> after_onset_study(const StudyOptions& options) {
       "Rigid arm of participant P1 (Dyck 2013), 16 pulses a trial. 'Off by more' is more than 25 % of the norm of M "
       "and "
       "45 % of that of K.",
-      "'Held' is the share of the four entries, of all runs."};
+      "'Inside' is the share of the four entries over all runs."};
   return table;
 }
 

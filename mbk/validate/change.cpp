@@ -106,9 +106,9 @@ Result<ValidationTable> study(const StudyOptions& options) {
     }
     return of_all;
   }));
-  ValidationTable table{
-      "change", "is a stiffness that changes found with its course over time, and a constant one called constant?",
-      "% of the trials", options.runs, options.seed};
+  ValidationTable table{"change",
+                        "is a changing stiffness detected with its time course, and a constant one called constant?",
+                        "% of the trials", options.runs, options.seed};
   for (std::size_t c = 0; c < all.size(); ++c) {
     std::vector<ChangeRun> own;
     Vector off(static_cast<Index>(runs.size()));
@@ -130,13 +130,13 @@ Result<ValidationTable> study(const StudyOptions& options) {
     const bool judged = !all[c].steps.empty();
     table.rows.push_back(mean_row(all[c].name + ": K off at most", off,
                                   judged ? std::optional(Range{0.0, 100.0 * kWithin}) : std::nullopt, "%"));
-    table.rows.push_back(share_row(all[c].name + ": K held by the pointwise intervals",
+    table.rows.push_back(share_row(all[c].name + ": K inside the pointwise intervals",
                                    static_cast<int>(std::lround(held)), static_cast<int>(own.size()), {}));
   }
   table.notes = {
       "Relaxed arm of participant P1 (Dyck 2013), 62 s of a multisine or 16 pulses. The course is judged by Frobenius "
       "norms at 41 instants, without 2 s around a step and at both ends: no curve through noise follows a step.",
-      "'Held' is the share of the four entries of K at those instants, of all trials."};
+      "'Inside' is the share of the four entries of K at those instants over all trials."};
   return table;
 }
 

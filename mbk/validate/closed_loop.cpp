@@ -193,19 +193,18 @@ Result<ValidationTable> closed_loop_study(const StudyOptions& options) {
     return Runs(std::make_move_iterator(at(task)), std::make_move_iterator(at(task + 1)));
   };
 
-  ValidationTable table{"closed-loop",
-                        "does the model say what the energy says, where the limb acts back on its own motion?", "%",
+  ValidationTable table{"closed-loop", "do model and energy agree for a limb with voluntary control?", "%",
                         options.runs, options.seed};
   add_multisine(of_task(0), table);
   add_coverage(of_task(1), table);
   add_pulses(of_task(2), table);
   table.notes.push_back(fmt::format(
       "A run is three trials of participant 1's arm, held stiff, pooled, and {} with the controller off, each "
-      "by itself. ls: least squares, iv: instrumental variables from the known force.",
+      "alone. ls: least squares, iv: instrumental variables from the known force.",
       kTrialsWithoutController));
   table.notes.emplace_back(
       "Eigenvalues are those of the symmetric parts, as errors against the arm's own. What remains with iv is the "
-      "voluntary controller's answer to the perturbation, which by (4.2) of Dyck (2013) is part of what the hand "
+      "voluntary controller's response to the perturbation, which by (4.2) of Dyck (2013) is part of what the hand "
       "shows.");
   table.notes.emplace_back(
       "Controller off: the same multisine at 3 N, the co-contraction at its ceiling, where it is after the first "

@@ -34,9 +34,9 @@ constexpr double kPace = 20.0;
 /// tick, and a count, are the difference [N].
 constexpr double kForceTolerance = 0.05;
 
-/// A hand that is driven the wrong way while it shall follow a position is stopped below this speed [m/s].
+/// Maximum speed of the hand before the stop if the motors are reversed in a position trial [m/s].
 constexpr double kRunawaySpeed = 0.4;
-constexpr std::string_view kWrongWay = "motors pull the wrong way";
+constexpr std::string_view kWrongWay = "motors reversed";
 
 /// The robot is found so far from the test location [m].
 constexpr double kAway = 0.015;
@@ -222,7 +222,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   const std::vector<Outcome>& outcomes = ran;
 
   ValidationTable table{
-      "faults", "whatever breaks: are the motors off in time, for the right reason, and is everything recorded?",
+      "faults", "after any single fault: are the motors off in time, for the right reason, and is everything recorded?",
       "ticks", options.runs, options.seed};
   const double cap = safety::Limits{}.handle_force;
   double handle_force = 0.0, runaway_speed = 0.0;
@@ -248,7 +248,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
         outcome.handle_force > cap + kForceTolerance) {
       table.notes.push_back(fmt::format("{}, {} trial, run {}: off after {} ticks by {}, {:.3f} N, recording {}",
                                         kind->name, word_of(trial_kind), run, outcome.ticks, word_of(outcome.reason),
-                                        outcome.handle_force, outcome.recorded ? "whole" : "not whole"));
+                                        outcome.handle_force, outcome.recorded ? "complete" : "incomplete"));
     }
   }
   const auto of = static_cast<int>(faulty);
@@ -272,7 +272,7 @@ Result<ValidationTable> faults_study(const StudyOptions& options) {
   table.rows.push_back(
       exact_row("trips in trials without a fault: cases", trips, Range{0.0, 0.0}, fmt::format("of {}", free_trials)));
   table.notes.push_back(fmt::format(
-      "A tick is 1 ms. Expected is what docs/theory/session.md documents: time to the trip and {} ticks of ramp.",
+      "A tick is 1 ms. Expected times are those of docs/guide/safety.md: time to the trip and {} ticks of ramp.",
       safety::kRampTicks));
   return table;
 }

@@ -215,10 +215,10 @@ Result<ExploredRun> explored_run(std::uint64_t seed) {
 
 Result<ValidationTable> frequency_response_study(const StudyOptions& options) {
   const auto ran = MBK_TRY(seeded_runs(options, explored_run));
-  ValidationTable table{
-      "frequency-response",
-      "how often do the 95 % bands of a frequency response hold the truth, and is distortion told from noise?", "share",
-      options.runs, options.seed};
+  ValidationTable table{"frequency-response",
+                        "how often do the 95 % bands of a frequency response contain the truth, and is distortion "
+                        "distinguished from noise?",
+                        "share", options.runs, options.seed};
   constexpr std::array kLoops = {"stiff robot", "yielding robot"};
   for (std::size_t k = 0; k < kLoops.size(); ++k) {
     const std::string loop = kLoops[k];

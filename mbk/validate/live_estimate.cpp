@@ -95,8 +95,8 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
     return perform(trials.front(), seed, folder.path());
   }));
 
-  ValidationTable table{"live-estimate", "how often do the 95 % intervals hold the truth while the trial still runs?",
-                        "%", options.runs, options.seed};
+  ValidationTable table{"live-estimate", "how often do the 95 % intervals contain the truth during the trial?", "%",
+                        options.runs, options.seed};
   const auto count = static_cast<Index>(runs.size());
   const std::vector<std::string> names = identify::parameter_names(2);
   for (std::size_t at = 0; at < kTimes.size(); ++at) {
@@ -120,8 +120,8 @@ Result<ValidationTable> live_estimate_study(const StudyOptions& options) {
   table.notes = {
       "A relaxed arm, sinusoidal position perturbation, from the session's own ticks: the live estimate is what "
       "`mbk measure` would make of the perturbation so far, and of its last 5 s where they have another stiffness. "
-      "Times count from where the perturbation begins.",
-      "A limit, shown and not judged: the mean after 10 s, when the intervals hold the truth in about nine of ten.",
+      "Times count from the start of the perturbation.",
+      "Shown but not judged: the mean after 10 s, when the intervals contain the truth in about nine of ten cases.",
       "The mean's interval takes runs as independent, not the twelve numbers of one run."};
   return table;
 }

@@ -328,7 +328,8 @@ Result<ValidationTable> misspecification_study(const StudyOptions& options, std:
   for (const std::string& name : only) {
     if (std::ranges::count(conditions, name, &Misspecification::name) > 0) continue;
     const auto names = conditions | std::views::transform(&Misspecification::name);
-    return bad_usage(fmt::format("'{}' is no condition", name), fmt::format("name one of: {}", fmt::join(names, "; ")));
+    return bad_usage(fmt::format("'{}' is not a condition", name),
+                     fmt::format("name one of: {}", fmt::join(names, "; ")));
   }
   if (!only.empty()) {
     std::erase_if(conditions, [&](const Misspecification& one) { return std::ranges::count(only, one.name) == 0; });
@@ -343,8 +344,7 @@ Result<ValidationTable> misspecification_study(const StudyOptions& options, std:
     return outcomes;
   }));
 
-  ValidationTable table{"misspecification",
-                        "where M, B and K do not hold, does mbk say so, and is it silent where they do?",
+  ValidationTable table{"misspecification", "does mbk warn where M, B and K are invalid, and not where they are valid?",
                         "% of the trials", options.runs, options.seed};
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     std::vector<MisspecifiedTrial> outcomes;

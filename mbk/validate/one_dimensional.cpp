@@ -217,8 +217,8 @@ Result<ValidationTable> one_dimensional_study(const StudyOptions& options) {
 
   ValidationTable table{
       "one-dimensional",
-      "does any linear time-invariant model hold for an arm that corrects its place along one axis, and does one hold "
-      "for the same arm when it does not?",
+      "does a linear time-invariant model describe an arm that corrects its position along one axis, and the same arm "
+      "when it does not?",
       "%", options.runs, options.seed};
   const Outcomes all = outcomes;
   for (std::size_t condition = 0; condition < kConditions.size(); ++condition) {

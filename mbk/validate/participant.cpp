@@ -181,8 +181,8 @@ Result<ValidationTable> participant_study(const StudyOptions& options) {
 
   ValidationTable table{
       "participant",
-      "does the simulated participant behave as people did: passive when relaxed, active against small pulses, "
-      "passive against large or sustained forces?",
+      "does the simulated participant behave as people did: passive when relaxed, active under small pulses, "
+      "passive under large or sustained forces?",
       "%", options.runs, options.seed};
   Trials left = trials;
   for (const ConditionOfArm& condition : conditions()) {

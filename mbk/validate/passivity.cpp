@@ -79,7 +79,7 @@ Result<ValidationTable> passivity_study(const StudyOptions& options) {
     return run;
   }));
 
-  ValidationTable table{"passivity", "is what mbk says of a limb's passivity true, whatever perturbs it?",
+  ValidationTable table{"passivity", "are mbk's verdicts on a limb's passivity true for every perturbation?",
                         "% of the trials", options.runs, options.seed};
   for (std::size_t k = 0; k < kDrives.size(); ++k) {
     const Drive& drive = kDrives[k];
@@ -108,14 +108,14 @@ Result<ValidationTable> passivity_study(const StudyOptions& options) {
   }
   table.notes = {
       "The trial is judged by its energy, the model by its prediction within the band of the perturbation; each is "
-      "passive, active, undecided or not said. Arms 1, 4 and 5 of Dyck (2013) in turn.",
+      "passive, active, undecided or absent. Arms 1, 4 and 5 of Dyck (2013) in turn.",
       "The position of relaxed arms is perturbed: by a multisine of ±2°, by an eighth of it, by one of its lines "
       "alone, "
       "by a random binary sequence along a diagonal, by pulses. Rigid arms are perturbed by pulses of the force.",
-      "The model of a relaxed arm is passive, so that active is always wrong of it; where the perturbation is as small "
+      "The model of a relaxed arm is passive, so 'active' is always wrong; if the perturbation is as small "
       "as "
-      "the arm's own noise, a trial may give energy all the same. The rigid arm corrects what 2 N pulses do to it, and "
-      "gives energy."};
+      "the arm's own noise, the arm may still deliver energy in a trial. The rigid arm corrects for 2 N pulses and "
+      "delivers energy."};
   return table;
 }
 

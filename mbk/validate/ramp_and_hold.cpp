@@ -79,7 +79,7 @@ Result<ValidationTable> ramp_and_hold_study(const StudyOptions& options) {
   const auto ran = MBK_TRY(seeded_runs(options, plateau_run));
   ValidationTable table{
       "ramp-and-hold",
-      "does the force on the plateaus of ramps and holds give the stiffness, and do its intervals hold it?", "share",
+      "does the force on the plateaus of ramps and holds give the stiffness, and do the intervals contain it?", "share",
       options.runs, options.seed};
   constexpr double kAllowedBias = 1.25;  // N/m: 1 % of the largest entry
   for (std::size_t entry = 0; entry < kEntries.size(); ++entry) {

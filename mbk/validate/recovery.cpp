@@ -69,8 +69,8 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
   }
   const auto trials = MBK_TRY(run_trials(plans, options));
 
-  ValidationTable table{"recovery", "how far from the truth is what mbk measures of a relaxed arm in the closed loop?",
-                        "error", options.runs, options.seed};
+  ValidationTable table{"recovery", "how accurate are mbk's measurements of a relaxed arm in the closed loop?", "error",
+                        options.runs, options.seed};
   Trials left = trials;
   for (const auto& [name, file] : conditions) {
     add_rows(name, left.first(static_cast<std::size_t>(options.runs)), table);
@@ -80,7 +80,8 @@ Result<ValidationTable> recovery_study(const StudyOptions& options) {
       "The value of a parameter is its mean error over the runs (bias); accepted is less than 5 % of the matrix's "
       "largest element, and 2 mm for x0.",
       "The truth is the arm's linear impedance at the test location. The arm's force noise acts back on its motion "
-      "through the robot, which biases least squares towards minus the robot; how much depends on the robot's gains."};
+      "through the robot, which biases least squares towards the negative robot impedance; how much depends on the "
+      "robot's gains."};
   return table;
 }
 

@@ -149,10 +149,9 @@ Result<ValidationTable> study(const StudyOptions& options) {
     return of_all;
   }));
 
-  ValidationTable table{
-      "reflex",
-      "are impulse responses and reflexes what the limb has, and is a limb without a reflex credited with none?",
-      "% of the trials", options.runs, options.seed};
+  ValidationTable table{"reflex",
+                        "are impulse responses and reflexes correct, and is no reflex found in a limb without one?",
+                        "% of the trials", options.runs, options.seed};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const LimbCondition& condition = all[k];
     std::vector<Run> own;

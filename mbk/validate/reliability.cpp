@@ -272,8 +272,8 @@ Result<ValidationTable> reliability_study(const StudyOptions& options) {
   const auto runs = MBK_TRY(seeded_runs(options, answered));
   ValidationTable table{
       "reliability",
-      "how often do the intervals of ICC, SEM and MDC hold the truth, and are groups called different that are alike?",
-      "%", options.runs, options.seed};
+      "how often do the intervals of ICC, SEM and MDC contain the truth, and are equal groups called different?", "%",
+      options.runs, options.seed};
   for (std::size_t k = 0; k < runs.front().held.size(); ++k) {
     const Held& first = runs.front().held[k];
     table.rows.push_back(share_row(

@@ -118,7 +118,7 @@ Result<std::vector<RecordedAnswer>> answers_of(std::span<const SimulatedTrial> t
 
 Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) {
   using namespace recorded_reliability;
-  if (options.runs < 1) return bad_usage(fmt::format("{} runs show nothing", options.runs), "pass --runs 1 or more");
+  if (options.runs < 1) return bad_usage(fmt::format("{} runs are too few", options.runs), "pass --runs 1 or more");
   const auto scenarios = MBK_TRY(ready("relaxed_sinusoidal"));
   laboratory::Scenario scenario = scenarios.front();
   std::get<perturbation::MultisinePlan>(scenario.perturbation.kind).duration = kRecordedSeconds;
@@ -135,7 +135,7 @@ Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) 
     runs.push_back(std::move(answers));
   }
 
-  ValidationTable table{"recorded-reliability", "does a study say of its recordings what is true of the people in it?",
+  ValidationTable table{"recorded-reliability", "does a study of recordings report the true reliability of its people?",
                         "", options.runs, options.seed};
   table.rows.push_back(share_row(
       "recordings that are usable", trials, [](const SimulatedTrial& trial) { return trial.identification.usable; },

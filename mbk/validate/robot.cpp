@@ -141,9 +141,8 @@ Result<ValidationTable> robot_study(const StudyOptions& options) {
   const auto truth = MBK_TRY(true_parameters(FrictionModel::full));
   const auto viscous_truth = MBK_TRY(true_parameters(FrictionModel::viscous));
 
-  ValidationTable table{"robot",
-                        "how far from the truth are the dynamics that mbk identifies of a robot that moves by itself?",
-                        "value", options.runs, options.seed};
+  ValidationTable table{"robot", "how accurate are the dynamics that mbk identifies of a freely moving robot?", "value",
+                        options.runs, options.seed};
   add_coefficients(runs, truth, table);
   add_fit(runs, table);
   add_printed_sign(runs, truth, table);

@@ -109,7 +109,7 @@ Make remembers(const Hear& hear, const Say& say) {
 
 constexpr auto kNothing = [](Said&, Memory&) {};
 
-/// Only every so many-th state is sent, under numbers without a gap; or all but `gap` of each `every`.
+/// Sends every Nth state only, numbered without a gap; or all but `gap` of each `every`.
 Make sends_less(std::uint64_t every, std::uint64_t gap) {
   return says([=, sent = std::uint64_t{0}](Said& said, std::uint64_t k) mutable {
     said.dropped = k % every < gap;

@@ -28,7 +28,7 @@ struct SpoiltProgram {
   std::function<void(Said&)> say;
 };
 
-/// A way to break a rule of docs/guide/devices.md, as programs do.
+/// A way to break a rule of docs/guide/own_robot.md, as programs do.
 struct RuleBreaker {
   std::string_view name;  ///< for the command line: "believes-damaged"
   std::string_view what;  ///< what its program does
@@ -39,7 +39,7 @@ struct RuleBreaker {
 /// At least one of each rule.
 [[nodiscard]] std::span<const RuleBreaker> rule_breakers();
 
-/// @returns  null where there is none of that name
+/// @returns  null if no rule breaker has that name
 [[nodiscard]] const RuleBreaker* find_rule_breaker(std::string_view name);
 
 /// A UdpRobot with a spoilt program.

@@ -62,7 +62,7 @@ Result<ValidationTable> servo_displacement_study(const StudyOptions& options) {
   using namespace servo_displacement;
   const auto ran = MBK_TRY(seeded_runs(options, servo_run));
   ValidationTable table{"servo-displacement",
-                        "does a displacement relative to the predicted reach give the stiffness of a hand that moves?",
+                        "does a displacement relative to the predicted reach give the stiffness of a moving hand?",
                         "share", options.runs, options.seed};
   const auto values_of = [&](const auto& value) {
     Vector values(options.runs);

@@ -14,7 +14,7 @@
 namespace mbk::validation {
 
 /// The scenarios of a ready file (laboratory/ready_scenarios.h).
-/// @fails  there is none of that name.
+/// @fails  no scenario has that name.
 [[nodiscard]] Result<std::vector<laboratory::Scenario>> ready(std::string_view name);
 
 /// The scenario of an arm with the limb of a participant (participant::participant_limb); everything else stays.

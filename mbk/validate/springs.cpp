@@ -79,8 +79,7 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
   }
   const auto trials = MBK_TRY(run_trials(plans, options));
 
-  ValidationTable table{"springs",
-                        "how far from the truth are the stiffness and mass that mbk identifies of a rig of springs?",
+  ValidationTable table{"springs", "how accurate are the stiffness and mass that mbk identifies for a rig of springs?",
                         "error", options.runs, options.seed};
   Chart stiffnesses = identified_against_true("Stiffness of the rigs: k_xx, k_yy and k_s", "N/m");
   Chart masses = identified_against_true("Mass of the rigs", "kg");
@@ -117,8 +116,8 @@ Result<ValidationTable> springs_study(const StudyOptions& options) {
   table.notes = {
       "Errors are identified − true, the sign of the thesis's text, not of its printed table 5.4.",
       "Each stiffness of table 5.1 is the mean over its five masses, and each mass over its five stiffnesses.",
-      "The arrays of real springs were found for these K (mbk springs find); the thesis does not say what its "
-      "springs were. Their field is not linear, and the disc turns with the robot's last link."};
+      "The arrays of real springs were found for these K (mbk springs find); the thesis does not specify its "
+      "springs. Their field is not linear, and the disc turns with the robot's last link."};
   return table;
 }
 

@@ -73,8 +73,8 @@ struct Study {
 /// A run is one seed of every arm and condition.
 [[nodiscard]] Result<ValidationTable> participant_study(const StudyOptions& options);
 
-/// What is said of passivity, against the truth: of relaxed arms under several perturbations, and of rigid arms that
-/// answer 2 N pulses, which give energy. A run is one trial of each. Expected: never "active" of a relaxed arm, by the
+/// Verdicts on passivity compared with the truth: relaxed arms under several perturbations, and rigid arms that respond
+/// to 2 N pulses and generate energy. A run is one trial of each. Expected: never "active" of a relaxed arm, by the
 /// model or, where it absorbed energy, by the energy; always by the energy of the others.
 [[nodiscard]] Result<ValidationTable> passivity_study(const StudyOptions& options);
 
@@ -174,7 +174,7 @@ inline constexpr int kTrialsWithoutController = 16;
 [[nodiscard]] Result<ValidationTable> recorded_reliability_study(const StudyOptions& options);
 
 /// Do teleoperators behave in time as Llewellyn's and the modified criterion say? A run is a random design of each of
-/// the four architectures, half of them with delay, held by random terminations where it is stable, and by the
+/// the four architectures, half of them with delay, with random terminations where it is stable, and by the
 /// terminations that teleop::worst_terminations constructs where it is not; each with a passive operator, with one who
 /// has an excess of passivity and with one who has a shortage. The controllers are sampled at 1 kHz. Expected: nothing
 /// that is stable, as designed and with sampling, grows; everything that is constructed grows, at its frequency.

@@ -393,7 +393,7 @@ Result<ValidationTable> teleoperation_study(const StudyOptions& options) {
   }
 
   ValidationTable table{"teleoperation",
-                        "do teleoperators behave in time as Llewellyn's and the modified criterion say?", "value",
+                        "do simulated teleoperators behave as Llewellyn's and the modified criterion predict?", "value",
                         options.runs, options.seed};
   for (std::size_t k = 0; k < kOperators.size(); ++k) add_rows(kOperators[k], of_operators[k], table);
   add_controlled(of_operators.front(), table);

@@ -112,8 +112,8 @@ Result<ValidationTable> transfer_function_study(const StudyOptions& options) {
   const std::vector<Run>& runs = ran;
 
   ValidationTable table{"transfer-function",
-                        "how far from the truth is the transfer function that mbk identifies, and is its order found?",
-                        "error", options.runs, options.seed};
+                        "how accurate is the transfer function that mbk identifies, and is its order found?", "error",
+                        options.runs, options.seed};
   const auto of_runs = [&](auto&& value) {
     Vector values(options.runs);
     for (Index i = 0; i < values.size(); ++i) values[i] = value(runs[static_cast<std::size_t>(i)]);

@@ -221,12 +221,12 @@ class Runner {
     // What the motors do once nobody is there any more.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     robot.send(SIGTERM);
-    if (!robot.wait(kPatience)) return bad_data("the robot does not end", "", command.front());
+    if (!robot.wait(kPatience)) return bad_data("the robot's program does not end", "", command.front());
 
     FaultOutcome outcome;
     outcome.truth = read_truth(file("-robot.log"));
     if (!outcome.truth.ended) {
-      return bad_data("the robot has said no last word: " + text_of(file("-robot.log")), "", command.front());
+      return bad_data("the robot's log has no last line: " + text_of(file("-robot.log")), "", command.front());
     }
     outcome.said = read_said(file(".log"), file(".h5"), code.value_or(-1));
     outcome.began = outcome.truth.fault_began >= 0;
@@ -451,7 +451,7 @@ Result<std::vector<const UdpFaultKind*>> kinds_of(const UdpFaultsOptions& option
 
 Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
   const int runs = options.study.runs;
-  if (runs < 1) return bad_usage(fmt::format("{} runs show nothing", runs), "pass --runs 20");
+  if (runs < 1) return bad_usage(fmt::format("{} runs are too few", runs), "pass --runs 20");
   const auto kinds = MBK_TRY(kinds_of(options));
   const auto folder = MBK_TRY(TemporaryFolder::create("mbk-udp-faults"));
 
@@ -482,18 +482,18 @@ Result<ValidationTable> udp_faults_study(const UdpFaultsOptions& options) {
         if (options.study.progress) options.study.progress(++done, count);
       }));
 
-  ValidationTable table{
-      "faults", "a robot behind UDP misbehaves: is it found out in time, and is what is said of its motors true?",
-      "ticks", runs, options.study.seed};
+  ValidationTable table{"faults",
+                        "a robot behind UDP misbehaves: is it detected in time, and is the report on its motors true?",
+                        "ticks", runs, options.study.seed};
   Summary summary(table);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     for (const FaultOutcome& outcome : outcomes[i]) summary.add(jobs[i], outcome);
   }
   summary.finish();
-  table.notes.push_back(
-      fmt::format("A tick is 1 ms of the robot's clock. Expected is what docs/guide/safety.md documents, with {} ticks "
-                  "of ramp and {} of the link.",
-                  safety::kRampTicks, kLinkTicks));
+  table.notes.push_back(fmt::format(
+      "A tick is 1 ms of the robot's clock. Expected times are those of docs/guide/safety.md, with {} ticks "
+      "of ramp and {} of the link.",
+      safety::kRampTicks, kLinkTicks));
   return table;
 }
 

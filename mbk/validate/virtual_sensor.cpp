@@ -266,8 +266,7 @@ Result<ValidationTable> virtual_sensor_study(const StudyOptions& options) {
   const Trials elastic(all.begin() + rigid, all.end());
   all.resize(static_cast<std::size_t>(rigid));
 
-  ValidationTable table{"virtual-sensor",
-                        "how far from the truth are force, stiffness and mass without a force sensor?", "error",
+  ValidationTable table{"virtual-sensor", "how accurate are force, stiffness and mass without a force sensor?", "error",
                         options.runs, options.seed};
   const OfRuns rigid_runs = {&all, options.runs}, elastic_runs = {&elastic, options.runs};
   for (int at = 0; at < kForces; ++at) {

@@ -87,7 +87,7 @@ class FullDisk(Case):
         for second, (target, process) in zip(seconds, results):
             self.assertEqual(process.returncode, SAFETY_STOP, process)
             self.assertRegex(process.stderr, r"ticks were not written", process)
-            self.assertRegex(process.stdout, r"safety stop: the recording could not be kept up", process)
+            self.assertRegex(process.stdout, r"safety stop: the recording failed", process)
             self.assertRegex(process.stdout, r"motors: confirmed off", process)
             self.assertFalse(target.exists())
             ran = run("recover", f"{target}.journal")

@@ -63,8 +63,8 @@ has_acceleration = false
 
 
 class Robot:
-    """Two wheels behind UDP that keep every command with the time at which it came. They obey as docs/guide/devices.md
-    asks, and say nothing of a watchdog: what switches the motors off is a command."""
+    """Two wheels behind UDP that keep every command with the time at which it came. They obey docs/guide/own_robot.md
+    and have no watchdog: only a command switches the motors off."""
 
     STATE, COMMAND = struct.Struct("<4sHHIIQQ7d"), struct.Struct("<4sHHIIQ2d")
     HOME = (0.2, 0.9)

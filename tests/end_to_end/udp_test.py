@@ -82,7 +82,7 @@ class Udp(Case):
         return [line for line in csv.read_text().splitlines() if not line.startswith("#")]
 
     def metadata(self, recording):
-        """What is said of the recording besides its samples."""
+        """The metadata of the recording."""
         return "".join(self.fine("info", recording, "--json").json.get("metadata", {}))
 
     def test_in_lock_step_it_gives_the_recording_of_the_simulated_robot(self):

@@ -89,7 +89,7 @@ class Fault:
 
 
 class Robot(threading.Thread):
-    """Two wheels behind UDP that wait for each command (docs/guide/devices.md), and remember all that came and went."""
+    """Two wheels behind UDP that wait for each command (docs/guide/own_robot.md), and remember all that came and went."""
 
     STATE, COMMAND = struct.Struct("<4sHHIIQQ7d"), struct.Struct("<4sHHIIQ2d")
     ENABLED, GREETING, MOTORS_ON = 1, 2, 2

@@ -38,7 +38,7 @@ Result<std::string> robot_section(const Questions& questions) {
       MBK_TRY(questions.ask("Robot: simulated, or one behind udp", "simulated", word_of_these({"simulated", "udp"})));
   if (robot == "simulated") {
     return std::string(
-        "# Without [device] the robot is simulated, with this participant at its handle. See docs/guide/devices.md.\n"
+        "# Without [device] the robot is simulated, with this participant at its handle. See docs/guide/own_robot.md.\n"
         "[participant]\nkind = \"arm\"\nnumber = 1\n");
   }
   const auto address = MBK_TRY(questions.ask("Address of the robot", "127.0.0.1", [](const std::string& given) {
@@ -60,7 +60,7 @@ Result<std::string> robot_section(const Questions& questions) {
   const auto home = MBK_TRY(questions.ask("Where the hand is measured, x, y in mm from the base", "300, -50", place));
   lengths += fmt::format("home_mm = [{}]\n", home);
   return fmt::format(
-      "[robot]                        # angles, inertia and friction: docs/guide/devices.md\n{}\n"
+      "[robot]                        # angles, inertia and friction: docs/guide/own_robot.md\n{}\n"
       "# Check it before anyone sits down: mbk robot check FILE --live 5\n"
       "[device]\nkind = \"udp\"\naddress = \"{}\"\nport = {}\n",
       lengths, address, port);

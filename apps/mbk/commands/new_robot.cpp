@@ -22,7 +22,7 @@ struct NewRobotArguments : NewFileArguments {
 };
 
 constexpr const char* kHead =
-    "# A robot for mbk. docs/guide/your_own_robot.md has every key.\n"
+    "# A robot for mbk. docs/guide/own_robot.md has every key.\n"
     "#   mbk robot describe FILE    what mbk understands of it\n";
 
 /// The section of a kind, question by question.

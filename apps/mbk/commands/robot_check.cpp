@@ -127,8 +127,8 @@ Action add_robot_check(Command group) {
       "      whether the robot's program keeps every rule of the link: a bridge of your own\n"
       "  mbk robot check --rt 60\n"
       "      how punctually this machine wakes a session's loop, and what holds it up\n\n"
-      "Do all of it before anyone sits down at a new robot. The keys of [device] and the rules of the\n"
-      "link stand in docs/guide/devices.md, a bridge to begin with in docs/guide/your_own_robot.md.\n\n"
+      "Do all of it before anyone sits down at a new robot. docs/guide/own_robot.md has a bridge to start\n"
+      "from, the keys of [device] and the rules of the link.\n\n"
       "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not all tested.");
   const Option file =
       command

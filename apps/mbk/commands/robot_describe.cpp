@@ -39,7 +39,7 @@ Action add_robot_describe(Command group) {
       "  mbk robot describe arm.urdf\n"
       "      the whole chain, from the root of the URDF to its only leaf\n\n"
       "Look at the limits, and at where the hand is with every joint at zero, before you record.\n"
-      "The keys of a description stand in docs/guide/robot_dynamics.md.");
+      "docs/guide/own_robot.md lists the keys of a description.");
   command.add_option("FILE", arguments->file, "description of a robot: .toml, or a .urdf alone").required();
   command.add_flag("--json", arguments->json, "for machines: schema mbk.robot_description/1");
   arguments->output.add_options(command);

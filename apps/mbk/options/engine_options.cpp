@@ -51,7 +51,7 @@ void add_engine_options(Command command, EngineArguments& arguments) {
   command
       .add_flag("--progress-json", arguments.progress_json,
                 "progress as JSON lines on standard error: schema mbk.job_state/1")
-      .group("Many processes and machines");
+      .group("Many processes and computers");
 }
 
 fs::path job_folder_here(const std::string& kind, const std::string& specification) {

@@ -10,7 +10,7 @@ namespace mbk::console {
 
 /// A page, and what its Content-Security-Policy has to let through.
 struct Page {
-  Message html;         ///< null: there is no such page
+  Message html;         ///< null: the page does not exist
   std::string sources;  ///< inline_sources of it
 };
 

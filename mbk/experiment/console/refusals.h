@@ -32,8 +32,8 @@ inline constexpr std::size_t kRefusals = 11;
   });
 }
 
-/// How much is said of what is refused: of each kind the first five in ten seconds, one line each, and of all the
-/// others one line when the ten seconds are over. However much comes, the log gets less than six lines a second, and
+/// Limits the log of refusals: the first five of each kind in ten seconds get a line each, all others one line when the
+/// ten seconds are over. However much comes, the log gets less than six lines a second, and
 /// what comes by the thousand hides nothing of another kind.
 class Refusals {
  public:

@@ -28,8 +28,8 @@ struct ServerTimes {
 /// then the next one with the token has it. A stop is taken from every page, whichever token it has.
 ///   Refused: a Host that is not this machine (a foreign name that was pointed here) or not named exactly once, an
 ///   Origin
-/// that is not this server, a target that is no path, a wrong token, a message that is no command. What is refused is
-/// counted, and said to `log` as Refusals has it.
+/// that is not this server, a target that is no path, a wrong token, an unknown command. Refusals are counted and
+/// logged as in Refusals.
 ///   Strangers, who have shown no token, cannot take what its holders need: a whole request has to come within 2 s;
 ///   where
 /// there are too many of them, the oldest is closed for the newest; holders of each token have places of their own.

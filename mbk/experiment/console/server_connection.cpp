@@ -104,7 +104,7 @@ class Server::Implementation::Connection : public std::enable_shared_from_this<C
     stranger_ = false;
   }
 
-  /// Said is what is no HTTP. Browsers connect without a word too, to be quicker when there is one.
+  /// Logs input that is not HTTP. Browsers also open connections in advance without sending anything.
   void complain(error_code error) {
     if (error == http::error::end_of_stream || error == http::error::partial_message ||
         error.category() != http::make_error_code(http::error::end_of_stream).category()) {
@@ -235,7 +235,7 @@ std::pair<http::status, Page> Server::Implementation::page_for(const Request& re
   }
   if (Page page = handlers_.page(split(view(request.target())).path); page.html)
     return {http::status::ok, std::move(page)};
-  return {http::status::not_found, sentence_page("There is no such page.")};
+  return {http::status::not_found, sentence_page("This page does not exist.")};
 }
 
 }  // namespace mbk::console

@@ -103,7 +103,7 @@ class Server::Implementation {
   /// What was refused and not said.
   void sum_up(bool last = false);
 
-  /// Does it; what it throws is said.   @returns  false where it threw
+  /// Does it and logs exceptions.   @returns  false if it threw
   template <class Work>
   bool guarded(const Work& work) noexcept {
     try {

@@ -40,7 +40,7 @@ Result<ReachServo> ReachServo::create(const JointPositionControl::Gains& gains,
                                       const Vector2d& home, double sample_time) {
   constexpr double kFuture = (WayPrediction::kKnots - 1) * WayPrediction::kStep;
   if (schedule.displaced_for() + kRelease > kFuture) {
-    return bad_usage(fmt::format("a displacement of {:g} s lasts longer than the {:g} s that are predicted",
+    return bad_usage(fmt::format("a displacement of {:g} s lasts longer than the predicted {:g} s",
                                  schedule.displaced_for(), kFuture - kRelease),
                      "shorten ramp, hold or return");
   }
@@ -49,11 +49,11 @@ Result<ReachServo> ReachServo::create(const JointPositionControl::Gains& gains,
   if (!(every >= 1.0 && std::abs(every * sample_time - WayPrediction::kStep) < 1e-9 &&
         kPast / sample_time < static_cast<double>(kHistory))) {
     return bad_usage(fmt::format("a reach cannot be predicted with a sample time of {:g} s", sample_time),
-                     "control it with a multiple of 100 Hz, up to 10 kHz");
+                     "choose a control rate that is a multiple of 100 Hz, up to 10 kHz");
   }
   for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const auto angles = robot::check_hand(geometry, home + share * schedule.options().reach);
-    if (!angles) return tl::unexpected(angles.error().in("way of the reach"));
+    if (!angles) return tl::unexpected(angles.error().in("path of the reach"));
   }
   auto law = MBK_TRY(JointPositionControl::create(gains, sample_time));
   return ReachServo(schedule, geometry, home, law, sample_time);

@@ -28,10 +28,10 @@ Result<TrialControl> TrialControl::create(const Mode& mode, const Schedule& sche
   if (position != (schedule.quantity() == Quantity::position)) {
     return bad_usage(position ? "position control cannot follow a force perturbation"
                               : "force control cannot follow a position perturbation",
-                     "let control and perturbation speak of the same quantity");
+                     "use the same quantity for control and perturbation");
   }
   if (!position && schedule.space() == Space::joint) {
-    return bad_usage("a perturbation of the joints' torques cannot be exerted at the hand", "give it as a force");
+    return bad_usage("a perturbation of joint torques cannot be exerted at the hand", "give it as a force");
   }
   TrialControl control(schedule, geometry, home, *home_angles);
   if (const ReachSchedule* reaches = schedule.reaches()) {

@@ -59,7 +59,7 @@ class TrialControl {
     return reaches() != nullptr ? reaches()->following() : follows_position();
   }
 
-  /// What displaces a hand that reaches; null where the schedule is none of reaches.
+  /// What displaces a hand that reaches; null if the schedule has no reaches.
   [[nodiscard]] const ReachServo* reaches() const noexcept { return std::get_if<ReachServo>(&law_); }
   [[nodiscard]] const perturbation::Schedule& schedule() const { return schedule_; }
   [[nodiscard]] const Vector2d& home_angles() const { return home_angles_; }  ///< [rad]

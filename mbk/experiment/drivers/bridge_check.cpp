@@ -40,26 +40,26 @@ constexpr auto kRules = word_table(BridgeRule{}).size();
 
 constexpr std::array<BridgeRuleText, kRules> kTexts = {{
     {"answers a greeting", "start its program; check address, port, cable and firewall; send states to the sender"},
-    {"sends whole states: length, MBKS, version, CRC-32", "pack them as docs/guide/devices.md lists the bytes"},
+    {"sends whole states: length, MBKS, version, CRC-32", "pack the bytes as in docs/guide/own_robot.md"},
     {"its states carry the session of the greeting", "copy bytes 8-11 of the greeting into every state"},
-    {"has its motors off after a greeting", "switch them off with each greeting that is accepted, flag 2 and 16 too"},
+    {"has its motors off after a greeting", "switch them off with each accepted greeting; clear flags 2 and 16"},
     {"answers a greeting with the greeting's number", "set byte 24 of the states to the greeting's sequence"},
     {"numbers its states one by one", "count byte 16 up by one with each state that is sent"},
-    {"its time runs on with each state, in seconds", "take the time of the sample from a clock in s"},
-    {"sends states at the rate of the session", "send one at each tick, whether or not a command has come"},
-    {"is never silent for longer than 10 ms", "give its loop priority, and the network a card of its own"},
-    {"sends finite numbers", "look for readings of sensors that are not there"},
+    {"its time increases with each state, in seconds", "take the time of the sample from a clock in s"},
+    {"sends states at the rate of the session", "send one at each tick, whether or not a command has arrived"},
+    {"is never silent for longer than 10 ms", "give its loop priority, and use a separate network card"},
+    {"sends finite numbers", "check for readings of missing sensors"},
     {"obeys each command within 20 ms, and says which", "set byte 24 to the command that the drives obey now"},
-    {"refuses a damaged command", "compare the CRC-32 of bytes 0-39 before anything is used"},
+    {"refuses a damaged command", "compare the CRC-32 of bytes 0-39 before using anything"},
     {"refuses another magic, version or length", "compare length, bytes 0-3 and bytes 4-5"},
-    {"refuses an older command", "believe only a sequence above the last one"},
+    {"refuses an older command", "accept only a sequence above the last one"},
     {"refuses a command of another session", "compare bytes 8-11 with the greeting's"},
-    {"refuses a command from another address", "compare address and port with who greeted"},
+    {"refuses a command from another address", "compare address and port with those of the greeting"},
     {"refuses a command that is not finite", "check both numbers for NaN and infinity"},
-    {"counts what it refuses", "count byte 12 up with each datagram that is not believed"},
-    {"is not reset by a late copy of its greeting", "begin anew only where sender or session is another"},
+    {"counts what it refuses", "count byte 12 up with each rejected datagram"},
+    {"is not reset by a late copy of its greeting", "restart only if sender or session is different"},
     {"switches its motors on when told", "follow flag 1 of the command; release the stop button; read flag 2 back"},
-    {"refuses a greeting while its motors are on", "accept one only while they are off, or where it is a copy"},
+    {"refuses a greeting while its motors are on", "accept one only while they are off, or if it is a copy"},
     {"switches its motors off when told", "follow flag 1 of each command; read flag 2 back from the drives"},
     {"its watchdog switches the motors off in time", "take its time from bytes 12-15, count from the last command"},
     {"stays off after that until the next greeting", "keep the motors off and flag 16 set, whatever is commanded"},
@@ -116,7 +116,7 @@ class Check {
     } else {
       judge(answers, false, no_answer());
     }
-    rest("not reached: see what stands before it");
+    rest("not reached: an earlier rule failed");
     report_.states = stream_.believed;
     return std::move(report_);
   }
@@ -133,8 +133,9 @@ class Check {
   /// Of what takes time: nobody is blamed for what may be so because this machine was held up.
   void judge(BridgeRule rule, bool kept, const std::string& seen, bool excused) {
     if (kept || !excused) return judge(rule, kept, seen);
-    finding(rule) = {rule, RuleVerdict::not_tested,
-                     fmt::format("{}; this machine was held up for {}: run it again", seen, ms(longest_held_up_))};
+    finding(rule) = {
+        rule, RuleVerdict::not_tested,
+        fmt::format("{}; this computer was delayed by {}: run the check again", seen, ms(longest_held_up_))};
   }
 
   /// Why what has no verdict yet has none.
@@ -289,9 +290,9 @@ class Check {
     const bool off = !first_.enabled && !first_.watchdog_expired;
     if (finding(starts_off).verdict != RuleVerdict::failed) {
       judge(starts_off, off,
-            off              ? "it says so"
-            : first_.enabled ? "it says that they are on"
-                             : "it says that its watchdog has expired");
+            off              ? "it reports them off"
+            : first_.enabled ? "it reports them on"
+                             : "it reports an expired watchdog");
     }
     if (finding(greeting_number).verdict != RuleVerdict::failed) {
       judge(greeting_number, first_.answered == 1, fmt::format("greeting 1, answer {}", first_.answered));
@@ -328,7 +329,7 @@ class Check {
     const double hidden = 2.0 * held_up_ / options_.watch;  // by as much either may be off because of this machine
     clock_keeps_pace_ = std::abs(pace - 1.0) <= kClockError;
     judge(clock, clock_keeps_pace_,
-          std::isfinite(pace) ? fmt::format("{:.4g} s of its clock in 1 s", pace) : "its time is not finite",
+          std::isfinite(pace) ? fmt::format("{:.4g} s of its clock in 1 s", pace) : "its time is non-finite",
           std::abs(pace - 1.0) <= kClockError + hidden);
     const double time = clock_keeps_pace_ ? robot : here;
     const double found = static_cast<double>(s.watched) / time;
@@ -339,7 +340,7 @@ class Check {
     if (clock_keeps_pace_ && s.stood_still == 0) {
       judge(silence, s.longest_silence <= kMaxSilence, "at most " + ms(s.longest_silence));
     } else {
-      finding(silence).seen = "its clock is not to be relied on";
+      finding(silence).seen = "its clock is not reliable";
     }
   }
 
@@ -379,15 +380,16 @@ class Check {
       report_.median_answer = times[times.size() / 2];
       report_.longest_answer = times.back();
     }
-    if (ahead_) return judge(acknowledges, false, "it answers a command that was never sent");
-    if (took_back_) return judge(acknowledges, false, "the number that it answers goes back");
+    if (ahead_) return judge(acknowledges, false, "it acknowledges a command that was never sent");
+    if (took_back_) return judge(acknowledges, false, "the acknowledged number goes back");
     if (newest_.answered != last_.sequence) {
-      return judge(acknowledges, false, fmt::format("command {} sent, {} answered", last_.sequence, newest_.answered));
+      return judge(acknowledges, false,
+                   fmt::format("command {} sent, {} acknowledged", last_.sequence, newest_.answered));
     }
     judge(acknowledges, !times.empty() && times.back() <= kMaxAnswer,
-          times.empty() ? "no answer"
-                        : fmt::format("after {} at the median, {} at most", ms(*report_.median_answer),
-                                      ms(*report_.longest_answer)),
+          times.empty()
+              ? "no answer"
+              : fmt::format("after {} (median), {} (maximum)", ms(*report_.median_answer), ms(*report_.longest_answer)),
           !times.empty() && times.back() - held_up_ <= kMaxAnswer);
   }
 
@@ -528,7 +530,7 @@ class Check {
     go_on(Motors::on, kStays);
     const bool obeys = newest_.answered + static_cast<std::uint64_t>(kStays * options_.rate / 2.0) > last_.sequence;
     const bool kept = !was_off_ && stream_.foreign_session == 0 && obeys;
-    judge(greeting_while_on, kept, kept ? "one from another port changes nothing" : "it follows another one",
+    judge(greeting_while_on, kept, kept ? "one from another port changes nothing" : "it obeys another greeting",
           stream_.foreign_session == 0 && held_up_ > kWatchdogs[0] / 2.0);
   }
 
@@ -547,7 +549,7 @@ class Check {
     if (!switch_on(false)) return false;
     go_on(Motors::on, kProbe);
     if (newest_.watchdog_expired) {
-      judge(watchdog, false, "it expires while commands come", held_up_ > time / 2.0);
+      judge(watchdog, false, "it expires although commands arrive", held_up_ > time / 2.0);
       return false;
     }
     const double held_up_before = held_up_;
@@ -558,9 +560,9 @@ class Check {
     const bool in_time = said && after >= time - kWatchdogEarly && after <= time + kWatchdogLate;
     const bool earlier = finding(watchdog).verdict == RuleVerdict::failed;
     if (said) report_.watchdogs.push_back({time, after});
-    const std::string seen = said ? fmt::format("asked for {}, after {}", ms(time), ms(after))
-                                  : fmt::format("asked for {}, not within {}{}", ms(time), ms(longest),
-                                                expired_at_ ? ": flag 16 is set, and the motors are on" : "");
+    const std::string seen = said ? fmt::format("set to {}, expired after {}", ms(time), ms(after))
+                                  : fmt::format("set to {}, not expired within {}{}", ms(time), ms(longest),
+                                                expired_at_ ? ": flag 16 is set, but the motors are on" : "");
     const bool early = said && after < time;
     if (!earlier) {
       judge(watchdog, in_time, append(watchdog, seen),
@@ -607,7 +609,7 @@ class Check {
     const bool answered = newest_.answered == kLastSequence;
     judge(last_words, !was_on_ && answered,
           was_on_     ? "an older command switches the motors on again"
-          : !answered ? fmt::format("off, but it answers {} in place of {}", newest_.answered, kLastSequence)
+          : !answered ? fmt::format("off, but it acknowledges {} instead of {}", newest_.answered, kLastSequence)
                       : "off, and it stays off");
   }
 

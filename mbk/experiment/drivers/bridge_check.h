@@ -15,8 +15,8 @@
 
 namespace mbk::drivers {
 
-/// What the program of a robot behind UDP has to do (docs/guide/devices.md), as far as it shows at the other end of the
-/// wire. From `motors_on` on its motors go on for it, with command 0.
+/// What the program of a robot behind UDP has to do (docs/guide/own_robot.md), as far as it shows at the other end of
+/// the wire. From `motors_on` on its motors go on for it, with command 0.
 enum class BridgeRule : std::uint8_t {
   answers,
   whole_states,

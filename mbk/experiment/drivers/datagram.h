@@ -10,7 +10,8 @@
 
 /// @file
 /// The two datagrams between mbk and a robot. Whole numbers and IEEE 754 doubles, low byte first, no padding; the last
-/// four bytes are the CRC-32 (zlib's, polynomial 0xEDB88320) of all before them. docs/guide/devices.md lists the bytes.
+/// four bytes are the CRC-32 (zlib's, polynomial 0xEDB88320) of all before them. docs/guide/own_robot.md lists the
+/// bytes.
 namespace mbk::drivers {
 
 inline constexpr std::uint16_t kCommandVersion = 1;

@@ -35,14 +35,15 @@ std::size_t size_of(std::uint32_t version) {
 }
 
 Result<void> check(const mbk_device_plugin* plugin, const Fittings& fittings) {
-  if (plugin == nullptr) return bad_data(fmt::format("{} gives nothing", kEntry), "return the address of your struct");
+  if (plugin == nullptr)
+    return bad_data(fmt::format("{} returns a null pointer", kEntry), "return the address of your struct");
   if (plugin->version < 1 || plugin->version > MBK_DEVICE_PLUGIN_VERSION) {
-    return bad_data(fmt::format("it was made for version {} of the interface, and this is version {}", plugin->version,
-                                MBK_DEVICE_PLUGIN_VERSION),
+    return bad_data(fmt::format("it was compiled for version {} of the interface, but this mbk has version {}",
+                                plugin->version, MBK_DEVICE_PLUGIN_VERSION),
                     "compile it again with this mbk's mbk/experiment/drivers/device_plugin.h");
   }
   if (const std::size_t size = size_of(plugin->version); plugin->size != size) {
-    return bad_data(fmt::format("its struct has {} bytes and not {}", plugin->size, size),
+    return bad_data(fmt::format("its struct has {} bytes instead of {}", plugin->size, size),
                     "set size = sizeof(mbk_device_plugin), and compile it for this machine");
   }
   if (const std::string names = missing(*plugin); !names.empty()) {
@@ -50,7 +51,7 @@ Result<void> check(const mbk_device_plugin* plugin, const Fittings& fittings) {
   }
   const auto agree = [](const char* key, bool fitted, bool expected) -> Result<void> {
     if (fitted == expected) return {};
-    return bad_data(fmt::format("its {} is {}, and the experiment's {}", key, fitted, expected),
+    return bad_data(fmt::format("its {} is {}, but the experiment's is {}", key, fitted, expected),
                     fmt::format("set {} in [device]", key));
   };
   MBK_TRY(agree("has_force", plugin->has_force != 0, fittings.has_force));
@@ -83,14 +84,14 @@ Result<std::unique_ptr<PluginDevice>> PluginDevice::create(const PluginOptions& 
   if (!library) {
     const char* reason = dlerror();
     return bad_data(fmt::format("the plug-in cannot be loaded: {}", reason != nullptr ? reason : "no reason given"),
-                    "check 'library' in [device]; it is taken from the experiment's folder");
+                    "check 'library' in [device], which is relative to the experiment's folder");
   }
   using Entry = const mbk_device_plugin* (*)();
   const auto entry = reinterpret_cast<Entry>(dlsym(library.get(), kEntry));
   const std::string where = file.string();
   if (entry == nullptr) {
     return bad_data(fmt::format("it does not export {}", kEntry),
-                    "make it from mbk/experiment/drivers/device_plugin.h, as examples/device_plugin", where);
+                    "include mbk/experiment/drivers/device_plugin.h, as in examples/device_plugin", where);
   }
   const mbk_device_plugin* plugin = entry();
   if (auto ok = check(plugin, fittings); !ok) return tl::unexpected(ok.error().in(where));
@@ -129,7 +130,7 @@ Result<void> PluginDevice::start() {
   }
   close();
   return bad_data(fmt::format("{}: no sample within {} ms", facts_.name, kFirstSampleWithin),
-                  "its read() has to count 'sequence' up from 1 with each sample");
+                  "its read() must increment 'sequence' from 1 with each sample");
 }
 
 bool PluginDevice::read(device::State& state) noexcept {

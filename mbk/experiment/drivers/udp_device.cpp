@@ -28,12 +28,8 @@ std::int64_t after(double seconds) noexcept {
   return monotonic_ns() + std::llround(1e9 * seconds);
 }
 
-const char* yes_or_no(bool fitted) {
-  return fitted ? "one" : "none";
-}
-
-/// A name that only one socket of this machine can have, and that goes with its process. All devices of a process share
-/// it.   @returns  null where another process has it
+/// A name that only one socket of this computer can have, and that ends with its process. All devices of a process
+/// share it.   @returns  null if another process has it
 std::shared_ptr<const int> claim_of(const UdpAddress& robot) {
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const int>> claims;
@@ -72,15 +68,15 @@ Result<std::unique_ptr<UdpDevice>> UdpDevice::create(const UdpOptions& options, 
                                  kLongestWatchdog));
   }
   MBK_TRY(above_zero({{"time to answer", options.answer_within, "s"}}));
-  if (fittings.force_latency < 0) return bad_usage("the latency of the force is below zero");
+  if (fittings.force_latency < 0) return bad_usage("the force latency is below zero");
   return std::unique_ptr<UdpDevice>(new UdpDevice(options, fittings));
 }
 
 Result<void> UdpDevice::start() {
   const auto robot = MBK_TRY(UdpAddress::find(options_.address, options_.port));
   if (claim_ = claim_of(robot); !claim_) {
-    return bad_data(fmt::format("{}: another mbk on this machine talks to this robot", facts_.name),
-                    "end that one first, or wait until its trial is over");
+    return bad_data(fmt::format("{}: another mbk on this computer is using this robot", facts_.name),
+                    "end that one, or wait until its trial is over");
   }
   auto socket = MBK_TRY(UdpSocket::open({0, options_.local_port}));
   has_last_words_ = false;
@@ -109,21 +105,22 @@ Result<void> UdpDevice::start() {
   last_.greeting = false;
   if (!heard_) return tl::unexpected(no_answer());
   if (newest_.enabled) {
-    return bad_data(fmt::format("{}: the robot says that its motors are on, before any command", facts_.name),
-                    "switch them off at the robot: its program must answer a greeting with its motors off");
+    return bad_data(fmt::format("{}: the robot reports its motors on before any command", facts_.name),
+                    "switch them off at the robot; its program must answer a greeting with the motors off");
   }
   if (options_.lock_step && sends_unasked(asked)) {
-    return bad_data(fmt::format("{}: its states come unasked: it keeps its own time", facts_.name),
-                    "take lock_step out of [device]: it would switch off what watches the robot's time");
+    return bad_data(
+        fmt::format("{}: the robot keeps its own time: it sends states without waiting for commands", facts_.name),
+        "remove lock_step from [device]: it would disable the checks of the robot's time");
   }
   const auto differs = [&](const char* what, const char* key, bool sent, bool expected) -> Result<void> {
     if (sent == expected) return {};
-    return bad_data(fmt::format("{}: of {} the robot has {}, and the experiment expects {}", facts_.name, what,
-                                yes_or_no(sent), yes_or_no(expected)),
+    return bad_data(fmt::format("{}: the robot reports {} {}, but the experiment expects {}", facts_.name,
+                                sent ? "its" : "no", what, expected ? "one" : "none"),
                     fmt::format("set {} in [device], or connect the sensor", key));
   };
-  MBK_TRY(differs("force sensors", "has_force", newest_.has_force, facts_.has_force));
-  return differs("accelerometers", "has_acceleration", newest_.has_acceleration, facts_.has_acceleration);
+  MBK_TRY(differs("force sensor", "has_force", newest_.has_force, facts_.has_force));
+  return differs("accelerometer", "has_acceleration", newest_.has_acceleration, facts_.has_acceleration);
 }
 
 /// Whether more states come than were asked for, within a time in which a robot sends dozens.
@@ -140,7 +137,7 @@ bool UdpDevice::sends_unasked(std::uint64_t asked) noexcept {
 Error UdpDevice::no_answer() const {
   std::string came;
   const auto add = [&](std::uint64_t count, std::string_view what) {
-    if (count > 0) came += fmt::format("{}{} × {}", came.empty() ? "; what came instead: " : ", ", count, what);
+    if (count > 0) came += fmt::format("{}{} × {}", came.empty() ? "; received instead: " : ", ", count, what);
   };
   for (std::size_t i = 0; i < counts_.refused.size(); ++i) add(counts_.refused[i], word_of(static_cast<Refusal>(i)));
   add(counts_.foreign, "from another address");
@@ -205,7 +202,7 @@ bool UdpDevice::read(device::State& state) noexcept {
     take_all();
   }
   state = fittings_.wiring.state(newest_.raw);
-  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting is no command
+  state.answered = newest_.answered > 0 ? newest_.answered - 1 : 0;  // the greeting does not count as a command
   state.motors = newest_.enabled ? device::Motors::on : device::Motors::off;
   state.has_force = newest_.has_force;
   state.has_acceleration = newest_.has_acceleration;

@@ -186,7 +186,7 @@ TEST(UdpDevice, PassesOnWhatTheRobotReportsOfItself) {
   EXPECT_TRUE(device->facts().acknowledges);
   device::State state;
   ASSERT_TRUE(device->read(state));
-  EXPECT_EQ(state.answered, 0U);  // the greeting is no command
+  EXPECT_EQ(state.answered, 0U);  // the greeting does not count as a command
   EXPECT_EQ(state.motors, device::Motors::off);
   EXPECT_FALSE(state.drives_measure);
 
@@ -449,7 +449,7 @@ class Serving {
   std::thread thread_;
 };
 
-/// Reads until `done` is said of the newest state, at most kLong.   @returns  whether it was
+/// Reads until the newest state satisfies `done`, at most kLong.   @returns  whether it did
 bool soon(UdpDevice& device, const std::function<bool(const StateDatagram&)>& done) {
   device::State state;
   for (int i = 0; i < static_cast<int>(1e3 * kLong); ++i) {

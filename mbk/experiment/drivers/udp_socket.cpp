@@ -41,7 +41,7 @@ Result<UdpAddress> UdpAddress::find(const std::string& name, std::uint16_t port)
   requested.ai_socktype = SOCK_DGRAM;
   addrinfo* found = nullptr;
   if (const int error = getaddrinfo(name.c_str(), nullptr, &requested, &found); error != 0) {
-    return bad_data(fmt::format("the address '{}' is not known: {}", name, gai_strerror(error)),
+    return bad_data(fmt::format("the address '{}' is unknown: {}", name, gai_strerror(error)),
                     "write it as four numbers, as 192.168.7.2");
   }
   sockaddr_in first{};
@@ -56,7 +56,7 @@ Result<UdpSocket> UdpSocket::open(const UdpAddress& local) {
   if (made.descriptor_ < 0 ||
       bind(made.descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     return bad_data(fmt::format("cannot listen at UDP {}: {}", local.text(), std::strerror(errno)),
-                    "choose another port, or end the program that has it");
+                    "choose another port, or end the program that uses it");
   }
   return made;
 }

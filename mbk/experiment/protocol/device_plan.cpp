@@ -23,7 +23,7 @@ Vector2d read_signs(const Section& s, const char* key) {
 
 Eigen::Matrix2d read_gain(const Section& s, const char* key, const Eigen::Matrix2d& fallback) {
   const Eigen::Matrix2d gain = s.matrix2(key, fallback);
-  if (gain.determinant() == 0.0) s.reject(key, "two forces or accelerations would give the same reading");
+  if (gain.determinant() == 0.0) s.reject(key, "different forces or accelerations would give the same reading");
   return gain;
 }
 
@@ -58,7 +58,7 @@ DevicePlan read_device(const Section& s, const std::filesystem::path& folder) {
       s.choice("kind", {{"simulated", Kind::simulated}, {"udp", Kind::udp}, {"plugin", Kind::plugin}}, Kind::simulated);
   if (kind == Kind::simulated) {
     if (s.has("wiring")) {
-      s.reject("wiring", "a simulated robot has no wires", "name the robot, as kind = \"udp\", or take the table out");
+      s.reject("wiring", "a simulated robot has no wiring", "name the robot, as kind = \"udp\", or remove the table");
     }
     return plan;
   }

@@ -24,7 +24,7 @@ struct DevicePlan {
   [[nodiscard]] bool simulated() const { return std::holds_alternative<Simulated>(kind); }
 };
 
-/// The section [device] with its table [device.wiring]; docs/guide/devices.md lists the keys.
+/// The section [device] with its table [device.wiring]; docs/guide/own_robot.md lists the keys.
 /// @param folder  from which a library's name is taken
 [[nodiscard]] DevicePlan read_device(const config::Section& section, const std::filesystem::path& folder);
 

@@ -44,7 +44,7 @@ safety::Limits read_limits(Section s) {
       both = s.vector2(one.key, both, range);
     }
     if (one.of(l) > one.most) {
-      s.reject(one.key, fmt::format("is above {:g}: {}", one.most, one.why), "choose a limit that limits");
+      s.reject(one.key, fmt::format("is above {:g}: {}", one.most, one.why), "choose a smaller limit");
     }
   }
   l.workspace_low = s.vector2("workspace_low_mm", l.workspace_low);
@@ -55,8 +55,8 @@ safety::Limits read_limits(Section s) {
 Person read_person(const Section& s) {
   for (const char* key : {"name", "first_name", "last_name", "surname", "initials", "date_of_birth", "birthday"}) {
     if (s.has(key)) {
-      s.reject(key, "who the person is has no place in a recording",
-               "keep the list of numbers and names elsewhere, under lock; give 'number'");
+      s.reject(key, "a recording must not identify the person",
+               "give 'number', and keep the list of numbers and names locked away elsewhere");
     }
   }
   Person p;
@@ -86,7 +86,7 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     const Section robot = root.section("robot");
     if (read_machine(robot) != Machine::planar) {
       return tl::unexpected(robot.error("kind", "a one-axis machine cannot be run as an experiment yet",
-                                        "take a planar robot; 'mbk simulate' makes recordings of one-axis machines"));
+                                        "use a planar robot; 'mbk simulate' makes recordings of one-axis machines"));
     }
     trial.perturbation = read_perturbation(root.section("perturbation"), Machine::planar);
     trial.robot = robot_file::read_planar_robot(robot);
@@ -107,9 +107,9 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.device = read_device(root.section("device"), file.parent_path());
     if (!trial.device.simulated()) {
       if (!root.has("robot")) {
-        return tl::unexpected(root.error("device", "names a robot that no [robot] describes",
-                                         "write [robot] with d1_mm, d2_mm, home_mm, alpha_kg_m2 and friction of yours; "
-                                         "docs/guide/devices.md draws them"));
+        return tl::unexpected(root.error("device", "names a robot, but there is no [robot] to describe it",
+                                         "write [robot] with your d1_mm, d2_mm, home_mm, alpha_kg_m2 and friction; "
+                                         "docs/guide/own_robot.md draws them"));
       }
       for (const char* key : {"d1_mm", "d2_mm", "home_mm", "theta1_deg", "theta2_deg", "alpha_kg_m2", "coulomb_Nm",
                               "viscous_Nms_per_rad"}) {
@@ -138,8 +138,8 @@ Result<std::unique_ptr<device::Device>> make_device(const Trial& trial) {
     return widened(drivers::PluginDevice::create(*plugin, trial.device.fittings));
   }
   if (trial.simulation == nullptr) {
-    return bad_usage("the experiment names no robot, and there is nothing here that simulates one",
-                     "name the robot in [device], or hand read_experiment a simulation");
+    return bad_usage("the experiment names no robot, and no simulation is available",
+                     "name the robot in [device], or pass a simulation to read_experiment");
   }
   return trial.simulation->robot(trial);
 }

@@ -198,9 +198,8 @@ std::string personal_warning(std::string_view where, std::string_view text, bool
       break;
   }
   return fmt::format(
-      "{} '{}' looks like {}, and goes into every recording, which travels; write a number or a code, and keep the "
-      "list "
-      "of who it is elsewhere, under lock",
+      "{} '{}' looks like {} and is stored in every recording; write a number or a code, and keep the list of names "
+      "locked away elsewhere",
       where, printable(std::string(text)), what);
 }
 

@@ -56,7 +56,7 @@ Size read_size(const Section& s, const std::string& word, const std::vector<Size
   std::optional<Size> size;
   for (const SizeUnit& unit : kSizeUnits) {
     if (!s.has(key(unit))) continue;
-    if (!is_allowed(unit)) s.reject(key(unit), "this machine is not driven in that unit", "use " + keys);
+    if (!is_allowed(unit)) s.reject(key(unit), "this robot is not driven in that unit", "use " + keys);
     if (size) s.reject(key(unit), "the size is given twice, in different units", "keep one of them");
     size = {unit, s.number(key(unit), fallback.value, above(0))};
   }
@@ -89,7 +89,7 @@ MultisinePlan read_multisine(const Section& s, const Size& size) {
   harmonics = s.numbers("harmonics", harmonics, between(1, 1e6));
   plan.harmonics.clear();
   for (const double harmonic : harmonics) {
-    if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is no whole number", harmonic));
+    if (harmonic != std::round(harmonic)) s.reject("harmonics", fmt::format("{:g} is not a whole number", harmonic));
     plan.harmonics.push_back(static_cast<int>(harmonic));
   }
   const int odd_to = s.integer("odd_harmonics_to", 0, 0, 1'000'000);
@@ -276,7 +276,7 @@ Plan read_perturbation(const Section& s, Machine machine) {
       break;
     }
     case Kind::servo_displacement:
-      if (one_axis) s.reject("kind", "the hand reaches in the plane", "take a planar robot");
+      if (one_axis) s.reject("kind", "reaching needs a plane", "use a planar robot");
       plan.kind = read_reaches(s);
       break;
   }

@@ -17,7 +17,7 @@ enum class Machine { planar, one_axis };
   return std::to_array<Word<Machine>>({{planar, "planar"}, {one_axis, "one_axis"}});
 }
 
-/// `kind` of [robot]; a planar one where nothing is said.
+/// `kind` of [robot]; planar if absent.
 [[nodiscard]] Machine read_machine(const config::Section& robot);
 
 /// What [recording] says of a trial: condition, rate, seed, readers. All else stays as it is by itself.

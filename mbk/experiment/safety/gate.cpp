@@ -32,7 +32,7 @@ constexpr std::uint64_t kDrivesCommands = 4;
 /// A gap between states behind which checks of motion begin anew [ticks].
 constexpr double kGapTicks = 8.0;
 
-/// Where encoders or force sensor are what tripped, they say nothing of the motors either.
+/// Whether encoders or force sensor caused the trip, so that they cannot confirm the motors off either.
 bool distrusts_sensors(Reason reason) noexcept {
   switch (reason) {
     case Reason::encoder_not_finite:
@@ -101,7 +101,7 @@ Result<void> Gate::reset() {
   if (stop_pressed_) return bad_usage("the stop button is still pressed", "release it, then reset");
   if (motors_.state == MotorsOff::State::missing) {
     return bad_usage("the robot still does not confirm that its motors are off",
-                     "cut the motors' power with the hardware stop button, and see to the robot; then begin anew");
+                     "cut the motors' power with the hardware stop button, check the robot, then start mbk again");
   }
   trip_ = {};
   forget();

@@ -14,42 +14,43 @@
 
 namespace mbk::safety {
 
-/// A trip brings the torque to zero along a straight line in so many ticks; then the drives are off.
+/// Ticks in which a trip reduces the torque linearly to zero; then the drives are switched off.
 inline constexpr int kRampTicks = 20;
 
-/// What the gate is told at a tick: all of it as it came, nothing believed.
+/// Input of the gate at a tick, unchecked.
 struct Observation {
   double time = 0.0;                      ///< on the loop's clock [s]
   double late = 0.0;                      ///< time since the last command left, beyond a tick [s]
-  device::State state;                    ///< the newest of the robot
-  bool fresh = true;                      ///< it has come since the last tick
-  bool link = true;                       ///< the link says that it works
+  device::State state;                    ///< the robot's newest
+  bool fresh = true;                      ///< it arrived since the last tick
+  bool link = true;                       ///< the link reports that it works
   bool operator_stop = false;             ///< key or console
-  bool recording = true;                  ///< what is recorded reaches the disk in time
-  device::Abilities robot;                ///< what it can say, and what is fitted
-  bool perturbing = false;                ///< the hand shall be about home
-  bool follows = false;                   ///< the joints shall be at `joint_reference`
+  bool recording = true;                  ///< recorded data reach the disk in time
+  device::Abilities robot;                ///< what it reports, and which sensors are fitted
+  bool perturbing = false;                ///< the hand must stay near home
+  bool follows = false;                   ///< the joints must follow `joint_reference`
   Vector2d joint_reference = {0.0, 0.0};  ///< [rad]
 };
 
-/// The last gate before the motors: every torque passes it, and nothing is behind it but the device. It believes
-/// neither controller nor sensors nor robot. What a controller asks for is cut to the limits of force, torque and their
-/// rate; what must not be trips: the torque goes to zero in kRampTicks, the reason stays, and only `reset` leads back.
+/// The last check before the motors: every torque passes it, directly before the device. It trusts neither controller
+/// nor sensors nor robot. The controller's torque is cut to the limits of force, torque and torque rate. A violation
+/// trips: the torque goes to zero in kRampTicks, the reason stays, and only `reset` continues.
 /// The commanded handle force is |J⁻ᵀτ| with J of the last plausible angles. After `create` nothing allocates.
-///   A command is not a fact. While it drives, the gate holds the robot's acknowledgement, its flags and clock against
-/// what was commanded, and the torque that encoders and force sensor show,
+///   A command is not a fact. While driving, the gate compares the robot's acknowledgement, flags and clock with the
+/// commands, and the torque that encoders and force sensor show,
 ///   τ = I θ̈ + C θ̇ + F_r − Jᵀ F_h                                              (Dyck 2013, eq. 5.1)
-/// against the torque that left, mean over 40 ms and then over kTorqueTime. Once motors are off by command it waits for
-/// the robot to confirm it (MotorsOff): motors off by its flag, an answer to the first such command or a later one, a
-/// new state, and no torque in the motion. What is not confirmed in time trips.
-///   A software limit, no certified safety function: a stop button that cuts the motors' power has to be there too.
+/// with the commanded torque, mean over 40 ms and then over kTorqueTime. After commanding the motors off it waits for
+/// the robot's confirmation (MotorsOff): the flag "motors off", an acknowledgement of the first such command or a later
+/// one, a new state, and no torque in the motion. A missing confirmation trips.
+///   This is a software limit, not a certified safety function: a stop button that cuts the motors' power is required
+/// too.
 class Gate {
  public:
-  /// What it decided at a tick.
+  /// The decision at a tick.
   struct Decision {
     Vector2d torque = {0.0, 0.0};  ///< [N·m]
     bool enabled = false;          ///< drives on
-    bool cut = false;              ///< the controller asked for more
+    bool cut = false;              ///< the controller requested more
   };
 
   /// A tick of the last two seconds.
@@ -64,7 +65,7 @@ class Gate {
   [[nodiscard]] static Result<Gate> create(const Limits& limits, const robot::PlanarRobot& robot, const Vector2d& home,
                                            double sample_time);
 
-  /// Once for each command: what it decides has to leave.   @param asked  τ of the controller [N·m]
+  /// Once for each command: the decision must be sent.   @param asked  τ of the controller [N·m]
   Decision step(const Observation& seen, const Vector2d& asked) noexcept;
 
   /// The trial is over: motors off from the next step on, without a trip.
@@ -74,26 +75,26 @@ class Gate {
   [[nodiscard]] const Trip& trip() const { return trip_; }  ///< Reason::none where there is none
   /// The ramp of a trip is over, or the trial was released.
   [[nodiscard]] bool off() const { return released_ || (tripped() && ramp_left_ == 0); }
-  /// What is known of the motors since then.
+  /// State of the motors since then.
   [[nodiscard]] const MotorsOff& motors() const { return motors_; }
-  /// Off, and known or given up.
+  /// Off, and either confirmed or given up.
   [[nodiscard]] bool settled() const {
     return motors_.state != MotorsOff::State::not_asked && motors_.state != MotorsOff::State::waiting;
   }
 
-  /// What was seen of the robot between two trials.
+  /// The robot's state between two trials.
   void see_idle(bool stop_button, bool confirmed_off) noexcept;
 
-  /// By the operator: on again, with nothing remembered of the motion.
-  /// @fails  usage: the ramp is not over; the stop button is still pressed; the robot still does not say that its
-  ///         motors are off.
+  /// By the operator: on again, with the motion forgotten.
+  /// @fails  usage: the ramp is not over; the stop button is still pressed; the robot still does not confirm its
+  ///         motors off.
   [[nodiscard]] Result<void> reset();
 
   /// The last two seconds, oldest first; fewer at the beginning. Not for the loop: allocates.
   [[nodiscard]] std::vector<Moment> history() const;
 
  private:
-  /// How long a reading has been the same.
+  /// How long a reading has been constant.
   struct Stillness {
     Vector2d last = {0.0, 0.0};
     int ticks = 0;

@@ -13,7 +13,7 @@ using Eigen::Vector2d;
 struct MotionSample {
   double time = 0.0;                   ///< on the robot's clock [s]
   Vector2d joint = {0.0, 0.0};         ///< [rad]
-  Vector2d hand = {0.0, 0.0};          ///< place of the hand, base frame [m]
+  Vector2d hand = {0.0, 0.0};          ///< hand position, base frame [m]
   Vector2d acceleration = {0.0, 0.0};  ///< by the accelerometer, base frame [m/s²]
   Vector2d force = {0.0, 0.0};         ///< of the hand on the robot, base frame [N]
   Vector2d torque = {0.0, 0.0};        ///< that the robot was told to exert [N·m]

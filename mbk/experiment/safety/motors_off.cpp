@@ -11,18 +11,18 @@ std::string reason(const MotorsOff& motors) {
     case Why::nothing:
       break;
     case Why::no_state:
-      return "no state of the robot came after the stop";
+      return "no state arrived from the robot after the stop";
     case Why::not_answered:
       return "the robot did not acknowledge the stop";
     case Why::flag:
-      return "the robot says that its motors are on";
+      return "the robot reports that its motors are on";
     case Why::drives:
       return fmt::format("its drives measure a torque of {:.2f} N·m", motors.torque);
     case Why::no_tick:
-      return "the robot's driver does not return, so that no command reaches it";
+      return "the robot's driver does not return, so no command reaches the robot";
     case Why::motion:
-      return motors.torque > 0.0 ? fmt::format("the motion shows a torque of the motors of {:.2f} N·m", motors.torque)
-                                 : "its states were too few to see whether it is still driven";
+      return motors.torque > 0.0 ? fmt::format("the motion shows a motor torque of {:.2f} N·m", motors.torque)
+                                 : "too few states arrived to see whether the motors still drive it";
   }
   return "";
 }
@@ -34,7 +34,7 @@ std::string sentence(const MotorsOff& motors) {
     case MotorsOff::State::not_asked:
       return "commanded on";
     case MotorsOff::State::waiting:
-      return "off was commanded, not confirmed yet";
+      return "commanded off, not confirmed yet";
     case MotorsOff::State::confirmed:
       return fmt::format("confirmed off by the robot {:.3f} s after the stop; {}", motors.after,
                          motors.by_motion ? fmt::format("its motion shows no torque above {:g} N·m", motors.limit)
@@ -43,7 +43,7 @@ std::string sentence(const MotorsOff& motors) {
       return fmt::format("NOT CONFIRMED OFF {:.1f} s after the stop: {}; cut their power with the hardware stop button",
                          motors.after, reason(motors));
     case MotorsOff::State::cannot_say:
-      return "off was commanded; this robot's driver does not report whether they are";
+      return "commanded off; this robot's driver does not report whether they are off";
   }
   return "";
 }

@@ -10,21 +10,21 @@ namespace mbk::safety {
 /// Whether the robot has confirmed that its motors are off.
 struct MotorsOff {
   enum class State : std::uint8_t {
-    not_asked,   ///< they are driven
+    not_asked,   ///< the motors are driven
     waiting,     ///< off was commanded; the robot has not confirmed it yet
     confirmed,   ///< as reported by the robot
-    missing,     ///< it did not, within Limits::motors_off
-    cannot_say,  ///< the robot reports nothing of its motors
+    missing,     ///< no confirmation within Limits::motors_off
+    cannot_say,  ///< the robot does not report its motors' state
   };
-  /// The first thing that is missing for a confirmation.
+  /// The first condition that is missing for a confirmation.
   enum class Why : std::uint8_t { nothing, no_state, not_answered, flag, drives, motion, no_tick };
 
   State state = State::not_asked;
   double after = 0.0;      ///< from the first command with motors off to the confirmation, or to giving up [s]
   bool by_motion = false;  ///< confirmed by the motion too: encoders and force sensor show no torque of the motors
   Why why = Why::nothing;
-  double torque = 0.0;  ///< that drives or motion show [N·m]
-  double limit = 0.0;   ///< what the motion may show of motors that are off [N·m]
+  double torque = 0.0;  ///< shown by drives or motion [N·m]
+  double limit = 0.0;   ///< maximum that the motion may show if the motors are off [N·m]
 };
 
 /// For files and machines.

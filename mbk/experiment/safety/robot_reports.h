@@ -10,18 +10,18 @@ namespace mbk::safety {
 
 using device::Motors;
 
-/// One thing that must not be: with what was measured, against what limit.
+/// A violated rule, with the measured value and its limit.
 struct Violation {
   Reason reason = Reason::none;
   double value = 0.0, limit = 0.0;
   explicit operator bool() const noexcept { return reason != Reason::none; }
 };
 
-/// Holds what the robot reports against what it was told: which command it obeys, how old its states are, whether its
-/// clock runs, whether motors and sensors are as they should be. Nothing allocates.
-///   The age of a state is measured by the robot's clock: how much more time has passed here than there since the
-/// state that came fastest. That one may slip by kClockDrift, so that two honest clocks do not part; what delays every
-/// state alike from the beginning shows in the acknowledgement only.
+/// Compares the robot's reports with the commands: which command it obeys, the age of its states, its clock, motors and
+/// sensors. Nothing allocates.
+///   The age of a state is the time passed on this clock minus the time passed on the robot's, since the state that
+/// arrived fastest. That reference may drift by kClockDrift, so that two correct clocks agree; a delay of every state
+/// from the beginning shows in the acknowledgement only.
 class ReportCheck {
  public:
   explicit ReportCheck(const Limits& limits, double sample_time) noexcept
@@ -30,8 +30,8 @@ class ReportCheck {
   /// Forgets what came before.
   void forget() noexcept;
 
-  /// @param state  a new one    @param now  on the loop's clock, if the robot keeps time itself [s]
-  /// @param sent  commands that have left, all of them with motors on
+  /// @param state  a new one    @param now  on the loop's clock, if the robot keeps its own time [s]
+  /// @param sent  commands sent so far, all with motors on
   [[nodiscard]] Violation check(const device::State& state, const device::Abilities& robot, double now,
                                 std::uint64_t sent) noexcept;
 

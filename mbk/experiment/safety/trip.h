@@ -8,7 +8,7 @@
 
 namespace mbk::safety {
 
-/// Why the gate switched the motors off. Journals hold the numbers: new ones go to the end.
+/// Why the gate switched the motors off. Journals store the numbers: append new ones.
 enum class Reason : std::uint8_t {
   none,
   stop_button,    ///< of the robot
@@ -35,15 +35,15 @@ enum class Reason : std::uint8_t {
   tracking,
   limited_too_long,
   robot_fault,       ///< its own fault code
-  robot_watchdog,    ///< the robot says that no command reached it in time
-  robot_clock,       ///< stands still, runs backward, too fast, or is not finite
-  state_old,         ///< states are older than they may be
+  robot_watchdog,    ///< the robot reports that no command arrived in time
+  robot_clock,       ///< stopped, backwards, too fast, or not finite
+  state_old,         ///< states are too old
   answer_late,       ///< the robot obeys old commands
-  answer_wrong,      ///< it acknowledges what was never sent, or takes an acknowledgement back
-  motors_off,        ///< it says "motors off" while it is driven
-  motors_on,         ///< its motors were not confirmed to be off after the end of the trial
-  sensor_missing,    ///< a sensor that was there is gone
-  torque_disagrees,  ///< drives or motion show another torque than was commanded
+  answer_wrong,      ///< it acknowledges a command never sent, or takes an acknowledgement back
+  motors_off,        ///< it reports "motors off" while driven
+  motors_on,         ///< its motors were not confirmed off after the trial
+  sensor_missing,    ///< a sensor present at the start is missing
+  torque_disagrees,  ///< drives or motion show a torque other than the commanded one
   loop_stalled,      ///< the robot's driver did not return
 };
 
@@ -91,7 +91,7 @@ inline constexpr int kReasons = static_cast<int>(Reason::loop_stalled) + 1;
   });
 }
 
-/// A trip with what was measured against what limit.
+/// A trip, with the measured value and its limit.
 struct Trip {
   Reason reason = Reason::none;
   double time = 0.0;       ///< on the loop's clock [s]
@@ -103,7 +103,7 @@ struct Trip {
 /// Unit of value and limit; "" where there are none.
 [[nodiscard]] std::string_view unit(Reason reason);
 
-/// "the measured force was 41.2 N, beyond 40 N, at 12.345 s: somebody or something pushes the handle": for people.
+/// For people: "the measured force was 41.2 N (limit 40 N), at 12.345 s; somebody or something pushes the handle".
 [[nodiscard]] std::string sentence(const Trip& trip);
 
 }  // namespace mbk::safety

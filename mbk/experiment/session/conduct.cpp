@@ -24,12 +24,12 @@ fs::path recording_of(const protocol::Trial& trial, const fs::path& out, bool se
   return several ? with_suffix(file, trial.name) : file;
 }
 
-/// Whether M, B and K are to be found: no stop, a recording, and a perturbation about one place.
+/// Whether M, B and K can be estimated: no stop, a recording, and a perturbation about one position.
 bool can_be_measured(const Performed& performed) {
   return !performed.stopped() && performed.outcome.recorded && performed.attempt.plan.schedule.reaches() == nullptr;
 }
 
-/// Has a trial that is over measured and judged.   @returns  what comes next
+/// Measures and judges a finished trial.   @returns  what comes next
 Result<Next> judge(Performed performed, Session& session, Operator& conductor, const Measure& measure) {
   const auto asked_to_end = [&] { return session.flags().end_session.load(); };
   TrialOutcome& outcome = performed.outcome;
@@ -41,7 +41,7 @@ Result<Next> judge(Performed performed, Session& session, Operator& conductor, c
   MBK_TRY(conductor.judged(performed));
   if (outcome.unrecorded) return tl::unexpected(*outcome.unrecorded);
   if (outcome.incomplete) {
-    return bad_data(outcome.ended, "look at the disk before the next trial; the journal is kept",
+    return bad_data(outcome.ended, "check the disk before the next trial; the journal is kept",
                     performed.attempt.target.string());
   }
   return asked_to_end() ? Next::end : conductor.next(session, performed);

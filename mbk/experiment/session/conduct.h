@@ -117,7 +117,7 @@ class Operator {
   /// The trial is over. It is recorded, and will be measured next, unless the outcome says why not.
   virtual void recorded(const TrialOutcome& /*outcome*/) {}
 
-  /// All is known of it.   @fails  as it likes; no trial follows then
+  /// Called when the trial is complete.   @fails  with any error; no further trial follows
   [[nodiscard]] virtual Result<void> judged(const Performed& /*performed*/) { return {}; }
 
   /// What comes next. After a stop a trial follows only where the gate was reset (Session::reset).

@@ -32,19 +32,19 @@ class LiveFindings {
   std::vector<Finding> all_;
 };
 
-/// Readings of a dead sensor.
+/// Signs of a dead sensor.
 void check_readings(const char* name, const std::array<Readings, 2>& both, std::uint64_t frozen_after,
                     LiveFindings& findings) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Readings& one = both[i];
     if (one.not_finite > 0) {
-      findings.add(false, Verdict::wrong, fmt::format("{} {} was not finite {} times", name, i + 1, one.not_finite),
-                   "see what the robot's program sends");
+      findings.add(false, Verdict::wrong, fmt::format("{} {} was non-finite {} times", name, i + 1, one.not_finite),
+                   "check what the robot's program sends");
     }
     if (one.longest_still > frozen_after) {
       findings.add(false, Verdict::doubtful,
-                   fmt::format("{} {} stayed the same for {} samples", name, i + 1, one.longest_still),
-                   "a sensor has noise: is it connected, and is it read?");
+                   fmt::format("{} {} was constant for {} samples", name, i + 1, one.longest_still),
+                   "a working sensor has noise: check its connection, and whether it is read");
     }
   }
 }
@@ -116,46 +116,49 @@ Result<LiveRecord> watch_robot(device::Device& robot, Hertz rate, double seconds
 
 std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& facts, const LiveRecord& record) {
   LiveFindings findings;
-  findings.add(record.link, Verdict::wrong,
-               record.link ? "the link held" : fmt::format("the link broke after {:.2f} s", record.duration),
-               "see the robot's program and its watchdog");
+  findings.add(
+      record.link, Verdict::wrong,
+      record.link ? "the link worked throughout" : fmt::format("the link failed after {:.2f} s", record.duration),
+      "check the robot's program and its watchdog");
   const std::uint64_t missed = facts.keeps_time ? record.missed : 0;
   if (missed > 0) {
-    findings.add(false, Verdict::doubtful, fmt::format("this machine was late: it missed {} ticks", missed),
-                 "that is not the robot's doing: fewer programs beside mbk, or a real-time kernel");
+    findings.add(false, Verdict::doubtful, fmt::format("this computer was late and missed {} ticks", missed),
+                 "this is not the robot's fault: end other programs, or use a real-time kernel");
   }
   const double share = static_cast<double>(record.fresh + record.lost) / static_cast<double>(record.ticks + missed);
   findings.add(share >= kMinRate && share <= 2.0 - kMinRate, Verdict::wrong,
-               fmt::format("{:.1f} states a second of the robot's, for {:g} ticks of mbk's",
+               fmt::format("the robot sent {:.1f} states per second, for {:g} ticks of mbk",
                            share * setup.trial.rate.value, setup.trial.rate.value),
-               "both have to run at the same rate: see rate_hz and the robot's clock");
+               "both must run at the same rate: check rate_hz and the robot's clock");
   const double silence = static_cast<double>(record.longest_gap) / setup.trial.rate.value;
   findings.add(silence <= setup.trial.limits.link_silence, Verdict::wrong,
                fmt::format("the longest silence was {:.0f} ms", 1e3 * silence),
-               "the gate would switch off: see network, load and [safety] link_silence_ms");
-  findings.add((record.lost - std::min(record.lost, missed)) * 1000 <= record.fresh, Verdict::doubtful,
-               fmt::format("{} of {} states were lost or came two to a tick", record.lost, record.fresh + record.lost),
-               "a cable of its own helps, and a real-time kernel");
+               "the gate would stop: check network, load and [safety] link_silence_ms");
+  findings.add(
+      (record.lost - std::min(record.lost, missed)) * 1000 <= record.fresh, Verdict::doubtful,
+      fmt::format("{} of {} states were lost or shared a tick with another", record.lost, record.fresh + record.lost),
+      "use a separate cable and a real-time kernel");
   findings.add(record.backward == 0, Verdict::wrong,
-               fmt::format("the robot's clock stood still or went back {} times", record.backward),
-               "the robot has to send the time of each sample");
+               fmt::format("the robot's clock stopped or went backwards {} times", record.backward),
+               "the robot must send the time of each sample");
   findings.add(!record.last.stop, Verdict::wrong,
-               record.stop_released  ? "the stop button was pressed and released"
-               : record.stop_pressed ? "the stop button is pressed"
-                                     : "the stop button is not pressed; press and release it meanwhile to test it",
+               record.stop_released ? "the stop button was pressed and released"
+               : record.stop_pressed
+                   ? "the stop button is pressed"
+                   : "the stop button is not pressed; press and release it during the check to test it",
                "release it");
   const auto frozen =
       static_cast<std::uint64_t>(std::max(0.25, setup.trial.limits.frozen_sensor) * setup.trial.rate.value);
   const Vector2d theta(record.joint[0].mean, record.joint[1].mean);
   if (auto ok = robot::check_joints(setup.trial.robot.geometry.limits, theta); !ok) {
     findings.add(false, Verdict::wrong, ok.error().line(),
-                 "see encoder_sign, count_offset and counts_per_turn, or move the robot");
+                 "check encoder_sign, count_offset and counts_per_turn, or move the robot");
   }
   check_readings("joint", record.joint, record.ticks, findings);
   const double jump = std::max(record.joint[0].step, record.joint[1].step);
   findings.add(jump <= 0.1 * setup.trial.limits.encoder_jump, Verdict::doubtful,
                fmt::format("the angles step by {:.3g}° from sample to sample", jump / kDegree),
-               "encoders are noisy, or the robot was moved fast");
+               "the encoders are noisy, or the robot was moved fast");
   const auto sensor = [&](const char* name, const char* unit, const std::array<Readings, 2>& both, double much,
                           double noisy, const char* offset_key) {
     check_readings(name, both, frozen, findings);
@@ -164,15 +167,15 @@ std::vector<Finding> check_live(const RobotSetup& setup, const device::Facts& fa
                  offset_key);
     const double deviation = std::max(both[0].deviation, both[1].deviation);
     findings.add(deviation <= noisy, Verdict::doubtful, fmt::format("{} varies by {:.3g} {}", name, deviation, unit),
-                 "see shielding and ground, or nobody should touch the handle meanwhile");
+                 "check shielding and ground, and let nobody touch the handle meanwhile");
   };
   if (facts.has_force) {
     sensor("force", "N", record.force, kMuchForce, kNoisyForce,
-           "with nobody at the handle it should be near 0: see force_offset");
+           "with nobody at the handle it should be near 0: check force_offset");
   }
   if (facts.has_acceleration) {
     sensor("acceleration", "m/s²", record.acceleration, kMuchAcceleration, kNoisyAcceleration,
-           "at rest it should be near 0: see acceleration_offset");
+           "at rest it should be near 0: check acceleration_offset");
   }
   return findings.take();
 }
@@ -192,8 +195,9 @@ std::string live_text(const RobotSetup& setup, const device::Facts& facts, const
   if (facts.has_acceleration) add("acceleration", "m/s²", record.acceleration, 1.0);
   const Vector2d hand =
       robot::hand_position(setup.trial.robot.geometry, Vector2d(record.joint[0].mean, record.joint[1].mean));
-  text += fmt::format("  the hand is at {:.1f}, {:.1f} mm: is it?\n", 1e3 * hand[0], 1e3 * hand[1]);
-  text += "  by hand: run it again and push the handle along +x of your robot, then along +y: x and y must grow\n";
+  text += fmt::format("  hand at {:.1f}, {:.1f} mm: check with a ruler\n", 1e3 * hand[0], 1e3 * hand[1]);
+  text +=
+      "  test by hand: run this again and push the handle along +x of your robot, then along +y: x and y must grow\n";
   return text;
 }
 

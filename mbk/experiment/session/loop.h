@@ -18,7 +18,7 @@ struct LoopFlags {
   std::atomic<bool> operator_stop{false};  ///< safety stop by key or console
   std::atomic<int> stop_signal{0};         ///< the signal that asked for it; 0: a person did
   std::atomic<bool> end_trial{false};      ///< end the perturbation early, and go back
-  std::atomic<bool> end_session{false};    ///< the program is asked to end: no question is asked, no trial begun
+  std::atomic<bool> end_session{false};    ///< the program must end: no more questions, no more trials
   std::atomic<bool> recording{true};       ///< what is recorded reaches its file
   std::atomic<bool> silent{false};         ///< the loop has not ticked for a while (LoopWatch)
 

@@ -44,22 +44,23 @@ void check_lateness(const Lateness& lateness, std::vector<Finding>& findings) {
   if (worst >= longest) {
     findings.push_back(judge(
         Verdict::wrong,
-        fmt::format("a wake-up was {} late: a trial stops at {} by default", time_text(worst), time_text(longest)),
-        "mend what stands below, and end other programs"));
+        fmt::format("a wake-up was {} late; a trial stops at {} by default", time_text(worst), time_text(longest)),
+        "correct the points below, and end other programs"));
   } else if (lateness.missed > 0) {
     findings.push_back(judge(Verdict::doubtful,
                              fmt::format("{} of {} ticks were missed, the latest by {}", lateness.missed,
                                          lateness.missed + lateness.record.count(), time_text(worst)),
-                             "mend what stands below, and end other programs"));
+                             "correct the points below, and end other programs"));
   } else {
     findings.push_back(
         judge(quantile(lateness, 0.999) <= kMuchLateness * lateness.period ? Verdict::fine : Verdict::doubtful,
-              measured, "one in a thousand is late by more than a quarter of a tick"));
+              measured, "one in a thousand was late by more than a quarter of a tick"));
   }
   if (lateness.record.count() < kManyTicks) {
-    findings.push_back({Verdict::doubtful, fmt::format("{} ticks say little of one in a thousand; measure longer, as "
-                                                       "--rt 60",
-                                                       lateness.record.count())});
+    findings.push_back(
+        {Verdict::doubtful, fmt::format("{} ticks are too few to judge one in a thousand; measure longer, as "
+                                        "--rt 60",
+                                        lateness.record.count())});
   }
 }
 
@@ -90,15 +91,15 @@ void check_processors(const Machine& machine, std::vector<Finding>& findings) {
   if (machine.idle_latency) {
     add(*machine.idle_latency <= kLongIdle,
         fmt::format("processors need up to {} to wake from idle states", time_text(*machine.idle_latency)),
-        "sudo cpupower idle-set -D 50, or processor.max_cstate=1 at the kernel's command line");
+        "sudo cpupower idle-set -D 50, or processor.max_cstate=1 on the kernel command line");
   }
   if (machine.preempt_rt) {
     add(*machine.preempt_rt, *machine.preempt_rt ? "kernel with PREEMPT_RT" : "kernel without PREEMPT_RT",
-        "install linux-image-rt-amd64 where wake-ups are late");
+        "if wake-ups are late, install linux-image-rt-amd64");
   }
   if (machine.processor_quota) {
-    add(false, fmt::format("its control group allows {:.3g} processors", *machine.processor_quota),
-        "run it outside the container, or without cpu.max");
+    add(false, fmt::format("the control group allows {:.3g} processors", *machine.processor_quota),
+        "run mbk outside the container, or without cpu.max");
   }
   if (machine.load && machine.processors > 0) {
     add(*machine.load < 0.5 * machine.processors,
@@ -110,23 +111,23 @@ void check_processors(const Machine& machine, std::vector<Finding>& findings) {
 void check_system(const Machine& machine, bool fifo, bool locked, std::vector<Finding>& findings) {
   if (machine.virtual_machine && *machine.virtual_machine) {
     findings.push_back({Verdict::doubtful,
-                        "it is a virtual machine: its host may hold it up at any time, and no measurement of a few "
-                        "seconds excludes that; run a robot from real hardware"});
+                        "this is a virtual machine: its host may delay it at any time, which no measurement of a few "
+                        "seconds excludes; run a robot from real hardware"});
   }
   if (machine.swap && *machine.swap > 0) {
     findings.push_back(judge(locked ? Verdict::fine : Verdict::doubtful,
                              fmt::format("{:.3g} GB of swap{}", 1e-9 * static_cast<double>(*machine.swap),
-                                         locked ? ", from which locked memory is safe" : ""),
+                                         locked ? ", which does not affect locked memory" : ""),
                              "sudo swapoff -a, or allow mbk to lock its memory"));
   }
   if (machine.timer_slack && !fifo) {
     findings.push_back(judge(Verdict::doubtful, "timer slack " + time_text(*machine.timer_slack),
-                             "real-time scheduling does away with it"));
+                             "allow real-time scheduling, which removes it"));
   }
   const auto slow = {"hpet", "acpi_pm", "jiffies", "refined-jiffies"};
   if (std::ranges::find(slow, machine.clock_source) != slow.end()) {
-    findings.push_back({Verdict::doubtful, fmt::format("the clock is '{}', which is slow to read; see the kernel's "
-                                                       "log on why it is not tsc",
+    findings.push_back({Verdict::doubtful, fmt::format("the clock source '{}' is slow to read; the kernel's log "
+                                                       "shows why it is not tsc",
                                                        machine.clock_source)});
   }
 }

@@ -55,7 +55,8 @@ Result<PlannedMotion> check_path(const control::TrialControl& control, const pro
     const double t = i * step;
     const Eigen::Vector2d hand = control.place(t);
     if (limits.excursion > 0.0) {
-      if (auto ok = within("the way from home", (hand - home).norm(), limits.excursion, 1e3, "mm", "excursion_mm", t);
+      if (auto ok =
+              within("the distance from home", (hand - home).norm(), limits.excursion, 1e3, "mm", "excursion_mm", t);
           !ok) {
         return tl::unexpected(ok.error());
       }
@@ -148,7 +149,7 @@ Result<Plan> make_plan(protocol::Trial trial) {
 
 Result<Rehearsal> rehearse(const Plan& plan) {
   const protocol::Trial& trial = plan.trial;
-  if (!trial.simulation) return bad_usage("there is nothing that simulates the robot", "run the trial itself");
+  if (!trial.simulation) return bad_usage("this robot has no simulation to rehearse with", "run the trial itself");
   auto robot = MBK_TRY(trial.simulation->robot(trial));
   auto gate = MBK_TRY(plan.gate());
   control::Sequencer sequence = plan.sequence;

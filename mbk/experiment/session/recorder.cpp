@@ -103,12 +103,12 @@ void Recorder::look_after_file() {
     flags_.recording = false;
     const std::string lost_name = writer_.file().string();
     if (place == Place::cut && remark_.empty()) {
-      remark_ = fmt::format("{} was cut short by another program while it was written", lost_name);
+      remark_ = fmt::format("{} was truncated by another program during recording", lost_name);
     } else if (place == Place::gone) {
       const auto saved = writer_.save_elsewhere();
       misplaced_ = saved ? std::nullopt : std::optional(saved.error());
       if (saved) {
-        remark_ = fmt::format("{} was removed or replaced while it was written; what it held went on in {}", lost_name,
+        remark_ = fmt::format("{} was removed or replaced during recording; recording continued in {}", lost_name,
                               writer_.file().string());
       }
     }

@@ -33,7 +33,7 @@ constexpr double kUnevenGain = 5.0;                          // ratio of a force
 class Findings {
  public:
   void add(Verdict verdict, std::string text) { all_.push_back({verdict, std::move(text)}); }
-  /// `remedy` is said only where it is not fine.
+  /// `remedy` is added unless the verdict is fine.
   void judge(Verdict verdict, const std::string& text, const char* remedy) {
     add(verdict, verdict == Verdict::fine ? text : fmt::format("{}; {}", text, remedy));
   }
@@ -60,7 +60,7 @@ void check_links(const RobotSetup& setup, Findings& findings) {
   const auto in_range = [](double d) { return d >= kShortestLink && d <= kLongestLink; };
   findings.judge(doubtful_unless(in_range(g.d1) && in_range(g.d2)),
                  fmt::format("links of {:.4g} and {:.4g} mm", g.d1 / kMillimetre, g.d2 / kMillimetre),
-                 "a robot for an arm has links of 50 to 2000 mm: are d1_mm and d2_mm in millimetres?");
+                 "links of an arm robot are 50 to 2000 mm: check that d1_mm and d2_mm are in millimetres");
 }
 
 void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& findings) {
@@ -71,16 +71,16 @@ void check_inertia(const RobotSetup& setup, const Vector2d& theta, Findings& fin
   }
   const Vector2d eigenvalues = numeric::symmetric_eigenvalues(*mass);
   const std::string text =
-      fmt::format("the hand feels {:.3g} to {:.3g} kg of the robot", eigenvalues[0], eigenvalues[1]);
+      fmt::format("the robot's mass at the hand is {:.3g} to {:.3g} kg", eigenvalues[0], eigenvalues[1]);
   if (eigenvalues[0] <= 0.0) {
-    findings.judge(Verdict::wrong, text, "no robot has such an inertia: see alpha_kg_m2 and its order α₁, α₂, α₃");
+    findings.judge(Verdict::wrong, text, "this is physically impossible: check alpha_kg_m2 and its order α₁, α₂, α₃");
   } else {
     findings.judge(doubtful_unless(eigenvalues[0] >= kMinMass && eigenvalues[1] <= kMaxMass), text,
-                   "is alpha_kg_m2 in kg·m²?");
+                   "check that alpha_kg_m2 is in kg·m²");
   }
 }
 
-/// @returns  a posture to look at the robot in: home, or the middle of what the joints can do
+/// @returns  the posture in which the robot is checked: home, or the middle of the joints' ranges
 std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings) {
   const robot::Geometry& g = setup.trial.robot.geometry;
   const auto workspace = robot::workspace(g);
@@ -90,7 +90,7 @@ std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings
   }
   findings.judge(doubtful_unless(workspace->area >= 1e-2),
                  fmt::format("the hand reaches {:.0f} cm²", 1e4 * workspace->area),
-                 "that is less than a palm: see theta1_deg, theta2_deg and smallest_opening_deg");
+                 "this is smaller than a palm: check theta1_deg, theta2_deg and smallest_opening_deg");
   if (!setup.has_home) {
     const std::vector<Vector2d> corners = robot::joint_space_corners(g.limits);
     Vector2d middle = Vector2d::Zero();
@@ -108,9 +108,9 @@ std::optional<Vector2d> check_places(const RobotSetup& setup, Findings& findings
                       (home.array() <= setup.trial.limits.workspace_high.array()).all();
   findings.judge(
       wrong_unless(margin > setup.trial.limits.joint_margin && inside),
-      fmt::format("home is at {:.1f}, {:.1f} mm, {:.1f}° from the nearest limit of a joint{}", home[0] / kMillimetre,
+      fmt::format("home is at {:.1f}, {:.1f} mm, {:.1f}° from the nearest joint limit{}", home[0] / kMillimetre,
                   home[1] / kMillimetre, margin / kDegree, inside ? "" : ", outside the safety workspace"),
-      "move home_mm, or see [safety] joint_margin_deg and workspace_low_mm");
+      "move home_mm, or check [safety] joint_margin_deg and workspace_low_mm");
   return *theta;
 }
 
@@ -121,27 +121,27 @@ void check_encoders(const RobotSetup& setup, const Vector2d& theta, Findings& fi
       largest_singular_value(robot::jacobian(setup.trial.robot.geometry, theta) * w.radians_per_count.asDiagonal());
   findings.judge(count > kCoarseCount ? Verdict::wrong : doubtful_unless(count <= kFineCount),
                  fmt::format("one count of an encoder is at most {:.3g} µm at the hand", count / kMicrometre),
-                 "velocities and accelerations will be rough: see counts_per_turn (after the gear, all four edges)");
+                 "velocities and accelerations will be rough: check counts_per_turn (after the gear, all four edges)");
   const double jump = setup.trial.limits.encoder_jump / w.radians_per_count.cwiseAbs().maxCoeff();
   findings.judge(jump < 2.0 ? Verdict::wrong : doubtful_unless(jump >= 5.0),
-                 fmt::format("the gate takes {:.3g} counts within a tick for a jump", jump),
-                 "raise [safety] encoder_jump_deg: what the encoder rounds must not trip");
+                 fmt::format("the gate treats {:.3g} counts within a tick as a jump", jump),
+                 "raise [safety] encoder_jump_deg, so that encoder resolution does not trip the gate");
 }
 
 void check_force(const RobotSetup& setup, Findings& findings) {
   const drivers::Fittings& f = setup.trial.device.fittings;
   if (!f.has_force) {
-    findings.add(Verdict::doubtful, "without a force sensor: what is measured needs --force-source virtual");
+    findings.add(Verdict::doubtful, "no force sensor: measure with --force-source virtual");
     return;
   }
   const Vector2d gains = numeric::singular_values(f.wiring.force_gain);
   findings.judge(doubtful_unless(gains[0] <= kUnevenGain * gains[1]),
                  fmt::format("the force sensor gives {:.4g} to {:.4g} N per unit", gains[1], gains[0]),
-                 "its axes differ much, or both read nearly the same: see force_gain_N_per_unit");
+                 "its axes differ strongly, or are nearly parallel: check force_gain_N_per_unit");
   if (setup.trial.device.force_step) {
     const double step = gains[0] * *setup.trial.device.force_step;
     findings.judge(doubtful_unless(step <= kCoarseForce), fmt::format("its smallest step is {:.3g} mN", 1e3 * step),
-                   "that is coarse beside an arm's forces: use more of the converter's range");
+                   "this is coarse for an arm's forces: use more of the converter's range");
   }
 }
 
@@ -151,7 +151,7 @@ void check_motors(const RobotSetup& setup, const Vector2d& theta, Findings& find
   findings.judge(doubtful_unless(most.minCoeff() >= kSmallCommand && most.maxCoeff() <= kLargeCommand),
                  fmt::format("the largest torques, {:g} and {:g} N·m, are {:.3g} and {:.3g} units of command",
                              setup.trial.limits.joint_torque[0], setup.trial.limits.joint_torque[1], most[0], most[1]),
-                 "see torque_per_command_Nm and gear");
+                 "check torque_per_command_Nm and gear");
   const Matrix2d J = robot::jacobian(setup.trial.robot.geometry, theta);
   const Vector2d unit = J.transpose().inverse() * Vector2d(w.torque_per_command[0], 0.0);
   findings.add(Verdict::fine,
@@ -163,10 +163,10 @@ void check_times(const RobotSetup& setup, Findings& findings) {
     const double tick = 1.0 / setup.trial.rate.value;
     const std::string text = fmt::format("the robot's watchdog is {:g} ms", 1e3 * seconds);
     if (seconds < 3.0 * tick) {
-      findings.judge(Verdict::wrong, text, "it would bite at the first late tick: take 20 to 100 ms");
+      findings.judge(Verdict::wrong, text, "it would expire at the first late tick: choose 20 to 100 ms");
     } else {
       findings.judge(doubtful_unless(seconds <= kLongWatchdog), text,
-                     "motors that run on for so long can hurt: take 20 to 100 ms");
+                     "motors that continue this long can injure: choose 20 to 100 ms");
     }
   };
   if (const auto* udp = std::get_if<drivers::UdpOptions>(&setup.trial.device.kind)) watchdog(udp->watchdog);
@@ -203,8 +203,8 @@ Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem
   }
   const config::Section robot = root.section("robot");
   if (robot.text("kind", "planar") != "planar") {
-    return tl::unexpected(robot.error("kind", "only planar robots can be driven, and checked, so far",
-                                      "'mbk robot describe' shows what is understood of others"));
+    return tl::unexpected(robot.error("kind", "only planar robots can be driven and checked so far",
+                                      "for others, use 'mbk robot describe'"));
   }
   // The whole description is judged by its own reader, which knows every key.
   MBK_TRY(robot_file::parse_robot_description(text, "", file.string()));
@@ -234,7 +234,7 @@ std::vector<Finding> check_setup(const RobotSetup& setup) {
   check_motors(setup, *theta, findings);
   check_times(setup, findings);
   if (const std::string assumed = protocol::assumptions_text(setup.trial); !assumed.empty()) {
-    findings.judge(Verdict::doubtful, assumed, "write yours");
+    findings.judge(Verdict::doubtful, assumed, "write your robot's values");
   }
   for (const std::string& one : safety::weakened(setup.trial.limits)) findings.add(Verdict::doubtful, one);
   return findings.take();
@@ -254,7 +254,7 @@ std::string setup_text(const RobotSetup& setup) {
       "           |   o elbow\n"
       "           |  /  d₁: θ₁ from +x\n"
       "           base ---- x\n";
-  text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.trial.device) : "none is named");
+  text += fmt::format("device     {}\n", setup.has_device ? device_text(setup.trial.device) : "none");
   if (!setup.has_device || setup.trial.device.simulated()) return text;
   const drivers::Fittings& f = setup.trial.device.fittings;
   const device::Wiring& w = f.wiring;
@@ -263,7 +263,7 @@ std::string setup_text(const RobotSetup& setup) {
                         w.radians_per_count[0] / kDegree, w.radians_per_count[1] / kDegree, w.count_offset[0],
                         w.count_offset[1]);
   } else {
-    text += fmt::format("encoders   angles in rad, senses {:+g} and {:+g}\n", w.radians_per_count[0],
+    text += fmt::format("encoders   angles in rad, signs {:+g} and {:+g}\n", w.radians_per_count[0],
                         w.radians_per_count[1]);
   }
   const auto sensor = [&](const char* name, bool fitted, const char* unit, const Matrix2d& gain, const Vector2d& offset,

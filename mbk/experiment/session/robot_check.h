@@ -12,25 +12,25 @@
 
 namespace mbk::session {
 
-/// What a file says of a planar robot, its wires and its limits.
+/// A planar robot, its wiring and its limits, as in a file.
 struct RobotSetup {
   protocol::Trial trial;    ///< of an experiment, its first; of a description, one with its robot and device
-  bool has_device = false;  ///< there is something to connect to
-  bool has_home = false;    ///< an experiment says where the hand is at home; a description does not
+  bool has_device = false;  ///< a device is named
+  bool has_home = false;    ///< experiments give a home position; descriptions do not
 };
 
-/// An experiment, its first trial, or the description of a robot, by what stands in it: [control] or [perturbation].
-/// @param file  how messages call it, and where the names of libraries begin
-/// @fails  data: as read_experiment, as robot_file::parse_robot_description; the robot is no planar one.
+/// Reads the first trial of an experiment (it has [control] or [perturbation]), or the description of a robot.
+/// @param file  its name in messages; libraries are named relative to its folder
+/// @fails  data: as read_experiment, as robot_file::parse_robot_description; the robot is not planar.
 /// @param simulation  as of protocol::read_experiment
 [[nodiscard]] Result<RobotSetup> read_robot_setup(std::string_view text, const std::filesystem::path& file,
                                                   const protocol::ReadSimulation& simulation = {});
 
-/// One thing that was looked at.
+/// Result of one check.
 struct Finding {
   enum class Verdict { fine, doubtful, wrong };
   Verdict verdict = Verdict::fine;
-  std::string text;  ///< a sentence with numbers and units, and what to do where it is not fine
+  std::string text;  ///< a sentence with numbers and units, and what to do if it is not fine
 };
 
 [[nodiscard]] constexpr auto word_table(Finding::Verdict) {
@@ -41,11 +41,11 @@ struct Finding {
 /// The worst of them; fine where there are none.
 [[nodiscard]] Finding::Verdict worst(const std::vector<Finding>& findings);
 
-/// Whether lengths, inertia, workspace, home, limits, resolutions and units can be meant:
-///   at the hand a count is worth σ₁(J diag(∂θ/∂count)) [m], σ₁ the largest singular value.
+/// Whether lengths, inertia, workspace, home, limits, resolutions and units are plausible. A count at the hand is
+/// σ₁(J diag(∂θ/∂count)) [m], σ₁ the largest singular value.
 [[nodiscard]] std::vector<Finding> check_setup(const RobotSetup& setup);
 
-/// Geometry, limits, wiring and device, as they were understood, for people.
+/// Geometry, limits, wiring and device as read, for people.
 [[nodiscard]] std::string setup_text(const RobotSetup& setup);
 
 }  // namespace mbk::session

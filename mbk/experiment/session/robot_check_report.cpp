@@ -21,9 +21,9 @@ void describe(Fields<RuleFinding>& fields) {
   fields.add(
       "requirement", [](From one) { return text_of(one.rule).rule; }, "the rule in words");
   fields.add("verdict", &RuleFinding::verdict);
-  fields.add("seen", &RuleFinding::seen, "with numbers and units; why, where it was not tested");
+  fields.add("seen", &RuleFinding::seen, "observation with numbers and units; the reason if not tested");
   fields.add_if([](From one) { return one.verdict == RuleVerdict::failed; }, "mend",
-                [](From one) { return text_of(one.rule).mend; }, "what to do; absent where it has not failed");
+                [](From one) { return text_of(one.rule).mend; }, "what to do; absent unless it failed");
 }
 
 }  // namespace drivers
@@ -52,15 +52,15 @@ void describe(Fields<Lateness>& fields) {
   fields.type("Lateness");
   fields.add_number(
       "rate_hz", [](From lateness) { return 1.0 / lateness.period; }, "[Hz]");
-  fields.add_number("duration_s", &Lateness::duration, "that was measured [s]");
+  fields.add_number("duration_s", &Lateness::duration, "measured duration [s]");
   fields.add_or_null(
       "priority", [](From lateness) { return lateness.setup.fifo ? std::optional(lateness.priority) : std::nullopt; },
-      "of SCHED_FIFO; null: no real-time scheduling was granted");
+      "SCHED_FIFO priority; null: no real-time scheduling was granted");
   fields.add("locked_memory", through(&Lateness::setup, &ThreadSetup::locked_memory));
   fields.add("wake_ups", [](From lateness) { return lateness.record.count(); });
-  fields.add("missed", &Lateness::missed, "ticks that went by without a wake-up");
-  fields.add_number("median_s", quantile(0.5), "right to 5 % [s]");
-  fields.add_number("p99_9_s", quantile(0.999), "that 99.9 % kept within, right to 5 % [s]");
+  fields.add("missed", &Lateness::missed, "ticks without a wake-up");
+  fields.add_number("median_s", quantile(0.5), "accurate to 5 % [s]");
+  fields.add_number("p99_9_s", quantile(0.999), "99.9th percentile, accurate to 5 % [s]");
   fields.add_number(
       "longest_s", [](From lateness) { return 1e-9 * static_cast<double>(lateness.record.worst()); }, "[s]");
   fields.add("histogram", [](From lateness) {
@@ -74,7 +74,7 @@ void describe(Fields<Lateness>& fields) {
 }
 
 void describe(Fields<Machine>& fields) {
-  fields.type("Machine", "null or empty: the system does not say.");
+  fields.type("Machine", "null or empty: not reported by the system.");
   fields.add("kernel", &Machine::kernel);
   fields.add_or_null("preempt_rt", &Machine::preempt_rt);
   fields.add("governors", &Machine::governors);
@@ -83,10 +83,10 @@ void describe(Fields<Machine>& fields) {
   fields.add_or_null("timer_slack_s", &Machine::timer_slack, "[s]");
   fields.add_or_null("virtual_machine", &Machine::virtual_machine);
   fields.add_or_null("processor_quota", &Machine::processor_quota,
-                     "that the control group allows, in processors; null: no limit");
+                     "processors that the control group allows; null: no limit");
   fields.add("clock_source", &Machine::clock_source);
   fields.add("processors", &Machine::processors);
-  fields.add_or_null("load", &Machine::load, "over one minute");
+  fields.add_or_null("load", &Machine::load, "mean over one minute");
 }
 
 }  // namespace realtime
@@ -96,7 +96,7 @@ namespace session {
 void describe(Fields<Finding>& fields) {
   fields.type("CheckFinding");
   fields.add("verdict", &Finding::verdict);
-  fields.add("text", &Finding::text, "a sentence with numbers and units, and what to do where it is not fine");
+  fields.add("text", &Finding::text, "a sentence with numbers and units, and what to do if it is not fine");
 }
 
 namespace {
@@ -108,7 +108,7 @@ struct WatchdogFinding {
 void describe(Fields<WatchdogFinding>& fields) {
   fields.type("WatchdogFinding");
   fields.add_number("asked_s", &WatchdogFinding::asked, "[s]");
-  fields.add_number("found_s", &WatchdogFinding::found, "from the last command to the state that says so [s]");
+  fields.add_number("found_s", &WatchdogFinding::found, "from the last command to the state that reports it [s]");
 }
 
 }  // namespace
@@ -118,24 +118,24 @@ void describe(Fields<RobotCheckReport::Setup>& fields) {
   fields.type("SetupCheck", "Of FILE.");
   fields.add("file", &Setup::file);
   fields.add("findings", &Setup::findings);
-  fields.add("live", &Setup::live, "of the readings; absent without --live");
+  fields.add("live", &Setup::live, "checks of the readings; absent without --live");
 }
 
 void describe(Fields<RobotCheckReport::Link>& fields) {
   using Link = RobotCheckReport::Link;
   using drivers::BridgeCheckOptions;
   using drivers::BridgeReport;
-  fields.type("LinkCheck", "Of --link: the rules that a robot's program has to keep.");
+  fields.type("LinkCheck", "Result of --link: the rules that a robot's program must follow.");
   fields.add("address", &Link::address);
   fields.add("motors", through(&Link::options, &BridgeCheckOptions::motors),
-             "also the rules for which the motors go on");
+             "whether rules that need the motors on were tested too");
   fields.add("conforms", through(&Link::report, &BridgeReport::conforms), "every rule was tested and passed");
   fields.add("rules", through(&Link::report, &BridgeReport::findings));
-  fields.add("states", through(&Link::report, &BridgeReport::states), "that came and were believed");
+  fields.add("states", through(&Link::report, &BridgeReport::states), "states received and accepted");
   fields.add_number("expected_rate_hz", through(&Link::options, &BridgeCheckOptions::rate), "[Hz]");
-  fields.add_or_null("rate_hz", through(&Link::report, &BridgeReport::rate), "of the states [Hz]");
+  fields.add_or_null("rate_hz", through(&Link::report, &BridgeReport::rate), "rate of the states [Hz]");
   fields.add_or_null("median_answer_s", through(&Link::report, &BridgeReport::median_answer),
-                     "from a command to the state that obeys it [s]");
+                     "delay from a command to the state that reports obeying it [s]");
   fields.add_or_null("longest_answer_s", through(&Link::report, &BridgeReport::longest_answer), "[s]");
   fields.add("watchdogs", [](const Link& link) {
     std::vector<WatchdogFinding> all;
@@ -147,7 +147,7 @@ void describe(Fields<RobotCheckReport::Link>& fields) {
 void describe(Fields<RobotCheckReport::Timing>& fields) {
   using Timing = RobotCheckReport::Timing;
   fields.type("TimingCheck",
-              "Of --rt: how late a loop was woken while it was measured, and what of the machine may hold it up.");
+              "Result of --rt: lateness of the loop's wake-ups, and settings of the computer that may delay it.");
   fields.add("lateness", &Timing::lateness);
   fields.add("machine", &Timing::machine);
   fields.add("findings", &Timing::findings);
@@ -156,8 +156,8 @@ void describe(Fields<RobotCheckReport::Timing>& fields) {
 void describe(Fields<RobotCheckReport>& fields) {
   fields.type(
       "Robot check",
-      "What `mbk robot check --json` writes: whether a robot is described, wired and reached as it should be. A "
-      "part that was not asked for is absent.");
+      "Output of `mbk robot check --json`: whether a robot's description, wiring and link are correct. Parts that "
+      "were not requested are absent.");
   fields.header("mbk.robot_check/1");
   fields.add("setup", &RobotCheckReport::setup);
   fields.add("link", &RobotCheckReport::link);
@@ -221,7 +221,7 @@ std::string rule_text(const RuleFinding& one) {
   return "";
 }
 
-/// What was not tested, by the reason.
+/// Untested rules, grouped by reason.
 std::string untested_text(const BridgeReport& report) {
   std::vector<std::pair<std::string, std::string>> reasons;
   for (const RuleFinding& one : report.findings) {
@@ -245,7 +245,7 @@ std::string conclusion(const BridgeReport& report) {
   std::string text = fmt::format("{} of {} rules kept, {} broken, {} not tested: ", count(RuleVerdict::passed),
                                  report.findings.size(), failed, untested);
   if (failed > 0) return text + "IT DOES NOT CONFORM.\n";
-  if (untested > 0) return text + "nothing broken was seen.\n";
+  if (untested > 0) return text + "no violation was found.\n";
   return text + "it conforms.\n";
 }
 
@@ -255,8 +255,8 @@ std::string link_text(const RobotCheckReport::Link& link) {
   text += untested_text(link.report);
   text += conclusion(link.report);
   text +=
-      "Not seen from here: that the stop button cuts the motors' power; the senses of\n"
-      "encoders, force sensor and motors ('mbk robot check FILE --live').\n";
+      "Not tested: that the stop button cuts the motors' power; the signs of encoders,\n"
+      "force sensor and motors ('mbk robot check FILE --live').\n";
   return text;
 }
 

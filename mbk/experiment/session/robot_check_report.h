@@ -11,7 +11,7 @@
 
 namespace mbk::session {
 
-/// What `mbk robot check` looked at; empty: it was not asked for.
+/// Results of `mbk robot check`; empty: not requested.
 struct RobotCheckReport {
   struct Setup {
     std::string file, text;

@@ -55,7 +55,7 @@ Result<void> start(device::Device& robot) {
   robot.read(state);
   if (!state.stop) return {};
   robot.stop();
-  return bad_usage(fmt::format("{}: the stop button is pressed", robot.facts().name), "release it, then begin again");
+  return bad_usage(fmt::format("{}: the stop button is pressed", robot.facts().name), "release it, then start again");
 }
 
 /// To the bit, but that one NaN is as good as another.
@@ -119,7 +119,7 @@ void make_recording(Recorder& recorder, TrialOutcome& outcome) {
   outcome.journal = recorder.journal();
   outcome.ended = outcome.ending.word();
   const auto unrecorded = [&](Error error, std::string_view remedy) {
-    error.remedy = fmt::format("{}'mbk recover {}'", remedy, outcome.journal.string());
+    error.remedy = fmt::format("{}run 'mbk recover {}'", remedy, outcome.journal.string());
     outcome.unrecorded = std::move(error);
     outcome.incomplete = true;
   };
@@ -132,7 +132,7 @@ void make_recording(Recorder& recorder, TrialOutcome& outcome) {
   auto recovered = recover(outcome.journal, outcome.recording, {.ending = outcome.ending, .notes = outcome.notes});
   if (!recovered) {
     const bool taken = fs::exists(outcome.recording, ignored);
-    unrecorded(recovered.error(), taken ? "move that file away, then " : "look at the folder and the disk, then ");
+    unrecorded(recovered.error(), taken ? "move that file away, then " : "check the folder and the disk, then ");
     return;
   }
   outcome.recorded = std::move(recovered->read_back);
@@ -187,7 +187,7 @@ Result<void> check_target(const Plan& plan, const fs::path& target) {
   MBK_TRY(recording::format_of(target));
   const auto can_write = [](const fs::path& file) -> Result<void> {
     auto ok = recording::can_write_file(file, false);
-    if (!ok && ok.error().kind == ErrorKind::usage) ok.error().remedy = "choose another name, or move it away";
+    if (!ok && ok.error().kind == ErrorKind::usage) ok.error().remedy = "choose another name, or move the file away";
     return ok;
   };
   MBK_TRY(can_write(target));
@@ -227,15 +227,15 @@ Result<TrialOutcome> Session::perform(device::Device& robot, const Plan& plan, c
                                       const Watch& watch, const Callbacks& callbacks) {
   const protocol::Trial& trial = plan.trial;
   if (trial.person.withdrawn) {
-    return bad_usage("the person has withdrawn: no further trial is begun", "see [person] withdrawn");
+    return bad_usage("the participant has withdrawn, so no trial may start", "check [person] withdrawn");
   }
   if (gate_ && gate_->tripped()) {
-    return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "see to the reason, then reset");
+    return bad_usage("the gate is tripped: " + safety::sentence(gate_->trip()), "clear the cause, then reset");
   }
   MBK_TRY(check_target(plan, target));
   if (pace_.virtual_clock && robot.facts().keeps_time && !trial.device.simulated()) {
-    return bad_usage(fmt::format("{} keeps its own time, which a virtual clock cannot hurry", robot.facts().name),
-                     "run it without --fast and --speed; a simulation behind UDP can wait: lock_step = true");
+    return bad_usage(fmt::format("{} keeps its own time and cannot follow a virtual clock", robot.facts().name),
+                     "omit --fast and --speed; for a simulation behind UDP, set lock_step = true");
   }
   auto gate = MBK_TRY(plan.gate());
   const double sample_time = plan.sample_time();
@@ -336,7 +336,7 @@ Result<void> set_metadata(const fs::path& file, const std::map<std::string, std:
 Result<Recovered> recover(const fs::path& file, const fs::path& target, const RecoverOptions& options) {
   if (const int process = journal::recorded_by(file); process != 0) {
     return fail(ErrorKind::usage, fmt::format("is being recorded by process {}", process),
-                "wait until the trial is over; mbk makes the recording by itself then", file.string());
+                "wait until the trial ends; mbk then makes the recording automatically", file.string());
   }
   Recovered recovered;
   auto readers = options.readers;
@@ -363,8 +363,8 @@ Result<Recovered> recover(const fs::path& file, const fs::path& target, const Re
   if (!there) {
     std::error_code ignored;
     fs::remove(target, ignored);
-    return bad_data("the recording did not read back as it was written, and was removed",
-                    fmt::format("look at the disk, then 'mbk recover {}'", file.string()), target.string());
+    return bad_data("the recording read back differently from what was written, and was removed",
+                    fmt::format("check the disk, then run 'mbk recover {}'", file.string()), target.string());
   }
   recovered.read_back = std::move(*there);
   std::error_code failed;

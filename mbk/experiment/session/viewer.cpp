@@ -44,7 +44,7 @@ void Viewer::call(std::span<const Tick> ticks) noexcept {
       watch_(ticks);
     } catch (const std::exception& error) {
       watch_ = nullptr;
-      failure_ = fmt::format("nothing was shown from tick {} on: {}", ticks.front().number, error.what());
+      failure_ = fmt::format("the display failed at tick {}: {}", ticks.front().number, error.what());
     }
   } catch (...) {  // of another kind, or no memory to say so
     watch_ = nullptr;
@@ -70,7 +70,7 @@ void Viewer::stop() noexcept {
 std::string Viewer::finish() {
   stop();
   if (failure_.empty() && ring_.dropped() > 0) {
-    return fmt::format("{} ticks were not shown: what shows them did not keep up", ring_.dropped());
+    return fmt::format("{} ticks were not shown because the display did not keep up", ring_.dropped());
   }
   return std::move(failure_);
 }

@@ -8,7 +8,7 @@
 
 namespace mbk::robot_file {
 
-/// A robot from a TOML file, docs/guide/your_own_robot.md lists its keys:
+/// A robot from a TOML file, docs/guide/own_robot.md lists its keys:
 ///   [robot] kind = "planar" | "one_axis" | "urdf", and the keys of that kind;  [drive] terms, values, motor_delay_ms
 /// A section [device] is not looked at.
 /// A file named .urdf is read as the whole robot, from its root to its only leaf.

@@ -75,7 +75,7 @@ DetectableChange without(std::int64_t participant, const store::OutcomeColumns& 
     if (!column.standard_errors.empty()) kept.standard_errors.push_back(column.standard_errors[k]);
   }
   const auto found = statistics::study_statistics(others, {.outcomes = {column.name}});
-  if (!found || found->reliability.empty()) return {.why_unknown = "nothing is left without this person"};
+  if (!found || found->reliability.empty()) return {.why_unknown = "no other person has results"};
   return detectable_change(found->reliability.front());
 }
 
@@ -151,7 +151,7 @@ DetectableChange detectable_change(const statistics::OutcomeReliability& reliabi
     return error;
   };
   if (reliability.axial && model.support == reliability::Support::no_variation) {
-    return not_known("directions lie too far apart to be compared by numbers");
+    return not_known("directions are too far apart to be compared as numbers");
   }
   if (model.support != reliability::Support::enough || model.of_trials.empty()) {
     return not_known("the variances of this study are not identifiable");
@@ -168,7 +168,7 @@ DetectableChange detectable_change(const statistics::OutcomeReliability& reliabi
   const double sem = error.between(1, 1);
   if (!(sem > 0.0) || !std::isfinite(sem)) return not_known("nothing varies between sessions");
   if (!std::isfinite(error.lower_factor) || !(error.upper_factor >= 1.0) || !std::isfinite(error.upper_factor)) {
-    return not_known("how well it is known cannot be said");
+    return not_known("its uncertainty cannot be estimated");
   }
   return error;
 }

@@ -20,7 +20,7 @@ using reliability::Interval;
 enum class ChangeVerdict {
   beyond_error,  ///< more than even the upper end of the interval of the minimal detectable change, which holds
   uncertain,     ///< more than the minimal detectable change, and less than that end
-  within_error,  ///< no more than the minimal detectable change: no change is shown
+  within_error,  ///< at most the minimal detectable change: no detectable change
   unknown,       ///< the minimal detectable change is not known
 };
 
@@ -90,9 +90,9 @@ struct DetectableChange {
 /// What a difference is by that.
 [[nodiscard]] ChangeVerdict verdict_of(double difference, double mdc, const Interval& mdc95);
 
-/// Of every outcome and condition that the statistics tell of. Whoever differs by more than the minimal detectable
-/// change of all people is judged by that of all others, where that is known and there are no more than 40: one large
-/// change among few people would otherwise hide itself.
+/// For every outcome and condition of the statistics. A person whose difference exceeds the minimal detectable change
+/// of all people is judged with the minimal detectable change of all others, if known and for at most 40 such people:
+/// one large change among few people would otherwise mask itself.
 /// @param participant  only that one's courses; the minimal detectable change is still that of all people
 [[nodiscard]] std::vector<OutcomeCourses> courses(const store::OutcomeColumns& columns,
                                                   const statistics::StudyStatistics& statistics,

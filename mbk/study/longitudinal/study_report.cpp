@@ -20,7 +20,7 @@ void describe(Fields<SessionMean>& fields) {
   fields.type("SessionMean");
   fields.add("session", &SessionMean::session);
   fields.add("results", &SessionMean::results);
-  fields.add("mean", &SessionMean::mean, "of the results; of an orientation the mean axis");
+  fields.add("mean", &SessionMean::mean, "of the results; for an orientation, the mean axis");
 }
 
 void describe(Fields<Change>& fields) {
@@ -30,37 +30,37 @@ void describe(Fields<Change>& fields) {
   fields.add("first", &Change::first);
   fields.add("last", &Change::last);
   fields.add("difference", &Change::difference);
-  fields.add("mdc95", &Change::mdc, "minimal detectable change between means of so many results; null: unknown");
+  fields.add("mdc95", &Change::mdc, "minimal detectable change between means of this many results; null: unknown");
   fields.add("mdc95_interval", &Change::mdc95);
   fields.add("by_others", &Change::by_others,
-             "mdc95 is by the variances of all other people, since the difference is more than that of all");
+             "mdc95 is from the variances of all other people, because the difference exceeds that from all");
   fields.add("heavy_tails", &Change::heavy_tails,
-             "errors of those people have heavier tails than normal ones: mdc95_interval does not hold, and no "
+             "errors of these people have heavier tails than normal errors: mdc95_interval is not valid, and no "
              "difference is beyond-error");
   fields.add(
       "verdict", &Change::verdict,
       "beyond-error: more than the upper end of mdc95_interval, without heavy_tails; uncertain: more than mdc95; "
-      "within-error: no more than that; unknown: mdc95 is not known");
+      "within-error: at most mdc95; unknown: mdc95 is unknown");
 }
 
 void describe(Fields<Course>& fields) {
   fields.type("Course");
   fields.add("participant", &Course::participant);
   fields.add("mean", &Course::mean, "of the sessions' means");
-  fields.add("interval95", &Course::interval95, "of that, by the variances of all people; null: unknown");
+  fields.add("interval95", &Course::interval95, "from the variances of all people; null: unknown");
   fields.add("sessions", &Course::sessions);
   fields.add("changes", &Course::changes, "each later session against the first");
 }
 
 void describe(Fields<OutcomeCourses>& fields) {
-  fields.type("OutcomeCourses", "How one outcome of each person develops over sessions.");
+  fields.type("OutcomeCourses", "One outcome of each person over sessions.");
   fields.add("condition", &OutcomeCourses::condition);
   fields.add("outcome", &OutcomeCourses::outcome);
   fields.add("unit", &OutcomeCourses::unit);
   fields.add("axial", &OutcomeCourses::axial, "an orientation");
   fields.add("repeated_participants", &OutcomeCourses::repeated_participants, "who have two sessions or more");
   fields.add_unless_empty("why_unknown", &OutcomeCourses::why_unknown,
-                          "why no minimal detectable change is known, as a clause");
+                          "why the minimal detectable change is unknown, as a clause");
   fields.add("mean", &OutcomeCourses::mean, "of the people's means; null in the report of one participant");
   fields.add("interval95", &OutcomeCourses::interval95);
   fields.add("participants", &OutcomeCourses::courses);
@@ -114,7 +114,7 @@ struct StudyResult {
 void describe(Fields<StudyResult>& fields) {
   fields.type("StudyResult");
   fields.add("recording", &StudyResult::recording);
-  fields.add("values", &StudyResult::values, "in the order of `outcomes`; null: there is none");
+  fields.add("values", &StudyResult::values, "in the order of `outcomes`; null: none");
   fields.add("standard_errors", &StudyResult::standard_errors);
 }
 
@@ -208,11 +208,11 @@ template <class View>
 void describe_head(Fields<View>& fields, const std::string& schema) {
   fields.header(schema);
   fields.add(
-      "command", [](const View& view) { return view.page.report.command; }, "that makes it again");
+      "command", [](const View& view) { return view.page.report.command; }, "command that reproduces it");
   fields.add_unless_empty("note", [](const View& view) { return view.page.report.note; });
   fields.add(
       "primary", [](const View& view) { return view.page.report.primary; },
-      "the outcome that is shown first; \"\": nothing was measured");
+      "outcome shown first; \"\": nothing was measured");
 }
 
 /// What both end with.
@@ -224,7 +224,7 @@ void describe_tail(Fields<View>& fields) {
   fields.add("outcomes", [](const View& view) { return outcomes_of(view.page); });
   fields.add(
       "results", [](const View& view) { return results_of(view.page); },
-      "every usable result that is not excluded; absent where they are too many for a page");
+      "every usable result that is not excluded; absent if too many for a page");
 }
 
 struct StudyPage {
@@ -233,7 +233,7 @@ struct StudyPage {
 };
 
 void describe(Fields<StudyPage>& fields) {
-  fields.type("StudyReport", "What stands in the page that `mbk study report` writes.");
+  fields.type("StudyReport", "Content of the page that `mbk study report` writes.");
   describe_head(fields, "mbk.study_report/1");
   fields.add("summary", [](const StudyPage& view) {
     const StudyReport& report = view.page.report;
@@ -248,10 +248,9 @@ struct ParticipantPage {
 
 void describe(Fields<ParticipantPage>& fields) {
   using From = const ParticipantPage&;
-  fields.type(
-      "ParticipantReport",
-      "What stands in the page that `mbk study report --participant` writes. Of other people it holds no number "
-      "but those that describe all of them together.");
+  fields.type("ParticipantReport",
+              "Content of the page that `mbk study report --participant` writes. About other people it contains only "
+              "numbers that describe all of them together.");
   describe_head(fields, "mbk.participant_report/1");
   fields.add("title", [](From view) { return view.page.report.list.facts.title; });
   fields.add_or_null("analysis", [](From view) { return view.page.report.list.analysis; });
@@ -287,13 +286,14 @@ Result<StudyReport> study_report(store::StudyList list, store::OutcomeColumns co
   StudyReport report;
   const auto is_theirs = [&](const store::ListedRecording& one) { return one.recording.participant == *participant; };
   if (participant && std::ranges::none_of(list.recordings, is_theirs)) {
-    return bad_usage(fmt::format("there is no participant {}", *participant), "'mbk study list' shows those there are");
+    return bad_usage(fmt::format("there is no participant {}", *participant),
+                     "'mbk study list' shows the participants");
   }
   report.primary = outcome.empty() ? primary_outcome(columns) : outcome;
   if (!outcome.empty() &&
       std::ranges::find(columns.outcomes, outcome, &store::OutcomeColumn::name) == columns.outcomes.end()) {
     return bad_usage(fmt::format("there is no outcome '{}'", outcome),
-                     "'mbk study summary' shows those there are, as in --outcome K_xx");
+                     "'mbk study summary' shows the outcomes; example: --outcome K_xx");
   }
   report.courses = courses(columns, statistics, participant);
   report.list = std::move(list);

@@ -25,7 +25,7 @@ Vector as_vector(const std::vector<double>& values) {
 Result<AxialMean> axial_mean(const Vector& angles) {
   if (angles.size() == 0) return bad_data("there are no angles", "give one or more");
   if (const Index i = first_non_finite(angles); i >= 0) {
-    return bad_data(fmt::format("angle {} is not a finite number", i + 1), "leave it out");
+    return bad_data(fmt::format("angle {} is not a finite number", i + 1), "omit it");
   }
   AxialMean result;
   result.count = static_cast<int>(angles.size());

@@ -37,7 +37,7 @@ struct Unwrapped {
 [[nodiscard]] Unwrapped unwrapped_about(const Vector& angles, double about);
 
 /// Affine-invariant distances (impedance/impedance_width.h) of matrices: between sessions of a person, and between
-/// people. Where the first are not clearly less than the second, the matrix does not tell people apart.
+/// people. Unless the first are clearly smaller than the second, the matrix does not distinguish people.
 struct WidthSpread {
   Support support = Support::enough;
   Vector within;   ///< each pair of sessions of each person

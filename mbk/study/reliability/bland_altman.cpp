@@ -82,7 +82,7 @@ Result<BlandAltman> bland_altman(const Vector& first, const Vector& second) {
   }
   const Vector difference = second - first;
   if (const Index i = first_non_finite(difference); i >= 0) {
-    return bad_data(fmt::format("the difference of person {} is not a finite number", i + 1), "leave the person out");
+    return bad_data(fmt::format("the difference of person {} is not a finite number", i + 1), "omit the person");
   }
   BlandAltman result;
   result.people = static_cast<int>(difference.size());

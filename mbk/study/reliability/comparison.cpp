@@ -19,11 +19,11 @@ namespace {
 Result<void> check_samples(const Vector& first, const Vector& second, Pairing pairing) {
   for (const auto& [name, sample] : {std::pair("first", &first), std::pair("second", &second)}) {
     if (const Index i = first_non_finite(*sample); i >= 0) {
-      return bad_data(fmt::format("value {} of the {} sample is not a finite number", i + 1, name), "leave it out");
+      return bad_data(fmt::format("value {} of the {} sample is not a finite number", i + 1, name), "omit it");
     }
   }
   if (pairing == Pairing::paired && first.size() != second.size()) {
-    return bad_data(fmt::format("{} first and {} second values are no pairs", first.size(), second.size()),
+    return bad_data(fmt::format("{} first and {} second values do not form pairs", first.size(), second.size()),
                     "give both of each person");
   }
   return {};
@@ -198,8 +198,8 @@ double difference_p(const Vector& first, const Vector& second, Pairing pairing) 
 Result<Permutation> permutation_test(const Vector& first, const Vector& second, Pairing pairing,
                                      const PermutationOptions& options) {
   if (options.draws < 1 || options.max_exact < 1) {
-    return bad_usage(fmt::format("{} draws and {} arrangements", options.draws, options.max_exact),
-                     "ask for 1 or more");
+    return bad_usage(fmt::format("{} draws or {} arrangements are too few", options.draws, options.max_exact),
+                     "request at least 1");
   }
   MBK_TRY(check_samples(first, second, pairing));
   Permutation result;

@@ -430,14 +430,14 @@ Result<void> check_shapes(const Measurements& m) {
       (m.known_variance.size() > 0 && m.known_variance.size() != rows)) {
     return bad_data(fmt::format("{} values, {} participants, {} sessions, {} rows of X and {} known variances", rows,
                                 m.participants.size(), m.sessions.size(), m.fixed.rows(), m.known_variance.size()),
-                    "give as many of each; known variances may be left out altogether");
+                    "give the same number of each; known variances may be omitted");
   }
   for (Index i = 0; i < rows; ++i) {
     if (std::isnan(m.values[i])) continue;
     if (!std::isfinite(m.values[i]))
       return bad_data(fmt::format("value {} is infinite", i + 1), "write NaN where it is missing");
     if (!m.fixed.row(i).allFinite()) {
-      return bad_data(fmt::format("row {} of X is not finite", i + 1), "leave out rows whose condition is not known");
+      return bad_data(fmt::format("row {} of X is not finite", i + 1), "omit rows whose condition is unknown");
     }
     if (m.known_variance.size() > 0 && !(m.known_variance[i] >= 0.0 && std::isfinite(m.known_variance[i]))) {
       return bad_data(fmt::format("known variance {} is {:g}", i + 1, m.known_variance[i]),
@@ -481,8 +481,8 @@ Result<Matrix> orthonormal(const Measurements& m, Matrix& X) {
     R(k, k) = X.col(k).norm();
     constexpr double kDependent = 1e-10;
     if (!(R(k, k) > kDependent * length)) {
-      return bad_data(fmt::format("{} of the fixed effects depends on those before it", name_of(m, k)),
-                      "leave it out: these data cannot tell it from them");
+      return bad_data(fmt::format("the fixed effect {} depends on those before it", name_of(m, k)),
+                      "omit it: these data cannot distinguish it from them");
     }
     X.col(k) /= R(k, k);
   }
@@ -495,7 +495,8 @@ Result<Prepared> prepare(const Measurements& m) {
   const auto count = static_cast<Index>(rows.size());
   const Index p = m.fixed.cols();
   if (count <= p) {
-    return bad_data(fmt::format("{} values for {} fixed effects", count, p), "measure more, or ask for fewer effects");
+    return bad_data(fmt::format("{} values are too few for {} fixed effects", count, p),
+                    "measure more, or request fewer effects");
   }
   Prepared data;
   data.missing = static_cast<int>(m.values.size() - count);
@@ -514,7 +515,7 @@ Result<Prepared> prepare(const Measurements& m) {
   }
   const std::size_t people = data.first_session.size();
   data.first_session.push_back(data.sessions.size());
-  if (people < 2) return bad_data(fmt::format("{} participant with values", people), "give two or more");
+  if (people < 2) return bad_data(fmt::format("only {} participant has values", people), "measure two or more");
   data.has_session = data.sessions.size() < rows.size() && people < data.sessions.size();
   data.has_participant = people < rows.size();
 
@@ -913,7 +914,7 @@ Result<ModelReliability> model_reliability(const Measurements& measurements, int
 
 Result<FittedReliability> fit_reliability(const Measurements& measurements, std::span<const int> trials) {
   for (const int one : trials) {
-    if (one < 1) return bad_usage(fmt::format("the mean of {} trials does not exist", one), "ask for 1 or more");
+    if (one < 1) return bad_usage(fmt::format("there is no mean of {} trials", one), "request at least 1");
   }
   const auto data = MBK_TRY(prepare(measurements));
   FittedReliability result;

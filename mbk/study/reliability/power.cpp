@@ -15,8 +15,8 @@ constexpr int kMaxPeople = 10'000'000;
 
 Result<void> check_level(double power, double level) {
   if (!(level > 0.0 && level < 1.0 && power > level && power < 1.0)) {
-    return bad_usage(fmt::format("a power of {:g} at a level of {:g}", power, level),
-                     "ask for 0 < level < power < 1, such as 0.8 at 0.05");
+    return bad_usage(fmt::format("a power of {:g} at a level of {:g} is impossible", power, level),
+                     "choose 0 < level < power < 1, such as 0.8 at 0.05");
   }
   return {};
 }
@@ -34,13 +34,14 @@ double power_of_t_test(double d, int people, Pairing pairing, double level) {
 
 Result<int> people_for_effect(double d, double power, Pairing pairing, double level) {
   MBK_TRY(check_level(power, level));
-  if (!std::isfinite(d) || d == 0.0) return bad_usage(fmt::format("an effect of {:g}", d), "ask for one that is not 0");
+  if (!std::isfinite(d) || d == 0.0)
+    return bad_usage(fmt::format("an effect of {:g} has no sample size", d), "choose one that is not 0");
   int low = 1, high = 2;  // low is too few
   while (power_of_t_test(d, high, pairing, level) < power) {
     low = high;
     high *= 2;
     if (high > kMaxPeople)
-      return bad_usage(fmt::format("an effect of {:g} takes more than 10⁷ people", d), "ask for a larger one");
+      return bad_usage(fmt::format("an effect of {:g} needs more than 10⁷ people", d), "choose a larger one");
   }
   while (high - low > 1) {
     const int middle = std::midpoint(low, high);

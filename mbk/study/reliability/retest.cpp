@@ -18,7 +18,7 @@ Result<void> all_finite(const Matrix& scores) {
     const Index i = first_non_finite(scores.col(j));
     if (i >= 0) {
       return bad_data(fmt::format("the score of person {} in session {} is not a finite number", i + 1, j + 1),
-                      "use the mixed model, which takes missing cells, or leave the person out");
+                      "use the mixed model, which allows missing cells, or omit the person");
     }
   }
   return {};
@@ -118,7 +118,7 @@ Result<MeanSquares> mean_squares(const Matrix& scores) {
 }
 
 Result<TestRetest> test_retest(const Matrix& scores) {
-  if (scores.size() == 0) return bad_data("there are no scores", "give a row for each person");
+  if (scores.size() == 0) return bad_data("there are no scores", "give one row per person");
   MBK_TRY(all_finite(scores));
   TestRetest result;
   result.mean_squares.people = static_cast<int>(scores.rows());

@@ -28,7 +28,7 @@ Error no_level(const std::string& what, const std::string& name, const std::vect
   std::string list;
   for (const std::string& one : known) list += (list.empty() ? "" : ", ") + (one.empty() ? "''" : one);
   return {ErrorKind::usage, fmt::format("there is no {} '{}' with usable results", what, name),
-          list.empty() ? "" : "there are: " + list, ""};
+          list.empty() ? "" : "choose one of: " + list, ""};
 }
 
 Result<Levels> levels_by_name(const std::vector<std::string>& requested, const std::vector<std::string>& known,
@@ -44,8 +44,8 @@ Result<Levels> levels_by_name(const std::vector<std::string>& requested, const s
     at = static_cast<int>(k);
   }
   if (levels.names.size() < 2) {
-    return bad_usage(fmt::format("there is one {} only: nothing to compare", what),
-                     fmt::format("at least two {}s with usable results are needed", what));
+    return bad_usage(fmt::format("there is only one {}, so nothing can be compared", what),
+                     fmt::format("measure at least two {}s", what));
   }
   for (const int one : of_trial) levels.of_trial.push_back(one < 0 ? -1 : place[static_cast<std::size_t>(one)]);
   return levels;
@@ -73,8 +73,8 @@ Result<Levels> by_session(const store::OutcomeColumns& columns, const std::vecto
 Result<Levels> by_group(const store::OutcomeColumns& columns, const std::vector<PeopleGroup>& groups,
                         const std::vector<std::string>& requested, std::vector<std::string>& notes) {
   if (groups.size() < 2) {
-    return bad_usage("groups are compared, and there are not two",
-                     "say who is in which, as in --group patients=1-10 --group controls=11,12,15-20");
+    return bad_usage("a comparison of groups needs two groups",
+                     "assign the participants, as in --group patients=1-10 --group controls=11,12,15-20");
   }
   std::map<std::int64_t, int> group_of;
   std::vector<std::string> known;
@@ -85,7 +85,7 @@ Result<Levels> by_group(const store::OutcomeColumns& columns, const std::vector<
       if (added || there->second == static_cast<int>(k)) continue;
       return bad_usage(fmt::format("participant {} is in two groups, {} and {}", participant,
                                    groups[static_cast<std::size_t>(there->second)].name, groups[k].name),
-                       "each person belongs to one");
+                       "assign each person to one group");
     }
   }
   std::vector<int> of_trial;
@@ -96,7 +96,7 @@ Result<Levels> by_group(const store::OutcomeColumns& columns, const std::vector<
     (found == group_of.end() ? without : seen).insert(trial.participant);
   }
   if (!without.empty()) {
-    notes.push_back(fmt::format("in no group, and not compared: participant {}",
+    notes.push_back(fmt::format("not compared, because in no group: participant {}",
                                 listed(std::vector<std::int64_t>(without.begin(), without.end()))));
   }
   std::vector<std::int64_t> absent;
@@ -240,8 +240,7 @@ void compare_one(const OutcomeRows& rows, const Levels& levels, int first, std::
   result.axial = rows.axial;
   if (!rows.trusted) {
     result.verdict = DifferenceVerdict::no_variation;
-    result.notes.emplace_back(
-        "orientations lie more than 45° from their mean axis, so that no numbers can stand for them");
+    result.notes.emplace_back("orientations are more than 45° from their mean axis and cannot be treated as numbers");
     result.difference.support = result.permutation.support = Support::no_variation;
     result.difference.value = result.difference.p = result.permutation.p = kNaN;
     return;
@@ -276,12 +275,12 @@ void judge(OutcomeComparison& one) {
   }
   if (one.verdict != DifferenceVerdict::differs) return;
   if (one.influence && one.influence->without > kLevel) {
-    one.notes.push_back(fmt::format("the difference rests on participant {}: without them p is {:.2g}",
+    one.notes.push_back(fmt::format("the difference depends on participant {}: without them p is {:.2g}",
                                     one.influence->participant, one.influence->without));
   }
   if (one.permutation.p > kLevel) {
     one.notes.push_back(
-        fmt::format("a permutation test does not show it (p {:.2g}): look at the single values", one.permutation.p));
+        fmt::format("a permutation test does not confirm it (p {:.2g}); check the single values", one.permutation.p));
   }
 }
 

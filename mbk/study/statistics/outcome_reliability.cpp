@@ -123,8 +123,7 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
   if (result.typical_trials > 1) trials.push_back(result.typical_trials);
   auto fit = reliability::fit_reliability(m, trials);
   if (result.weighted && fit && fit->model && overstated(*fit->model, m)) {
-    notes.emplace_back(
-        "trials are not weighted by their standard errors: these say more than what the trials differ by");
+    notes.emplace_back("trials are not weighted by their standard errors, which exceed the differences between trials");
     result.weighted = false;
     m.known_variance.resize(0);
     fit = reliability::fit_reliability(m, trials);
@@ -140,7 +139,7 @@ MixedReliability mixed_reliability(const OutcomeRows& rows, const std::vector<Ce
     outcome.warnings.push_back(ReliabilityWarning::sessions_and_trials);
     notes.emplace_back(
         "the variances between sessions and between trials are not identifiable, since too few sessions have two "
-        "trials or more: only their sum is known, and how the mean of more trials would improve is not");
+        "trials or more: only their sum is known, and the benefit of more trials is unknown");
   }
   result.known = fit->model->typical_known_variance;
   result.of_trials = std::move(fit->of_trials);
@@ -205,7 +204,7 @@ std::string heavy_tails_in(const OutcomeRows& rows, const Repeated& sessions) {
       "reach "
       "in {:.1g} % of studies): the intervals of SEM, MDC and ICC and the limits of agreement do not hold; {} is "
       "farthest "
-      "off, look at the recordings",
+      "off; check the recordings",
       is_between ? "sessions" : "trials", kurtosis, 100.0 * std::min(between.p, within.p), where);
 }
 
@@ -224,7 +223,7 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
     result.notes.emplace_back(
         "orientations lie more than 45° from their mean axis, so that no numbers can stand for them: look at the "
         "shape, "
-        "near 1 it is a circle that has none");
+        "near 1 it is a circle without orientation");
     result.between_sessions.support = result.within_session.support = result.mixed_model.support =
         Support::no_variation;
     return result;
@@ -251,9 +250,9 @@ OutcomeReliability reliability_of(OutcomeRows rows, OutcomeReliability named) {
     const auto [low, high] = sessions.test_retest.icc[1].interval95;
     const double without = result.influence->without;
     if (without < low || without > high) {
-      result.notes.push_back(fmt::format("participant {} decides: without them ICC(A,1) is {:.2f}, not {:.2f}",
-                                         result.influence->participant, result.influence->without,
-                                         sessions.test_retest.icc[1].value));
+      result.notes.push_back(
+          fmt::format("the result depends on participant {}: without them ICC(A,1) is {:.2f}, not {:.2f}",
+                      result.influence->participant, result.influence->without, sessions.test_retest.icc[1].value));
     }
   }
   return result;

@@ -33,7 +33,7 @@ Result<reliability::Measurements> pilot_measurements(const store::OutcomeColumns
   }
   const OutcomeRows rows = rows_of(columns, column, -1, keep);
   if (!rows.trusted) {
-    return bad_data("its orientations lie more than 45° from their mean axis", "plan for another outcome");
+    return bad_data("its orientations are more than 45° from their mean axis", "plan for another outcome");
   }
   reliability::Measurements m;
   const auto count = static_cast<Index>(rows.rows.size());
@@ -150,17 +150,17 @@ Planned simulated(const VarianceComponents& variances, const PlanGoal& goal, con
 
 Result<void> check_goal(const Pilot& pilot, const PlanGoal& goal) {
   if (!goal.difference && !goal.change) {
-    return bad_usage("nothing is wanted of the study", "pass --difference or --mdc, in the unit of the outcome");
+    return bad_usage("no target is given", "pass --difference or --mdc, in the unit of the outcome");
   }
   for (const auto& requested : {goal.difference, goal.change}) {
     if (requested && !(*requested > 0.0 && std::isfinite(*requested))) {
-      return bad_usage(fmt::format("{:g} is wanted", *requested), "ask for more than 0");
+      return bad_usage(fmt::format("the target {:g} is not above zero", *requested), "choose one above 0");
     }
   }
   if (pilot.warns_of(ReliabilityWarning::people_and_sessions) && (goal.change || goal.pairing == Pairing::paired)) {
     return bad_data(
-        "too few people of the pilot have two sessions, so how much a person changes between sessions is "
-        "not known",
+        "too few people of the pilot have two sessions, so the variance between sessions is "
+        "unknown",
         "measure at least five people in two sessions, or state the variances with --sd-people, "
         "--sd-sessions and --sd-trials",
         pilot.outcome);
@@ -213,7 +213,7 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
   const auto column = std::ranges::find(columns.outcomes, outcome, &store::OutcomeColumn::name);
   if (column == columns.outcomes.end()) {
     return bad_usage(fmt::format("there is no outcome '{}' with usable results", printable(outcome)),
-                     "'mbk study summary' lists those that there are");
+                     "'mbk study summary' lists the existing ones");
   }
   Pilot pilot;
   pilot.outcome = outcome;
@@ -224,7 +224,7 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
     const auto found = std::ranges::find(columns.conditions, condition);
     if (found == columns.conditions.end()) {
       return bad_usage(fmt::format("there is no condition '{}' with usable results", printable(condition)),
-                       "'mbk study summary' lists those that there are");
+                       "'mbk study summary' lists the existing ones");
     }
     places.push_back(static_cast<int>(found - columns.conditions.begin()));
   }
@@ -234,17 +234,17 @@ Result<Pilot> pilot_of(const store::OutcomeColumns& columns, const std::string& 
   people.erase(std::unique(people.begin(), people.end()), people.end());
   pilot.participants = static_cast<int>(people.size());
   if (pilot.participants < reliability::kMinPeople) {
-    return bad_data(fmt::format("{} people are too few for a pilot: how much people differ is not known from them",
-                                pilot.participants),
-                    fmt::format("measure at least {}, or state the variances with --sd-people, --sd-sessions and "
-                                "--sd-trials",
-                                reliability::kMinPeople),
-                    outcome);
+    return bad_data(
+        fmt::format("{} people are too few for a pilot to estimate how much people differ", pilot.participants),
+        fmt::format("measure at least {}, or state the variances with --sd-people, --sd-sessions and "
+                    "--sd-trials",
+                    reliability::kMinPeople),
+        outcome);
   }
   const auto model = reliability::fit_mixed_model(*m);
   if (!model) return tl::unexpected(model.error().in(outcome));
   if (model->rows == model->participants) {
-    return bad_data("nobody has two results, so that nothing is known of sessions and trials",
+    return bad_data("nobody has two results, so the variances of sessions and trials are unknown",
                     "measure people again, or state the variances with --sd-people, --sd-sessions and --sd-trials",
                     outcome);
   }

@@ -141,7 +141,7 @@ TEST(APlan, IsNotMadeFromTooLittle) {
   EXPECT_FALSE(pilot_of(pilot_columns(8, 1, 1, 1), "K", {"relaxed"}, 100, 1)) << "nothing repeats";
   EXPECT_FALSE(pilot_of(pilot_columns(8, 2, 1, 1), "B", {"relaxed"}, 100, 1)) << "another outcome";
   EXPECT_FALSE(pilot_of(pilot_columns(8, 2, 1, 1), "K", {"tensed"}, 100, 1)) << "another condition";
-  EXPECT_FALSE(study_plans(stated(), {})) << "nothing is wanted";
+  EXPECT_FALSE(study_plans(stated(), {})) << "no target";
   PlanGoal negative;
   negative.difference = -1.0;
   EXPECT_FALSE(study_plans(stated(), negative));

@@ -71,19 +71,19 @@ std::vector<std::string> pilot_notes(const Pilot& pilot) {
   if (pilot.warns_of(ReliabilityWarning::sessions_and_trials)) {
     notes.emplace_back(
         "Too few sessions of the pilot have two trials or more to separate the variance between trials from that "
-        "between sessions: what more trials in a session would give is not known, so plans have one. Measure two "
-        "trials in each session to learn it.");
+        "between sessions: the benefit of more trials per session is unknown, so plans have one. Measure two "
+        "trials in each session to estimate it.");
   }
   if (pilot.warns_of(ReliabilityWarning::people_and_sessions)) {
     notes.emplace_back(
         "Too few people of the pilot have two sessions to separate the variance between sessions from that between "
-        "people: what more sessions would give and the minimal detectable change are not known, so plans have one "
-        "session. Measure people in two sessions to learn it.");
+        "people: the benefit of more sessions and the minimal detectable change are unknown, so plans have one "
+        "session. Measure people in two sessions to estimate them.");
   }
   if (pilot.warns_of(ReliabilityWarning::heavy_tails)) {
     notes.emplace_back(
-        "Errors of the pilot have heavier tails than normal ones: these intervals do not hold. 'mbk study summary' "
-        "names the recording that is farthest off.");
+        "Errors of the pilot have heavier tails than normal ones: these intervals are not valid. 'mbk study summary' "
+        "names the most extreme recording.");
   }
   return notes;
 }
@@ -93,14 +93,14 @@ std::vector<std::string> pilot_notes(const Pilot& pilot) {
 using document::Fields;
 
 void describe(Fields<Planned>& fields) {
-  fields.type("PlannedNumber", "A number with the interval that the pilot leaves it.");
+  fields.type("PlannedNumber", "A number with its interval from the pilot.");
   fields.add("value", &Planned::value);
   fields.add_or_null(
       "interval95",
       [](const Planned& planned) {
         return std::isnan(planned.interval95.first) ? std::nullopt : std::optional(planned.interval95);
       },
-      "null where variances were stated");
+      "null if variances were stated");
 }
 
 void describe(Fields<Pilot>& fields) {
@@ -109,7 +109,7 @@ void describe(Fields<Pilot>& fields) {
   fields.add("sessions", &Pilot::sessions);
   fields.add("results", &Pilot::results);
   fields.add(
-      "draws", [](const Pilot& pilot) { return pilot.redrawn.size(); }, "pilots that were drawn for the intervals");
+      "draws", [](const Pilot& pilot) { return pilot.redrawn.size(); }, "pilots drawn for the intervals");
 }
 
 void describe(Fields<StudyPlan>& fields) {
@@ -132,7 +132,7 @@ void describe(Fields<PlanGoal>& fields) {
   fields.add("pairing", &PlanGoal::pairing);
   fields.add_number("power", &PlanGoal::power);
   fields.add_number("level", &PlanGoal::level);
-  fields.add_or_null("people", &PlanGoal::people, "given; null: as many as it takes");
+  fields.add_or_null("people", &PlanGoal::people, "given; null: planned");
 }
 
 namespace {
@@ -166,14 +166,15 @@ struct PlannedStudy {
 
 void describe(Fields<PlannedStudy>& fields) {
   using From = const PlannedStudy&;
-  fields.type("StudyPlan", "What `mbk study plan --json` writes: how many people, sessions and trials a study takes.");
+  fields.type("StudyPlan",
+              "Output of `mbk study plan --json`: numbers of people, sessions and trials that a study needs.");
   fields.header("mbk.study_plan/1");
   const auto where_measured = [](From study, const auto& value) {
     return study.pilot.outcome.empty() ? std::nullopt : std::optional(value);
   };
   fields.add_or_null(
       "outcome", [=](From study) { return where_measured(study, study.pilot.outcome); },
-      "of the pilot; null where variances were stated");
+      "outcome of the pilot; null if variances were stated");
   fields.add("unit", [](From study) { return study.pilot.unit; });
   fields.add_or_null("pilot", [=](From study) { return where_measured(study, study.pilot); });
   fields.add(
@@ -183,7 +184,7 @@ void describe(Fields<PlannedStudy>& fields) {
   fields.add("plans", [](From study) { return std::span(study.plans); });
   fields.add(
       "warnings", [](From study) { return study.pilot.warnings; },
-      "what the pilot does not separate: nothing is planned that needs it; heavy-tails: intervals do not hold");
+      "variances that the pilot does not separate: no plan uses them; heavy-tails: intervals are not valid");
   fields.add(
       "notes", [](From study) { return plan_detail::pilot_notes(study.pilot); }, "a sentence for each warning");
 }
@@ -217,19 +218,19 @@ std::string plan_text(const Pilot& pilot, const PlanGoal& goal, const std::vecto
   }
   std::string rest;
   if (goal.difference) {
-    rest += "Power: of a t test. ";
-    rest += goal.pairing == reliability::Pairing::paired ? "People: each measured twice like that. "
+    rest += "Power of a t test. ";
+    rest += goal.pairing == reliability::Pairing::paired ? "People: each measured twice like this. "
                                                          : "People: in each of the two groups. ";
   }
-  rest += "Sessions and trials: of each person, trials in each session. ";
+  rest += "Sessions per person, trials per session. ";
   if (goal.change) rest += "* the change can be detected. ";
   if (goal.change && plans.back().change_is_detectable == false) {
     rest += "None of these detects the change; more sessions help where trials no longer do. ";
   }
   if (!pilot.redrawn.empty()) {
-    rest += fmt::format(
-        "In parentheses: 95 % intervals that a pilot of this size leaves ({} pilots were drawn from its variances).",
-        pilot.redrawn.size());
+    rest +=
+        fmt::format("In parentheses: 95 % intervals due to the size of the pilot ({} pilots drawn from its variances).",
+                    pilot.redrawn.size());
   }
   text += "\n" + report::wrapped(rest, kPlanWidth) + "\n";
   for (const std::string& note : pilot_notes(pilot)) text += report::wrapped("! " + note, kPlanWidth) + "\n";

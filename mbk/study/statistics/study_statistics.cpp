@@ -28,7 +28,7 @@ Result<std::vector<const store::OutcomeColumn*>> chosen_columns(const store::Out
       std::string known;
       for (const store::OutcomeColumn& column : columns.outcomes) known += (known.empty() ? "" : ", ") + column.name;
       return bad_usage(fmt::format("there is no outcome '{}'", printable(name)),
-                       known.empty() ? "no result is usable" : "there are: " + known);
+                       known.empty() ? "no result is usable" : "choose one of: " + known);
     }
     if (std::ranges::find(chosen, &*found) == chosen.end()) chosen.push_back(&*found);
   }
@@ -72,8 +72,8 @@ void note_duplicates(const store::OutcomeColumns& columns, std::vector<std::stri
   constexpr std::size_t kMax = 5;
   for (std::size_t k = 0; k < std::min(pairs.size(), kMax); ++k) {
     notes.push_back(
-        fmt::format("recordings {} and {} have the same results: one trial that was added twice? 'mbk study exclude' "
-                    "leaves one out",
+        fmt::format("recordings {} and {} have the same results; if one trial was added twice, 'mbk study exclude' "
+                    "excludes one",
                     pairs[k].first, pairs[k].second));
   }
   if (pairs.size() > kMax) notes.push_back(fmt::format("{} more pairs have the same results", pairs.size() - kMax));

@@ -6,22 +6,20 @@ namespace mbk::reliability {
 using document::Fields;
 
 /// Of a field "support".
-constexpr const char* kSupport =
-    "whether the data carry the statistic; where they do not, its numbers are not there or null";
+constexpr const char* kSupport = "whether the data support the statistic; otherwise its numbers are absent or null";
 
 void describe(Fields<Icc>& fields) {
   fields.type("StudyIcc");
   fields.add("form", &Icc::form, "ICC(1), ICC(A,1), ICC(C,1) of McGraw and Wong (1996)");
-  fields.add("averaged", &Icc::averaged, "of one measurement (1), or of the mean of so many");
+  fields.add("averaged", &Icc::averaged, "number of measurements averaged");
   fields.add("value", &Icc::value);
-  fields.add("interval95", &Icc::interval95,
-             "after McGraw and Wong (1996), by the F distribution; below 0 where it reaches there");
+  fields.add("interval95", &Icc::interval95, "after McGraw and Wong (1996), from the F distribution; may be below 0");
 }
 
 void describe(Fields<MeasurementError>& fields) {
   fields.type("StudyMeasurementError");
   fields.add("form", &MeasurementError::form,
-             "agreement or consistency: whether a change of all people alike is counted as error");
+             "agreement or consistency: whether a common change of all people counts as error");
   fields.add("sem", &MeasurementError::sem, "standard error of measurement [unit]");
   fields.add("sem95", &MeasurementError::sem95);
   fields.add("mdc95", &MeasurementError::mdc95, "minimal detectable change, 1.96 √2 SEM [unit]");
@@ -30,7 +28,7 @@ void describe(Fields<MeasurementError>& fields) {
 
 void describe(Fields<ModelReliability>& fields) {
   fields.type("StudyModelReliability");
-  fields.add("trials", &ModelReliability::trials, "of whose mean in a session");
+  fields.add("trials", &ModelReliability::trials, "trials averaged per session");
   fields.add("icc", &ModelReliability::icc);
   fields.add("icc95", &ModelReliability::icc95);
   fields.add("sem_between", &ModelReliability::sem_between, "between sessions [unit]");
@@ -44,7 +42,8 @@ void describe(Fields<ModelReliability>& fields) {
 void describe(Fields<EffectSize>& fields) {
   fields.type("StudyEffect");
   fields.add("g", &EffectSize::g, "Hedges's g");
-  fields.add("d", &EffectSize::d, "over the pooled standard deviation; paired: over that of the differences");
+  fields.add("d", &EffectSize::d,
+             "divided by the pooled standard deviation; paired: by the standard deviation of the differences");
   fields.add("interval95", &EffectSize::interval95);
 }
 
@@ -52,8 +51,8 @@ void describe(Fields<Permutation>& fields) {
   fields.type("StudyPermutation");
   fields.add("support", &Permutation::support, kSupport);
   fields.add("p", &Permutation::p);
-  fields.add("smallest_p", &Permutation::smallest_p, "that so many people allow");
-  fields.add("exact", &Permutation::exact, "all arrangements, or drawn ones");
+  fields.add("smallest_p", &Permutation::smallest_p, "smallest possible with this number of people");
+  fields.add("exact", &Permutation::exact, "true: all arrangements; false: random ones");
   fields.add("arrangements", &Permutation::arrangements);
 }
 
@@ -67,7 +66,7 @@ void describe(document::Fields<OutcomeSummary>& fields) {
   fields.add("unit", &OutcomeSummary::unit);
   fields.add("results", &OutcomeSummary::results);
   fields.add("participants", &OutcomeSummary::participants);
-  fields.add_number("mean", &OutcomeSummary::mean, "of the participants' means; of an orientation the mean axis");
+  fields.add_number("mean", &OutcomeSummary::mean, "of the participants' means; for an orientation, the mean axis");
   fields.add("standard_deviation", &OutcomeSummary::standard_deviation,
              "of the participants' means; null: one participant");
   fields.add_number("minimum", &OutcomeSummary::minimum, "of all results");
@@ -96,9 +95,10 @@ void describe_repeated(Fields<View>& fields, const std::string& repetitions) {
   fields.add(
       "support", [](const View& view) { return view.of.support; }, kSupport);
   fields.add(
-      "participants", [](const View& view) { return view.of.participants.size(); }, "who have each of these");
+      "participants", [](const View& view) { return view.of.participants.size(); },
+      "participants who have all of these");
   fields.add(
-      "left_out", [](const View& view) { return view.of.left_out; }, "who have values and lack one of these");
+      "left_out", [](const View& view) { return view.of.left_out; }, "participants with values who lack one of these");
   fields.add(repetitions, [](const View& view) { return view.of.repetitions; });
   fields.add("icc", [](const View& view) { return view.of.test_retest.icc; });
   fields.add("error", [](const View& view) { return view.of.test_retest.error; });
@@ -136,7 +136,7 @@ void describe(Fields<SessionAgreement>& fields) {
 }
 
 void describe(Fields<Influence>& fields) {
-  fields.type("StudyInfluence", "The person who changes a number most.");
+  fields.type("StudyInfluence", "The most influential person.");
   fields.add("participant", &Influence::participant);
   fields.add("without", &Influence::without, "ICC(A,1), or p, without that person");
 }
@@ -144,7 +144,7 @@ void describe(Fields<Influence>& fields) {
 void describe(Fields<MixedReliability>& fields) {
   fields.type("StudyMixedModel", "By restricted maximum likelihood, from every result.");
   fields.add("support", &MixedReliability::support, kSupport);
-  fields.add("weighted", &MixedReliability::weighted, "each trial by its own standard error");
+  fields.add("weighted", &MixedReliability::weighted, "each trial weighted by its standard error");
   fields.add("participants", &MixedReliability::participants);
   fields.add("sessions", &MixedReliability::sessions);
   fields.add("results", &MixedReliability::results);
@@ -154,22 +154,20 @@ void describe(Fields<MixedReliability>& fields) {
                  "between sessions; null: not identifiable, since too few sessions have two trials");
     variance.add("residual", &MixedReliability::residual, "between trials; null: not identifiable");
     variance.add("within_participant", &MixedReliability::within, "session and residual together");
-    variance.add("known", &MixedReliability::known,
-                 "mean of the trials' own squared standard errors; 0 where not weighted");
+    variance.add("known", &MixedReliability::known, "mean of the trials' squared standard errors; 0 if not weighted");
   };
   fields.group("variance", variances, "[unit²]");
   fields.add("of_trials", &MixedReliability::of_trials,
-             "of one trial, and of the mean of as many as a session has (the median)");
+             "for one trial, and for the mean of the median number of trials per session");
 }
 
 void describe(Fields<BootstrapInterval>& fields) {
-  fields.type("StudyBootstrap", "What resampling people says of a number.");
+  fields.type("StudyBootstrap", "A number with its bootstrap over people.");
   fields.add("value", &BootstrapInterval::value);
   fields.add("standard_error", &BootstrapInterval::standard_error, "standard deviation of the draws");
   fields.add("percentile95", &BootstrapInterval::percentile95);
   fields.add("bca95", &BootstrapInterval::bca95);
-  fields.add("undefined", &BootstrapInterval::undefined,
-             "draws that gave no number; with more than 5 % of them there is no interval");
+  fields.add("undefined", &BootstrapInterval::undefined, "draws without a number; above 5 % there is no interval");
 }
 
 void describe(Fields<ReliabilityBootstrap>& fields) {
@@ -180,7 +178,7 @@ void describe(Fields<ReliabilityBootstrap>& fields) {
 
 void describe(Fields<OutcomeReliability>& fields) {
   using From = const OutcomeReliability&;
-  fields.type("StudyReliability", "How reliable one outcome is under one condition.");
+  fields.type("StudyReliability", "Reliability of one outcome under one condition.");
   fields.add("condition", &OutcomeReliability::condition);
   fields.add("outcome", &OutcomeReliability::outcome);
   fields.add("unit", &OutcomeReliability::unit);
@@ -193,13 +191,13 @@ void describe(Fields<OutcomeReliability>& fields) {
   fields.add_or_null("influence", &OutcomeReliability::influence);
   fields.add_or_null(
       "session", [](From one) { return one.session > 0 ? std::optional(one.session) : std::nullopt; },
-      "the one that within_session is of");
+      "session of within_session");
   fields.add("within_session", [](From one) { return WithinSession{one.within_session}; });
   fields.add("mixed_model", &OutcomeReliability::mixed_model);
   fields.add("bootstrap", &OutcomeReliability::bootstrap, "of the reliability between sessions, with --bootstrap");
   fields.add("warnings", &OutcomeReliability::warnings,
-             "codes of what makes numbers not hold as they stand; each has a sentence in notes");
-  fields.add("notes", &OutcomeReliability::notes, "what must be known beside the numbers");
+             "codes of reasons not to take the numbers at face value; each has a sentence in notes");
+  fields.add("notes", &OutcomeReliability::notes, "remarks needed to interpret the numbers");
 }
 
 void describe(Fields<Quartiles>& fields) {
@@ -220,12 +218,12 @@ void describe(Fields<MatrixSpread>& fields) {
   fields.add("left_out", &MatrixSpread::left_out, "sessions whose mean matrix is not positive definite");
   fields.add("within_participants", &MatrixSpread::within);
   fields.add("between_participants", &MatrixSpread::between);
-  fields.add("closer", &MatrixSpread::closer, "chance that two sessions of one person are closer than two people");
+  fields.add("closer", &MatrixSpread::closer, "probability that two sessions of one person are closer than two people");
 }
 
 void describe(Fields<MixedDifference>& fields) {
-  fields.type("StudyMixedDifference", "Participants as random effect; also of those who have one of the two only.");
-  fields.add("weighted", &MixedDifference::weighted, "each mean by the standard errors of its trials");
+  fields.type("StudyMixedDifference", "Participants as random effect; includes those who have only one of the two.");
+  fields.add("weighted", &MixedDifference::weighted, "each mean weighted by the standard errors of its trials");
   fields.add("participants", &MixedDifference::participants);
   fields.add("difference", through(&MixedDifference::difference, &reliability::FixedEffect::value));
   fields.add("standard_error", through(&MixedDifference::difference, &reliability::FixedEffect::standard_error));
@@ -244,7 +242,7 @@ void describe(Fields<OutcomeComparison>& fields) {
   const auto enough = [](From one) { return one.difference.support == Support::enough; };
   fields.type("StudyDifference", "One outcome between two levels; each person counts once in each.");
   fields.add("condition", &OutcomeComparison::condition,
-             "under which groups or sessions are compared; \"\" where conditions are");
+             "under which groups or sessions are compared; \"\" if conditions are compared");
   fields.add("first", &OutcomeComparison::first);
   fields.add("second", &OutcomeComparison::second);
   fields.add("outcome", &OutcomeComparison::outcome);
@@ -255,7 +253,7 @@ void describe(Fields<OutcomeComparison>& fields) {
   fields.add("support", through(&OutcomeComparison::difference, &reliability::Difference::support), kSupport);
   fields.add("first_participants", through(&OutcomeComparison::difference, &reliability::Difference::first_count));
   fields.add("second_participants", through(&OutcomeComparison::difference, &reliability::Difference::second_count));
-  fields.add("left_out", &OutcomeComparison::left_out, "paired: who have one of the two only");
+  fields.add("left_out", &OutcomeComparison::left_out, "paired: people who have only one of the two");
   fields.add("first_mean", &OutcomeComparison::first_mean);
   fields.add("second_mean", &OutcomeComparison::second_mean);
   fields.add("difference", through(&OutcomeComparison::difference, &reliability::Difference::value),
@@ -274,7 +272,7 @@ void describe(Fields<OutcomeComparison>& fields) {
   fields.add_or_null("mixed_model", &OutcomeComparison::mixed_model);
   fields.add_or_null("influence", &OutcomeComparison::influence);
   fields.add("bootstrap", &OutcomeComparison::bootstrap);
-  fields.add("notes", &OutcomeComparison::notes, "what must be known beside the numbers");
+  fields.add("notes", &OutcomeComparison::notes, "remarks needed to interpret the numbers");
 }
 
 void describe(Fields<Comparison>& fields) {
@@ -294,14 +292,14 @@ void describe(Fields<StudyStatistics>& fields) {
   fields.add("reliability", &StudyStatistics::reliability);
   fields.add("matrices", &StudyStatistics::matrices);
   fields.add("comparison", &StudyStatistics::comparison);
-  fields.add("bootstrap", &StudyStatistics::bootstrap, "how people were resampled, with --bootstrap");
+  fields.add("bootstrap", &StudyStatistics::bootstrap, "resampling of people, with --bootstrap");
   fields.add("notes", &StudyStatistics::notes, "on the study as a whole");
 }
 
 void describe(Fields<StudySummary>& fields) {
   using From = const StudySummary&;
   fields.type("StudySummary",
-              "What `mbk study summary --json` writes: usable results of recordings that are not excluded.");
+              "Output of `mbk study summary --json`: usable results of recordings that are not excluded.");
   fields.header("mbk.study_summary/1");
   fields.add("title", [](From summary) { return summary.list.facts.title; });
   fields.add_or_null("analysis", [](From summary) { return summary.list.analysis; });

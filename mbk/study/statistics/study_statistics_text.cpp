@@ -127,7 +127,7 @@ std::string reliability_table(const std::vector<OutcomeReliability>& all) {
         std::all_of(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(end),
                     [&](const OutcomeReliability& one) { return one.between_sessions.support == first; });
     if (!any && alike) {
-      text += item("  ", "none is stated: " + why_not(first, people_of(all[begin])));
+      text += item("  ", "not available: " + why_not(first, people_of(all[begin])));
     } else {
       text += fmt::format("  {:<23}  {:>5}  {:>5}  {:>13}  {:>7}  {:>7}  {}\n", "outcome", "n×k", "ICC", "95 %", "SEM",
                           "MDC", "unit");
@@ -249,7 +249,7 @@ std::string details_of(const OutcomeReliability& one) {
     text += repeated_details(trials);
   } else {
     text += item("  within a session: ", trials.support == Support::too_few_sessions
-                                             ? "nobody has two trials in one"
+                                             ? "nobody has two trials in one session"
                                              : why_not(trials.support, static_cast<int>(trials.participants.size())));
   }
   text += model_details(one.mixed_model);
@@ -276,8 +276,8 @@ std::string matrices_text(const std::vector<MatrixSpread>& matrices) {
   return fmt::format("\nimpedance width between whole matrices: median (quartiles)\n  {:<23}  {:>22}  {:>21}  {:>6}\n",
                      "condition, matrix", "sessions of a person", "people", "closer") +
          rows +
-         "  closer: chance that two sessions of a person are closer than two people\n"
-         "  (0.5: the matrix does not tell people apart)\n";
+         "  closer: probability that two sessions of a person are closer than two people\n"
+         "  (0.5: the matrix does not distinguish people)\n";
 }
 
 std::string people_text(const reliability::Difference& difference) {
@@ -316,7 +316,7 @@ std::string comparison_details(const OutcomeComparison& one, bool details) {
                              digits(one.mixed_model->difference.value), range(one.mixed_model->difference.interval95),
                              p_text(one.mixed_model->difference.p)));
   }
-  if (one.left_out > 0) text += item("      ", fmt::format("{} people have one of the two only", one.left_out));
+  if (one.left_out > 0) text += item("      ", fmt::format("{} people have only one of the two", one.left_out));
   return text;
 }
 
@@ -363,7 +363,7 @@ std::string reliability_text(const StudyStatistics& statistics, bool details) {
     text +=
         "\nn×k: people who have each of k sessions. ICC(A,1) with its 95 % interval by\n"
         "McGraw and Wong; SEM: standard error of measurement (agreement) of a session's\n"
-        "mean; MDC: 1.96 √2 SEM. An ICC below 0 means no more than 0.\n"
+        "mean; MDC: 1.96 √2 SEM. Read an ICC below 0 as 0.\n"
         "--outcome NAME shows all forms, limits of agreement, trials, the mixed model.\n";
   }
   return text;
@@ -398,7 +398,7 @@ std::string comparison_text(const StudyStatistics& statistics, bool details) {
       "at most 0.05. Without *, a difference was not shown, which does not show that\n"
       "there is none. --outcome NAME shows permutation test and mixed model.\n",
       comparison.tests);
-  if (few) text += "? too few people: whatever they did, no permutation of them could reach 0.05.\n";
+  if (few) text += "? too few people: no permutation of them can reach 0.05.\n";
   return text;
 }
 
@@ -410,8 +410,8 @@ std::string bootstrap_text(const StudyStatistics& statistics) {
   });
   return fmt::format("\nresampling people: {} draws, seed {}; bias-corrected and accelerated (BCa).\n{}",
                      statistics.bootstrap->draws, statistics.bootstrap->seed,
-                     few ? "Intervals of so few people are too narrow: of normal numbers in two sessions they\n"
-                           "hold the true ICC of 8 people in 82 % of studies, of 20 in 91 %, of 40 in 92 %.\n"
+                     few ? "Intervals from few people are too narrow: for normal numbers in two sessions they\n"
+                           "contain the true ICC of 8 people in 82 % of studies, of 20 in 91 %, of 40 in 92 %.\n"
                          : "");
 }
 

@@ -29,8 +29,8 @@ std::string temporary_name() {
 
 Result<void> check_why(const std::string& why) {
   constexpr std::size_t kLongest = 2000;  // as the pages of a session take it
-  if (why.empty()) return bad_usage("there is no reason", "say why; it stays in the log, so name nobody");
-  if (why.size() > kLongest) return bad_usage("the reason is longer than 2000 bytes", "say it shorter");
+  if (why.empty()) return bad_usage("the reason is missing", "give one; it stays in the log, so name nobody");
+  if (why.size() > kLongest) return bad_usage("the reason is longer than 2000 bytes", "shorten it");
   return {};
 }
 
@@ -47,18 +47,21 @@ Result<void> check_facts(const TrialFacts& facts) {
   constexpr std::int64_t kLargest = 999999999;
   constexpr std::size_t kLongest = 80;
   const auto within = [&](std::int64_t number) { return number >= 1 && number <= kLargest; };
-  if (!within(facts.participant)) return bad_usage("a participant is a whole number from 1 on", "pass --participant N");
-  if (!within(facts.session)) return bad_usage("a session is a whole number from 1 on", "pass --session N");
-  if (facts.trial && !within(*facts.trial)) return bad_usage("a trial is a whole number from 1 on", "pass --trial N");
+  if (!within(facts.participant))
+    return bad_usage("the participant is not a whole number from 1", "pass --participant N");
+  if (!within(facts.session)) return bad_usage("the session is not a whole number from 1", "pass --session N");
+  if (facts.trial && !within(*facts.trial))
+    return bad_usage("the trial is not a whole number from 1", "pass --trial N");
   if (facts.condition.size() > kLongest || printable(facts.condition) != facts.condition) {
-    return bad_usage("a condition is one line of at most 80 bytes", "give it a short name, as in --condition relaxed");
+    return bad_usage("the condition is not one line of at most 80 bytes",
+                     "give it a short name, as in --condition relaxed");
   }
   return {};
 }
 
 Error no_recording(std::int64_t number) {
-  return {ErrorKind::usage, fmt::format("there is no recording {}", number),
-          "'mbk study list' shows those that there are", ""};
+  return {ErrorKind::usage, fmt::format("there is no recording {}", number), "'mbk study list' shows the existing ones",
+          ""};
 }
 
 }  // namespace
@@ -85,7 +88,8 @@ const fs::path& Store::folder() const {
 
 Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role role) {
   const auto there = [&] {
-    return fail(ErrorKind::usage, "there is a study already", "use it, or choose another folder", folder.string());
+    return fail(ErrorKind::usage, "the folder already contains a study", "use it, or choose another folder",
+                folder.string());
   };
   std::error_code code;
   if (fs::exists(folder / kDatabaseName, code)) return there();
@@ -94,8 +98,8 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
     const std::string name = entry.path().filename().string();
     const bool ours = name == kRecordingsName || name == "lock" || name.find(".part") != std::string::npos;
     if (!ours) {
-      return fail(ErrorKind::usage, fmt::format("there is something in the folder: {}", name),
-                  "a study has a folder of its own: name one that is not there yet", folder.string());
+      return fail(ErrorKind::usage, fmt::format("the folder is not empty: it contains {}", name),
+                  "name a new folder for the study", folder.string());
     }
   }
   fs::permissions(folder, fs::perms::owner_all, code);
@@ -139,7 +143,8 @@ Result<void> Store::create(const fs::path& folder, const StudyFacts& facts, Role
 Result<Store> Store::open(const fs::path& folder, std::function<void()> waiting) {
   std::error_code code;
   if (!fs::exists(folder / kDatabaseName, code)) {
-    return fail(ErrorKind::usage, "there is no study", "'mbk study init FOLDER' makes one", folder.string());
+    return fail(ErrorKind::usage, "the folder contains no study", "create one with 'mbk study init FOLDER'",
+                folder.string());
   }
   return guarded(folder, [&]() -> Result<Store> {
     const bool writable = ::access((folder / kDatabaseName).c_str(), W_OK) == 0 && ::access(folder.c_str(), W_OK) == 0;
@@ -237,9 +242,9 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
         if (there.participant != facts.participant || there.session != facts.session ||
             there.condition != facts.condition || (facts.trial && there.trial != *facts.trial)) {
           return bad_data(
-              fmt::format("is there already, as recording {}: participant {}, session {}, condition '{}', trial {}",
+              fmt::format("is already stored as recording {}: participant {}, session {}, condition '{}', trial {}",
                           there.number, there.participant, there.session, there.condition, there.trial),
-              "a file is the trial of one participant: check both");
+              "check both: a file belongs to one participant");
         }
         added.push_back({there, true});
         continue;
@@ -321,7 +326,7 @@ Result<void> Store::exclude(std::int64_t number, const std::string& why, Role ro
     if (!there) return tl::unexpected(there.error());
     if (there->excluded_why) {
       return bad_usage(fmt::format("recording {} is excluded already: {}", number, *there->excluded_why),
-                       "pass --undo to take that back");
+                       "pass --undo to include it again");
     }
     exclude_one(connection, number, why, role);
     transaction.commit();

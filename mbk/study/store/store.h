@@ -108,7 +108,7 @@ class Store {
 
   /// By their numbers.
   [[nodiscard]] Result<std::vector<StoredRecording>> recordings() const;
-  /// @fails  usage: there is none of that number.
+  /// @fails  usage: no recording has that number.
   [[nodiscard]] Result<StoredRecording> recording(std::int64_t number) const;
 
   /// @fails  usage: there is no such recording; it is excluded already; the reason is empty.

@@ -50,7 +50,7 @@ Result<void> copy_recording(const fs::path& from, const fs::path& to, bool link)
 Result<CheckReport> Store::backup(const fs::path& to, bool link) {
   std::error_code code;
   if (fs::exists(to, code)) {
-    return fail(ErrorKind::usage, "is there already", "name a folder that is not there yet", to.string());
+    return fail(ErrorKind::usage, "already exists", "name a new folder", to.string());
   }
   auto lock =
       FolderLock::take(folder(), FolderLock::Kind::shared, database_->waiting);  // nothing is forgotten meanwhile
@@ -79,8 +79,8 @@ Result<CheckReport> Store::backup(const fs::path& to, bool link) {
       report = MBK_TRY(copy.check(false, {}));
     }
     if (!report.problems.empty()) {
-      return bad_data("the copy is not sound: " + report.problems.front(),
-                      "no backup was made; 'mbk study check' says what is wrong with the study", folder().string());
+      return bad_data("the copy is faulty: " + report.problems.front(),
+                      "no backup was made; check the study with 'mbk study check'", folder().string());
     }
     MBK_TRY(files::rename_on_disk(temporary.path, parent / to.filename()));
     temporary.path.clear();

@@ -73,7 +73,7 @@ class ChainReader {
     if (line.number != verdict.lines && whole_) {
       say(fmt::format("line {} of the log is missing", verdict.lines));
     } else if (line.hash != hash_of(line, verdict.head) && whole_) {
-      say(fmt::format("line {} of the log is not as it was written, or one before it", line.number));
+      say(fmt::format("line {} of the log, or one before it, was changed", line.number));
     }
     take_time(line);
     verdict.head = line.hash;
@@ -83,7 +83,7 @@ class ChainReader {
   LogVerdict finished() {
     if (verdict.lines == 0) say("the log is empty");
     if (!noted_.empty() && !noted_found_) {
-      say(fmt::format("the line with hash {}… is no longer in the log: it was shortened or written anew",
+      say(fmt::format("the line with hash {}… is no longer in the log, which was shortened or rewritten",
                       noted_.substr(0, 12)));
     }
     return std::move(verdict);
@@ -100,8 +100,8 @@ class ChainReader {
       verdict.problems.push_back(fmt::format("line {} of the log has no time: '{}'", line.number, line.time));
     } else if (latest_ && *time + kClocksDiffer < *latest_) {
       verdict.problems.push_back(
-          fmt::format("line {} of the log is of {}, {} s before the line above it: a clock was set back, or the log "
-                      "was written anew",
+          fmt::format("line {} of the log is dated {}, {} s before the line above it: a clock was set back, or the log "
+                      "was rewritten",
                       line.number, line.time, (*latest_ - *time).count()));
     }
     if (time) latest_ = time;
@@ -126,7 +126,7 @@ class Checker {
       if (const std::string said = text_at(rows, 0); said != "ok") problem("the database is damaged: " + said);
     }
     SQLite::Statement foreign(database_.connection, "PRAGMA foreign_key_check");
-    while (foreign.executeStep()) problem("a row of the table " + text_at(foreign, 0) + " belongs to nothing");
+    while (foreign.executeStep()) problem("a row of the table " + text_at(foreign, 0) + " refers to no existing row");
   }
 
   void check_log() {
@@ -144,7 +144,7 @@ class Checker {
   void check_recordings() {
     auto options = query(database_.connection, "SELECT value FROM fact WHERE name = 'options'");
     if (!options.executeStep() || sha256_of(text_at(options, 0)) != told_.options_digest) {
-      problem("the study's default options are not those that the log tells of");
+      problem("the study's default options differ from those in the log");
     }
     std::set<std::int64_t> there;
     auto rows =
@@ -158,7 +158,7 @@ class Checker {
       salts_[one.number] = salted.salt;
       const auto line = told_.added.find(one.number);
       if (line == told_.added.end() || line->second != digest_of(salted)) {
-        problem(fmt::format("recording {} is not what the log says was added", one.number));
+        problem(fmt::format("recording {} differs from the one added according to the log", one.number));
       }
       const auto excluded = told_.excluded.find(one.number);
       const auto why = excluded == told_.excluded.end() ? std::nullopt : excluded->second;
@@ -166,11 +166,11 @@ class Checker {
         problem(fmt::format("recording {} was excluded or included without a line in the log", one.number));
       }
       if (told_.erased.contains(one.number))
-        problem(fmt::format("recording {} was forgotten and is there", one.number));
+        problem(fmt::format("recording {} was forgotten but still exists", one.number));
     }
     for (const auto& [number, digest] : told_.added) {
       if (!there.contains(number) && !told_.erased.contains(number)) {
-        problem(fmt::format("recording {}, which the log says was added, is missing", number));
+        problem(fmt::format("recording {}, added according to the log, is missing", number));
       }
     }
   }
@@ -192,16 +192,15 @@ class Checker {
       if (line == told_.measured.end() || salt == salts_.end() || sha256_of(text_at(rows, 9)) != text_at(rows, 6) ||
           line->second != digest_of(salt->second, text_at(rows, 6), text_at(rows, 7), result) ||
           (number_at(rows, 4) != 0) != result.document.empty()) {
-        problem(fmt::format("the result of recording {}, analysis {}, is not what the log says was measured", key.first,
+        problem(fmt::format("the result of recording {}, analysis {}, differs from the one in the log", key.first,
                             key.second));
       } else if (!has_its_outcomes(number_at(rows, 0), result)) {
-        problem(fmt::format("the numbers of recording {}, analysis {}, are not those of its result", key.first,
-                            key.second));
+        problem(fmt::format("the numbers of recording {}, analysis {}, differ from its result", key.first, key.second));
       }
     }
     for (const auto& [key, digest] : told_.measured) {
       if (!there.contains(key) && !told_.erased.contains(key.first)) {
-        problem(fmt::format("the result of recording {}, analysis {}, which the log says was measured, is missing",
+        problem(fmt::format("the result of recording {}, analysis {}, measured according to the log, is missing",
                             key.first, key.second));
       }
     }
@@ -215,7 +214,7 @@ class Checker {
         ++report_.files;
         report_.bytes += recording.bytes;
       } else if (is_still_there(recording)) {
-        problem(found ? fmt::format("{}: its bytes are not those that were added", name) : found.error().line());
+        problem(found ? fmt::format("{}: its content differs from what was added", name) : found.error().line());
       }
       if (progress) progress(++done, static_cast<int>(files_.size()));
     }
@@ -224,7 +223,7 @@ class Checker {
   /// What no row speaks of.
   Result<void> tidy(bool remove_leftovers) {
     if (database_.read_only) {
-      note("the study may only be read: what an interrupted process left was not looked for");
+      note("the study is read-only, so leftovers of interrupted processes were not checked");
       return {};
     }
     // Nobody adds meanwhile: what is half-written now was left by a process that is gone.
@@ -249,20 +248,20 @@ class Checker {
     for (const fs::path& file : half) {
       MBK_TRY(files::remove_file(file));
     }
-    if (!half.empty()) note(fmt::format("{} removed that an interrupted process left half-written", count(half)));
+    if (!half.empty()) note(fmt::format("{} removed: half-written by an interrupted process", count(half)));
     for (const fs::path& file : whole) {
       if (!remove_leftovers) continue;
       MBK_TRY(files::remove_file(file));
     }
-    if (!whole.empty() && remove_leftovers) note(fmt::format("{} removed that no recording refers to", count(whole)));
+    if (!whole.empty() && remove_leftovers) note(fmt::format("{} removed: no recording refers to it", count(whole)));
     if (!whole.empty() && !remove_leftovers) {
       note(
           fmt::format("{} that no recording refers to, from an interrupted 'add' or an older database: add the "
-                      "recordings again, or remove what is left with --remove-leftovers",
+                      "recordings again, or remove leftovers with --remove-leftovers",
                       count(whole)));
     }
     if (!foreign.empty()) {
-      note(fmt::format("{} in the folder of recordings that mbk did not put there", count(foreign)));
+      note(fmt::format("{} in the folder of recordings not written by mbk", count(foreign)));
     }
     return {};
   }
@@ -327,7 +326,7 @@ Result<std::int64_t> finish_erasing(Database& database) {
 }
 
 Result<Forgotten> Store::forget(std::int64_t participant, const std::string& why, Role role) {
-  if (why.empty()) return bad_usage("there is no reason", "say why; it stays in the log, so name nobody");
+  if (why.empty()) return bad_usage("the reason is missing", "give one; it stays in the log, so name nobody");
   MBK_TRY(FolderLock::take(folder(), FolderLock::Kind::alone, database_->waiting));
   return guarded(folder(), [&]() -> Result<Forgotten> {
     SQLite::Database& connection = database_->connection;
@@ -339,7 +338,7 @@ Result<Forgotten> Store::forget(std::int64_t participant, const std::string& why
       while (rows.executeStep()) numbers.push_back(number_at(rows, 0));
       if (numbers.empty()) {
         return bad_usage(fmt::format("there is no recording of participant {}", participant),
-                         "'mbk study list' shows those that there are");
+                         "'mbk study list' shows the existing ones");
       }
       rows.reset();
       auto results = query(connection,

@@ -153,9 +153,8 @@ Result<std::unique_ptr<Database>> Database::snapshot(const std::filesystem::path
     if (before && before == whole_state(file)) return in_memory(folder, std::move(bytes));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  return bad_data("may only be read, and another process is changing it or ended while it did",
-                  "try again when that is done, or have someone who may write the study run 'mbk study list'",
-                  file.string());
+  return bad_data("is read-only, and another process is changing it or was interrupted while changing it",
+                  "try again later, or have someone with write permission run 'mbk study list'", file.string());
 }
 
 Error error_of(const SQLite::Exception& exception, const std::filesystem::path& folder) {
@@ -163,10 +162,11 @@ Error error_of(const SQLite::Exception& exception, const std::filesystem::path& 
   const std::string said = exception.what();
   switch (exception.getErrorCode()) {
     case SQLITE_FULL:
-      return {ErrorKind::data, "the disk is full", "free space; nothing was stored by half", file};
+      return {ErrorKind::data, "the disk is full", "free space; nothing was stored partially", file};
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return {ErrorKind::data, "another process has been writing for half a minute", "try again when it is done", file};
+      return {ErrorKind::data, "another process has been writing for half a minute", "try again when it has finished",
+              file};
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       return {ErrorKind::data, printable("the database is damaged: " + said), "restore the folder from a backup", file};
@@ -188,7 +188,7 @@ Result<void> migrate(SQLite::Database& connection, const std::filesystem::path& 
   if (version() == latest && pragma_number(connection, "PRAGMA application_id") == kApplication) return {};
   if (sqlite3_db_readonly(connection.getHandle(), "main") != 0 && version() < latest && version() > 0) {
     return bad_data("was written by an older mbk, and may only be read",
-                    "have someone who may write the study run 'mbk study list'", file);
+                    "have someone with write permission run 'mbk study list'", file);
   }
   WriteTransaction alone(connection,
                          sqlite3_db_readonly(connection.getHandle(), "main") != 0 ? "BEGIN" : "BEGIN IMMEDIATE");
@@ -198,8 +198,9 @@ Result<void> migrate(SQLite::Database& connection, const std::filesystem::path& 
     return bad_data("is the database of another program", "name the folder of a study", file);
   }
   if (found > latest) {
-    return bad_data(fmt::format("was written by a newer mbk (tables of version {}, this one knows {})", found, latest),
-                    "use that one", file);
+    return bad_data(
+        fmt::format("was written by a newer mbk (tables of version {}; this one supports {})", found, latest),
+        "use the newer mbk", file);
   }
   for (int i = found; i < latest; ++i) connection.exec(kMigrations.at(static_cast<std::size_t>(i)));
   if (found == 1) {

@@ -36,7 +36,7 @@ Result<std::unique_ptr<FolderLock>> FolderLock::take(const fs::path& folder, Kin
       waiting();
     }
     if (waited > kLongestWait) {
-      return bad_data("another process is changing the files of the study", "wait until it is done, and try again",
+      return bad_data("another process is changing the files of the study", "try again when it has finished",
                       folder.string());
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -39,7 +39,7 @@ enum class LoggedAction { init, defaults, add, measure, exclude, include, forget
                                             {erase, "erase"}});
 }
 
-/// What is said of a study as a whole.
+/// Facts about a study as a whole.
 struct StudyFacts {
   std::string title;           ///< may be empty
   std::string options = "{}";  ///< how its recordings are measured unless asked otherwise, as a JSON object

@@ -24,13 +24,13 @@ void add_options(Fields<T>& fields, Get text_of) {
     Json json = Json::parse(text_of(from), nullptr, false);
     return json.is_object() ? json : Json::object();
   };
-  fields.add_as("options", schema, get, "options of `mbk measure` by name, with their values; a flag has none");
+  fields.add_as("options", schema, get, "options of `mbk measure` with their values; flags have none");
 }
 
 }  // namespace
 
 void describe(Fields<Analysis>& fields) {
-  fields.type("Analysis", "One way of measuring. Files that options name stand there as sha256:…");
+  fields.type("Analysis", "One way of measuring. Files named by options appear as sha256:….");
   fields.add("number", &Analysis::number);
   add_options(fields, [](const Analysis& analysis) { return analysis.options; });
   fields.add("options_sha256", &Analysis::options_sha256);
@@ -39,20 +39,19 @@ void describe(Fields<Analysis>& fields) {
 
 void describe(Fields<StoredRecording>& fields) {
   fields.type("Recording");
-  fields.add("number", &StoredRecording::number, "its name in the study; never given twice");
+  fields.add("number", &StoredRecording::number, "its number in the study; never reused");
   fields.add("participant", &StoredRecording::participant);
   fields.add("session", &StoredRecording::session);
   fields.add("condition", &StoredRecording::condition);
   fields.add("trial", &StoredRecording::trial);
   fields.add_number("duration_s", &StoredRecording::duration_s, "[s]");
   fields.add("sha256", &StoredRecording::sha256, "of the stored file");
-  fields.add("part", &StoredRecording::part, "which record of the file, from 1; 0: its only one");
+  fields.add("part", &StoredRecording::part, "record of the file, from 1; 0: its only record");
   fields.add("bytes", &StoredRecording::bytes, "of the stored file");
   fields.add("added", &StoredRecording::added, "UTC, as in 2026-05-04T09:30:12Z");
   fields.add_if([](const StoredRecording& one) { return one.origin_sha256 != one.sha256; }, "origin_sha256",
-                &StoredRecording::origin_sha256,
-                "of the file that the stored one was made of, where that is another one");
-  fields.add("excluded_why", &StoredRecording::excluded_why, "where it is excluded");
+                &StoredRecording::origin_sha256, "of the original file, if the stored one differs");
+  fields.add("excluded_why", &StoredRecording::excluded_why, "if it is excluded");
 }
 
 void describe(Fields<ListedRecording>& fields) {
@@ -82,7 +81,7 @@ void describe(Fields<Outcome>& fields) {
 }
 
 void describe(Fields<StudyList>& fields) {
-  fields.type("StudyList", "What `mbk study list --json` writes.");
+  fields.type("StudyList", "Output of `mbk study list --json`.");
   fields.header("mbk.study_list/1");
   fields.add("title", [](const StudyList& list) { return list.facts.title; });
   add_options(fields, [](const StudyList& list) { return list.facts.options; });
@@ -90,7 +89,7 @@ void describe(Fields<StudyList>& fields) {
   fields.add_or_null(
       "analysis",
       [](const StudyList& list) { return list.analysis ? std::optional(list.analysis->number) : std::nullopt; },
-      "whose results the states are of; null: nothing was measured");
+      "analysis of the results shown; null: nothing was measured");
   fields.add("recordings", &StudyList::recordings);
 }
 
@@ -106,7 +105,7 @@ void describe(Fields<ShownRecording::Shown>& fields) {
 }
 
 void describe(Fields<ShownRecording>& fields) {
-  fields.type("StudyShow", "What `mbk study show --json` writes of one recording.");
+  fields.type("StudyShow", "Output of `mbk study show --json` for one recording.");
   fields.header("mbk.study_show/1");
   fields.add("recording", &ShownRecording::recording);
   fields.add("results", &ShownRecording::results);
@@ -121,22 +120,22 @@ void describe(Fields<LogLine>& fields) {
   fields.add("analysis", &LogLine::analysis);
   fields.add("participant", &LogLine::participant);
   fields.add_unless_empty("digest", &LogLine::digest,
-                          "SHA-256 of what was stored and a salt that goes when it is forgotten");
+                          "SHA-256 of the content and a salt that is deleted when the recording is forgotten");
   fields.add_unless_empty("why", &LogLine::why);
   fields.add("hash", &LogLine::hash);
 }
 
 void describe(Fields<CheckReport>& fields) {
-  fields.type("StudyCheck", "What `mbk study check --json` writes.");
+  fields.type("StudyCheck", "Output of `mbk study check --json`.");
   fields.header("mbk.study_check/1");
   fields.add("recordings", &CheckReport::recordings);
-  fields.add("files", &CheckReport::files, "with the hash that they were added with");
+  fields.add("files", &CheckReport::files, "files with their original hash");
   fields.add("bytes", &CheckReport::bytes);
   fields.add("results", &CheckReport::results);
-  fields.add("repeated", &CheckReport::repeated, "results that were measured again and are the same");
+  fields.add("repeated", &CheckReport::repeated, "results that were measured again and agree");
   fields.add("log_lines", &CheckReport::log_lines);
   fields.add("head", &CheckReport::head);
-  fields.add("problems", &CheckReport::problems, "one sentence each; empty: everything is as it was stored");
+  fields.add("problems", &CheckReport::problems, "one sentence each; empty: everything is unchanged");
   fields.add("notes", &CheckReport::notes);
 }
 
@@ -149,9 +148,9 @@ struct StudyLog {
 
 void describe(Fields<StudyLog>& fields) {
   fields.type("StudyLog",
-              "What `mbk study log --json` writes. hash is the SHA-256 of the JSON array [\"mbk.study.log/1\", number, "
+              "Output of `mbk study log --json`. hash is the SHA-256 of the JSON array [\"mbk.study.log/1\", number, "
               "time, role, action, recording, analysis, participant, digest, why, hash of the line before], with null "
-              "and \"\" for what is absent.");
+              "and \"\" for absent values.");
   fields.header("mbk.study_log/1");
   fields.add("lines", [](const StudyLog& log) { return std::span(log.lines); });
   fields.add(
@@ -159,7 +158,7 @@ void describe(Fields<StudyLog>& fields) {
       "hash of the last line");
   fields.add(
       "problems", [](const StudyLog& log) { return log.verdict ? std::optional(log.verdict->problems) : std::nullopt; },
-      "where --verify was given");
+      "only with --verify");
 }
 
 struct ExportedRecording {
@@ -178,7 +177,7 @@ struct StudyExport {
 };
 
 void describe(Fields<StudyExport>& fields) {
-  fields.type("StudyExport", "What `mbk study export --format json` writes.");
+  fields.type("StudyExport", "Output of `mbk study export --format json`.");
   fields.header("mbk.study_export/1");
   fields.add("title", [](const StudyExport& study) { return study.list.facts.title; });
   fields.add_or_null("analysis", [](const StudyExport& study) { return study.list.analysis; });

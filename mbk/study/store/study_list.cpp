@@ -27,8 +27,7 @@ Result<StudyList> list_study(const Store& study, std::optional<std::int64_t> ana
   if (analysis) {
     const auto found = std::ranges::find(list.analyses, *analysis, &Analysis::number);
     if (found == list.analyses.end()) {
-      return bad_usage(fmt::format("there is no analysis {}", *analysis),
-                       "'mbk study list' shows those that there are");
+      return bad_usage(fmt::format("there is no analysis {}", *analysis), "'mbk study list' shows the existing ones");
     }
     list.analysis = *found;
   } else {

@@ -100,7 +100,7 @@ KnownFacts KnownFacts::or_else(const KnownFacts& other) const {
 
 Result<TrialFacts> KnownFacts::complete() const {
   if (!participant) {
-    return bad_usage("whose recording it is is not known: its metadata name no participant",
+    return bad_usage("the participant is unknown: the metadata name none",
                      "pass --participant N, or 'mbk study import' with --pattern or --sheet");
   }
   return TrialFacts{*participant, session.value_or(1), condition.value_or(""), trial};
@@ -123,10 +123,10 @@ Result<NamePattern> NamePattern::of(const std::string& pattern) {
       const std::size_t end = pattern.find('}', at);
       const std::string field = pattern.substr(at + 1, end == std::string::npos ? end : end - at - 1);
       if (std::ranges::find(kFields, field) == kFields.end() || end == std::string::npos) {
-        return bad_usage(fmt::format("--pattern: {{{}}} is no placeholder", field),
-                         "there are {participant}, {session}, {condition}, {trial} and *");
+        return bad_usage(fmt::format("--pattern: {{{}}} is not a placeholder", field),
+                         "use {participant}, {session}, {condition}, {trial} and *");
       }
-      if (known(field)) return bad_usage(fmt::format("--pattern: {{{}}} stands there twice", field), "leave one out");
+      if (known(field)) return bad_usage(fmt::format("--pattern contains {{{}}} twice", field), "omit one");
       made.pieces_.push_back({field, ""});
       at = end;
     } else {
@@ -134,7 +134,7 @@ Result<NamePattern> NamePattern::of(const std::string& pattern) {
     }
   }
   if (!known("participant")) {
-    return bad_usage("--pattern holds no {participant}", "a name says whose trial it is: p{participant}_*.h5");
+    return bad_usage("--pattern contains no {participant}", "include it, as in p{participant}_*.h5");
   }
   return made;
 }
@@ -158,8 +158,8 @@ bool NamePattern::matches(std::string_view name, std::size_t piece, std::map<std
 
 Result<KnownFacts> NamePattern::match(const std::string& name) const {
   const auto other = [&] {
-    return fail(ErrorKind::usage, fmt::format("the name is not of the pattern {}", pattern_),
-                "mend the pattern, or leave the file out", name);
+    return fail(ErrorKind::usage, fmt::format("the name does not match the pattern {}", pattern_),
+                "correct the pattern, or omit the file", name);
   };
   constexpr std::size_t kLongest = 255;  // of a name on a disk; a pattern of many * takes long to refuse a longer one
   std::map<std::string, std::string> found;
@@ -179,7 +179,7 @@ Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& fol
     if (std::ranges::count(first, candidate) > std::ranges::count(first, separator)) separator = candidate;
   }
   SheetReader reader(text, separator);
-  if (reader.at_end()) return bad_data("the sheet is empty", "its first line names the columns: file,participant");
+  if (reader.at_end()) return bad_data("the sheet is empty", "name the columns in its first line: file,participant");
   std::vector<std::string> names = reader.next_row();
   Sheet sheet;
   for (std::string& name : names) {
@@ -188,7 +188,7 @@ Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& fol
   }
   for (const char* needed : {"file", "participant"}) {
     if (std::ranges::count(names, needed) != 1) {
-      return bad_data(fmt::format("the sheet needs one column '{}'", needed), "its first line names the columns");
+      return bad_data(fmt::format("the sheet needs one column '{}'", needed), "name the columns in its first line");
     }
   }
   for (int line = 2; !reader.at_end(); ++line) {
@@ -196,19 +196,20 @@ Result<Sheet> read_sheet(std::string_view text, const std::filesystem::path& fol
     if (fields == std::vector<std::string>{""}) continue;
     const std::string where = fmt::format("row {}", line);
     if (fields.size() != names.size()) {
-      return fail(ErrorKind::data, fmt::format("{} fields where the first line has {}", fields.size(), names.size()),
-                  "mend the sheet", where);
+      return fail(ErrorKind::data,
+                  fmt::format("the line has {} fields, but the first line has {}", fields.size(), names.size()),
+                  "correct the sheet", where);
     }
     SheetRow row;
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (names[k] == "file") row.file = folder / fields[k];
       if (std::ranges::find(kFields, names[k]) == kFields.end() || fields[k].empty()) continue;
       if (!set_field(row.facts, names[k], fields[k])) {
-        return fail(ErrorKind::data, fmt::format("'{}' is not a whole number from 1 on", fields[k]),
-                    "participants, sessions and trials are numbers", where + ", " + names[k]);
+        return fail(ErrorKind::data, fmt::format("'{}' is not a whole number from 1", fields[k]),
+                    "number participants, sessions and trials", where + ", " + names[k]);
       }
     }
-    if (row.file == folder / "") return fail(ErrorKind::data, "no file is named", "mend the sheet", where);
+    if (row.file == folder / "") return fail(ErrorKind::data, "no file is named", "correct the sheet", where);
     sheet.rows.push_back(std::move(row));
   }
   return sheet;
@@ -246,8 +247,8 @@ Result<KnownFacts> facts_of_bids(std::string_view name) {
     if (entity != "sub" && entity != "ses" && entity != "run") continue;
     const auto number = whole_number(label);
     if (!number) {
-      return bad_usage(fmt::format("the label {}-{} is no number, and may be a name", entity, label),
-                       "import its motion.tsv by a sheet (--sheet) that says participant, session and trial");
+      return bad_usage(fmt::format("the label {}-{} is not a number, and may be a name", entity, label),
+                       "import its motion.tsv with a sheet (--sheet) that gives participant, session and trial");
     }
     (entity == "sub" ? facts.participant : entity == "ses" ? facts.session : facts.trial) = number;
   }

@@ -60,7 +60,8 @@ class Adder::File {
     reading.files = {incoming.path()};
     const auto reader = MBK_TRY(request::open_recordings(reading, measuring_.request.sensor));
     if (facts.trial && reader.count() > 1) {
-      return bad_usage(fmt::format("the file holds {} trials", reader.count()), "leave --trial out: they are counted");
+      return bad_usage(fmt::format("the file holds {} trials", reader.count()),
+                       "omit --trial: trials are numbered automatically");
     }
     if (auto there = find_stripped(incoming, reader, facts); !there || !there->empty()) return there;
     std::vector<store::NewRecording> recordings;
@@ -77,8 +78,8 @@ class Adder::File {
     return study_.add(std::move(incoming), recordings, sha256, options_.role);
   }
 
-  /// What the operator excluded is excluded in the study too; windows stay in the recording, and whoever measures it
-  /// leaves them out. Both are said.
+  /// Recordings excluded by the operator are excluded in the study too; excluded windows stay in the recording and are
+  /// omitted when measuring. Both are reported.
   store::NewRecording to_store(std::int64_t part, const store::TrialFacts& trial, const Recording& recording) const {
     const std::string exclusions = preprocess::exclusions_text(recording);
     if (const auto warning = protocol::personal_warning("the reason of an exclusion", exclusions, false);
@@ -89,7 +90,7 @@ class Adder::File {
     if (!windows) {
       options_.warn(windows.error().line());
     } else if (!windows->empty()) {
-      options_.warn("the operator excluded windows, which measuring leaves out in default mode: " +
+      options_.warn("the operator excluded windows, which are omitted when measuring in default mode: " +
                     preprocess::excluded_windows_text(*windows));
     }
     return {part, trial, duration(recording), preprocess::why_excluded(recording)};
@@ -102,7 +103,7 @@ class Adder::File {
   /// What a file holds that its reader does not show, and that may say who the person is.
   static std::vector<std::string> unseen_entries(const std::filesystem::path& file, const Recording& recording) {
     const std::string format = recording.sources.empty() ? "" : recording.sources.front().format;
-    if (format.starts_with("KINARM")) return {"what the exam says of the person and its name"};
+    if (format.starts_with("KINARM")) return {"the exam's entries on the person, and its name"};
     if (format != "C3D") return {};
     const auto bytes = recording::read_file(file);
     if (!bytes) return {};
@@ -130,8 +131,8 @@ class Adder::File {
     for (const store::StoredRecording& one : there) {
       if (one.sha256 == one.origin_sha256) continue;
       if (facts.participant && *facts.participant != one.participant) {
-        return bad_data(fmt::format("is there already, as recording {} of participant {}", one.number, one.participant),
-                        "a file is the trial of one participant: check both");
+        return bad_data(fmt::format("is already stored as recording {} of participant {}", one.number, one.participant),
+                        "check both: a file belongs to one participant");
       }
       found.push_back({one, true});
     }
@@ -221,7 +222,7 @@ Result<std::vector<store::SheetRow>> rows_of_bids(const std::filesystem::path& f
       return fail(ErrorKind::data,
                   fmt::format("and {} are one trial, recorded by two tracking systems or twice",
                               twin->file.filename().string()),
-                  "name the motion.tsv files that are to be imported", run.motion.string());
+                  "name the motion.tsv files to import", run.motion.string());
     }
     rows.push_back({run.motion, *facts});
   }

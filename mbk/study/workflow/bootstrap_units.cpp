@@ -80,7 +80,7 @@ Result<Draws> draws_of(const batch::JobFolder& job) {
   Draws draws(results.size());
   for (std::size_t k = 0; k < draws.size(); ++k) {
     if (!batch::from_bytes(results[k], draws[k])) {
-      return bad_data("a draw in a shard cannot be read", "begin the job again");
+      return bad_data("a draw in a shard cannot be read", "start the job again");
     }
   }
   return draws;
@@ -92,7 +92,7 @@ Result<batch::UnitFunction> bootstrap_units(const Json& specification) {
     statistics::PeopleTable table{std::nullopt, matrix_from(one.at("first")), matrix_from(one.at("second"))};
     if (one.contains("pairing")) {
       table.pairing = value_of<reliability::Pairing>(one.at("pairing").get<std::string>());
-      if (!table.pairing) return bad_data("the job's specification cannot be read", "begin the job again");
+      if (!table.pairing) return bad_data("the job's specification cannot be read", "start the job again");
     }
     tables.push_back(std::move(table));
   }

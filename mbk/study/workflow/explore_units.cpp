@@ -46,7 +46,7 @@ std::string sum_of(const fs::path& file) {
 Result<measurement::RecordingReader> reader_of(const request::ExploreRequest& asked, const Json& key) {
   const fs::path file = key.at("file").get<std::string>();
   if (sum_of(file) != key.at("sha256").get<std::string>()) {
-    return bad_data("it has changed since the job was begun", "put it back, or begin again", file.string());
+    return bad_data("it has changed since the job was started", "restore it, or start the job again", file.string());
   }
   request::ReadRequest reading = asked.reading;
   reading.files = {file};
@@ -58,7 +58,7 @@ batch::UnitFunction units_of(const request::ExploreRequest& asked, const measure
                              bool json) {
   return [=](std::int64_t /*number*/, const std::string& text) -> Result<std::string> {
     const Json key = Json::parse(text, nullptr, false);
-    if (!key.is_object()) return bad_data("the job's list of recordings is damaged", "begin the job again");
+    if (!key.is_object()) return bad_data("the job's list of recordings is damaged", "start the job again");
     const auto reader = MBK_TRY(reader_of(asked, key));
     return batch::to_bytes(explored(reader, 0, options, json));
   };
@@ -72,7 +72,7 @@ Result<std::vector<std::string>> keys_of(const measurement::RecordingReader& rea
   for (int k = 0; k < reader.count(); ++k) {
     const fs::path& file = reader.file(k);
     if (fs::is_directory(file, ignored)) {
-      return bad_usage(fmt::format("{} is a folder, and --engine takes files", file.string()), "leave out --engine");
+      return bad_usage(fmt::format("{} is a folder, but --engine needs files", file.string()), "omit --engine");
     }
     if (k == 0 || file != reader.file(k - 1)) sum = sum_of(file);
     keys.push_back(written({{"file", file.string()}, {"trial", reader.trial(k)}, {"sha256", sum}}));
@@ -142,7 +142,7 @@ Result<std::vector<ExploredRecord>> explored_of(const batch::JobFolder& job) {
   std::vector<ExploredRecord> all(results.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (!batch::from_bytes(results[k], all[k]))
-      return bad_data("a result in a shard cannot be read", "begin the job again");
+      return bad_data("a result in a shard cannot be read", "start the job again");
   }
   return all;
 }
@@ -150,13 +150,14 @@ Result<std::vector<ExploredRecord>> explored_of(const batch::JobFolder& job) {
 Result<batch::UnitFunction> explore_units(const Json& specification) {
   std::error_code error;
   fs::current_path(specification.at("folder").get<std::string>(), error);
-  if (error) return bad_data(error.message(), "every machine must see the folder in which the job was begun");
+  if (error) return bad_data(error.message(), "make the folder in which the job was started visible to every computer");
   auto asked = request::explore_table().read(specification.at("options").get<OptionTexts>());
-  if (!asked) return bad_data(asked.error().message, "begin the job again");
+  if (!asked) return bad_data(asked.error().message, "start the job again");
   const auto options = MBK_TRY(request::explore_options(*asked));
   const auto sensor = MBK_TRY(sensor_sum(*asked));
   if (sensor != specification.at("sensor_sha256").get<std::string>()) {
-    return bad_data("the calibration of --sensor has changed since the job was begun", "put it back, or begin again");
+    return bad_data("the calibration of --sensor has changed since the job was started",
+                    "restore it, or start the job again");
   }
   return units_of(*asked, options, specification.at("json").get<bool>());
 }

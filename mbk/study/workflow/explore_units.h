@@ -16,7 +16,7 @@ namespace mbk::workflow {
 
 inline constexpr std::string_view kExploreKind = "explore";
 
-/// What is asked of each recording.
+/// The exploration requested for each recording.
 struct ExploringEach {
   request::ExploreRequest request;
   OptionTexts given;  ///< the options, as they were typed

@@ -43,7 +43,7 @@ class NewFolder {
     made.target_ = path.has_filename() ? path : path.parent_path();
     if (fs::exists(fs::symlink_status(made.target_, code)) &&
         !(fs::is_directory(made.target_, code) && fs::is_empty(made.target_, code))) {
-      return fail(ErrorKind::usage, "is there already", "name a folder that is not there yet", folder.string());
+      return fail(ErrorKind::usage, "already exists", "name a new folder", folder.string());
     }
     std::string pattern = made.target_.string() + ".part-XXXXXX";
     if (::mkdtemp(pattern.data()) == nullptr) {
@@ -82,7 +82,7 @@ Result<Recording> read_unchanged(const store::Store& study, const Measuring& mea
   auto recording = read_stored(measuring, file, r.part, Reading::whole);
   if (!recording) return recording;
   if (recording->sources.size() != 1 || recording->sources.front().sha256 != r.sha256) {
-    return bad_data("its bytes are not those that were added", "restore it from a backup; 'mbk study check' names all",
+    return bad_data("its content differs from what was added", "restore it from a backup; 'mbk study check' names all",
                     file.string());
   }
   return recording;
@@ -105,8 +105,8 @@ Result<ExportedBids> export_bids(const store::Store& study, const store::StudyLi
   const auto measuring = MBK_TRY(measuring_of(defaults));
   const auto counts = [](const store::ListedRecording& one) { return !one.recording.excluded_why; };
   if (std::ranges::none_of(list.recordings, counts)) {
-    return bad_usage("there is nothing to export: no recording that is not excluded",
-                     "'mbk study add' brings recordings in; 'mbk study list' shows them");
+    return bad_usage("there is nothing to export: every recording is excluded, or there is none",
+                     "add recordings with 'mbk study add'; 'mbk study list' shows them");
   }
   auto made = MBK_TRY(NewFolder::of(folder));
   const auto labels = labels_of(list);

@@ -143,7 +143,7 @@ class Repeater {
     if (units.empty()) return {};
     const std::string count = counted(std::ssize(units), "result", "results");
     if (analysis.version != version()) {
-      report_.notes.push_back(fmt::format("{} of analysis {} not repeated: mbk {} made them, this is {}", count,
+      report_.notes.push_back(fmt::format("{} of analysis {} not repeated: made by mbk {}, this is {}", count,
                                           analysis.number, analysis.version, version()));
       return {};
     }
@@ -176,8 +176,8 @@ class Repeater {
           const std::scoped_lock lock(mutex_);
           const auto stored = MBK_TRY(study_.document(unit, analysis.number));
           if (stored != again->document) {
-            problem =
-                fmt::format("{}: measured again it gives another result (analysis {})", unit.file, analysis.number);
+            problem = fmt::format("{}: measuring it again gives a different result (analysis {})", unit.file,
+                                  analysis.number);
           }
           return {};
         },
@@ -255,8 +255,9 @@ Result<Tally> collect_job(store::Store& study, const std::string& key, const bat
     Result<store::UnitResult> result = store::UnitResult();
     if (!unit.differing.empty()) {
       result = bad_data(
-          fmt::format("{} gives another result than {}", unit.differing[1].string(), unit.differing[0].string()),
-          "two machines measured it differently; nothing of it is stored", stored.file);
+          fmt::format("{} gives a different result from {}", unit.differing[1].string(), unit.differing[0].string()),
+          "two computers measured it differently, so nothing is stored; compare the programs and the files",
+          stored.file);
     } else if (unit.failed) {
       result = bad_data(unit.payload);
     } else {

@@ -27,8 +27,8 @@ Result<batch::UnitFunction> measure_units(const nlohmann::json& specification) {
   const auto options = MBK_TRY(options_from_json(specification.at("options").get<std::string>()));
   const auto measuring = MBK_TRY(measuring_of(options));
   if (measuring->key != specification.at("key").get<std::string>()) {
-    return bad_data("a file that the options name is no longer what it was when the job was begun",
-                    "put it back, or begin the job again");
+    return bad_data("a file named by the options has changed since the job was started",
+                    "restore it, or start the job again");
   }
   const fs::path folder = specification.at("study").get<std::string>();
   return measure_units(measuring, folder);
@@ -60,7 +60,7 @@ std::string result_to_bytes(const store::UnitResult& result) {
 
 Result<store::UnitResult> result_from(const std::string& bytes) {
   constexpr std::size_t kHead = 9;
-  const auto damaged = [] { return bad_data("a result in a shard cannot be read", "begin the job again"); };
+  const auto damaged = [] { return bad_data("a result in a shard cannot be read", "start the job again"); };
   if (bytes.size() < kHead) return damaged();
   std::size_t reason = 0;
   if (std::istringstream head(bytes.substr(1, kHead - 1)); !(head >> std::hex >> reason)) return damaged();

@@ -147,7 +147,7 @@ Result<Recording> read_stored(const Measuring& measuring, const std::filesystem:
   reading.files = {file};
   const auto reader = MBK_TRY(request::open_recordings(reading, measuring.request.sensor));
   const int which = part == 0 ? 0 : static_cast<int>(part) - 1;
-  if (which >= reader.count()) return bad_data(fmt::format("there is no record {} in it", part), "", file.string());
+  if (which >= reader.count()) return bad_data(fmt::format("it has no record {}", part), "", file.string());
   return what == Reading::perturbation ? reader.read_perturbation(which) : reader.read(which);
 }
 
@@ -155,7 +155,7 @@ Result<store::UnitResult> measure_unit(const Measuring& measuring, const std::fi
                                        const store::Unit& unit) {
   const std::filesystem::path file = folder / unit.file;
   const auto damaged = [&] {
-    return bad_data("its bytes are not those that were added", "restore it from a backup; 'mbk study check' names all",
+    return bad_data("its content differs from what was added", "restore it from a backup; 'mbk study check' names all",
                     file.string());
   };
   auto recording = read_stored(measuring, file, unit.part, Reading::perturbation);

@@ -60,7 +60,7 @@ Result<batch::UnitFunction> units_of(SimulateOptions options) {
   auto trials = MBK_TRY(simulated_trials(options));
   return [options = std::move(options), trials = std::move(trials)](std::int64_t number,
                                                                     const std::string&) -> Result<std::string> {
-    if (number >= std::ssize(trials)) return bad_data("the scenario no longer has that many trials", "begin again");
+    if (number >= std::ssize(trials)) return bad_data("the scenario now has fewer trials", "start the job again");
     return simulate_recording(options, trials[static_cast<std::size_t>(number)]);
   };
 }
@@ -72,7 +72,7 @@ Result<std::vector<SimulatedTrial>> simulated_trials(const SimulateOptions& opti
   std::vector<laboratory::Scenario> chosen;
   for (const std::string& name : options.trials) {
     if (std::ranges::count(options.trials, name) > 1) {
-      return bad_usage(fmt::format("trial '{}' is asked for twice", name), "name each --trial once");
+      return bad_usage(fmt::format("trial '{}' is requested twice", name), "name each --trial once");
     }
     const auto trial = MBK_TRY(laboratory::find_trial(scenarios, name));
     chosen.push_back(trial);
@@ -127,11 +127,11 @@ Result<batch::UnitFunction> simulate_units(const nlohmann::json& specification) 
   SimulateOptions options;
   std::error_code error;
   fs::current_path(specification.at("folder").get<std::string>(), error);
-  if (error) return bad_data(error.message(), "every machine must see the folder in which the job was begun");
+  if (error) return bad_data(error.message(), "make the folder in which the job was started visible to every computer");
   options.scenario = specification.at("scenario");
   const auto sum = MBK_TRY(scenario_sum(options.scenario));
   if (sum != specification.at("scenario_sha256").get<std::string>()) {
-    return bad_data("it has changed since the job was begun", "put it back, or begin again", options.scenario);
+    return bad_data("it has changed since the job was started", "restore it, or start the job again", options.scenario);
   }
   options.trials = specification.at("trials").get<std::vector<std::string>>();
   options.out = specification.at("out").get<std::string>();
