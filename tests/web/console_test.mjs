@@ -248,7 +248,7 @@ test("the space bar writes while a note is written, and stops again after Esc", 
   assert.equal(await ended(operator, running), 5);
 });
 
-test("a lost connection is said, and the page finds back to nothing that is not there", async () => {
+test("a lost connection is shown, and the page does not reconnect to a session that has ended", async () => {
   const running = await run("lost", "--wait", "--trial", "relaxed");
   const operator = await visit(running.operator);
   const { page, banner, rests } = operator;

@@ -48,7 +48,7 @@ struct SpringRequest {
 /// (k, m) with the bounds on k_i and l_i = m_i/k_i, and not one of several local answers. Every choice of screw eyes,
 /// from 3 to `max_springs`, is tried and the best taken.
 /// @fails  usage: K is not symmetric positive definite; a bound is empty; too few or too many eyes. not usable: no
-/// choice gives K there within the bounds (the nearest K is said).
+/// choice gives K there within the bounds (the nearest K is reported).
 [[nodiscard]] Result<SpringDesign> design_springs(const SpringRequest& request);
 
 }  // namespace mbk::calibration

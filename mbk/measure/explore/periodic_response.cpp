@@ -57,7 +57,7 @@ Cx spectra_of(const ExplorationTrial& trial, Index begin, const Sizes& sizes, bo
   return spectra;
 }
 
-/// What tells realisations apart: the reference, or the mean input.
+/// The signal that distinguishes realisations: the reference, or the mean input.
 Cx identity_of(const Realisation& one, const Sizes& sizes) {
   Cx mean = Cx::Zero(sizes.inputs, sizes.lines);
   for (const Cx& period : one.periods) mean += period.bottomRows(sizes.inputs);

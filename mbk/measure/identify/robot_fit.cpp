@@ -422,10 +422,10 @@ void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
   if (!(most > kMaxLoss)) return;
   constexpr double kMaxByChance = 5.0;  // a wrong sign leaves a residual that looks like large noise
   if (!(consistent.loss > loss_by_chance) && most < kMaxByChance) {
-    found.notes.push_back(
-        fmt::format("the consistent robot explains {:.3g} percentage points less of the torque of joint {} than the "
-                    "free fit: with this much noise that may be chance, because the free fit also explains noise",
-                    most, worst + 1));
+    found.notes.push_back(fmt::format(
+        "the consistent robot explains {:.3g} percentage points less of the torque of joint {} than the "
+        "free fit: with this much noise the loss is not significant, because the free fit also explains noise",
+        most, worst + 1));
     return;
   }
   constexpr std::size_t kNamed = 3;

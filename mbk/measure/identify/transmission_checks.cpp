@@ -408,7 +408,7 @@ void test_transmission(const std::vector<PreparedDynamics>& trials, RobotIdentif
 }
 
 void warn_of_transmission(RobotIdentification& found) {
-  constexpr double kEnough = 0.5;    // of what counts, so that it surely does not
+  constexpr double kEnough = 0.5;    // of the limit, so that it is surely below it
   constexpr double kSlowest = 0.1;   // [Hz] at which a robot can be identified
   constexpr double kExplained = 80;  // [%] of the torque, for its residual to be that of a drive
   double top = 0.0;

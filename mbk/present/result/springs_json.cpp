@@ -41,8 +41,7 @@ void describe(Fields<SpringConstant>& fields) {
   fields.add("whole", &SpringConstant::whole, "line through all samples");
   fields.add("bias_of_whole", &SpringConstant::bias_of_whole, "relative");
   fields.add("rule", &SpringConstant::rule, "how the straight part was chosen");
-  fields.add("hac_lag_s", &SpringConstant::hac_lag_s,
-             "[m]: reach of the residual's correlation in the standard errors");
+  fields.add("hac_lag_s", &SpringConstant::hac_lag_s, "[m]: correlation time of the residual in the standard errors");
   fields.add("hooks", &SpringConstant::hooks);
   fields.add("notes", &SpringConstant::notes);
 }

@@ -54,7 +54,7 @@ const gradeTexts = { "": "wait", recorded: "thanks", good: "thanks", poor: "agai
 interface Picture {
   size: string; // of the canvas and of the view
   ring: string; // its colour
-  steady: boolean; // a mark to rest the eyes on, in place of the handle
+  steady: boolean; // a fixation mark instead of the handle
   at: [number, number] | undefined; // the handle [px from the middle]
 }
 

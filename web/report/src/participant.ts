@@ -131,7 +131,7 @@ function limits(report: ParticipantReport, shown: number): HTMLElement {
     h("ul", { class: "limits" },
       h("li", {}, "This page does not show whether a change is good or bad, what caused it, or whether it matters to the person. It is not a diagnosis, and mbk is not a medical device."),
       h("li", {}, "“No detectable change” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
-      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page shows ${shown}; a single one that stands out may be chance.`) : "",
+      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page shows ${shown}; a single one that stands out is not significant.`) : "",
       known.length > 0
         ? h("li", {}, `The minimal detectable change is from this study: from ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more with this apparatus. An outlying participant is judged by the variances of all others. If most people really changed, it is too large; it does not apply to other people or another apparatus.`)
         : h("li", {}, "The minimal detectable change is not known, so no difference on this page can be distinguished from measurement error.")));

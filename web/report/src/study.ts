@@ -39,7 +39,7 @@ const sized = (value: Value, [low, high]: [Value, Value], name: string): HTMLEle
 const icc = (one: Reliability) => one.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
 const error = (one: Reliability) => one.between_sessions.error.find(({ form }) => form === "agreement");
 
-/** Why nothing is said of it. */
+/** Why it is not reported. */
 function lack({ repeated_participants, between_sessions }: Reliability): string {
   if (between_sessions.support === "too few people") return `too few people: ${repeated_participants} with two sessions or more`;
   return between_sessions.support;
@@ -117,7 +117,7 @@ function reliabilitySection(report: StudyReport, conditions: string[]): HTMLElem
     others.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), ...others, noteList(more)) : "");
 }
 
-/** Decimals that tell people apart. */
+/** Enough decimals to distinguish people. */
 function spreadOf(courses: Course[]): Value {
   const means = courses.map(({ mean }) => mean).filter((v): v is number => v !== null);
   if (means.length < 2) return means[0] === undefined ? null : Math.abs(means[0]) / 10;
