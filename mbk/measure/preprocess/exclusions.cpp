@@ -159,7 +159,7 @@ Result<void> leave_out(std::span<const ExcludedWindow> windows, const Clock& clo
   }
   plan.cuts = std::move(left);
   plan.excluded = std::move(excluded);
-  plan.rule += said;
+  plan.rule += omitted;
   return {};
 }
 

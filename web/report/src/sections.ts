@@ -14,7 +14,10 @@ const percent = (share: Value): Value => (share === null ? null : 100 * share);
 const onlyOne = (values: string[]): string => [...new Set(values)].join(", ");
 
 /** File, participant, window, filters, method, mode. */
-export function identityFacts(trial: Trial): HTMLElement {
+export const recordingSection = (trial: Trial, id: string, level: HeadingLevel): HTMLElement =>
+  h("section", { id: `${id}-recording` }, heading(level, "Recording and settings"), identityFacts(trial));
+
+function identityFacts(trial: Trial): HTMLElement {
   const { result } = trial;
   const how = result.preparation[0];
   const filters = how
@@ -37,7 +40,7 @@ export function identityFacts(trial: Trial): HTMLElement {
 export const simulatedNote = (trials: Trial[]): HTMLElement | undefined =>
   trials.some(isSimulated)
     ? h("p", { class: "simulated" }, h("strong", {}, "Simulated. "), trials.every(isSimulated)
-      ? "No person was measured: the metadata contain the true parameters of a simulation."
+      ? "No person was measured; the metadata contain the true values."
       : "Some of these recordings are simulated: their metadata contain the true parameters. They are not of a person.")
     : undefined;
 

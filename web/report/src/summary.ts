@@ -2,7 +2,7 @@
 import { angleBetween, direction } from "@mbk/shared/directions";
 import type { Method, Model, Value, Warning, WarningCode } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
-import { anyAngle } from "@mbk/shared/ellipses";
+import { anyAngle, ellipseOf } from "@mbk/shared/ellipses";
 import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
 import { type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
@@ -108,23 +108,27 @@ function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | 
   if (trial.result.axes === 1) {
     const value = shown.model[symbol][0]?.[0] ?? null;
     parts.push(h("p", { class: "headline" }, withHalfWidth(value, shown.standard_error[symbol][0]?.[0] ?? null, `card-${symbol}`), ` ${unit}`));
-    if (value !== null) parts.push(h("p", {}, everyday(symbol, value, unit)));
+    if (value !== null) parts.push(h("p", { class: "everyday" }, everyday(symbol, value, unit)));
   } else if (axes) {
     const { small, large, angle, intervals } = axes;
     const [low, high] = intervals.angle;
     const between = ([from, to]: [Value, Value]) =>
       h("span", { class: "half" }, from !== null && to !== null ? ` [${significant(from, 3)}, ${significant(to, 3)}]` : "");
     parts.push(
-      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), between(intervals.large), ` ${unit}`, h("span", { class: "half" }, " maximum (along its major axis)")),
-      anyAngle(intervals.angle) ? h("p", {}, "any direction: the ellipse may be a circle") : h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
+      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, between(intervals.large)),
+      anyAngle(intervals.angle) ? h("p", {}, "maximum; any direction: the ellipse may be a circle") : h("p", {}, arrow(angle), "maximum at ", data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
         h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
-      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), between(intervals.small), ` ${unit} perpendicular (minor axis)`),
+      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), between(intervals.small), ` ${unit} perpendicular`),
     );
-    if (small > 0) parts.push(h("p", {}, everyday(symbol, large, unit)));
+    if (small > 0) parts.push(h("p", { class: "everyday" }, everyday(symbol, large, unit)));
   } else {
     parts.push(h("p", { class: "headline" }, "undefined"));
   }
-  return h("div", { class: "card" }, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts, literatureLine(trial, symbol));
+  const drawn = shown.method === trial.result.method ? ellipseOf(trial, matrices.findIndex((one) => one.symbol === symbol)) : undefined;
+  return h("div", { class: "card" },
+    h("div", {}, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts),
+    drawn,
+    literatureLine(trial, symbol));
 }
 
 /** "K 224 N/m, B 17.3 N·s/m, M 2.31 kg": along the major axis where there are two axes. */
@@ -143,8 +147,8 @@ function cards(trial: Trial): (Node | string)[] {
   const rests = trial.result.passivity?.models?.[0]?.method === first.method;
   const other = first.method !== trial.result.method ? ` The tables and ellipses below are from the ${methodNames[trial.result.method]} model, the method of this result.` : "";
   return [
-    h("p", { class: "model-of", "data-method": first.method }, "Values are from the ", h("strong", {}, methodNames[first.method]), rests ? ` model, which the passivity prediction also uses.${other}` : ` model.${other}`),
     h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, first, symbol, name, title))),
+    h("p", { class: "model-of", "data-method": first.method }, "Values are from the ", h("strong", {}, methodNames[first.method]), rests ? ` model, which the passivity prediction also uses.${other}` : ` model.${other}`, " Brackets are 95 % intervals."),
     trial.result.axes === 1 ? "" : h("p", { class: "reading" }, "Angles are counter-clockwise from x. Check how x and y of your robot point."),
     ...others.map((one) => h("p", { class: "reading", "data-other": one.method }, `With ${methodNames[one.method]}${trial.result.axes === 1 ? "" : " (maximum)"}: ${inOneLine(trial, one)}.`)),
   ];
@@ -165,7 +169,7 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
   const { result } = trial;
   const duration = result.inputs.reduce((sum, input) => sum + (input.duration_s ?? 0), 0);
   const said = verdict(trial);
-  const how = result.axes === 1
+  const how = !result.usable ? "" : result.axes === 1
     ? "A machine perturbed the limb; force and position were recorded. From these, three properties of the limb were estimated."
     : "A robot perturbed the hand; force and position were recorded. From these, three properties of the arm at the hand were estimated.";
   return h(
@@ -175,9 +179,9 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
-    h("p", {}, `${fileOf(trial)} contains ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
     ...cards(trial),
-    fitSentence(trial),
+    result.usable ? fitSentence(trial) : "",
+    h("p", {}, `${fileOf(trial)} contains ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
   );
 }
 

@@ -63,9 +63,9 @@ export const verdictWords = {
 } as const;
 
 export const meanings = {
-  K: "how strongly the limb pushes back, like a spring, when held away from its equilibrium",
-  B: "how strongly it resists velocity, as if moved through honey",
-  M: "how strongly it resists being accelerated: how heavy it feels",
+  K: "pushes back like a spring",
+  B: "resists velocity, as honey does",
+  M: "resists acceleration: how heavy it feels",
 } as const;
 
 export const glossary: [string, string][] = [

@@ -210,6 +210,15 @@ export function ellipsePanels(result: Result, posture?: Posture, bands = bandsOf
   );
 }
 
+/** One of the three, over the arm. */
+export function ellipseOf(trial: Trial, k: number): SVGSVGElement | undefined {
+  const matrix = matrices[k];
+  const ellipse = matrix && trial.result.ellipses?.[matrix.name];
+  if (!ellipse) return undefined;
+  const band = ellipseBand(matrix.symbol, trial.result);
+  return drawing(ellipse, matrix.title, unitsOf(trial.result)[matrix.symbol], roomFor([ellipse], [band]), niceBelow(0.8 * largestOf([ellipse])), trial.recordings[0]?.posture, band);
+}
+
 const bandsOf = (result: Result): (Band | undefined)[] => matrices.map(({ symbol }) => ellipseBand(symbol, result));
 
 /** The three ellipses of one trial. */
