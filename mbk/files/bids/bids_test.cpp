@@ -143,7 +143,7 @@ TEST(DecodeBids, RefusesColumnsThatNobodyDescribes) {
   EXPECT_EQ(error("1\n", channels, json), "none");
   EXPECT_THAT(error("1\t2\n", channels, json), AllOf(HasSubstr("2 columns"), HasSubstr("channels.tsv")));
   EXPECT_THAT(error("one\n", channels, json), HasSubstr("'one'"));
-  EXPECT_THAT(error("", channels, json), HasSubstr("numbers"));
+  EXPECT_THAT(error("", channels, json), HasSubstr("no samples"));
   EXPECT_THAT(error("1\n", "name\ttype\n", json), HasSubstr("'units'"));
   EXPECT_THAT(error("1\n", channels, "{"), HasSubstr("JSON"));
   EXPECT_THAT(error("1\n", channels, R"({"SamplingFrequency": "n/a"})"), HasSubstr("SamplingFrequency"));

@@ -577,7 +577,7 @@ void Identifier::warn() {
   if (!found_.residuals.independent()) {
     warnings.push_back({WarningCode::input_explains_residual,
                         "the input still explains part of the residual, so the model is incomplete",
-                        fmt::format("try more poles or zeros (--orders), {}{}{}", delay, hold,
+                        fmt::format("use more poles or zeros (--orders), {}{}{}", delay, hold,
                                     in_loop ? "" : "; in a closed loop, --method clsrivc")});
   }
   if (options_.find_delay && !found_.delay_found) {
