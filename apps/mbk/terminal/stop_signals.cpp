@@ -15,7 +15,7 @@ constexpr std::array kHeldSignals = {SIGTTIN, SIGTTOU};
 
 std::atomic<session::LoopFlags*> told{nullptr};
 std::atomic<bool> in_trial{false};
-std::atomic<int> ended{0};                // by this signal
+std::atomic<int> ending_signal{0};                // by this signal
 std::atomic<bool> came_outside{false};    // of a trial
 std::atomic<bool> stopped_silent{false};  // in a trial whose loop does not come back
 static_assert(std::atomic<session::LoopFlags*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
@@ -33,7 +33,7 @@ extern "C" void on_stop_signal(int signal) {
   // A trial that begins now either sees end_session, or is seen here.
   if (signal != SIGINT || !in_trial) {
     int none = 0;
-    ended.compare_exchange_strong(none, signal);
+    ending_signal.compare_exchange_strong(none, signal);
     flags->end_session = true;
   }
   if (in_trial) {
@@ -55,7 +55,7 @@ extern "C" void on_stop_signal(int signal) {
 StopSignals::StopSignals(session::LoopFlags& flags) {
   static_assert(kEndingSignals.size() == kEnding && kHeldSignals.size() == kHeld);
   told = &flags;
-  ended = 0;
+  ending_signal = 0;
   came_outside = false;
   stopped_silent = false;
   std::size_t i = 0;
@@ -75,7 +75,7 @@ StopSignals::~StopSignals() {
 }
 
 int StopSignals::ended_by() const {
-  return ended;
+  return ending_signal;
 }
 
 StopSignals::Trial::Trial() {
@@ -87,7 +87,7 @@ StopSignals::Trial::~Trial() {
 }
 
 void end_by(int signal) {
-  // neither a core nor a suspended program: it has ended in order
+  // neither a core nor a suspended program: it has ending_signal in order
   if (signal == SIGTSTP || signal == SIGQUIT || signal == SIGXCPU) signal = SIGTERM;
   act(signal, SIG_DFL, nullptr);
   std::raise(signal);
