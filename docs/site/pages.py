@@ -450,8 +450,9 @@ def main():
         site.add(pathlib.Path(name))
     site.add_examples()
     site.add_commands(mbk)
-    site.pages.update(python_pages.pages(mbk))
-    site.pages.update(document_pages.pages(pathlib.Path(mbk).resolve().parents[1] / "schemas"))
+    build = pathlib.Path(mbk).resolve().parents[1]
+    site.pages.update(python_pages.pages(build / "python/mbk"))
+    site.pages.update(document_pages.pages(build / "schemas"))
     site.add_library()
     for name in ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md"):
         site.add(pathlib.Path(name))
