@@ -21,6 +21,9 @@ html_theme = "furo"
 html_title = f"mbk {release}"
 html_static_path = [os.environ["MBK_SITE_STATIC"]]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
+html_search_scorer = os.path.join(os.path.dirname(os.path.abspath(__file__)), "search_order.js")
+templates_path = ["templates"]
 html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
@@ -33,5 +36,6 @@ html_theme_options = {
     "dark_css_variables": {"color-brand-primary": "#7cc4ee", "color-brand-content": "#7cc4ee"},
     "footer_icons": [],
 }
-pygments_style = "friendly"
+pygments_style = "default"
+pygments_dark_style = "github-dark"
 highlight_language = "text"

@@ -42,7 +42,7 @@ def rows(schema, before=""):
 def body(schema):
     fields = "\n".join(rows(schema))
     if fields:
-        return f"| Field | Type | Meaning | |\n|---|---|---|---|\n{fields}\n"
+        return f"| Field | Type | Meaning | Presence |\n|---|---|---|---|\n{fields}\n"
     return f"{kind(schema)}\n"
 
 
@@ -62,6 +62,6 @@ def pages(schemas):
         listed.append(f"| [{name}]({name}.md) | {meaning} |\n")
     names = "\n".join(page.split("/")[1] for page in made)
     made["documents/index"] = (
-        "# JSON documents\nEvery document that mbk writes, field by field, from its [schema](../guide/schemas.md).\n\n"
+        "# JSON documents\nEvery document that mbk writes, field by field, from its [schema](../guide/reference.md#json-documents).\n\n"
         f"| Schema | Of |\n|---|---|\n{''.join(listed)}\n```{{toctree}}\n:hidden:\n\n{names}\n```\n")
     return made

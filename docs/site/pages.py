@@ -26,7 +26,8 @@ import python_pages
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FIXED = {"README.md": "index", "CHANGELOG.md": "changelog", "CONTRIBUTING.md": "contributing",
-         "THIRD_PARTY_NOTICES.md": "notices", "bench/README.md": "bench", "fuzz/README.md": "fuzz"}
+         "THIRD_PARTY_NOTICES.md": "notices", "bench/README.md": "bench", "fuzz/README.md": "fuzz",
+         "bridge/README.md": "bridge"}
 LANGUAGES = {".cpp": "cpp", ".h": "cpp", ".c": "c", ".py": "python", ".toml": "toml", ".urdf": "xml", ".sh": "bash",
              ".json": "json", ".ipynb": "json", ".yml": "yaml", ".ts": "typescript", ".cmake": "cmake", ".txt": "cmake"}
 SUBSCRIPT = re.compile(r"(?<![\w./@])([A-Za-zΑ-ω][\u0300-\u036f]*|∂[a-z])_([A-Za-z]{1,4}|\d)(?![\w/])")
@@ -195,12 +196,23 @@ class Site:
 
     # Folders of documents: their README is the index, in whose order the pages stand
 
-    def add_folder(self, folder):
-        index = (ROOT / folder / "README.md").read_text()
-        order = list(dict.fromkeys(re.findall(r"\]\(([\w.-]+\.md)\)", index)))
+    def add_theory(self):
+        order = linked_pages((ROOT / "docs/theory/README.md").read_text())
         for name in order:
-            self.add(pathlib.Path(folder, name))
-        self.add(pathlib.Path(folder, "README.md"), toctree([name[:-3] for name in order]))
+            self.add(pathlib.Path("docs/theory", f"{name}.md"))
+        self.add(pathlib.Path("docs/theory/README.md"), toctree(order))
+
+    def add_guide(self):
+        """The guide's pages, which the navigation shows at once under the headings of its README."""
+        self.add(pathlib.Path("docs/guide/README.md"))
+        groups = re.split(r"^\*\*(.+)\*\*$", (ROOT / "docs/guide/README.md").read_text(), flags=re.MULTILINE)[1:]
+        trees = toctree(["guide/index"])
+        for caption, links in zip(groups[::2], groups[1::2]):
+            order = linked_pages(links)
+            for name in order:
+                self.add(pathlib.Path("docs/guide", f"{name}.md"))
+            trees += toctree([f"guide/{name}" for name in order], caption)
+        self.pages["index"] = self.pages["index"].replace("<!-- the guide -->\n", trees)
 
     def add_examples(self):
         index = (ROOT / "examples/README.md").read_text()
@@ -255,9 +267,11 @@ class Site:
     # Files that are linked and are no documents
 
     def write_shown(self, html_folder):
-        formatter = pygments.formatters.HtmlFormatter(linenos="inline", anchorlinenos=False, style="friendly")
+        formatter = pygments.formatters.HtmlFormatter(linenos="inline", style="default")
+        dark = pygments.formatters.HtmlFormatter(style="github-dark")
         (html_folder / "source").mkdir(parents=True, exist_ok=True)
         (html_folder / "source/source.css").write_text(SOURCE_STYLE + formatter.get_style_defs(".highlight"))
+        (html_folder / "source/dark.css").write_text(SOURCE_DARK + dark.get_style_defs(".highlight"))
         for path in self.shown:  # grows while folders list what is in them
             name, file = self.page_that_shows(path), ROOT / path
             if file.is_dir():
@@ -270,6 +284,7 @@ class Site:
             page.parent.mkdir(parents=True, exist_ok=True)
             page.write_text(SOURCE_PAGE.format(title=html.escape(path.as_posix()), body=body,
                                                style=self.leading_to(name, "source/source.css"),
+                                               dark=self.leading_to(name, "source/dark.css"),
                                                home=self.leading_to(name, "index.html")))
 
     def from_source(self, name, path, folder):
@@ -317,8 +332,14 @@ def breakable(code):
     return f'<code class="docutils literal">{text}</code>'
 
 
-def toctree(names):
-    return "\n```{toctree}\n:hidden:\n\n" + "\n".join(names) + "\n```\n"
+def linked_pages(text):
+    """Names of the pages of the same folder, in the order of a README."""
+    return list(dict.fromkeys(re.findall(r"\]\(([\w-]+)\.md\)", text)))
+
+
+def toctree(names, caption=""):
+    caption = f":caption: {caption}\n" if caption else ""
+    return f"\n```{{toctree}}\n:hidden:\n{caption}\n" + "\n".join(names) + "\n```\n"
 
 
 def fenced(text, language):
@@ -332,14 +353,24 @@ def escaped(text):
 
 SOURCE_PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title} - mbk</title><link rel="stylesheet" href="{style}"></head>
-<body><p><a href="{home}">mbk</a> / {title}</p>
-{body}</body></html>
+<title>{title} - mbk</title><link rel="stylesheet" href="{style}">
+<link id="dark" rel="stylesheet" media="screen and (prefers-color-scheme: dark)" href="{dark}">
+<script>
+const theme = localStorage.getItem("theme"); // the choice made with the button of the other pages
+if (theme === "dark" || theme === "light") document.getElementById("dark").media = theme === "dark" ? "screen" : "not all";
+</script></head>
+<body><nav><a href="{home}">mbk</a></nav>
+<main><h1>{title}</h1>
+{body}</main></body></html>
 """
 SOURCE_STYLE = """body { margin: 1.5rem auto; max-width: 76rem; padding: 0 1rem; font-family: system-ui, "DejaVu Sans", sans-serif; }
 pre { font: 13.5px/1.45 ui-monospace, "DejaVu Sans Mono", monospace; overflow-x: auto; }
 a { color: #0f5c8c; }
-.linenos { color: #888; padding-right: 1rem; user-select: none; }
+h1 { font-size: 1rem; overflow-wrap: anywhere; }
+.highlight .linenos { color: inherit; padding-right: 1rem; user-select: none; }
+"""
+SOURCE_DARK = """:root { color-scheme: dark; background: #131416; color: #d0d0d0; }
+a { color: #7cc4ee; }
 """
 
 
@@ -444,16 +475,18 @@ def main():
     site = Site(Reference(tag_file, out.parent / "html/api"), out)
     landing = ROOT / "docs/site/index.md"
     site.pages["index"] = site.rewritten(landing.read_text(), pathlib.Path("docs/theory/landing.md"), "index")
-    for folder in ("docs/guide", "docs/theory"):
-        site.add_folder(folder)
+    site.add_guide()
+    site.add_theory()
     for name in ("docs/house.md", "docs/decisions.md"):
         site.add(pathlib.Path(name))
     site.add_examples()
     site.add_commands(mbk)
-    site.pages.update(python_pages.pages(mbk))
-    site.pages.update(document_pages.pages(pathlib.Path(mbk).resolve().parents[1] / "schemas"))
+    build = pathlib.Path(mbk).resolve().parents[1]
+    site.pages.update(python_pages.pages(build / "python/mbk"))
+    site.pages.update(document_pages.pages(build / "schemas"))
     site.add_library()
-    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md"):
+    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "THIRD_PARTY_NOTICES.md", "bench/README.md", "fuzz/README.md",
+                 "bridge/README.md"):
         site.add(pathlib.Path(name))
     site.write()
     site.write_shown(out.parent / "html")

@@ -1,14 +1,8 @@
 """The reference of the Python package, from its docstrings: its functions as the build makes them, and its classes."""
 
 import ast
-import pathlib
 import re
-import subprocess
-import sys
-import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PACKAGE = ROOT / "bindings/python/mbk"
 GROUPS = (("_functions", "mbk", "Functions"), ("study", "mbk.study", "mbk.study"), ("robot", "mbk.robot", "mbk.robot"),
           ("springs", "mbk.springs", "mbk.springs"), ("sensor", "mbk.sensor", "mbk.sensor"))
 CLASSES = (("_recording", "Recordings"), ("_documents", "Results"), ("_live", "Watching a trial"),
@@ -94,29 +88,26 @@ def class_text(node):
     return "\n".join(out)
 
 
-def pages(mbk):
-    """Names of pages and their text."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        table = subprocess.run([mbk, "manual", "--json"], check=True, capture_output=True).stdout
-        (folder / "commands.json").write_bytes(table)
-        subprocess.run([sys.executable, "-B", PACKAGE.parent / "generate.py", folder / "commands.json", folder], check=True)
-        made, found = {}, {}
-        for file, module, title in GROUPS:
-            tree = ast.parse((folder / f"{file}.py").read_text(encoding="utf-8"))
-            functions = [one for one in tree.body if isinstance(one, ast.FunctionDef)]
-            text = [f"# {title}\n", "Of the package [mbk](../guide/python.md); the options are those of the command."]
-            for one in functions:
-                text += [f"\n## {module}.{one.name}\n", f"```python\n{module}.{one.name}{signature(one)}\n```\n",
-                         markdown(ast.get_docstring(one))]
-            page = f"python/{module.split('.')[-1] if file != '_functions' else 'functions'}"
-            made[page] = "\n".join(text) + "\n"
-            found[page] = [(f"{module}.{one.name}", (ast.get_docstring(one) or "").splitlines()[0]) for one in functions]
+def pages(package):
+    """Names of pages and their text.   package: mbk as the build makes it"""
+    if not (package / "_functions.py").exists():
+        raise SystemExit(f"{package} has no functions; build the target mbk_python_package")
+    made, found = {}, {}
+    for file, module, title in GROUPS:
+        tree = ast.parse((package / f"{file}.py").read_text(encoding="utf-8"))
+        functions = [one for one in tree.body if isinstance(one, ast.FunctionDef)]
+        text = [f"# {title}\n", "Of the package [mbk](../guide/python.md); the options are those of the command."]
+        for one in functions:
+            text += [f"\n## {module}.{one.name}\n", f"```python\n{module}.{one.name}{signature(one)}\n```\n",
+                     markdown(ast.get_docstring(one))]
+        page = f"python/{module.split('.')[-1] if file != '_functions' else 'functions'}"
+        made[page] = "\n".join(text) + "\n"
+        found[page] = [(f"{module}.{one.name}", (ast.get_docstring(one) or "").splitlines()[0]) for one in functions]
     text = ["# Classes\n", "What the functions take and give."]
-    exported = re.search(r"__all__ = \[(.*?)\]", (PACKAGE / "__init__.py").read_text(encoding="utf-8"), re.DOTALL)[1]
+    exported = re.search(r"__all__ = \[(.*?)\]", (package / "__init__.py").read_text(encoding="utf-8"), re.DOTALL)[1]
     exported = set(re.findall(r'"(\w+)"', exported))
     for file, title in CLASSES:
-        tree = ast.parse((PACKAGE / f"{file}.py").read_text(encoding="utf-8"))
+        tree = ast.parse((package / f"{file}.py").read_text(encoding="utf-8"))
         text.append(f"\n## {title}\n")
         for one in tree.body:
             if isinstance(one, ast.ClassDef) and one.name in exported:

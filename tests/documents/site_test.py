@@ -84,6 +84,19 @@ class Site(unittest.TestCase):
         for option in options:
             self.assertIn(option, shown)
 
+    def test_navigation_has_the_order_of_the_readmes(self):
+        tree = lxml.html.parse(str(self.html / "theory/index.html"))
+        shown = [one.get("href") for one in tree.xpath("//*[@class='sidebar-tree']//a")]
+        captions = tree.xpath("//*[@class='sidebar-tree']//p[contains(@class, 'caption')]/span/text()")
+        guide = (SOURCE / "docs/guide/README.md").read_text()
+        groups = re.findall(r"^\*\*(.+)\*\*$", guide, re.MULTILINE)
+        self.assertEqual(captions[:len(groups)], groups)
+        for folder, before in (("guide", "../guide/"), ("theory", "")):
+            text = (SOURCE / "docs" / folder / "README.md").read_text()
+            order = list(dict.fromkeys(re.findall(r"\]\(([\w-]+)\.md\)", text)))
+            self.assertEqual([one for one in shown if one in {f"{before}{name}.html" for name in order}],
+                             [f"{before}{name}.html" for name in order])
+
     def test_formulas_are_set_apart(self):
         theory = (self.html / "theory/robot.html").read_text()
         self.assertGreater(theory.count('class="formula"'), 3)

@@ -174,7 +174,7 @@ export async function open(file, { script, ...options } = {}) {
   page.on("pageerror", (error) => said.push(String(error)));
   page.on("request", (request) => requests.push(request.url()));
   await page.goto(file.startsWith("http:") ? file : pathToFileURL(file).href);
-  await page.waitForSelector("main");
+  await page.waitForSelector("main, [role=main]");
   const outside = () => requests.filter((url) => !/^(data|blob):/.test(url)).slice(1);
   return { page, said, outside, close: () => context.close() };
 }
