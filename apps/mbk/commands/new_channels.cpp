@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "apps/mbk/commands/new_commands.h"
 #include "apps/mbk/options/output.h"
@@ -164,7 +166,7 @@ int run(const NewChannelsArguments& arguments) {
   }
   if (ask) {
     tell(fmt::format(
-        "\nThe force is that of the hand on the robot: Fx=-4 reverses a sign, x=2:mm states a unit.\n"
+        "\nF is the force of the hand on the robot; Fx=-4 reverses it, x=2:mm has a unit.\n"
         "Two axes: x, y, Fx, Fy and the reference xr, yr. One axis: x, F, xr.\n{}\n",
         guess.missing.empty() ? "Enter accepts; or type what to change, e.g. Fx=4,Fy=5"
                               : fmt::format("Type what is missing or wrong, e.g. {}=3", guess.missing.front())));
