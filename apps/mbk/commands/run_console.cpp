@@ -10,6 +10,7 @@
 #include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/present/report/html.h"
+#include "mbk/present/report/text.h"
 
 namespace mbk::app {
 

@@ -89,7 +89,7 @@ class Checker {
       warn(WarningCode::damping_not_positive,
            fmt::format("the damping is {}: the limb delivers energy, or force and position are not synchronised",
                        stated(damping, units_.damping)),
-           "check with 'mbk passivity' whether the limb delivered energy in the trial; if it did not, synchronise "
+           "check with 'mbk passivity' whether the limb absorbed energy in the trial; if it did, synchronise "
            "force and position");
     }
   }
@@ -138,7 +138,7 @@ class Checker {
            fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
                        least < fit.vaf.minCoeff() ? " in the fitted data" : ""),
            "look for voluntary activity or reflexes with 'mbk explore', and check with 'mbk passivity' whether the "
-           "limb delivered energy; do not interpret M, B and K as those of a passive limb");
+           "limb absorbed energy; do not interpret M, B and K as those of a passive limb");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
     }
   }

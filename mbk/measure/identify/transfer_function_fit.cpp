@@ -371,8 +371,7 @@ tl::unexpected<Error> Identifier::nothing_settled(const std::vector<SearchStart>
       "no stable model with {} was found: of {} starts, {} converged to an unstable model and {} did not converge",
       model, starts.size(), unstable, std::ssize(starts) - unstable);
   const char* const otherwise =
-      "exchange input and output if cause and effect are swapped, use fewer poles, or give a start near the slowest "
-      "pole with --start-pole";
+      "swap input and output, use fewer poles, or give a start near the slowest pole with --start-pole";
   if (2 * unstable < std::ssize(starts)) return fail(ErrorKind::not_usable, text, otherwise);
   constexpr double kAgree = 1.5;
   if (!growth.empty() && std::ranges::max(growth) <= kAgree * std::ranges::min(growth)) {
