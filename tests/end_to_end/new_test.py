@@ -70,6 +70,8 @@ class Channels(Asked):
     def test_a_part_of_a_map_changes_the_guess(self):
         ran = self.answer("new", "channels", self.log(), answers="Fx=-4,xr=-6\n")
         self.assertEqual(ran.out, "--channels time=1:ms,x=2:mm,y=3:mm,Fy=5:N,yr=7,Fx=-4,xr=-6\n")
+        ran = self.answer("new", "channels", self.log(), answers="x=2:mm,F=4\n")  # another number of axes
+        self.assertEqual(ran.out, "--channels time=1:ms,x=2:mm,F=4\n")
 
     def test_at_a_terminal_the_command_is_printed_alone(self):
         code, shown = at_terminal("new", "channels", self.log())

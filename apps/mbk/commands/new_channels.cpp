@@ -45,8 +45,9 @@ using Signals = std::vector<FileSignal>;
 /// "4 Hand force X [N]", in at most 20 columns.
 std::string column_text(const FileSignal& signal) {
   constexpr std::size_t kWidest = 20;
-  const std::string name = printable(signal.name == signal.source ? "" : signal.name);
-  const std::string text = signal.source + (name.empty() ? "" : " ") + name;
+  const bool named = signal.name == signal.source || signal.name.starts_with(signal.source + " (");
+  const std::string text =
+      printable(named ? signal.name : signal.source + (signal.name.empty() ? "" : " ") + signal.name);
   return report::columns(text) > kWidest ? fmt::format("{:.{}}…", text, kWidest - 1) : text;
 }
 
@@ -78,10 +79,11 @@ std::string guess_text(const Signals& signals, const ChannelGuess& guess, const 
   constexpr std::size_t kLines = 13;
   const Index drawn = drawn_samples(signals, guess, arguments);
   const bool all = drawn >= signals.front().values.size();
-  const auto line = [&](const std::string& role, const FileSignal& signal, const std::string& unit, const char* why) {
+  const auto line = [&](const std::string& role, const FileSignal& signal, const std::string& unit,
+                        const std::string& why) {
     constexpr int kCharacters = 14;
     const Vector& values = signal.values;
-    return fmt::format("  {:<5} {:<20}  {:<4}  {:<20}  {}  {}\n", role, column_text(signal), unit, range_text(values),
+    return fmt::format("  {:<5} {:<20}  {:<4}  {:<20}  {}{}\n", role, column_text(signal), unit, range_text(values),
                        report::sparkline(values.head(std::min(drawn, values.size())), kCharacters), why);
   };
   std::string text = fmt::format("  {:<5} {:<20}  {:<4}  {:<20}  {:<14}  {}\n", "", "column", "unit", "range",
@@ -90,7 +92,7 @@ std::string guess_text(const Signals& signals, const ChannelGuess& guess, const 
   bool by_size = false;
   for (const recording::GuessedChannel& one : guess.channels) {
     const std::string unit = one.unit.empty() ? "SI" : one.unit + (one.unit_by_size ? "?" : "");
-    text += line(one.channel, signals[one.signal], unit, one.why.c_str());
+    text += line(one.channel, signals[one.signal], unit, "  " + one.why);
     used[one.signal] = true;
     by_size = by_size || one.unit_by_size;
   }
@@ -109,19 +111,19 @@ std::string guess_text(const Signals& signals, const ChannelGuess& guess, const 
   return text;
 }
 
-/// The map that an answer means: itself if it names position and force, otherwise the guess with these channels
-/// changed.
+/// The guess with the channels of an answer changed. An answer with position and force replaces all but the time.
 /// @fails  as `parse_channel_map`
-Result<std::string> answered_map(const ChannelGuess& guess, const std::string& answer) {
+Result<std::string> answered_map(const ChannelGuess& guess, const std::string& answer, bool has_rate) {
   const auto given = MBK_TRY(recording::parse_channel_map(answer));
   const auto names = [&](std::initializer_list<std::string_view> channels, std::string_view joint) {
     return std::ranges::any_of(given, [&](const recording::ChannelSource& one) {
       return std::ranges::find(channels, one.channel) != channels.end() || one.channel.starts_with(joint);
     });
   };
-  if (names({"x", "hand_x", "position"}, "joint_") && names({"force_x", "reaction"}, "torque_")) return answer;
+  const bool complete = names({"x", "hand_x", "position"}, "joint_") && names({"force_x", "reaction"}, "torque_");
   std::string map;
   for (const recording::GuessedChannel& one : guess.channels) {
+    if (complete && (one.channel != "time" || has_rate)) continue;
     const auto guessed = MBK_TRY(recording::parse_channel_map(one.entry));
     const std::string& channel = guessed.front().channel;
     if (std::ranges::find(given, channel, &recording::ChannelSource::channel) == given.end()) map += one.entry + ",";
@@ -175,7 +177,8 @@ int run(const NewChannelsArguments& arguments) {
   constexpr const char* kAccept = "as shown";
   std::string map;
   const auto check = [&](const std::string& answer) -> std::string {
-    auto meant = answer == kAccept ? Result<std::string>(guess.map) : answered_map(guess, answer);
+    auto meant =
+        answer == kAccept ? Result<std::string>(guess.map) : answered_map(guess, answer, arguments.rate_hz.has_value());
     if (!meant) return meant.error().line();
     map = std::move(*meant);
     const auto read = read_with(**file, arguments, map);
@@ -204,7 +207,7 @@ Action add_new_channels(Command group) {
       "  mbk measure log.csv $(mbk new channels log.csv --yes)\n"
       "      accepts the guess; fails if there is none\n"
       "  echo Fx=4,Fy=5 | mbk new channels log.csv --out channels.txt\n"
-      "      changes these channels of the guess; a map of position and force replaces it\n\n"
+      "      changes these channels of the guess; a map of position and force replaces all but time\n\n"
       "Without a terminal and an answer, the guess is accepted. Guess and command go to standard error, the\n"
       "option alone to standard output or FILE. It is printed only after the file was read with it.");
   command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
