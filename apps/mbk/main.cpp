@@ -115,7 +115,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   mbk::app::prepare_process();
   try {
-    return run(argc, argv);
+    return mbk::app::ended(run(argc, argv));
   } catch (const std::bad_alloc&) {
     say_plainly(kNoMemory);
   } catch (const std::exception& error) {
