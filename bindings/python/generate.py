@@ -86,10 +86,12 @@ def separator_of(option):
     return ":" if ":" in option["value"] and "," not in option["value"] and option["value"] != "MAP" else ","
 
 
-def sentence(text):
+def sentence(text, literals=()):
+    """The text with a capital and a full stop; a literal value or a unit at its beginning stays as it is typed."""
     text = re.sub(r"\s+", " ", text).strip()
     made = _mbk.in_python(text)
-    if text[:1].isalpha():
+    first = re.split(r"[\s,:;]", text)[0]
+    if text[:1].isalpha() and first not in literals and "/" not in first:
         made = made[:1].upper() + made[1:]
     return made + ("" if made.endswith(".") else ".")
 
@@ -178,7 +180,7 @@ class Command:
             kind = type_of(option)
             more = "default: False" if not option["value"] else "optional"
             out.append(f"    {python_name(option['names'][-1])} : {kind}, {more}")
-            text = sentence(option["description"])
+            text = sentence(option["description"], option["words"])
             if option["needs"]:
                 text += " Needs " + ", ".join(f"`{self.parameter(one)}`" for one in option["needs"]) + "."
             if option["excludes"]:
@@ -208,7 +210,7 @@ class Command:
         return python_name(option) if option.startswith("--") else re.split(r"[.( ]", option)[0].lower()
 
     def body(self):
-        sources = "[" + ", ".join(name for name, _, _ in self.positional()) + "]"
+        sources = ", ".join(f"str({name})" if kind == "int | str" else name for name, kind, _ in self.positional())
         options = "".join(f"            {json.dumps(option['names'][-1][2:])}: {python_name(option['names'][-1])},\n"
                           for option in self.options)
         options = f"{{\n{options}        }}" if options else "{}"
@@ -216,7 +218,7 @@ class Command:
         several = {name: separator for name, separator in several.items() if separator != ","}
         call = SPECIAL.get(tuple(self.path), ("run",))[0]
         return (f"    return _calling.{call}(  # type: ignore[no-any-return]\n        {json.dumps(' '.join(self.path))},\n"
-                f"        {sources},\n        {options},\n        {json.dumps(several)},\n    )\n")
+                f"        [{sources}],\n        {options},\n        {json.dumps(several)},\n    )\n")
 
     def text(self):
         return self.signature() + self.docstring() + self.body()

@@ -7,6 +7,7 @@ import subprocess
 
 import command
 from command import BAD_DATA, FINE, WRONG_USAGE, Case, main, make_log, program, table_of, write_csv
+from terminal_test import at_terminal
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
 
@@ -36,16 +37,52 @@ class Channels(Asked):
         measured = self.fine("measure", "--json", self.folder / "log.csv", *ran.out.split()).json
         self.assert_relative(measured["model"]["K"], make_log().truth["K"], 0.1)
 
-    def test_the_first_seconds_are_drawn(self):
-        ran = self.answer("new", "channels", self.log(), "--yes")
-        self.assertGreater(len(re.findall("[\u2801-\u28ff]", ran.err)), 100)
-        for words in ("3 s", "hand_x", "force_y", "[m]", "[N]", "mbk measure"):
-            self.assertIn(words, ran.err)
+    def test_the_guess_fits_one_screen_with_a_drawn_line_for_each_channel(self):
+        log = self.log()
+        head, *rows = log.read_text(encoding="utf-8").splitlines()
+        wide = self.file("wide.csv", "\n".join([head + "".join(f",other{k}" for k in range(40)),
+                                                *(row + 40 * ",0" for row in rows)]))
+        for file in (log, wide):
+            ran = self.answer("new", "channels", file.name, answers="\n")
+            screen, _, line = ran.err.rpartition("channels [as shown]")
+            self.assertLessEqual(len(screen.splitlines()) + 1, 24)
+            self.assertLessEqual(max(map(len, screen.splitlines())), 80)
+            self.assertIn("first 3 s", screen)
+            self.assertRegex(line, rf"mbk measure {file.name} --channels {self.MAP}\n")
+            for entry in self.MAP.split(","):
+                channel, column, *unit = entry.replace("=", ":").split(":")
+                self.assertRegex(screen, rf"(?m)^  {channel} +{column} .*{unit[0] if unit else 'SI'} .* to .*[\u2801-\u28ff]")
+
+    def test_what_is_missing_is_named_and_an_assumed_unit_is_marked(self):
+        time, x, y, *_ = table_of(make_log())
+        log = write_csv(self.folder / "log.csv", [time, [1e3 * v for v in x], [1e3 * v for v in y], x], ("t", "x", "y", "u"))
+        ran = self.answer("new", "channels", log, code=WRONG_USAGE)
+        self.assertRegex(ran.err, r"(?m)^  x +2 x +mm\? ")
+        self.assertRegex(ran.err, r"(?m)^  Fx +not recognised")
+        self.assertEqual(ran.out, "")
 
     def test_a_person_may_answer_otherwise(self):
         other = self.MAP.replace("Fx=4", "Fx=-4")
         self.assertEqual(self.answer("new", "channels", self.log(), answers=other + "\n").out, f"--channels {other}\n")
-        self.assertEqual(self.answer("new", "channels", self.log(), answers="\n").out, f"--channels {self.MAP}\n")
+        for answers in ("\n", ""):  # accepted; nobody answers
+            self.assertEqual(self.answer("new", "channels", self.log(), answers=answers).out, f"--channels {self.MAP}\n")
+
+    def test_a_part_of_a_map_changes_the_guess(self):
+        ran = self.answer("new", "channels", self.log(), answers="Fx=-4,xr=-6\n")
+        self.assertEqual(ran.out, "--channels time=1:ms,x=2:mm,y=3:mm,Fy=5:N,yr=7,Fx=-4,xr=-6\n")
+        ran = self.answer("new", "channels", self.log(), answers="x=2:mm,F=4\n")  # another number of axes
+        self.assertEqual(ran.out, "--channels time=1:ms,x=2:mm,F=4\n")
+
+    def test_at_a_terminal_the_command_is_printed_alone(self):
+        code, shown = at_terminal("new", "channels", self.log())
+        self.assertEqual(code, FINE)
+        self.assertIn(f"--channels {self.MAP}", shown)
+        self.assertEqual(shown.count("--channels"), 1)
+
+    def test_measure_points_to_it(self):
+        time, x, y, *_ = table_of(make_log())
+        for file in (self.log(names=()), write_csv(self.folder / "no_force.csv", [time, x, y], ("t", "x", "y"))):
+            self.assertIn("mbk new channels", self.answer("measure", file, code=BAD_DATA).err)
 
     def test_it_writes_a_file_and_overwrites_none(self):
         log = self.log()
@@ -60,7 +97,7 @@ class Channels(Asked):
         self.assertIn("--yes", ran.err)
         self.assertIn("x, F", ran.err)
         self.assertEqual(self.answer("new", "channels", log, answers=self.MAP + "\n").out, f"--channels {self.MAP}\n")
-        for answers, says in (("", "--yes"), ("x=77\n", "77"), ("x\n", "channels")):
+        for answers, says in (("", "x, F"), ("x=77\n", "77"), ("x\n", "channels")):
             ran = self.answer("new", "channels", log, answers=answers, code=WRONG_USAGE)
             self.assertEqual(ran.out, "")
             self.assertIn(says, ran.err)

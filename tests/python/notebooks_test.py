@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The notebooks of examples/notebooks run from top to bottom as they stand, and draw what they say.
+"""The notebooks of examples/notebooks run from top to bottom in their own folder, and draw what they say.
 
 With nbclient and a kernel of Python they run as in Jupyter; the pictures of each are kept where MBK_PICTURES names a
 folder, to be looked at.
@@ -34,9 +34,9 @@ def executed(path, folder):
 class Notebooks(unittest.TestCase):
     def check(self, path):
         with tempfile.TemporaryDirectory(prefix="mbk-notebook-") as name:
-            folder = pathlib.Path(name)
-            shutil.copytree(NOTEBOOKS.parent / "teleop", folder / "teleop")
-            book = executed(path, folder)
+            for folder in ("notebooks", "teleop"):  # copies, because the notebooks write files beside themselves
+                shutil.copytree(NOTEBOOKS.parent / folder, pathlib.Path(name, folder))
+            book = executed(path, pathlib.Path(name, "notebooks"))
         pictures = tables = 0
         for number, cell in enumerate(book.cells):
             if cell.cell_type == "code":

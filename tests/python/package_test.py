@@ -11,6 +11,7 @@ import math
 import os
 import pathlib
 import pickle
+import re
 import signal
 import subprocess
 import tempfile
@@ -269,6 +270,8 @@ class Package(unittest.TestCase):
                     words = mbk._mbk.in_python(option["description"]).split()
                     if option["names"][-1][2:] in names:
                         self.assertIn(words[-1].lower(), " ".join(function.__doc__.split()).lower())
+                        if (first := words[0].strip(",:;")) in option["words"]:  # as it must be typed
+                            self.assertIn(f"\n        {first}", function.__doc__)
             checked += 1
         self.assertGreater(checked, 30)
 
@@ -367,6 +370,27 @@ class Package(unittest.TestCase):
         hostile = mbk._documents.of(self.result.json.replace("log.h5", "<script>alert(1)</script>"))
         self.assertNotIn("<script>", hostile._repr_html_())
 
+    def test_a_result_is_printed_as_the_command_prints_it(self):
+        value = re.compile(r"-?[\d.]+ ± [\d.]+")
+        shown, text = str(self.result), self.command("measure", self.log).stdout
+        self.assertEqual(len(value.findall(shown)), 14)
+        self.assertLessEqual(set(value.findall(shown)), set(value.findall(text)))
+        self.assertRegex(shown, r"VAF x 99\.\d+ %, y 99\.\d+ %")
+        self.assertEqual(len(repr(self.result).splitlines()), 1)
+        self.assertIn(self.log.name, repr(self.result))
+        wrong = silent(mbk.measure, {name: -values if name.startswith("force") else values
+                                     for name, values in self.relaxed.to_dict().items()})
+        self.assertIn("! force-sign-reversed", str(wrong))
+        self.assertIn("NOT USABLE", str(wrong))
+        self.assertNotRegex(str(wrong), value)
+        self.assertIn("not usable", repr(wrong))
+        several = silent(mbk.measure, self.log, self.log, self.folder / "none.h5")
+        self.assertEqual(len(re.findall(rf"{self.log.name} +yes", str(several))), 2)
+        self.assertIn("none.h5", str(several))
+        self.assertEqual(len(repr(several).splitlines()), 1)
+        joint_result = silent(mbk.measure, dict(zip(("time", "x", "F"), joint())))
+        self.assertEqual(len(value.findall(str(joint_result))), 4)
+
     def test_every_document_shows_what_it_holds_with_units(self):
         for document, words in (
                 (mbk.info(self.log), ("duration_s", "62.10", "hand_x", "Info")),
@@ -462,6 +486,16 @@ class Package(unittest.TestCase):
             found = mbk.measure(self.log, bad)
         self.assertEqual(len(found), 1)
         self.assertIn("failed", {one.message.code for one in caught})
+
+    def test_another_type_is_a_type_error_that_says_what_is_taken(self):
+        for given in (3, 3.5, np.int64(3), True, object(), self.relaxed["hand_x"]):
+            with self.subTest(type(given)), self.assertRaises(TypeError) as caught:
+                mbk.measure(given)
+            self.assertIsInstance(caught.exception, mbk.UsageError)
+            for word in ("file name", "Recording", "keyword", "DataFrame", type(given).__name__):
+                self.assertIn(word, str(caught.exception))
+        with self.assertRaises(TypeError):
+            mbk.Recording(3)
 
     # ---- cost
 

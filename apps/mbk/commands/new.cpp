@@ -21,7 +21,7 @@ Action add_new(Command app) {
   group.footer(
       "Examples:\n"
       "  mbk new channels log.csv\n"
-      "      guesses which column is which channel, plots the first seconds, and prints the option for 'mbk measure'\n"
+      "      guesses which column is which channel, draws the first seconds, and prints the command 'mbk measure'\n"
       "  mbk new experiment --out mine.toml\n"
       "  mbk new robot --out robot.toml\n\n"
       "Each question shows its default in brackets. Enter accepts it, --yes accepts all defaults; answers\n"

@@ -2,10 +2,15 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
+#include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "apps/mbk/commands/new_commands.h"
 #include "apps/mbk/options/output.h"
@@ -14,11 +19,13 @@
 #include "apps/mbk/terminal/questions.h"
 #include "apps/mbk/terminal/terminal.h"
 #include "mbk/base/core/option_checks.h"
+#include "mbk/base/core/printable.h"
 #include "mbk/files/recording/channel_map.h"
 #include "mbk/files/recording/guess_channels.h"
 #include "mbk/files/recording/read.h"
-#include "mbk/present/report/draw_chart.h"
-#include "mbk/present/report/result_charts.h"
+#include "mbk/files/recording/si_units.h"
+#include "mbk/present/report/braille.h"
+#include "mbk/present/report/picture.h"
 
 namespace mbk::app {
 namespace {
@@ -31,17 +38,97 @@ struct NewChannelsArguments {
   Output output;
 };
 
-/// The first signals, each with its range.
-std::string signals_text(const std::vector<recording::FileSignal>& signals) {
-  constexpr std::size_t kShown = 40;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(kShown, signals.size()); ++k) {
-    const recording::FileSignal& one = signals[k];
-    text += fmt::format("  {:<12}  {:<24}  {:.4g} to {:.4g}\n", one.source, one.name, one.values.minCoeff(),
-                        one.values.maxCoeff());
+using recording::ChannelGuess;
+using recording::FileSignal;
+using Signals = std::vector<FileSignal>;
+
+/// "4 Hand force X [N]", in at most 20 columns.
+std::string column_text(const FileSignal& signal) {
+  constexpr std::size_t kWidest = 20;
+  const bool named = signal.name == signal.source || signal.name.starts_with(signal.source + " (");
+  const std::string text =
+      printable(named ? signal.name : signal.source + (signal.name.empty() ? "" : " ") + signal.name);
+  return report::columns(text) > kWidest ? fmt::format("{:.{}}…", text, kWidest - 1) : text;
+}
+
+std::string range_text(const Vector& values) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
   }
-  if (signals.size() > kShown) text += fmt::format("  and {} more\n", signals.size() - kShown);
+  return low > high ? "no numbers" : fmt::format("{:.3g} to {:.3g}", low, high);
+}
+
+/// Samples in the first seconds; all of them if neither a time nor a rate is known.
+Index drawn_samples(const Signals& signals, const ChannelGuess& guess, const NewChannelsArguments& arguments) {
+  constexpr Index kAll = std::numeric_limits<Index>::max();
+  if (arguments.rate_hz) return static_cast<Index>(std::min(arguments.seconds * *arguments.rate_hz, 1e15)) + 1;
+  const auto time = std::ranges::find(guess.channels, "time", &recording::GuessedChannel::channel);
+  if (time == guess.channels.end()) return kAll;
+  const Vector& values = signals[time->signal].values;
+  const recording::Unit& unit = *recording::find_unit(time->unit.empty() ? "s" : time->unit);
+  Index samples = 0;
+  while (samples < values.size() && unit.to_si(values[samples] - values[0]) <= arguments.seconds) ++samples;
+  return samples;
+}
+
+/// A line for each guessed channel, each missing one, and the other signals as far as a screen of 24 lines has room.
+std::string guess_text(const Signals& signals, const ChannelGuess& guess, const NewChannelsArguments& arguments) {
+  constexpr std::size_t kLines = 13;
+  const Index drawn = drawn_samples(signals, guess, arguments);
+  const bool all = drawn >= signals.front().values.size();
+  const auto line = [&](const std::string& role, const FileSignal& signal, const std::string& unit,
+                        const std::string& why) {
+    constexpr int kCharacters = 14;
+    const Vector& values = signal.values;
+    return fmt::format("  {:<5} {:<20}  {:<4}  {:<20}  {}{}\n", role, column_text(signal), unit, range_text(values),
+                       report::sparkline(values.head(std::min(drawn, values.size())), kCharacters), why);
+  };
+  std::string text = fmt::format("  {:<5} {:<20}  {:<4}  {:<20}  {:<14}  {}\n", "", "column", "unit", "range",
+                                 all ? "all samples" : fmt::format("first {:.3g} s", arguments.seconds), "by");
+  std::vector<bool> used(signals.size(), false);
+  bool by_size = false;
+  for (const recording::GuessedChannel& one : guess.channels) {
+    const std::string unit = one.unit.empty() ? "SI" : one.unit + (one.unit_by_size ? "?" : "");
+    text += line(one.channel, signals[one.signal], unit, "  " + one.why);
+    used[one.signal] = true;
+    by_size = by_size || one.unit_by_size;
+  }
+  for (const std::string& channel : guess.missing) text += fmt::format("  {:<5} not recognised\n", channel);
+  std::size_t lines = guess.channels.size() + guess.missing.size(), more = 0;
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (used[k]) continue;
+    if (++lines > kLines) {
+      ++more;
+    } else {
+      text += line("", signals[k], "", "");
+    }
+  }
+  if (more > 0) text += fmt::format("  and {} columns more: see 'mbk info'\n", more);
+  if (by_size) text += "  ? unit assumed from the size of the numbers\n";
   return text;
+}
+
+/// The guess with the channels of an answer changed. An answer with position and force replaces all but the time.
+/// @fails  as `parse_channel_map`
+Result<std::string> answered_map(const ChannelGuess& guess, const std::string& answer, bool has_rate) {
+  const auto given = MBK_TRY(recording::parse_channel_map(answer));
+  const auto names = [&](std::initializer_list<std::string_view> channels, std::string_view joint) {
+    return std::ranges::any_of(given, [&](const recording::ChannelSource& one) {
+      return std::ranges::find(channels, one.channel) != channels.end() || one.channel.starts_with(joint);
+    });
+  };
+  const bool complete = names({"x", "hand_x", "position"}, "joint_") && names({"force_x", "reaction"}, "torque_");
+  std::string map;
+  for (const recording::GuessedChannel& one : guess.channels) {
+    if (complete && (one.channel != "time" || has_rate)) continue;
+    const auto guessed = MBK_TRY(recording::parse_channel_map(one.entry));
+    const std::string& channel = guessed.front().channel;
+    if (std::ranges::find(given, channel, &recording::ChannelSource::channel) == given.end()) map += one.entry + ",";
+  }
+  return map + answer;
 }
 
 Result<Recording> read_with(const recording::RecordingFile& file, const NewChannelsArguments& arguments,
@@ -69,32 +156,41 @@ int run(const NewChannelsArguments& arguments) {
     return report_error({ErrorKind::data, "the file contains no signal that a channel map can name",
                          "see 'mbk info' for its contents", arguments.file.string()});
   }
-  tell(fmt::format("{}, {}\n{}", arguments.file.string(), contents->format, signals_text(signals)));
-  const recording::ChannelGuess guess = recording::guess_channels(signals);
-  std::string text = guess.reasons.empty() ? "" : "guessed\n";
-  for (const std::string& reason : guess.reasons) text += "  " + reason + "\n";
-  if (!guess.missing.empty()) text += fmt::format("  not recognised: {}\n", fmt::join(guess.missing, ", "));
-  tell(text +
-       "Two axes have x, y, Fx, Fy and the reference xr, yr; one axis has x, F, xr. x=2:mm converts a unit, Fx=-4 "
-       "reverses "
-       "a sign.\n");
+  const ChannelGuess guess = recording::guess_channels(signals);
+  tell(fmt::format("{}   {}\n\n{}", arguments.file.string(), contents->format, guess_text(signals, guess, arguments)));
+  const bool by_person = ::isatty(STDIN_FILENO) == 1;
+  const bool ask = !arguments.yes && (by_person || std::cin.peek() != std::istream::traits_type::eof());
+  if (!ask && !guess.missing.empty()) {
+    return report_error(
+        {ErrorKind::usage, fmt::format("not recognised: {}", fmt::join(guess.missing, ", ")),
+         "answer in a terminal without --yes, or pipe the answer, as in: echo x=2,F=3 | mbk new channels",
+         arguments.file.string()});
+  }
+  if (ask) {
+    tell(fmt::format(
+        "\nF is the force of the hand on the robot; Fx=-4 reverses it, x=2:mm has a unit.\n"
+        "Two axes: x, y, Fx, Fy and the reference xr, yr. One axis: x, F, xr.\n{}\n",
+        guess.missing.empty() ? "Enter accepts; or type what to change, e.g. Fx=4,Fy=5"
+                              : fmt::format("Type what is missing or wrong, e.g. {}=3", guess.missing.front())));
+  }
 
-  std::optional<Recording> recording;
-  const auto check = [&](const std::string& map) -> std::string {
-    auto read = read_with(**file, arguments, map);
-    if (!read) return read.error().line();
-    recording = std::move(*read);
-    return "";
+  constexpr const char* kAccept = "as shown";
+  std::string map;
+  const auto check = [&](const std::string& answer) -> std::string {
+    auto meant =
+        answer == kAccept ? Result<std::string>(guess.map) : answered_map(guess, answer, arguments.rate_hz.has_value());
+    if (!meant) return meant.error().line();
+    map = std::move(*meant);
+    const auto read = read_with(**file, arguments, map);
+    return read ? "" : read.error().line();
   };
-  const auto map = Questions(arguments.yes).ask("channels", guess.missing.empty() ? guess.map : "", check);
-  if (!map) return report_error(map.error().in(arguments.file.string()));
-  for (const Chart& chart : report::first_seconds(*recording, arguments.seconds))
-    tell("\n" + report::chart_text(chart));
-  tell("The force must be that of the hand on the robot; 'mbk measure' reports a reversed sign.\n");
+  const auto answer = Questions(!ask).ask("channels", guess.missing.empty() ? kAccept : "", check);
+  if (!answer) return report_error(answer.error().in(arguments.file.string()));
   const std::string rate = arguments.rate_hz ? fmt::format(" --rate {:g}", *arguments.rate_hz) : "";
-  const std::string line = fmt::format("--channels {}{}", shell_word(*map), rate);
-  tell(fmt::format("next: mbk measure {} {}\n", shell_word(arguments.file.string()), line));
-  if (auto ok = arguments.output.write(line + "\n", {arguments.file}); !ok) return report_error(ok.error());
+  const std::string option = fmt::format("--channels {}{}", shell_word(map), rate);
+  say("\nmbk measure {} {}\n", shell_word(arguments.file.string()), option);
+  if (!arguments.output.file && terminal_at(STDOUT_FILENO).there) return kFine;  // the person sees it in that line
+  if (auto ok = arguments.output.write(option + "\n", {arguments.file}); !ok) return report_error(ok.error());
   return kFine;
 }
 
@@ -103,22 +199,23 @@ int run(const NewChannelsArguments& arguments) {
 Action add_new_channels(Command group) {
   auto arguments = std::make_shared<NewChannelsArguments>();
   const Command command =
-      group.add_command("channels", "find which column of a file is which channel; prints the option --channels");
+      group.add_command("channels", "find which column of a file is which channel; prints the command with --channels");
   command.footer(
       "Examples:\n"
       "  mbk new channels log.csv\n"
-      "      lists the columns, guesses from their names, asks, and plots the first seconds\n"
+      "      shows the guess with the first seconds of each column, asks once, and prints the command\n"
       "  mbk measure log.csv $(mbk new channels log.csv --yes)\n"
       "      accepts the guess; fails if there is none\n"
-      "  echo time=1:ms,x=2:mm,F=5 | mbk new channels log.csv --out channels.txt\n\n"
-      "Questions and plots go to standard error, the option alone to standard output. The map is printed\n"
-      "only after the file was read with it.");
+      "  echo Fx=4,Fy=5 | mbk new channels log.csv --out channels.txt\n"
+      "      changes these channels of the guess; a map of position and force replaces all but time\n\n"
+      "Without a terminal and an answer, the guess is accepted. Guess and command go to standard error, the\n"
+      "option alone to standard output or FILE. It is printed only after the file was read with it.");
   command.add_option("FILE", arguments->file, "a recording whose columns or variables mbk does not know: .csv, .mat, …")
       .required();
   command.add_option("--rate", arguments->rate_hz, "sample rate, in Hz, if the file contains no time")
       .type_name("HZ")
       .check(positive());
-  command.add_option("--seconds", arguments->seconds, "length of the plots, in seconds (default: 3)")
+  command.add_option("--seconds", arguments->seconds, "length of the signals drawn, in seconds (default: 3)")
       .type_name("S")
       .check(positive());
   command.add_flag("--yes", arguments->yes, "ask no questions; accept the guess");

@@ -68,6 +68,10 @@ class _Given:
         if isinstance(value, _documents.Document):
             self.documents.append(value.json)
             return _mbk.document_word(len(self.documents) - 1)
+        if not isinstance(value, (Recording, Mapping)) and not hasattr(value, "columns") and not hasattr(value, "data_vars"):
+            raise _errors.wrong_type(value, "is neither a file name nor a recording",
+                                     "give a file name, a Recording (arrays by keyword, as in mbk.Recording(time=t, x=x, "
+                                     "F=F)), a mapping of arrays, a pandas DataFrame or an xarray Dataset")
         recording = value if isinstance(value, Recording) else Recording(value)
         self.recordings.append(recording._core)
         return _mbk.recording_word(len(self.recordings) - 1)
@@ -78,8 +82,6 @@ class _Given:
         if isinstance(source, (list, tuple)):
             for one in source:
                 self.add(one)
-        elif isinstance(source, (int, np.integer)):
-            self.words.append(str(source))
         else:
             self.words.append(self.word(source))
 

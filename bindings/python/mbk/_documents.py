@@ -307,11 +307,18 @@ class _Measured(Document):
 
 
 class Result(_Measured):
-    """M, B, K and x₀ of one recording or of pooled recordings: ``M ẍ + B ẋ + K (x − x₀) = −F``.
+    """M, B, K and x₀ of one recording or of pooled recordings: ``M ẍ + B ẋ + K (x − x₀) = −F``. ``print`` shows them as
+    a table with their 95 % intervals, the fit and the warnings.
 
     `model.M` [kg], `model.B` [N·s/m], `model.K` [N/m] have shape (axes, axes), `model.x0` [m] has shape (axes,);
     `standard_error` likewise. For a joint, `units` contains the units of rotation.
     """
+
+    def __str__(self) -> str:
+        return _tables.result_text(self._values)
+
+    def __repr__(self) -> str:
+        return f"<mbk.Result {_tables.result_line(self._values)}>"
 
     def to_dataframe(self) -> pandas.DataFrame:
         """A row for each parameter: value, standard_error, low95, high95, unit."""
@@ -350,6 +357,12 @@ class Result(_Measured):
 
 class Results(_Measured):
     """Results of several recordings, and their mean. Supports ``len()``, iteration and indexing over the results."""
+
+    def __str__(self) -> str:
+        return _tables.results_text(self._values)
+
+    def __repr__(self) -> str:
+        return f"<mbk.Results: {len(self)} recordings, {sum(one.usable for one in self)} usable>"
 
     @property
     def results(self) -> list[Result]:

@@ -42,6 +42,10 @@ class UsageError(Error):
     exit_code = 2
 
 
+class WrongTypeError(UsageError, TypeError):
+    """An argument has a type that the function does not accept."""
+
+
 class DataError(Error):
     """A file or a recording cannot be read or used (exit code 3)."""
 
@@ -76,6 +80,12 @@ class MbkWarning(UserWarning):
 def usage(what: str, hint: str) -> UsageError:
     """Makes the error for a wrong argument."""
     return UsageError(f"{what}; {hint}", what=what, hint=hint)
+
+
+def wrong_type(given: object, what: str, hint: str) -> WrongTypeError:
+    """Makes the error for an argument of the wrong type."""
+    what = f"the type {type(given).__name__} {what}"
+    return WrongTypeError(f"{what}; {hint}", what=what, hint=hint)
 
 
 _CLASSES: dict[int, type[Error]] = {2: UsageError, 3: DataError, 4: NotUsableError}

@@ -355,8 +355,9 @@ def _signals_of(given: Any) -> tuple[dict[str, Any], dict[str, Any], dict[str, s
         return signals, units, {}
     if isinstance(given, Mapping):
         return {str(name): value for name, value in given.items()}, {}, {}
-    raise _errors.usage(f"the type {type(given).__name__} does not form a recording",
-                        "give arrays by name, as in mbk.Recording(time=t, x=x, F=F)")
+    raise _errors.wrong_type(given, "does not form a recording",
+                             "give arrays by keyword, as in mbk.Recording(time=t, x=x, F=F), a mapping of arrays or a "
+                             "DataFrame; mbk.read(\"log.mat\") reads a file")
 
 
 def _numbers(name: str, given: Any) -> Any:

@@ -6,8 +6,11 @@ import functools
 import html
 import math
 import re
+import textwrap
 from collections.abc import Callable, Iterator
 from typing import Any
+
+import numpy as np
 
 from mbk import _mbk
 
@@ -278,28 +281,33 @@ def per_axis(values: list[float | None], decimals: int, unit: str) -> str:
     return ", ".join(f"{name} {fixed(value, decimals)} {unit}".strip() for name, value in zip(names, values))
 
 
+def model_rows(model: dict[str, Any], error: dict[str, Any], units: dict[str, str]) -> list[list[str]]:
+    """A row for each matrix and one for the equilibrium: name, values ± 95 %, unit."""
+    names = axis_names(len(model["x0"]))
+    pairs = [(i, j) for i in range(len(names)) for j in range(len(names))]
+    rows = [[f"{name} {symbol}", *(with_half_width(model[symbol][i][j], error[symbol][i][j]) for i, j in pairs),
+             units[symbol]] for symbol, name in MATRICES]
+    scale = 1000.0 if units["x0"] == "m" else 1.0
+    rows.append(["equilibrium x₀",
+                 *(f"{name} {with_half_width(model['x0'][k], error['x0'][k], scale)}".strip()
+                   for k, name in enumerate(names)),
+                 *([""] * (len(pairs) - len(names))), "mm" if scale == 1000.0 else units["x0"]])
+    return rows
+
+
 def result_html(result: dict[str, Any], heading: bool = True) -> str:
     """The tables of the report."""
-    axes, model, error, fit = result["axes"], result["model"], result["standard_error"], result["fit"]
+    axes, fit = result["axes"], result["fit"]
     units = result.get("units", UNITS)
-    names = axis_names(axes)
     files = ", ".join(f"{one['file'] or 'arrays'} ({one['duration_s']:.4g} s at {one['rate_hz']:.5g} Hz)"
                       for one in result["inputs"] if one["duration_s"] and one["rate_hz"])
     out = [f"<p><strong>Impedance</strong>: {escaped(files)}; {escaped(METHODS[result['method']])}, "
            f"{escaped(result.get('protocol', 'unknown'))} protocol</p>"] if heading else []
     out.append(verdict(result))
     if result["usable"]:
-        pairs = [(i, j, first + second) for i, first in enumerate(names) for j, second in enumerate(names)]
-        rows = [[f"{name} {symbol}", *(with_half_width(model[symbol][i][j], error[symbol][i][j]) for i, j, _ in pairs),
-                 units[symbol]] for symbol, name in MATRICES]
-        scale = 1000.0 if units["x0"] == "m" else 1.0
-        rows.append(["equilibrium x₀",
-                     *(f"{name} {with_half_width(model['x0'][k], error['x0'][k], scale)}".strip()
-                       for k, name in enumerate(names)),
-                     *([""] * (len(pairs) - len(names))), "mm" if scale == 1000.0 else units["x0"]])
         out.append(table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval",
-                         ["", *(pair for _, _, pair in pairs)] + ["unit"] if axes == 2 else ["", "value ± 95 %", "unit"],
-                         rows))
+                         ["", "xx", "xy", "yx", "yy", "unit"] if axes == 2 else ["", "value ± 95 %", "unit"],
+                         model_rows(result["model"], result["standard_error"], units)))
     where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
     out.append(table("Goodness of fit", ["", "value"], [
         [f"VAF on {where}", per_axis(fit["VAF"], 2, "%")],
@@ -357,16 +365,21 @@ def passivity_html(passivity: dict[str, Any], of_what: str = "the limb") -> str:
     return table(f"Is {of_what} passive?", ["", "verdict", "statement"], rows)
 
 
-def results_html(found: dict[str, Any]) -> str:
-    units = found["results"][0].get("units", UNITS) if found["results"] else UNITS
-    rows, head = [], ["recording", "usable"]
+def results_rows(found: dict[str, Any]) -> list[list[str]]:
+    """A heading, and a row for each recording: file, usable, diagonal of M, B and K ± 95 %."""
+    rows: list[list[str]] = [["recording", "usable"]]
     for result in found["results"]:
-        names = axis_names(result["axes"])
+        units, names = result.get("units", UNITS), axis_names(result["axes"])
         diagonal = [(symbol, k, named(symbol, name, name)) for symbol, _ in MATRICES for k, name in enumerate(names)]
-        head = ["recording", "usable", *(f"{name} [{units[symbol]}]" for symbol, _, name in diagonal)]
+        rows[0] = ["recording", "usable", *(f"{name} [{units[symbol]}]" for symbol, _, name in diagonal)]
         rows.append([names_of(result), "yes" if result["usable"] else "no",
                      *(with_half_width(result["model"][symbol][k][k], result["standard_error"][symbol][k][k])
                        if result["usable"] else "" for symbol, k, _ in diagonal)])
+    return rows
+
+
+def results_html(found: dict[str, Any]) -> str:
+    head, *rows = results_rows(found)
     out = [f"<p><strong>Impedance of {len(found['results'])} recordings</strong></p>",
            table("Diagonal entries; ± is the 95 % interval", head, rows)]
     for one in found.get("failed", []):
@@ -408,6 +421,71 @@ def validation_html(found: dict[str, Any]) -> str:
     return (f"<p><strong>{escaped(found['study'])}</strong>: {escaped(found['question'])} ({found['runs']} runs, seed "
             f"{found['seed']}): {escaped(found['verdict'])}</p>"
             + table("", ["", "value", "95 %", "expected", "unit", "verdict"], rows))
+
+
+# ---- text, as the command prints it
+
+LINE = 100
+
+
+def text_table(rows: list[list[str]]) -> str:
+    """Left-aligned columns."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return "".join("  " + "  ".join(one.ljust(width) for one, width in zip(row, widths)).rstrip() + "\n" for row in rows)
+
+
+def paragraph(first: str, text: str) -> str:
+    return textwrap.fill(_mbk.in_python(text), LINE, initial_indent=first, subsequent_indent=" " * len(first),
+                         break_long_words=False, break_on_hyphens=False) + "\n"
+
+
+def model_text(model: dict[str, Any], error: dict[str, Any], units: dict[str, str]) -> str:
+    head = [["", "xx", "xy", "yx", "yy", ""]] if len(model["x0"]) == 2 else []
+    return text_table(head + model_rows(model, error, units)).replace("−", "-")  # so that a number can be copied
+
+
+def result_text(result: dict[str, Any]) -> str:
+    """The inputs, the model if it is usable, the fit and the warnings."""
+    units, fit = result.get("units", UNITS), result["fit"]
+    text = "".join(f"{one['file'] or 'arrays'}   {one['duration_s'] or 0:.1f} s at {one['rate_hz'] or 0:.6g} Hz\n"
+                   for one in result["inputs"])
+    text += f"  {METHODS[result['method']]}, {result.get('protocol', 'unknown')} protocol\n\n"
+    if result["usable"]:
+        text += model_text(result["model"], result["standard_error"], units) + "  (± is the 95 % interval)\n\n"
+    where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
+    text += f"  fit on {where}: VAF {per_axis(fit['VAF'], 2, '%')}; RMSE {per_axis(fit['RMSE'], 3, units['force'])}\n"
+    for one in result["warnings"]:
+        text += paragraph("  ! ", f"{one['code']}: {one['message']}") + paragraph("    try: ", one["try"])
+    if not result["usable"]:
+        text += "  NOT USABLE: no model is shown; see the warnings above.\n"
+    return text.rstrip("\n")
+
+
+def results_text(found: dict[str, Any]) -> str:
+    """A row for each recording, the mean, and what failed."""
+    text = text_table(results_rows(found)).replace("−", "-") + "  (± is the 95 % interval)\n"
+    if "summary" in found:
+        mean = found["summary"]
+        error = {name: (np.array(mean["half_width95"][name], float) / NORMAL95).tolist() for name in mean["half_width95"]}
+        text += f"\nmean of {mean['trials']} trials, by {METHODS[mean['method']]}\n"
+        text += model_text(mean["model"], error, found["results"][0].get("units", UNITS))
+    if "no_summary" in found:
+        text += paragraph("no mean: ", found["no_summary"])
+    for one in found.get("failed", []):
+        text += paragraph("  ! ", f"{one['file']}: {one['message']}") + paragraph("    try: ", one["try"])
+    return text.rstrip("\n")
+
+
+def result_line(result: dict[str, Any]) -> str:
+    """Inputs, stiffness and verdict in one line."""
+    first, *more = [one["file"] or "arrays" for one in result["inputs"]] or ["arrays"]
+    files = f"{first} and {len(more)} more" if more else first
+    if not result["usable"]:
+        return f"{files}: not usable ({', '.join(one['code'] for one in result['warnings'])})"
+    rows = [", ".join(significant(one, 4).replace("−", "-") for one in row) for row in result["model"]["K"]]
+    stiffness = f"[[{'], ['.join(rows)}]]" if len(rows) > 1 else rows[0]
+    warned = ", ".join(one["code"] for one in result["warnings"])
+    return f"{files}: K = {stiffness} {result.get('units', UNITS)['K']}, usable" + (f", warnings {warned}" if warned else "")
 
 
 HIDDEN = frozenset(("schema", "units", "software", "sha256", "options_sha256", "hash", "digest", "covariance", "description"))

@@ -251,14 +251,15 @@ class Assembler {
       if (!contents_.table && array.values.cols() == kLogsRows && array.values.rows() > kLogsRows) return tall(array);
     }
     const bool time = !signals_.empty();
+    const std::string or_guess = "; 'mbk new channels FILE' guesses them";
     const std::string remedy =
         !contents_.clocks.empty() && !contents_.arrays.empty()
             ? fmt::format("assign the columns or variables, as in --channels x={},Fx=STREAM.LABEL",
                           contents_.arrays.front().name)
-        : !contents_.table ? "assign the columns or variables, as in --channels " + example_map()
+        : !contents_.table ? "assign the columns or variables, as in --channels " + example_map() + or_guess
         : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
-            ? "assign the columns by number or name, as in --channels x=1,y=2,Fx=-LABEL"
-            : "assign the columns or variables, as in --channels time=1,x=2,Fx=3";
+            ? "assign the columns by number or name, as in --channels x=1,y=2,Fx=-LABEL" + or_guess
+            : "assign the columns or variables, as in --channels time=1,x=2,Fx=3" + or_guess;
     return with_code(kNothingRecognised, bad_data(fmt::format("no channel {}was recognised; {}",
                                                               time ? "except time " : "", inventory(contents_)),
                                                   remedy));

@@ -129,8 +129,7 @@ std::optional<double> even_step(const Vector& values) {
 /// One channel that was found.
 struct Entry {
   std::string channel;
-  const FileSignal* signal;
-  Meaning meaning;
+  std::size_t signal;
   std::string why;
 };
 
@@ -156,12 +155,12 @@ class Guesser {
   }
 
   void add(const std::string& channel, std::size_t k, std::string why) {
-    entries_.push_back({channel, &signals_[k], meanings_[k], std::move(why)});
+    entries_.push_back({channel, k, std::move(why)});
   }
 
   void find_time() {
     for (std::size_t k = 0; k < signals_.size(); ++k) {
-      if (meanings_[k].quantity == Quantity::time) return add("time", k, called(k));
+      if (meanings_[k].quantity == Quantity::time) return add("time", k, kByName);
     }
     std::optional<std::size_t> rises;
     for (std::size_t k = 0; k < signals_.size(); ++k) {
@@ -169,10 +168,8 @@ class Guesser {
       if (rises) return;  // ambiguous
       rises = k;
     }
-    if (rises) add("time", *rises, "the only signal that increases in even steps");
+    if (rises) add("time", *rises, "steps");
   }
-
-  [[nodiscard]] std::string called(std::size_t k) const { return fmt::format("named '{}'", signals_[k].name); }
 
   /// The k-th signal of that quantity and axis; of those without an axis the one at that place.
   [[nodiscard]] std::optional<std::size_t> find(Quantity quantity, char axis, int place) const {
@@ -195,7 +192,7 @@ class Guesser {
       for (int axis = 0; axis < 2; ++axis) {
         const char* const name = names[static_cast<std::size_t>(axis)];
         if (const auto k = find(quantity, axis == 0 ? 'x' : 'y', axis)) {
-          add(name, *k, called(*k));
+          add(name, *k, kByName);
         } else if (quantity == Quantity::position || quantity == Quantity::force) {
           missing_.emplace_back(name);
         }
@@ -216,45 +213,45 @@ class Guesser {
          {std::pair("x", first({Quantity::position})), std::pair("F", first({Quantity::force, Quantity::torque})),
           std::pair("xr", first({Quantity::reference})), std::pair("a", first({Quantity::acceleration}))}) {
       if (k) {
-        add(name, *k, called(*k));
+        add(name, *k, kByName);
       } else if (name == std::string_view("x") || name == std::string_view("F")) {
         missing_.emplace_back(name);
       }
     }
   }
 
-  /// By the name, or by the size of the numbers.
-  static std::pair<std::string, std::string> unit_of(const Entry& entry) {
-    if (!entry.meaning.unit.empty()) return {entry.meaning.unit, ""};
+  /// The unit that the size of the numbers suggests; "" if none.
+  [[nodiscard]] std::string unit_by_size(const Entry& entry) const {
     constexpr double kSlow = 0.2, kFar = 3.0;
+    const Vector& values = signals_[entry.signal].values;
     if (entry.channel == "time") {
-      const Vector& stamps = entry.signal->values;
-      if (const Unit* const unit = stamps.size() > 0 ? unit_since_1970(stamps[0]) : nullptr) {
-        return {std::string(unit->name), fmt::format("large values, assumed to be {} since 1970", unit->name)};
-      }
-      const auto step = even_step(entry.signal->values);
-      if (step && *step > kSlow) return {"ms", fmt::format("steps of {:.3g}, assumed to be ms", *step)};
-      return {};
+      const Unit* const unit = values.size() > 0 ? unit_since_1970(values[0]) : nullptr;
+      if (unit != nullptr) return std::string(unit->name);
+      const auto step = even_step(values);
+      return step && *step > kSlow ? "ms" : "";
     }
-    if (entry.channel != "x" && entry.channel != "y") return {};
-    const Vector& values = entry.signal->values;
-    if (values.size() == 0 || !((values.array() - values.mean()).abs().maxCoeff() > kFar)) return {};
-    return {"mm", "large values, assumed to be mm"};
+    if (entry.channel != "x" && entry.channel != "y") return "";
+    return values.size() > 0 && (values.array() - values.mean()).abs().maxCoeff() > kFar ? "mm" : "";
   }
 
   [[nodiscard]] ChannelGuess finished() const {
     ChannelGuess guess;
     guess.missing = missing_;
     for (const Entry& entry : entries_) {
-      auto [unit, why] = unit_of(entry);
-      guess.map += fmt::format("{}{}={}{}{}", guess.map.empty() ? "" : ",", entry.channel, entry.signal->source,
-                               unit.empty() ? "" : ":", unit);
-      guess.reasons.push_back(
-          fmt::format("{} = {}: {}{}{}", entry.channel, entry.signal->source, entry.why, why.empty() ? "" : "; ", why));
+      GuessedChannel one{"", entry.channel, entry.signal, meanings_[entry.signal].unit, false, entry.why};
+      if (one.unit.empty()) {
+        one.unit = unit_by_size(entry);
+        one.unit_by_size = !one.unit.empty();
+      }
+      one.entry =
+          fmt::format("{}={}{}{}", one.channel, signals_[entry.signal].source, one.unit.empty() ? "" : ":", one.unit);
+      guess.map += (guess.map.empty() ? "" : ",") + one.entry;
+      guess.channels.push_back(std::move(one));
     }
     return guess;
   }
 
+  static constexpr const char* kByName = "name";
   const std::vector<FileSignal>& signals_;
   std::vector<Meaning> meanings_;
   std::vector<Entry> entries_;

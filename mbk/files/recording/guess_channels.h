@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,20 @@ struct FileSignal {
 /// Every signal of the file that a map can name.
 [[nodiscard]] std::vector<FileSignal> signals_of(const Contents& contents);
 
+/// One channel of a guess.
+struct GuessedChannel {
+  std::string entry;          ///< as a map writes it: "x=2:mm"
+  std::string channel;        ///< "x"
+  std::size_t signal = 0;     ///< index of its source
+  std::string unit;           ///< "" if it is not known
+  bool unit_by_size = false;  ///< the unit is assumed from the size of the numbers
+  std::string why;            ///< what it was recognised by: "name", "steps"
+};
+
 /// A channel map suggested by names and numbers of a file.
 struct ChannelGuess {
-  std::string map;                   ///< "time=1,x=2:mm,…"; contains the channels found, even if some are missing
-  std::vector<std::string> reasons;  ///< one for each entry: "Fx = 4: named 'force_x (N)'"
+  std::string map;  ///< "time=1,x=2:mm,…"; contains the channels found, even if some are missing
+  std::vector<GuessedChannel> channels;
   std::vector<std::string> missing;  ///< channels without which nothing is measured: "x", "F"
 };
 

@@ -12,7 +12,6 @@ namespace mbk::recording {
 namespace guess_channels_test {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr Index kSamples = 50;
@@ -48,7 +47,11 @@ TEST(GuessChannels, GoesByTheWordsInTheNames) {
                                       {"ref pos y", moving(0.01)}});
   EXPECT_EQ(guess.map, "time=1:s,x=2:mm,y=3:mm,Fx=5:N,Fy=6:N,xr=8,yr=9");
   EXPECT_THAT(guess.missing, IsEmpty());
-  EXPECT_EQ(guess.reasons.size(), 7u);
+  ASSERT_EQ(guess.channels.size(), 7u);
+  EXPECT_EQ(guess.channels[1].entry, "x=2:mm");
+  EXPECT_EQ(guess.channels[3].signal, 4u);
+  EXPECT_EQ(guess.channels[3].why, "name");
+  EXPECT_FALSE(guess.channels[3].unit_by_size);
   EXPECT_TRUE(parse_channel_map(guess.map));
 }
 
@@ -79,7 +82,8 @@ TEST(GuessChannels, TimeIsWhatRisesByEvenSteps) {
   const ChannelGuess guess =
       guessed({{"a1", moving(1)}, {"count", rising(1.0)}, {"position", moving(0.1)}, {"force", moving(1)}});
   EXPECT_EQ(guess.map, "time=2:ms,x=3,F=4");
-  EXPECT_THAT(guess.reasons[0], HasSubstr("step"));
+  EXPECT_EQ(guess.channels[0].why, "steps");
+  EXPECT_TRUE(guess.channels[0].unit_by_size);
   const ChannelGuess two =
       guessed({{"n", rising(1.0)}, {"m", rising(2.0)}, {"position", moving(0.1)}, {"force", moving(1)}});
   EXPECT_EQ(two.map, "x=3,F=4");

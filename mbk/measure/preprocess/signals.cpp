@@ -21,9 +21,10 @@ Result<Columns> require(const Recording& recording, const QuantityChannels& quan
     if (first.empty()) first = name;
   }
   for (const Channel& channel : recording.channels) present += (present.empty() ? "" : ", ") + channel.name;
-  return bad_data(fmt::format("channel {} is missing (the channels are: {}){}", missing,
-                              present.empty() ? "none" : present, why_missing(recording, first)),
-                  fmt::format("name its column with --channels {}=COLUMN", first));
+  return bad_data(
+      fmt::format("channel {} is missing (the channels are: {}){}", missing, present.empty() ? "none" : present,
+                  why_missing(recording, first)),
+      fmt::format("name all columns with --channels, as in {}=COLUMN; 'mbk new channels FILE' guesses them", first));
 }
 
 /// What moves, by the units of position and force; where one is unknown the other decides.

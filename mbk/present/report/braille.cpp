@@ -1,5 +1,9 @@
 #include "mbk/present/report/braille.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace mbk::report {
 
 BrailleCanvas::BrailleCanvas(int columns, int rows)
@@ -30,6 +34,29 @@ std::string BrailleCanvas::line(int row) const {
   std::string text;
   for (const std::string& cell : cells(row)) text += cell;
   return text;
+}
+
+std::string sparkline(const Vector& values, int characters) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  BrailleCanvas canvas(characters, 1);
+  const int columns = canvas.dots_wide(), lowest = canvas.dots_high() - 1;
+  std::vector<double> low(static_cast<std::size_t>(columns), kInfinity), high(low.size(), -kInfinity);
+  for (Index k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values[k])) continue;
+    const auto at = static_cast<std::size_t>(k * columns / values.size());
+    low[at] = std::min(low[at], values[k]);
+    high[at] = std::max(high[at], values[k]);
+  }
+  const double least = *std::ranges::min_element(low), size = *std::ranges::max_element(high) - least;
+  const auto row = [&](double value) {
+    return size > 0.0 ? static_cast<int>(std::lround(lowest * (1.0 - (value - least) / size))) : lowest / 2;
+  };
+  for (int column = 0; column < columns; ++column) {
+    const auto at = static_cast<std::size_t>(column);
+    if (low[at] > high[at]) continue;
+    for (int k = row(high[at]); k <= row(low[at]); ++k) canvas.dot(column, k);
+  }
+  return canvas.line(0);
 }
 
 }  // namespace mbk::report

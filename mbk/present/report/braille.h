@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "mbk/base/core/linear_algebra.h"
+
 namespace mbk::report {
 
 /// A grid of dots for the terminal, 2 × 4 of them in each character (Unicode's Braille patterns). Column and row are
@@ -26,5 +28,9 @@ class BrailleCanvas {
   int columns_, rows_;
   std::vector<unsigned> cells_;
 };
+
+/// The values over the width of one line of characters, from their least to their greatest finite value. Samples that
+/// share a column of dots are drawn as their range.
+[[nodiscard]] std::string sparkline(const Vector& values, int characters);
 
 }  // namespace mbk::report

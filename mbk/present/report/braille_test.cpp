@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace mbk::report {
 namespace {
 
@@ -32,6 +34,26 @@ TEST(BrailleCanvas, LeavesAwayWhatIsBeyondIt) {
   canvas.dot(0, -1);
   canvas.dot(0, 4);
   EXPECT_EQ(canvas.line(0), "  ");
+}
+
+TEST(Sparkline, RisesFromTheLowestDotToTheHighest) {
+  EXPECT_EQ(sparkline(Vector::LinSpaced(4, -1.0, 1.0), 2), "⡠⠊");
+}
+
+TEST(Sparkline, DrawsTheRangeOfSamplesThatShareAColumn) {
+  Vector alternating(100);
+  for (Index k = 0; k < alternating.size(); ++k) alternating[k] = k % 2 == 0 ? -1.0 : 1.0;
+  EXPECT_EQ(sparkline(alternating, 3), "⣿⣿⣿");
+}
+
+TEST(Sparkline, IsFlatForAConstantAndBlankWithoutNumbers) {
+  EXPECT_EQ(sparkline(Vector::Constant(8, 7.0), 2), "⠒⠒");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(sparkline(Vector::Constant(8, nan), 2), "  ");
+  EXPECT_EQ(sparkline(Vector(), 2), "  ");
+  Vector gap = Vector::Constant(4, 7.0);
+  gap[2] = gap[3] = nan;
+  EXPECT_EQ(sparkline(gap, 2), "⠒ ");
 }
 
 }  // namespace

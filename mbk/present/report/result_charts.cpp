@@ -197,25 +197,6 @@ std::vector<NamedChart> measurement_charts(const Measurement& measured, const st
   return charts;
 }
 
-std::vector<Chart> first_seconds(const Recording& recording, double seconds) {
-  using namespace result_charts;
-  const Index samples = recording.time.size();
-  Index shown = 0;
-  while (shown < samples && recording.time[shown] - recording.time[0] <= seconds) ++shown;
-  std::vector<Chart> charts;
-  for (const Channel& channel : recording.channels) {
-    const Vector values = channel.values.head(shown);
-    auto chart = std::ranges::find_if(charts, [&](const Chart& one) { return one.y.unit == channel.unit; });
-    if (chart == charts.end()) {
-      charts.push_back(
-          titled(fmt::format("The first {:.3g} s", seconds), {"time", "s"}, {"minus its mean", channel.unit}));
-      chart = charts.end() - 1;
-    }
-    chart->series.push_back(line(channel.name, recording.time.head(shown), values.array() - values.mean()));
-  }
-  return charts;
-}
-
 std::vector<NamedChart> exploration_charts(const Exploration& found) {
   using namespace result_charts;
   const Units units = units_of(found.motion);

@@ -8,7 +8,6 @@
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/exploration.h"
 #include "mbk/model/trial/measurement.h"
-#include "mbk/model/trial/recording.h"
 
 namespace mbk::report {
 
@@ -26,9 +25,5 @@ struct NamedChart {
 /// Magnitude, phase and coherence of the frequency response, the impulse response, and the stiffness over time where it
 /// changes; those that the exploration has, with 95 % intervals.
 [[nodiscard]] std::vector<NamedChart> exploration_charts(const Exploration& found);
-
-/// The first seconds of a recording, channel by channel, each with its mean removed; one chart for each quantity.
-/// @param seconds  > 0
-[[nodiscard]] std::vector<Chart> first_seconds(const Recording& recording, double seconds);
 
 }  // namespace mbk::report
