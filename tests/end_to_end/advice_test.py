@@ -124,7 +124,7 @@ class Advice(Case):
         tree = every_command()
         options = {option for command in tree for option in command.options} | {"--help"}
         options |= {"--for", "--install"}  # of the robot that misbehaves; of CMake
-        options |= {"--held-back", "--least-extension", "--most-delay", "--most-springs"}  # read for one version
+        options |= {"--help-all", "--held-back", "--least-extension", "--most-delay", "--most-springs"}  # read for one version
         commands = {command.path[0] for command in tree if command.path}
         for source in sorted(ROOT.glob("mbk/**/*.cpp")) + sorted(ROOT.glob("apps/mbk/**/*.cpp")):
             if source.name.endswith("_test.cpp") or source.name in OF_OTHER_PROGRAMS:

@@ -77,6 +77,7 @@ Result<void> write_charts(const TfArguments& arguments, const std::vector<Chart>
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
     const Output file{chart_file(arguments, k), arguments.to.to.overwrite};
     MBK_TRY(file.write(report::chart_svg(charts[k]), files_of(arguments)));
+    say_written(file.file->string(), arguments.to.quiet);
   }
   return {};
 }
@@ -99,8 +100,8 @@ int run(const TfArguments& given, const std::string& typed) {
   if (!findings) return report_error(findings.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, *findings, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report,
-                             {report::transfer_function_text(*found), {}}, files_of(arguments));
+    if (auto ok = write_page(arguments.report, arguments.to, report, {report::transfer_function_text(*found), {}},
+                             files_of(arguments));
         !ok)
       return report_error(ok.error());
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/mbk/options/output.h"
+#include "mbk/base/core/counted.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/present/report/draw_chart.h"
 
@@ -64,8 +65,14 @@ Result<void> ChartFiles::write(const SourceFile& source, const std::vector<repor
   return {};
 }
 
-Result<void> ChartFiles::write(const std::string& name, const Chart& chart) const {
-  return recording::write_derived(folder_ / (name + ".svg"), overwrite_, report::chart_svg(chart), sources_);
+Result<void> ChartFiles::write(const std::string& name, const Chart& chart) {
+  MBK_TRY(recording::write_derived(folder_ / (name + ".svg"), overwrite_, report::chart_svg(chart), sources_));
+  ++written_;
+  return {};
+}
+
+void ChartFiles::say_written(bool quiet) const {
+  app::say_written(fmt::format("{} to {}", counted(written_, "chart", "charts"), folder_.string()), quiet);
 }
 
 }  // namespace mbk::app

@@ -31,13 +31,17 @@ class ChartFiles {
   [[nodiscard]] Result<void> write(const SourceFile& source, const std::vector<report::NamedChart>& charts);
 
   /// @fails  as recording::write_file
-  [[nodiscard]] Result<void> write(const std::string& name, const Chart& chart) const;
+  [[nodiscard]] Result<void> write(const std::string& name, const Chart& chart);
+
+  /// As app::say_written: how many, and the folder.
+  void say_written(bool quiet) const;
 
  private:
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> sources_;
   bool overwrite_ = false;
   std::vector<std::string> begun_;
+  int written_ = 0;
 };
 
 }  // namespace mbk::app

@@ -20,7 +20,8 @@ double median_interval(const Vector& time) {
 
 Result<void> check_rises(const Clock& clock) {
   if (!clock.time.allFinite()) {
-    return bad_data(fmt::format("the time of '{}' contains NaN", clock.name), "use channels of one stream only");
+    return bad_data(fmt::format("the time of '{}' contains non-finite values", clock.name),
+                    "use channels of one stream only");
   }
   for (Index i = 1; i < clock.time.size(); ++i) {
     if (clock.time[i] > clock.time[i - 1]) continue;
