@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { closeBrowser, drawn, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, runWithConsole, screenshot, startDouble, violations, violationsInBoth } from "./browser.mjs";
+import { clipped, closeBrowser, drawn, endPrograms, eventually, folder, makeLog, mbk, measure, onPage, open, runWithConsole, screenshot, startDouble, violations, violationsInBoth } from "./browser.mjs";
 
 after(() => {
   endPrograms(); // of tests that failed
@@ -200,6 +200,49 @@ async function pressAndMeasure(page, press) {
   return `tripped ${milliseconds(tripped - pressed)} ms behind the newest sample that was there, said ${milliseconds(loop - tripped)} ticks later, here ${after.toFixed(0)} ms after the press, displayed in frame ${frames}`;
 }
 
+/** In each plot, the share of columns with a pixel of the lines' colours. */
+const tracesDrawn = (page) => page.$$eval(".trace canvas", (canvases) => canvases.map((canvas) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const columns = new Set();
+  for (let at = 0; at < data.length; at += 4) {
+    if (Math.max(data[at], data[at + 1], data[at + 2]) - Math.min(data[at], data[at + 1], data[at + 2]) > 100) columns.add((at / 4) % canvas.width); // axes and numbers are grey
+  }
+  return columns.size / canvas.width;
+}));
+
+test("state, stop button, traces, M, B, K and ellipses are on one small screen; traces stay when the window is resized", async () => {
+  const running = await run("small", "--wait", "--speed", "4", "--trial", "relaxed");
+  const operator = await visit(running.operator, { viewport: { width: 1280, height: 800 } });
+  const { page, click } = operator;
+  const assertOnScreen = async () => {
+    for (const [selector, count] of [[".banner", 1], [".stop", 1], [".phase", 1], [".trace-plot", 2], [".matrix", 3], [".cells .half", 12], [".ellipse-drawing", 3]]) {
+      const boxes = await page.$$eval(selector, (all) => all.map((one) => one.getBoundingClientRect().toJSON()));
+      assert.equal(boxes.length, count, selector);
+      for (const { left, top, right, bottom } of boxes) assert.ok(left >= 0 && top >= 0 && right <= 1280 && bottom <= 800, `${selector}: ${[left, top, right, bottom]}`);
+    }
+    assert.deepEqual(await clipped(page), []);
+  };
+  await click("Start: relaxed");
+  await page.waitForSelector(".ellipse-drawing", { timeout: 60_000 });
+  await assertOnScreen();
+  await screenshot(page, "console-small");
+  await page.locator(".estimate h2", { hasText: /whole perturbation/ }).waitFor({ timeout: 60_000 });
+  await page.getByRole("button", { name: "Finish" }).waitFor({ timeout: 60_000 });
+  await assertOnScreen();
+  for (const [width, height] of [[1600, 900], [1280, 800], [390, 844]]) { // no sample comes any more
+    await page.setViewportSize({ width, height });
+    await eventually(async () => {
+      const shares = await tracesDrawn(page);
+      assert.ok(shares.length === 2 && shares.every((share) => share > 0.6), `${width} px: ${shares}`);
+    });
+    assert.deepEqual(await clipped(page), []);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${width} px`);
+  }
+  await screenshot(page, "console-phone", { fullPage: true });
+  await click("Finish");
+  assert.equal(await ended(operator, running), 0);
+});
+
 test("the stop button and the space bar trip the gate; a reset takes two steps", async () => {
   const running = await run("stopped", "--wait", "--speed", "1", "--trial", "relaxed");
   const operator = await visit(running.operator, { script: watchArrivals });
@@ -363,14 +406,19 @@ test("a trial that was completed but is poor says why, and suggests to repeat it
   assert.equal(await ended(operator, { code }), 0);
 });
 
-/** How the lines of the page's plots go: of each stroke its colour, its width and where it is on the whole. */
+/** How the lines of the page's force plot go: of each stroke its width, in how many pieces it is and where it is on the whole. */
 function watchStrokes() {
-  const { beginPath, lineTo, stroke } = CanvasRenderingContext2D.prototype;
+  const { beginPath, moveTo, lineTo, stroke } = CanvasRenderingContext2D.prototype;
   globalThis.strokes = [];
   Object.assign(CanvasRenderingContext2D.prototype, {
     beginPath() {
       this.heights = [];
+      this.pieces = 0;
       beginPath.call(this);
+    },
+    moveTo(x, y) {
+      ++this.pieces;
+      moveTo.call(this, x, y);
     },
     lineTo(x, y) {
       this.heights?.push(y);
@@ -378,7 +426,7 @@ function watchStrokes() {
     },
     stroke() {
       const { heights = [] } = this;
-      if (this.canvas === document.querySelector(".trace canvas")) globalThis.strokes.push({ colour: this.strokeStyle, width: this.lineWidth, height: heights.length > 0 ? heights.reduce((sum, y) => sum + y, 0) / heights.length : NaN });
+      if (this.canvas === document.querySelector(".trace canvas")) globalThis.strokes.push({ width: this.lineWidth, pieces: this.pieces, height: heights.length > 0 ? heights.reduce((sum, y) => sum + y, 0) / heights.length : NaN });
       stroke.call(this);
     },
   });
@@ -408,13 +456,16 @@ test("in a force trial the command is drawn with the sign of the hand's force, i
   await operator.click("Start: rigid");
   await operator.perturbing();
   const pairs = await eventually(async () => {
-    // in each picture command x, command y, x, y; dashes leave every other piece of a command out
+    // in each picture x, y, command x, command y
     const found = await operator.page.evaluate(() => {
-      const all = globalThis.strokes.slice(-4 * 600);
-      return all.flatMap((one, k) => (one.width > 4 && one.height === one.height && all[k + 2]?.width < 4 && all[k + 2].colour === one.colour && all[k + 2].height === all[k + 2].height ? [[one.height, all[k + 2].height]] : []));
+      const all = globalThis.strokes.slice(-4 * 600).filter(({ height }) => Number.isFinite(height));
+      return all.flatMap((one, k) => (one.width < 2 && all[k - 2]?.width >= 2 ? [[one, all[k - 2]]] : []));
     });
     assert.ok(found.length > 150, String(found.length));
-    return found;
+    return found.map(([command, force]) => {
+      assert.equal(command.pieces, force.pieces, "the command is one line where the force is one");
+      return [command.height, force.height];
+    });
   });
   const same = correlation(pairs.slice(-150));
   assert.ok(same > 0.5, `correlation ${same} of force and command as they are drawn`);

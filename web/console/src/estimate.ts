@@ -10,6 +10,9 @@ import { plainWarnings } from "@mbk/shared/warnings";
 const cells: [number, number][] = [[0, 0], [0, 1], [1, 0], [1, 1]];
 const kept = 24; // half widths of the last estimates that the small picture shows
 
+/** A half width as a share of the first one. */
+const changed = (share: number): string => `${share > 1 ? "widened" : "narrowed"} by ${Math.abs(100 * (1 - share)).toFixed(0)} %`;
+
 /** How the half widths of the diagonal have shrunk since the first estimate. */
 class Tightening {
   private readonly first = new Map<string, number>();
@@ -92,7 +95,7 @@ export class EstimatePanel {
         "p",
         { class: "tightening" },
         history.length > 1
-          ? `95 % intervals narrowed by ${(100 * (1 - (history.at(-1) as number))).toFixed(0)} % since the first estimate. `
+          ? `95 % intervals ${changed(history.at(-1) as number)} since the first estimate. `
           : "± is half the width of the 95 % interval. ",
         `Model explains ${result.fit.VAF.map((value, k) => `${fixed(value, 1)} % in ${"xy"[k]}`).join(", ")}.`,
         result.usable ? "" : h("strong", { class: "care-text" }, estimate.final ? " ▲ Not usable." : " ▲ Not usable yet."),

@@ -9,19 +9,17 @@ export interface Line {
   offset: number;
 }
 
-// dashes distinguish references without any colour
 interface Colours {
   paper: string;
   label: string;
   grid: string;
-  lines: [string, string];
+  lines: string[]; // x and y, then their references
 }
 function colours(): Colours {
   const style = getComputedStyle(document.documentElement);
   const token = (name: string) => style.getPropertyValue(name).trim();
-  return { paper: token("--paper"), label: token("--label"), grid: token("--grid"), lines: [token("--first"), token("--second")] };
+  return { paper: token("--paper"), label: token("--label"), grid: token("--grid"), lines: ["--first", "--second", "--first-reference", "--second-reference"].map(token) };
 }
-const dash = 5; // buckets drawn, and left out
 const [left, right, above, below] = [64, 16, 8, 30]; // around the lines [CSS pixels]
 const overhang = 7; // of a time's label, to the left of the lines
 const fontSize = 16;
@@ -50,13 +48,13 @@ export class Plot {
   private last = -1; // bucket that was drawn last, and may have grown since
   private labels: { time: number; half: number }[] = []; // that are shown below
 
-  /** @param least  the scale holds at least that, to both sides */
-  constructor(title: string, unit: string, names: string[], private readonly least: number) {
+  /** @param least  the scale holds at least that, to both sides   @param resized  draws the lines again */
+  constructor(title: string, unit: string, names: string[], private readonly least: number, resized: () => void) {
     [this.low, this.high] = [-least, least];
     const drawing = h("div", { class: "trace-plot" }, this.canvas);
     this.element = h("figure", { class: "trace" },
       h("figcaption", {}, h("strong", {}, `${title} [${unit}]`),
-        ...names.map((name, k) => h("span", { class: `key ${k % 2 === 0 ? "x" : "y"} ${k < 2 ? "" : "dashed"}` }, name))),
+        ...names.map((name, k) => h("span", { class: `key ${k % 2 === 0 ? "x" : "y"} ${k < 2 ? "" : "reference"}` }, name))),
       drawing, h("p", { class: "axis-title" }, "Time [s]"));
     new ResizeObserver(() => {
       const { clientWidth, clientHeight } = drawing;
@@ -65,6 +63,7 @@ export class Plot {
       this.canvas.width = Math.round(clientWidth * this.sharp);
       this.canvas.height = Math.round(clientHeight * this.sharp);
       this.clear();
+      resized();
     }).observe(drawing);
     this.clear();
   }
@@ -99,7 +98,8 @@ export class Plot {
       const reach = Math.ceil(3 * this.sharp);
       const from = Math.max(this.x0, Math.floor(this.x((this.last - 0.5) * width)) - reach);
       this.emptied(from);
-      this.draws(samples, Math.max(samples.first, this.last - 3), from);
+      const hidden = Math.ceil(reach / (width * this.perSecond)); // buckets that the reach covers
+      this.draws(samples, Math.max(samples.first, this.last - 3 - hidden), from);
     }
     this.whole = false;
     this.last = samples.last;
@@ -203,7 +203,8 @@ export class Plot {
     this.moved += by;
     const begin = x0 - overhang * sharp;
     for (let first = this.labels[0]; first && this.x(first.time) - first.half < x0; first = this.labels[0]) {
-      paint.fillRect(begin, bottom + 1, Math.ceil(this.x(first.time) + first.half) - begin, canvas.height - bottom - 1);
+      const end = Math.max(x0, Math.ceil(this.x(first.time) + first.half)); // what is left of the lines does not move
+      paint.fillRect(begin, bottom + 1, end - begin, canvas.height - bottom - 1);
       this.labels.shift();
     }
     this.label(this.upTo, to);
@@ -238,30 +239,31 @@ export class Plot {
     paint.rect(from, 0, this.x0 + this.inside - from, this.bottom);
     paint.clip();
     paint.lineJoin = "round";
-    for (const k of [2, 3, 0, 1]) { // references below what was measured: both are seen where they agree
-      const line = this.lines[k];
+    for (const [k, line] of this.lines.entries()) { // references, which are thinner, above what was measured: both are seen where they agree
       if (!line) continue;
-      paint.strokeStyle = this.colours.lines[k % 2 === 0 ? 0 : 1];
-      paint.lineWidth = (k < 2 ? 2 : 5) * sharp;
-      paint.globalAlpha = k < 2 ? 1 : 0.55;
+      paint.strokeStyle = this.colours.lines[k] as string;
+      paint.lineWidth = (k < 2 ? 2 : 1.25) * sharp;
       paint.beginPath();
       let drawing = false;
       let before = NaN; // twice the middle of the bucket before
+      const to = (time: number, value: number): void => {
+        const [x, y] = [this.x(time * width), this.y(line.scale * (value - line.offset))];
+        if (drawing) paint.lineTo(x, y);
+        else paint.moveTo(x, y);
+        drawing = true;
+      };
       for (let number = first; number <= samples.last; ++number) {
         const [low, high] = [samples.low(number, line.from), samples.high(number, line.from)];
         const falls = low + high < before;
         before = low + high;
-        if (!Number.isFinite(before) || (k >= 2 && number % (2 * dash) >= dash)) {
+        if (!Number.isFinite(before)) {
           drawing = false;
-          continue;
+        } else if (k >= 2) { // one point, or it would be a band
+          to(number + 0.5, before / 2);
+        } else {
+          to(number + 0.3, falls ? high : low);
+          to(number + 0.7, falls ? low : high);
         }
-        const [one, other] = falls ? [high, low] : [low, high];
-        const x = this.x((number + 0.3) * width);
-        const y = this.y(line.scale * (one - line.offset));
-        if (drawing) paint.lineTo(x, y);
-        else paint.moveTo(x, y);
-        drawing = true;
-        paint.lineTo(this.x((number + 0.7) * width), this.y(line.scale * (other - line.offset)));
       }
       paint.stroke();
     }

@@ -7,8 +7,8 @@ import { column, type Frame } from "./stream";
 export class Traces {
   readonly element: HTMLElement;
   private readonly samples = new Samples();
-  private readonly force = new Plot("Force of the hand on the robot", "N", ["x", "y", "−command x", "−command y"], 2);
-  private readonly position = new Plot("Position from the test location", "mm", ["x", "y", "reference x", "reference y"], 5);
+  private readonly force = new Plot("Force of the hand on the robot", "N", ["x", "y", "−command x", "−command y"], 2, () => this.again(this.force));
+  private readonly position = new Plot("Position from the test location", "mm", ["x", "y", "reference x", "reference y"], 5, () => this.again(this.position));
   private trial = -1;
   private newest = 0; // first sample of the newest frame [s]
   private fresh = false;
@@ -16,8 +16,10 @@ export class Traces {
   constructor() {
     this.element = h("div", { class: "traces" }, this.force.element, this.position.element);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-      for (const plot of [this.force, this.position]) plot.recolour();
-      this.fresh = this.samples.last >= 0;
+      for (const plot of [this.force, this.position]) {
+        plot.recolour();
+        this.again(plot);
+      }
     });
   }
 
@@ -49,9 +51,11 @@ export class Traces {
   draw(): boolean {
     if (!this.fresh) return false;
     this.fresh = false;
-    const to = Math.max(this.samples.newest, span);
-    this.force.draw(this.samples, to);
-    this.position.draw(this.samples, to);
+    for (const plot of [this.force, this.position]) this.again(plot);
     return true;
+  }
+
+  private again(plot: Plot): void {
+    if (this.samples.last >= 0) plot.draw(this.samples, Math.max(this.samples.newest, span));
   }
 }

@@ -160,7 +160,7 @@ function drawing(
     svg("line", { x1: -end, y1: 0, x2: end, y2: 0, class: "axis" }),
     svg("line", { x1: 0, y1: -end, x2: 0, y2: end, class: "axis" }),
     svg("text", { x: end + 4, y: 4, class: "axis-name" }, "x"),
-    svg("text", { x: 0, y: -end - 6, "text-anchor": "middle", class: "axis-name" }, "y"),
+    svg("text", { x: 0, y: -end - 2, "text-anchor": "middle", class: "axis-name" }, "y"),
     reference > 0 && svg("circle", { r: r.toFixed(2), class: "reference" }),
     ...shapes,
     svg("circle", { r: 3.2, class: "hand" }),
