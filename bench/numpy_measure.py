@@ -66,7 +66,7 @@ def strength(Z, R):
 
 
 def assumptions(Z, Y, K):
-    """Wald statistics of what each assumption excludes, on thinned rows."""
+    """Wald statistics of what each assumption excludes, on decimated rows."""
     at = np.arange(1, len(Z) - 1, EVERY)
     jerk = (Z[at + 1, :2] - Z[at - 1, :2]) * RATE / 2
     A, y = Z[at], Y[at]

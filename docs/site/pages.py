@@ -244,13 +244,13 @@ class Site:
             "# C++ library\n"
             + self.rewritten(
                 "What an application may use: the public headers, with their equations, units, signs and the ways in which "
-                "they fail. A module uses only modules of lower layers ([why](docs/decisions.md#modules-layers-and-wings)); how to link them "
+                "they fail. A module uses only modules of lower layers ([why](docs/decisions.md#modules-layers-and-groups)); how to link them "
                 "is in [install.md](docs/guide/install.md), programs to begin with in "
                 "[use_the_library](examples/use_the_library/README.md).\n", pathlib.Path("CONTRIBUTING.md"), "library")
             + "\n" + " · ".join(self.outward("library", f"api/{file}", label) for file, label in (
                 ("files.html", "by header"), ("annotated.html", "by type"), ("namespaces.html", "by namespace"),
                 ("globals_func.html" if (self.out.parent / "html/api/globals_func.html").exists() else "namespacemembers_func.html",
-                 "by function"))) + "\n\n| Wing | Module | Holds |\n|---|---|---|\n" + "\n".join(rows) + "\n")
+                 "by function"))) + "\n\n| Group | Module | Holds |\n|---|---|---|\n" + "\n".join(rows) + "\n")
 
     # Files that are linked and are no documents
 

@@ -43,7 +43,7 @@ class Convert(Case):
         return self.folder / target[0]
 
     def info(self, path):
-        """All that is said of a recording but where it comes from."""
+        """Everything reported of a recording except its origin."""
         said = self.fine("info", "--json", path).json
         said = said["recordings"][0] if "recordings" in said else said
         for key in ("inputs", "notes"):

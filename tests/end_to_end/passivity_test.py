@@ -29,7 +29,8 @@ class Recordings(Case):
                 text = run("passivity", path, "--quiet").out
                 self.assertIn(f"{verdict}: {found['trial']['statement']}", words_of(text))
                 self.assertIn(f"{found['prediction']['verdict']}: {found['prediction']['statement']}", words_of(text))
-                self.assertIn("Neither is a promise that a machine is stable with this person.", words_of(text))
+                self.assertIn("Neither statement guarantees that a robot coupled to this person is stable.",
+                              words_of(text))
                 self.assert_lines_fit(text)
 
     def test_pulses_that_no_model_explains_are_told_by_the_energy_alone(self):

@@ -53,7 +53,7 @@ class Reaching(Case):
         return self.file("reaching.toml", REACHING.format(**{**USUAL, **changes}))
 
     def explored(self, log):
-        """Whatever is said of usability: a trial of 64 displacements is short."""
+        """Whether usable or not: a trial of 64 displacements is short."""
         found = run("explore", log, "--only", "servo-displacement", "--json")
         self.assertIn(found.code, (FINE, NOT_USABLE), found)
         return found.json["servo_displacement"]

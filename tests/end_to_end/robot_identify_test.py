@@ -16,7 +16,7 @@ COLUMNS = "time=time,q1=joint_1{q},q2=joint_2{q},tau1=torque_1{t},tau2=torque_2{
 
 
 def free_motion(seed=1, breakaway_Nm=None):
-    """The ready scenario free_motion; with a friction that grows to that at rest, where it is said."""
+    """The ready scenario free_motion; optionally with friction that increases towards standstill."""
     return simulated(seed, breakaway_Nm)
 
 

@@ -189,7 +189,7 @@ class Calibrate(Case):
 
     def test_text_says_rule_and_bias(self):
         ran = self.fine("springs", "calibrate", self.file("b.csv", stretch(120, 1.5, 0.7)))
-        for words in ("straight part", "whole stretch", " 1 %", "63 %"):
+        for words in ("straight part", "whole range", " 1 %", "63 %"):
             self.assertIn(words, ran.out)
         self.assert_lines_fit(ran.out)
 

@@ -9,6 +9,7 @@ from command import Case, main, run
 # What must not be said of a person, whatever was measured.
 PROMISES = ("beyond reasonable doubt", "made unstable by", "always stable", "counts on a passive limb",
             "by the energy:", "by the model:", "is the limb passive")
+NO_GUARANTEE = "Neither statement guarantees that a robot coupled to this person is stable."
 SAID = {"passive": "absorbed", "active": "delivered"}
 
 
@@ -48,7 +49,7 @@ class Statements(Case):
         said = prediction["statement"]
         if not result["usable"] or not models:
             self.assertEqual((verdict, *parts), ("none", "none", "none"))
-            self.assertIn("no prediction", said)
+            self.assertRegex(said, "^(there is no model|the model is not usable)$")
             self.assertNotIn("min_index", passivity)
             self.assertNotIn("eop", passivity)
             return
@@ -56,7 +57,8 @@ class Statements(Case):
             return self.assertFalse(models[0]["usable"])
         if not models[0]["fits"] or passivity["band_hz"] is None:
             self.assertEqual(verdict, "undecided")
-            self.assertIn("nothing is predicted", said)
+            self.assertRegex(said, "no reference was recorded|coherence of all axes|does not describe the limb well")
+            self.assertNotRegex(said, "absorbs energy|generate energy")
         known = [part for part in parts if part != "none"]
         if verdict == "passive":
             self.assertEqual(set(known), {"passive"})
@@ -94,7 +96,7 @@ class Statements(Case):
             with self.subTest(command):
                 prediction = passivity["prediction"]
                 self.assertEqual(text.count(words_of(f"{prediction['verdict']}: {prediction['statement']}")), 1)
-                self.assertEqual(text.count("Neither is a promise that a machine is stable with this person."), 1)
+                self.assertEqual(text.count(NO_GUARANTEE), 1)
                 for promise in PROMISES:
                     self.assertNotIn(promise, text.lower())
                 if "trial" in passivity:

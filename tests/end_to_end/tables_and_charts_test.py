@@ -234,7 +234,7 @@ class Spreadsheets(Case):
         out = self.folder / "out.csv"
         ran = self.mbk("convert", file, out)
         self.assertIn("_cmd|calc!A1,_b", out.read_text(encoding="utf-8"))
-        self.assertIn("=cmd|calc!A1", ran.out + ran.err, "that a name was changed is said")
+        self.assertIn("=cmd|calc!A1", ran.out + ran.err, "the changed name is reported")
 
 
 if __name__ == "__main__":

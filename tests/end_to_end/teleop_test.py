@@ -130,7 +130,7 @@ class Teleop(Case):
         for name, document, says in (
                 ("flag", {**good, "usable": False}, "not usable"), ("none", none, "not usable"),
                 ("first", {**good, "schema": "mbk.result/1", "usable": False}, "not usable"),
-                ("poor", poor, "too little of the force"), ("band", bare, "at no two frequencies"),
+                ("poor", poor, "too little of the force"), ("band", bare, "excited coherently"),
                 ("warned", {**good, "warnings": [{"code": "fit-poor"}]}, "too little of the force"),
                 ("former word", {**good, "warnings": [{"code": "held-back-fit-poor"}]}, "too little of the force")):
             with self.subTest(name):

@@ -113,7 +113,7 @@ TEST_P(PlanarScenario, HasItThroughSensorsUpToTheNoiseOfTheForce) {
       laboratory::LoadCellOptions<2>{}.white_noise * std::sqrt(energy.account.squared_velocity / rows.recording_rate);
   EXPECT_NEAR(energy.account.absorbed, truth, 4.0 * deviation + kTrapezoids * trial.exchanged);
   // Through the filters of the fit, which take some of the motion, it errs by more than a hundredth of a joule where
-  // the perturbation lasts, so that the same samples are asked.
+  // the perturbation lasts, so that the same samples are used.
   if (rows.preparation.protocol != Protocol::sinusoidal) return;
   double filtered = 0.0;
   for (Index i = 0; i + 1 < rows.time.size(); ++i) {

@@ -25,7 +25,7 @@ import sensor_test  # noqa: E402
 import springs_test  # noqa: E402
 
 MBK = os.environ["MBK"]
-TABLE = re.search(r"## Every command and its twin\n(.*?)\n\n", (ROOT / "docs/guide/python.md").read_text(encoding="utf-8"),
+TABLE = re.search(r"## Commands and their Python equivalents\n(.*?)\n\n", (ROOT / "docs/guide/python.md").read_text(encoding="utf-8"),
                   re.DOTALL)[1]
 TWINS = [(line.replace("\\|", "|"), python) for line, python in re.findall(r"^\| `(mbk .*)` \| `(.*)` \|$", TABLE, re.M)]
 COMMANDS = {" ".join(one["path"]): one for one in json.loads(mbk._mbk.describe())["commands"]}

@@ -1,7 +1,7 @@
 // The console without a session: it shows of the robot what its standard input says, so that a test sees in the page
 // what no simulated robot does. A line each:
 //   robot {"motors": "on", "confirmed_off": false, "stop_button": false, "link": true, "fault": 0, "sentence": ""}
-//   ask reset      the page is asked, and what it decided is printed; "begin" and "after" too
+//   ask reset      asks the page and prints its decision; "begin" and "after" too
 //   report FILE    the report of its trial
 //   judge poor 40 91 WHY    a trial was performed: its grade, what the model explains on each axis [%], why it is not
 //   good quit

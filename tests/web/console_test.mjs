@@ -75,11 +75,11 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   const operator = await visit(running.operator);
   const { page, click, banner, perturbing, rests } = operator;
   await rests();
-  await page.getByText("This page controls.").waitFor();
+  await page.getByText("This page has control.").waitFor();
   assert.deepEqual(await violationsInBoth(page), []);
   await screenshot(page, "console-ready");
 
-  await page.getByRole("button", { name: "Begin: relaxed" }).focus();
+  await page.getByRole("button", { name: "Start: relaxed" }).focus();
   await page.keyboard.press("Enter");
   await banner("Running");
   const words = (text) => page.waitForFunction((expected) => document.querySelector(".robot")?.textContent === expected, text, { timeout: 60_000 });
@@ -91,11 +91,11 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   assert.deepEqual(await violationsInBoth(page), []);
   await screenshot(page, "console-running");
 
-  await page.getByRole("button", { name: "Begin the next: rigid" }).waitFor({ timeout: 60_000 });
+  await page.getByRole("button", { name: "Start the next: rigid" }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".robot"), /reports its motors off, confirmed after the stop/);
   await page.locator(".estimate h2", { hasText: /whole perturbation, 14 s/ }).waitFor({ timeout: 60_000 });
   assert.match(await page.textContent(".verdict"), /Completed and good.*The model explains [\d.]+ % in x, [\d.]+ % in y/);
-  assert.match(await page.getByRole("button", { name: "Begin the next: rigid" }).getAttribute("class"), /main/);
+  assert.match(await page.getByRole("button", { name: "Start the next: rigid" }).getAttribute("class"), /main/);
   await page.getByRole("button", { name: "1 relaxed" }).click();
   await page.locator(".course canvas").scrollIntoViewIfNeeded();
   const course = await page.locator(".course canvas").boundingBox();
@@ -115,7 +115,7 @@ test("a whole run is clicked through, from the first trial to the reports", asyn
   await screenshot(page, "console-excluding");
   await click("Exclude the trial");
   await page.getByText("Excluded: coughed", { exact: true }).waitFor();
-  await click("Begin the next: rigid");
+  await click("Start the next: rigid");
   await perturbing();
   await screenshot(page, "console-force");
   await click("End this trial early");
@@ -204,13 +204,13 @@ test("the stop button and the space bar trip the gate; a reset takes two steps",
   const running = await run("stopped", "--wait", "--speed", "1", "--trial", "relaxed");
   const operator = await visit(running.operator, { script: watchArrivals });
   const { page, click, perturbing } = operator;
-  await click("Begin: relaxed");
+  await click("Start: relaxed");
   await perturbing();
   const byButton = await pressAndMeasure(page, () => page.locator(".stop").click());
   await page.getByRole("button", { name: "Reset …" }).waitFor();
   assert.match(await page.textContent(".banner"), /Stopped.*the operator stopped it/);
   await page.locator(".verdict.stopped").waitFor();
-  assert.match(await page.textContent(".stop"), /STOPPEDin effect until the reset/); // none is pending
+  assert.match(await page.textContent(".stop"), /STOPPEDin effect until reset/); // none is pending
   assert.deepEqual(await violationsInBoth(page), []);
   await screenshot(page, "console-stopped");
   await click("Reset …");
@@ -235,7 +235,7 @@ test("the space bar writes while a note is written, and stops again after Esc", 
   const running = await run("spaces", "--wait", "--speed", "1", "--trial", "relaxed");
   const operator = await visit(running.operator);
   const { page, click, banner } = operator;
-  await click("Begin: relaxed");
+  await click("Start: relaxed");
   await banner("Running");
   await page.getByLabel("Note for the recording").focus();
   await page.keyboard.type("a b");
@@ -248,7 +248,7 @@ test("the space bar writes while a note is written, and stops again after Esc", 
   assert.equal(await ended(operator, running), 5);
 });
 
-test("a lost connection is said, and the page finds back to nothing that is not there", async () => {
+test("a lost connection is shown, and the page does not reconnect to a session that has ended", async () => {
   const running = await run("lost", "--wait", "--trial", "relaxed");
   const operator = await visit(running.operator);
   const { page, banner, rests } = operator;
@@ -271,7 +271,7 @@ test("a connection that was cut comes back by itself", async () => {
   await banner("Connection lost");
   running.child.kill("SIGCONT");
   await rests();
-  await page.getByRole("button", { name: "No trial" }).click();
+  await page.getByRole("button", { name: "End the session without a trial" }).click();
   assert.equal(await ended(operator, running), 0);
   assert.ok(!existsSync(join(folder, "back.h5")));
 });
@@ -301,13 +301,13 @@ test("who only watches sees everything, and can do nothing but stop", async () =
   const running = await run("watched", "--wait", "--speed", "1", "--trial", "relaxed");
   const operator = await visit(running.operator);
   const watching = await visit(running.viewing);
-  await operator.click("Begin: relaxed");
+  await operator.click("Start: relaxed");
   await watching.banner("Running");
   assert.equal(await watching.page.locator(".actions button").count(), 0);
-  assert.match(await watching.page.textContent(".control"), /This page watches: another page controls\. STOP and the space bar work here too/);
+  assert.match(await watching.page.textContent(".control"), /This page is for viewing only: another page has control\. STOP and the space bar also work here/);
   assert.ok(!(await watching.page.getByRole("button", { name: "Take control" }).isVisible()));
-  assert.match(await watching.page.textContent(".stop"), /STOPspace bar, from this page too/);
-  assert.match(await operator.page.textContent(".control"), /This page controls\. 1 other page is open/);
+  assert.match(await watching.page.textContent(".stop"), /STOPspace bar, also on this page/);
+  assert.match(await operator.page.textContent(".control"), /This page has control\. 1 other page is open/);
   const rates = await Promise.all([operator, watching].map(async ({ page }) => (await page.waitForFunction(() => document.documentElement.dataset.framesPerSecond, undefined, { timeout: 60_000 })).jsonValue()));
   console.log(`frames drawn per second by two pages: ${rates.join(", ")}`);
   assert.deepEqual(await violationsInBoth(watching.page), []);
@@ -324,23 +324,23 @@ test("another page of the operator takes control, and the one that controls keep
   const running = await run("control", "--wait", "--trial", "relaxed");
   const first = await visit(running.operator);
   const second = await visit(running.operator);
-  const begin = (of) => of.page.getByRole("button", { name: "Begin: relaxed" });
+  const begin = (of) => of.page.getByRole("button", { name: "Start: relaxed" });
   const says = (of, words) => of.page.locator(".control", { hasText: words }).waitFor({ timeout: 60_000 });
-  await says(first, "This page controls.");
+  await says(first, "This page has control.");
   await begin(first).waitFor();
-  await says(second, "another page controls.");
+  await says(second, "another page has control.");
   assert.equal(await begin(second).count(), 0);
   await first.page.reload();
-  await says(first, "This page controls.");
-  await says(second, "another page controls.");
+  await says(first, "This page has control.");
+  await says(second, "another page has control.");
   await screenshot(second.page, "console-second");
   await second.click("Take control");
-  await says(second, "This page controls.");
+  await says(second, "This page has control.");
   await begin(second).waitFor();
-  await says(first, "another page controls.");
+  await says(first, "another page has control.");
   await first.page.getByRole("button", { name: "Take control" }).waitFor();
   assert.equal(await begin(first).count(), 0);
-  await second.click("No trial");
+  await second.click("End the session without a trial");
   await first.close();
   assert.equal(await ended(second, running), 0);
 });
@@ -405,7 +405,7 @@ function correlation(pairs) {
 test("in a force trial the command is drawn with the sign of the hand's force, in other lines", async () => {
   const running = await run("signs", "--wait", "--speed", "2", "--trial", "rigid");
   const operator = await visit(running.operator, { script: watchStrokes });
-  await operator.click("Begin: rigid");
+  await operator.click("Start: rigid");
   await operator.perturbing();
   const pairs = await eventually(async () => {
     // in each picture command x, command y, x, y; dashes leave every other piece of a command out
@@ -436,7 +436,7 @@ test("the participant reads what to do in the words of the study, and sees handl
   const says = (words) => page.locator(".instruction", { hasText: words }).waitFor({ timeout: 60_000 });
   await says("Bitte warten.");
   assert.equal(await page.getAttribute("html", "lang"), "de");
-  await operator.click("Begin: rigid");
+  await operator.click("Start: rigid");
   await says("Der Roboter bewegt Ihre Hand.");
   const place = (of) => of.page.waitForFunction(() => document.querySelector("canvas").dataset.handle).then((handle) => handle.jsonValue());
   const before = await place(participant);
@@ -465,7 +465,7 @@ test("in a relaxed trial the participant's picture is steady, and the trial ends
   const operator = await visit(running.operator);
   const participant = await visit(running.participant, { script: watchPictures });
   const { page } = participant;
-  await operator.click("Begin: relaxed");
+  await operator.click("Start: relaxed");
   const pictures = await page.waitForFunction(() => {
     const instruction = document.querySelector('.instruction[data-text="relax"]');
     if (!instruction || !document.querySelector('canvas[data-steady="true"]:not([data-handle])')) return 0;
@@ -560,13 +560,13 @@ test("a stop button that is pressed is shown while nothing runs, and the reset s
   await banner("Stop button pressed");
   await has(".robot", "its stop button is pressed");
   tell("ask reset");
-  await has(".waits", "Reset waits: the robot's stop button is pressed");
+  await has(".waits", "Reset is not possible while the robot's stop button is pressed");
   const reset = page.getByRole("button", { name: "Reset …" });
   assert.ok(await reset.isDisabled());
   assert.deepEqual(await violations(page), []);
   await screenshot(page, "console-button-pressed");
   say({ stop_button: true, link: false });
-  await has(".robot", "No states come from the robot");
+  await has(".robot", "The robot sends no states");
   say({ stop_button: false });
   await rests();
   await click("Reset …");

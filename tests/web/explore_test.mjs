@@ -36,7 +36,7 @@ test("M, B and K and both shares of the force are those of --json", () => onWhol
   const read = await numbers(page, "#impulse-response");
   found.explained.forEach((one, k) => close(read[`irf-VAF${k}`].value, one.VAF, "VAF"));
   for (const name of ["M", "B", "K"]) found.model[name].value.flat().forEach((value, k) => close(read[`irf-${name}${Math.floor(k / 2)}${k % 2}`].value, value, name));
-  assert.match(await page.textContent("#impulse-response"), found.model.enough.enough ? /are enough/ : /are not enough/);
+  assert.match(await page.textContent("#impulse-response"), found.model.enough.enough ? /are sufficient/ : /are not sufficient/);
 }));
 
 test("each response has a Bode plot with its interval, and the disc of each frequency in the complex plane", () => onWholePage(arm.file, async (page) => {

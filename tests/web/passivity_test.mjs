@@ -43,7 +43,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
       assert.equal(said.toLowerCase(), `${statement}.`.toLowerCase());
     }
     const text = await page.textContent("#trial-1-passivity");
-    assert.match(text, /Neither is a promise that a machine is stable with this person/);
+    assert.match(text, /Neither statement guarantees that a robot coupled to this person is stable\./);
     assert.doesNotMatch(await page.textContent("main"), /reasonable doubt|made unstable by|always stable/);
     const badges = await page.$$eval("#trial-1-passivity .ways tbody tr", (rows) => rows.map((row) => [...row.querySelectorAll("[data-verdict]")].map((b) => b.dataset.verdict)));
     assert.deepEqual(badges, passivity.models.map((m) => [m.symmetric, m.antisymmetric, m.published_rule]));
@@ -61,7 +61,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
   test(`each condition stands with value, bounds and outcome: ${name}`, () => reading(file, async (page) => {
     const read = await numbers(page, "#trial-1-conditions");
     const outcomes = await page.$$eval("#trial-1-conditions .conditions .outcome", (cells) => cells.map((cell) => cell.textContent));
-    const word = { passive: "✓ holds", active: "✕ fails", undecided: "? open" };
+    const word = { passive: "✓ met", active: "✕ not met", undecided: "? undecided" };
     const { models } = json.passivity;
     assert.deepEqual(outcomes, models.flatMap((model) => model.conditions.map((c) => word[c.verdict])));
     for (const { method, conditions, eop } of models) {
@@ -127,9 +127,9 @@ for (const [name, { json, file }] of Object.entries(all)) {
     instrument.coherent_residual_fraction.forEach((share, axis) => close(read[`answered${axis}`].value, 100 * share, "answered"));
     const text = await page.textContent("#trial-1-methods");
     assert.match(text, instrument.strong ? /The instruments are strong/ : /The instruments are weak/);
-    assert.match(text, !holds ? /do not hold here, and cannot check least squares/
-      : json.disagreement.significant ? /differ significantly.*on its own account/s
-      : /No difference between the two methods is significantly larger/);
+    assert.match(text, !holds ? /are not valid here and cannot check least squares/
+      : json.disagreement.significant ? /differ significantly.*voluntary or reflex activity/s
+      : /do not differ significantly/);
     assertAllShown(read);
   }));
 

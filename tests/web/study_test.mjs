@@ -66,8 +66,8 @@ test("a change beyond the minimal detectable change is said once, in words, and 
     assert.match(await tab.textContent("#limits"), /good or bad/);
   });
   await reading(same, async (tab) => {
-    assert.match(await tab.textContent(".said"), /no change of the largest stiffness is shown/);
-    assert.match(await tab.textContent(".statement"), /no proof that nothing changed/);
+    assert.match(await tab.textContent(".said"), /no detectable change in the largest stiffness\./);
+    assert.match(await tab.textContent(".statement"), /does not prove that nothing changed/);
     assert.doesNotMatch(await tab.textContent("#change"), claims);
   });
 });
@@ -96,7 +96,7 @@ test("no change of one outcome hides no other that changed", () => {
     }
   });
   return onPage(file, async (tab) => {
-    assert.match(await tab.textContent(".said"), /no change of the largest stiffness is shown/);
+    assert.match(await tab.textContent(".said"), /no detectable change in the largest stiffness\./);
     assert.match(await tab.textContent(".others"), /^2 other outcomes of \d+ changed by more than measurement error explains: largest damping \(.+\), inertia xx \(.+\)\.$/);
     assert.match(await tab.textContent("#outcomes"), /inertia xx/);
   });
@@ -106,7 +106,7 @@ test("where errors have heavy tails the page says that its interval does not hol
   const file = changed(same, "tails", ({ courses }) => {
     for (const { participants } of courses) for (const one of participants[0].changes) one.heavy_tails = true;
   });
-  return onPage(file, async (tab) => assert.match(await tab.textContent(".statement"), /heavier tails than normal ones.* does not hold/));
+  return onPage(file, async (tab) => assert.match(await tab.textContent(".statement"), /heavier tails than a normal distribution.* not valid/));
 });
 
 test("an uncertain minimal detectable change makes no sure claim", () => {
@@ -140,7 +140,7 @@ test("differences have the p that was corrected for all tests, and an effect siz
   const row = await tab.$eval("#comparison tbody tr", (one) => [...one.children].map((cell) => cell.textContent));
   assert.equal(row[1], `${stiffness.first_participants}\u00a0paired`);
   assert.deepEqual(row.slice(3, 6).map(Number), [stiffness.p, stiffness.p_holm, stiffness.permutation.p].map((value) => Number(value.toFixed(3))));
-  assert.equal(row[6], "no difference shown");
+  assert.equal(row[6], "no detectable difference");
   assert.match(await tab.textContent("#comparison caption"), new RegExp(`corrected for ${comparison.tests} tests`));
   assert.ok((await tab.locator("#comparison svg.forest rect.value").count()) > 8);
 }));

@@ -121,8 +121,8 @@ const metadata = (name) => JSON.parse(mbk("info", "--json", name).out).metadata;
 task("run two trials", async (person) => {
   session = await run("day", "--speed", "10");
   await person.open(session.operator);
-  await person.press("Begin: first");
-  await person.press("Begin the next: second");
+  await person.press("Start: first");
+  await person.press("Start the next: second");
   await person.reads(/2 second/);
   await person.named("button", "Finish").waitFor(patience);
   window = person.visited;
@@ -152,12 +152,12 @@ task("mark a window that shall not count", async (person) => {
 task("watch, and take control", async (person) => {
   const other = new Newcomer(); // whoever controls
   await other.open(session.operator, window);
-  await other.reads("This page controls.");
+  await other.reads("This page has control.");
   await person.open(session.operator);
-  await person.reads(/This page watches: another page controls/);
+  await person.reads(/This page is for viewing only: another page has control/);
   await person.press("Take control");
-  await other.reads(/another page controls/);
-  await person.reads("This page controls.");
+  await other.reads(/another page has control/);
+  await person.reads("This page has control.");
   await person.press("Finish");
   await person.reads(/session is over/i);
   await window.close();
@@ -174,7 +174,7 @@ task("watch, and take control", async (person) => {
 task("stop the robot", async (person) => {
   const stopped = await run("stopped", "--speed", "1", "--trial", "first");
   await person.open(stopped.operator);
-  await person.press("Begin: first");
+  await person.press("Start: first");
   await person.reads(/space bar/);
   await person.reads(/Running/);
   await person.key("Space");

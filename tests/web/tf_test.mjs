@@ -54,7 +54,7 @@ test("coefficients, poles, zeros and gain are those of --json", () => reading(ch
   for (const [name, number] of Object.entries(read)) if (name !== "explained") assertShown(number, name);
 }));
 
-test("a delay that was found has its interval, and what the input does between samples is said", async () => {
+test("a delay that was found has its interval, and the input between samples is described", async () => {
   await reading(chosen.file, async (page) => {
     assert.match(await page.textContent("#summary"), /a delay of 0\.002 s\. The model/);
     assert.match(await page.textContent("#hold"), chosen.json.hold === "zero" ? /zero-order hold/ : /first-order hold/);

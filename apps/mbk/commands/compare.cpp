@@ -165,13 +165,14 @@ int run(const CompareArguments& arguments, const std::string& typed) {
   }
   const std::string shown = arguments.output.json ? json_of(given->all, widths) : text_of(given->all, widths);
   if (arguments.report.file) {
+    const std::string plain = text_of(given->all, widths);
     result::ComparisonReport report{{{}, SeveralTrials{}, typed, arguments.report.note}, {}, widths};
     report.compared.together->failed = std::move(given->ignored);
     for (Compared& one : given->all) {
       report.names.push_back(std::move(one.name));
       report.compared.results.push_back(std::move(one.found));
     }
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, result::to_json(report),
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, result::to_json(report), {plain, {}},
                              arguments.reading.files);
         !ok)
       return report_error(ok.error());

@@ -116,7 +116,9 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (!found) return report_error(found.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report, arguments.reading.files); !ok) {
+    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report,
+                             {report::exploration_text(*found), {}}, arguments.reading.files);
+        !ok) {
       return report_error(ok.error());
     }
   }

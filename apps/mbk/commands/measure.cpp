@@ -170,18 +170,22 @@ int run(const MeasureCommandArguments& given, const std::string& typed, bool wit
     if (code == kFine && !one.identification.usable) code = kNotUsable;
   }
 
-  std::string text;
-  if (arguments.output.json) {
-    text =
-        found->several ? result::to_json(found->measured, found->together) : result::to_json(found->measured.front());
-  } else {
-    for (const Measurement& one : found->measured) text += (text.empty() ? "" : "\n") + report::measurement_text(one);
-    if (found->several) text += "\n" + report::summary_text(found->together);
+  report::StaticReport plain;
+  for (const Measurement& one : found->measured) {
+    plain.text += (plain.text.empty() ? "" : "\n") + report::measurement_text(one);
+    for (report::NamedChart& drawn : report::measurement_charts(one, std::nullopt)) {
+      plain.charts.push_back(std::move(drawn.chart));
+    }
   }
+  if (found->several) plain.text += "\n" + report::summary_text(found->together);
+  const std::string text = !arguments.output.json ? plain.text
+                           : found->several       ? result::to_json(found->measured, found->together)
+                                                  : result::to_json(found->measured.front());
   if (arguments.report.file) {
     const std::string document = report_json(typed, arguments.report.note, found->facts, found->measured,
                                              found->diagnostics, found->several ? &found->together : nullptr);
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document, arguments.reading.files); !ok)
+    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document, plain, arguments.reading.files);
+        !ok)
       return report_error(ok.error());
   }
   if (auto ok = write_beside(arguments, *found); !ok) return report_error(ok.error());

@@ -10,6 +10,7 @@
 #include "mbk/base/core/option_checks.h"
 #include "mbk/experiment/console/page.h"
 #include "mbk/present/report/html.h"
+#include "mbk/present/report/text.h"
 
 namespace mbk::app {
 
@@ -83,7 +84,8 @@ Result<Measurement> RunConsole::measured(const Recording& recording) const {
   if (!examined->diagnostics.empty()) diagnostics = std::move(examined->diagnostics.front());
   const std::string typed = fmt::format("mbk measure {}", page_->recording().string());
   auto html = report::page(report_json(typed, "", {facts_of(recording, examined->measured.identification)},
-                                       {examined->measured}, {diagnostics}, nullptr));
+                                       {examined->measured}, {diagnostics}, nullptr),
+                           {report::measurement_text(examined->measured), {}});
   console_->show_report(html ? std::move(*html) : "", html ? "" : html.error().line());
   return std::move(examined->measured);
 }

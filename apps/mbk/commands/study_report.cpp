@@ -55,13 +55,15 @@ Result<std::string> document_of(const StudyReportArguments& arguments, const sto
 int run_report(const StudyReportArguments& arguments) {
   const Output& to = arguments.output.to;
   if (auto ok = check_files({}, to); !ok) return report_error(ok.error());
-  if (auto page = report::page(""); !page && !arguments.output.json) return report_error(page.error());
+  if (auto page = report::page("", {}); !page && !arguments.output.json) return report_error(page.error());
   std::optional<store::Store> study;
   auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
   const auto document = document_of(arguments, *study, std::move(*list));
   if (!document) return report_error(document.error());
-  const auto page = arguments.output.json ? document : report::page(*document);
+  const auto page = arguments.output.json
+                        ? document
+                        : report::page(*document, {"'mbk study summary' prints the tables of this page as text.", {}});
   if (!page) return report_error(page.error());
   if (auto ok = recording::write_file(*to.file, to.overwrite, *page, Readers::owner); !ok)
     return report_error(ok.error());

@@ -101,7 +101,9 @@ int run(const TfArguments& given, const std::string& typed) {
   if (!findings) return report_error(findings.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, *findings, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report, files_of(arguments)); !ok)
+    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report,
+                             {report::transfer_function_text(*found), {}}, files_of(arguments));
+        !ok)
       return report_error(ok.error());
   }
   if (auto ok = write_charts(arguments, report::response_charts(*found, findings->response)); !ok) {

@@ -82,7 +82,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
     MBK_TRY(check_new_file(*beside.summary, "--summary", output.overwrite, inputs));
   }
   if (!report.file) return {};
-  MBK_TRY(mbk::report::page(""));
+  MBK_TRY(mbk::report::page("", {}));
   std::error_code error;
   if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==
                          std::filesystem::weakly_canonical(*report.file, error)) {

@@ -44,8 +44,8 @@ std::string report_json(const std::string& typed, const std::string& note,
 }
 
 Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
-                        const std::vector<std::filesystem::path>& sources) {
-  const auto page = MBK_TRY(report::page(report_json));
+                        const report::StaticReport& plain, const std::vector<std::filesystem::path>& sources) {
+  const auto page = MBK_TRY(report::page(report_json, plain));
   return recording::write_derived(*arguments.file, overwrite, page, sources);
 }
 

@@ -11,6 +11,7 @@
 #include "mbk/model/trial/diagnostics.h"
 #include "mbk/model/trial/recording.h"
 #include "mbk/model/trial/summary.h"
+#include "mbk/present/report/html.h"
 #include "mbk/present/result/json.h"
 #include "mbk/present/result/report_json.h"
 
@@ -35,8 +36,10 @@ namespace mbk::app {
                                       const std::vector<std::optional<Diagnostics>>& diagnostics,
                                       const SeveralTrials* together);
 
-/// Writes --report: the page with that document.    @param sources  as Output::write
+/// Writes --report: the page with that document.    @param plain  for readers without JavaScript
+/// @param sources  as Output::write
 [[nodiscard]] Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
+                                      const report::StaticReport& plain,
                                       const std::vector<std::filesystem::path>& sources);
 
 }  // namespace mbk::app

@@ -10,7 +10,7 @@
 
 namespace mbk::recording {
 
-/// What is said of whole numbers that doubles do not hold.
+/// The note on whole numbers that a double cannot represent.
 [[nodiscard]] inline std::string rounded_note(std::string_view name) {
   return "'" + std::string(name) + "' contains integers above 2^53, which were rounded";
 }

@@ -1,4 +1,4 @@
-// Journals that were damaged at random: every whole block comes back, every loss is said, and no row is wrong.
+// Journals that were damaged at random: every whole block comes back, every loss is reported, and no row is wrong.
 
 #include <algorithm>
 #include <cmath>

@@ -51,7 +51,7 @@ struct Line {
     return Eigen::Map<const Vector, 0, Eigen::InnerStride<>>(array->values.data() + at(begin), count,
                                                              Eigen::InnerStride<>(whole().stride * step));
   }
-  /// [Hz]; 0 where the file does not say it
+  /// [Hz]; 0 if the file does not state it
   [[nodiscard]] double rate_hz() const { return array->rate_hz / static_cast<double>(step); }
 };
 

@@ -325,7 +325,7 @@ TEST(DecodeCsv, JoinsNamesInTwoLines) {
     EXPECT_THAT(csv(head + rows)->notes, Contains(HasSubstr("names"))) << head;
   }
   EXPECT_EQ(csv("h,hand,,force,\ntime,x,y,x,y\ns,mm,mm,N,N\n" + rows)->arrays[1].unit, "mm");
-  EXPECT_EQ(names_of("a,b,c,d,e\ntime,p,q,r,s\n" + rows)[1], "p");  // the lower line tells them apart
+  EXPECT_EQ(names_of("a,b,c,d,e\ntime,p,q,r,s\n" + rows)[1], "p");  // the lower line distinguishes them
   EXPECT_EQ(names_of("a,b,b,d,d\ntime,p,p,r,s\n" + rows)[1], "p");  // and here both lines do not
 }
 

@@ -70,7 +70,7 @@ struct MessageDefinition {
 /// types within it, each behind a line of equal signs and "MSG: package/Type". What every robot has may be left out:
 /// Header, Time, Duration.
 /// @param type  of the topic, as "geometry_msgs/msg/WrenchStamped"
-/// @fails  data: a line that is none of these, a type that is defined nowhere, or that holds itself.
+/// @fails  data: a line that is not one of these, a type that is not defined, or that contains itself.
 [[nodiscard]] Result<MessageDefinition> parse_definition(std::string_view type, std::string_view text, Dialect dialect);
 
 }  // namespace mbk::recording

@@ -55,7 +55,7 @@ class Topics {
     std::string name;  ///< of its clock
     std::string key;   ///< the joints
     std::unique_ptr<MessageStream> messages;
-    std::set<std::uint32_t> channels = {};  ///< publishers, where the file tells them apart
+    std::set<std::uint32_t> channels = {};  ///< publishers, if the file distinguishes them
     std::uint32_t channel = 0;              ///< of the last message
     bool alternates = false;                ///< publishers take turns
     std::string doubt = {};                 ///< why its numbers are not taken as channels automatically; "": they are

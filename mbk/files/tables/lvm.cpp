@@ -57,7 +57,7 @@ struct Segment {
     std::ranges::replace(text, ',', '.');
     return general_number(text);
   }
-  /// [s] between samples; nothing where the file does not say it.
+  /// [s] between samples; absent if the file does not state it.
   [[nodiscard]] std::optional<double> interval(std::size_t column) const {
     const auto delta = number("delta_x", column);
     const bool said = delta && *delta > 1e-12 && *delta < 1e9 && *delta != 1.0 && is_in_time(column);

@@ -105,7 +105,7 @@ struct Scene {
 /// What was read of it.
 struct Outcome {
   Vector number, error;             ///< of the samples, and [s] by which their times are off
-  std::vector<std::string> doubts;  ///< notes that come before what is said of every stream
+  std::vector<std::string> doubts;  ///< notes that come before those on each stream
   std::vector<std::string> said;    ///< the others
 
   [[nodiscard]] double worst() const { return error.cwiseAbs().maxCoeff(); }

@@ -138,7 +138,7 @@ Index last_sample(const Segment& segment, Index every) {
 
 /// The window of the trial, as samples of the recording that it says it was made from.
 Result<Range> window_of(const PreparedTrial& trial, const Exchange& exchange) {
-  if (trial.segments.empty()) return bad_data("the trial has no row that counts");
+  if (trial.segments.empty()) return bad_data("the trial has no rows in the analysed interval");
   const Segment &first = trial.segments.front(), &last = trial.segments.back();
   const Range range{first.first_sample, last_sample(last, trial.preparation.every)};
   const auto is_row = [&](Index sample, Index row) {
@@ -146,9 +146,9 @@ Result<Range> window_of(const PreparedTrial& trial, const Exchange& exchange) {
            std::abs(exchange.time(sample) - trial.time[row]) * trial.recording_rate < 0.5;
   };
   if (!is_row(range.first, first.begin) || !is_row(range.last, last.end - 1)) {
-    return bad_data("the recording is not the one that the trial was prepared from");
+    return bad_data("the trial was prepared from another recording");
   }
-  if (range.last <= range.first) return bad_data("fewer than two samples count", "widen the window");
+  if (range.last <= range.first) return bad_data("the window contains fewer than two samples", "widen the window");
   return range;
 }
 
@@ -161,9 +161,9 @@ Result<Exchange> exchange_of(const Recording& recording, const PreparedTrial& tr
   Exchange exchange;
   exchange.position = channels_of(recording, kPositionChannels, trial.axes);
   exchange.force = channels_of(recording, kForceChannels, trial.axes);
-  if (exchange.position.size() == 0) return bad_data("no position was recorded", "say where it is: --channels");
+  if (exchange.position.size() == 0) return bad_data("no position was recorded", "name its column with --channels");
   if (exchange.force.size() == 0) {
-    return bad_data("no force was recorded, without which there is no energy", "say where it is: --channels");
+    return bad_data("no force was recorded, so the energy cannot be computed", "name its column with --channels");
   }
   exchange.reference = channels_of(recording, kReferenceChannels, trial.axes);
   exchange.clock = &recording.time;
@@ -310,7 +310,7 @@ Result<void> check_motion(const std::vector<EnergyBlock>& blocks) {
   double moved = 0.0;
   for (const EnergyBlock& block : blocks) moved += block.total.squared_velocity;
   if (moved > 0.0) return {};
-  return bad_data("the limb never moves in the window, ∫ v·v dt = 0, so that no energy is exchanged",
+  return bad_data("the limb does not move in the window (∫ v·v dt = 0), so no energy is exchanged",
                   "choose a window with motion");
 }
 
@@ -380,14 +380,14 @@ EnergyCurve curve_of(const Exchange& exchange, const std::optional<Curl>& curl) 
 
 Result<void> check_options(const EnergyOptions& options) {
   if (!(options.block_s > 0.0 && std::isfinite(options.block_s))) {
-    return bad_usage(fmt::format("blocks of {:g} s are not longer than 0", options.block_s));
+    return bad_usage(fmt::format("the block length of {:g} s is not above 0", options.block_s));
   }
   if (!(options.first_share > 0.0 && options.first_share < 1.0)) {
-    return bad_usage(fmt::format("the first share {:g} is not between 0 and 1", options.first_share));
+    return bad_usage(fmt::format("the first share, {:g}, is not between 0 and 1", options.first_share));
   }
   if (options.replicates < 100) {
-    return bad_usage(fmt::format("{} replicates are too few for an interval of 95 %", options.replicates),
-                     "take 1000 or more");
+    return bad_usage(fmt::format("{} replicates are too few for a 95 % interval", options.replicates),
+                     "use 1000 or more");
   }
   return {};
 }
@@ -453,8 +453,8 @@ Result<EnergyAccount> pooled_energy(std::span<const Recording* const> recordings
   bool perturbations = true;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     if (trials[k].axes != trials[0].axes || trials[k].motion != trials[0].motion) {
-      return bad_data("its axes or units are not those of the first file, so energies cannot be pooled",
-                      "take it by itself", trials[k].sources.empty() ? "" : trials[k].sources.front().label());
+      return bad_data("its axes or units differ from those of the first file, so the energies cannot be pooled",
+                      "analyse it separately", trials[k].sources.empty() ? "" : trials[k].sources.front().label());
     }
     auto made = MBK_TRY(exchange_of(*recordings[k], trials[k]));
     const auto exchange = std::make_shared<const Exchange>(std::move(made));

@@ -19,26 +19,26 @@ struct EnergyOptions {
 };
 
 /// Energy that the limb absorbed, E(t) = −∫ F_h·v dt, with F_h the force of the hand on the robot (Dyck 2013, eq. 3.1
-/// and 4.3 with the sign of 3.2). No model is needed. It is the energy at the sensor: what a handle beyond the sensor
-/// keeps as motion, ½ m v², is in it.
+/// and 4.3 with the sign of 3.2). No model is needed. It is the energy at the sensor, including
+/// the kinetic energy ½ m v² of a handle beyond the sensor.
 ///
 /// E is summed over the recorded samples, without any filter and without a derivative,
 ///   E_{i+1} = E_i − ½ (F_i + F_{i+1})·(x_{i+1} − x_i).
-/// Noise of the force and white noise of the position leave it unbiased, even where they share it at each sample: the
-/// expectation telescopes. A force that comes late by τ biases it by τ ∫ Ḟ·v dt (docs/theory/energy.md).
-/// v, for ∫ v·v dt and ∫ |v| dt alone, is the first derivative of the preparation's Savitzky–Golay filter at every
+/// Noise of the force and white noise of the position do not bias it, even if they are correlated at each sample: the
+/// expectation telescopes. A force delayed by τ biases it by τ ∫ Ḟ·v dt (docs/theory/energy.md).
+/// v, used only for ∫ v·v dt and ∫ |v| dt, is the first derivative of the preparation's Savitzky–Golay filter at every
 /// sample of the recording; no low-pass. No sum crosses a break: a gap of more than 1.5 sample times, time that does
-/// not rise, a non-finite value. In the window samples whose velocity is not known count for neither sum.
+/// not rise, a non-finite value. Samples without a known velocity are omitted from both sums.
 ///
-/// The window runs from the first to the last sample that counts. Intervals come from a bootstrap over blocks: of
-/// pulses, from one onset to the next; otherwise of about `block_s`, the window divided equally. Their percentiles are
-/// widened for few blocks (Hesterberg 2015). The verdict is that of both one-sided 95 % bounds of E: passive where the
-/// lower is above 0, active where the upper is below 0. Fewer than six blocks decide nothing, but that five which agree
-/// in sign do: a limb for which either sign is as likely shows that in one case of 32.
-/// @param recording which the trial was prepared from: put on an even clock first where that was asked
+/// The window runs from the first to the last sample of the analysed interval. Intervals come from a bootstrap over
+/// blocks: of pulses, from one onset to the next; otherwise of about `block_s`, the window divided equally. Their
+/// percentiles are widened for few blocks (Hesterberg 2015). The verdict uses both one-sided 95 % bounds of E: passive
+/// if the lower is above 0, active if the upper is below 0. Fewer than six blocks are undecided, except five with the
+/// same sign: if both signs were equally likely, this would happen in one case of 32.
+/// @param recording  the source of the trial, after resampling if that was requested
 /// @param model     for the work of its antisymmetric stiffness, or nullptr; one axis has none
-/// @fails  data: a channel is missing; fewer than two samples; the recording is not the one of the trial; the limb
-/// never moves in the window (∫ v·v dt = 0).  usage: an option is out of its range.
+/// @fails  data: a channel is missing; fewer than two samples; the recording is not the source of the trial; the limb
+/// does not move in the window (∫ v·v dt = 0).  usage: an option is out of its range.
 [[nodiscard]] Result<Energy> absorbed_energy(const Recording& recording, const PreparedTrial& trial,
                                              const EnergyOptions& options = {},
                                              const impedance::Model* model = nullptr);

@@ -19,17 +19,17 @@ namespace mbk::analyse {
 namespace {
 
 constexpr const char* kCheckColumns =
-    "check with 'mbk info' that force and position are what their channels say, of one instant and in one frame";
+    "check with 'mbk info' that the channels contain force and position, synchronised and in the same frame";
 
 constexpr const char* kFilter =
-    "leave --cutoff out, or raise it: the filter cuts into the excited band; --mode reference has a filter of its own";
+    "omit --cutoff or raise it: the filter cuts into the excited band (--mode reference uses its own filter)";
 
-/// [%] of the force in the excited band above which what M, B and K do not explain is no noise.
+/// [%] of the force in the excited band above which the part not explained by M, B and K is not noise.
 constexpr double kHighCoherence = 70.0;
 
 constexpr const char* kInstruments =
-    "use --method iv; the limb's own force moves the robot too, which biases least squares towards the negative robot "
-    "impedance";
+    "use --method iv; the force of the limb also moves the robot, which biases least squares towards the negative "
+    "robot impedance";
 
 /// The matrix that such a warning is about: 0 M, 1 B, 2 K.
 int matrix_of(WarningCode code) {
@@ -41,7 +41,7 @@ double smallest(const impedance::Model& model, WarningCode code) {
 }
 
 /// Of the force of one axis, the share [%] that follows the motion linearly within the excited band of the trial: the
-/// multiple coherence, weighted with the power of the force. Nothing where there are too few segments to tell.
+/// multiple coherence, weighted with the power of the force. Absent if there are too few segments.
 std::optional<double> linear_share(const PreparedTrial& trial, Index axis) {
   constexpr double kSegment = 2.0;  // [s]
   const Index n = trial.axes;
@@ -79,7 +79,7 @@ class Advisor {
           const Measurement& measured)
       : recordings_(recordings), trials_(trials), measured_(measured), id_(measured.identification) {}
 
-  /// What is likelier to help than what the warning says; nothing where that is right.
+  /// A better remedy than that of the warning; absent if the latter is right.
   [[nodiscard]] std::optional<std::string> remedy(const Warning& warning) const {
     const bool filtered = std::ranges::any_of(id_.preparations, cuts_into_band);
     switch (warning.code) {
@@ -99,7 +99,7 @@ class Advisor {
   }
 
  private:
-  /// Instrumental variables find a model that may be used, and of it this matrix positive.
+  /// Instrumental variables give a usable model in which this matrix is positive.
   [[nodiscard]] bool instruments_find(WarningCode code) const {
     const auto& other = measured_.alternative;
     return other && other->method == Method::instrumental_variables && other->usable && other->model.M.allFinite() &&
@@ -108,7 +108,7 @@ class Advisor {
 
   [[nodiscard]] std::optional<std::string> of_sign(WarningCode code) const {
     if (instruments_find(code)) return kInstruments;
-    // What is negative by more than chance and bias is not a limb's.
+    // Clearly negative values are not those of a limb.
     const std::array<const Matrix*, 3> errors = {&id_.standard_error.M, &id_.standard_error.B, &id_.standard_error.K};
     const double error = 2.0 * numeric::kNormal95 * errors[static_cast<std::size_t>(matrix_of(code))]->norm();
     const bool sure = smallest(id_.model, code) < -error;
@@ -129,15 +129,15 @@ class Advisor {
     constexpr double kMore = 10.0;  // points of VAF that M, B and K lack
     if (*share > vaf + kMore && *share > kHighCoherence) {
       return fmt::format(
-          "the coherence is high: a linear response to the motion could explain {:.0f} % of that force, where M, B "
-          "and K explain {:.0f} %. 'mbk explore' shows what they lack: memory, reflexes, resonances; do not read M, B "
-          "and K as a passive limb's",
+          "use 'mbk explore' to find the missing dynamics (memory, reflexes, resonances): a linear response to the "
+          "motion could explain {:.0f} % of that force, M, B and K explain {:.0f} %; do not interpret M, B and K as "
+          "those of a passive limb",
           *share, vaf);
     }
     return fmt::format(
-        "the coherence is low: no linear response to the motion could explain more than {:.0f} % of that force. 'mbk "
-        "explore' tells noise from a limb that is not linear, and 'mbk passivity' shows by the energy whether it "
-        "acted; do not read M, B and K as a passive limb's",
+        "use 'mbk explore' to distinguish noise from a nonlinear limb and 'mbk passivity' to see whether the limb "
+        "delivered energy: no linear response to the motion could explain more than {:.0f} % of that force; do not "
+        "interpret M, B and K as those of a passive limb",
         *share);
   }
 

@@ -8,8 +8,8 @@
 
 namespace mbk::analyse {
 
-/// Turns the advice of a measurement's warnings to their cause, as far as the measurement shows it: the other method,
-/// where that finds what this one cannot; the filter, where it cuts into the band; the axis that moved.
+/// Adapts the advice of the warnings to their cause if the measurement shows it: use the other method if it gives a
+/// valid model, change the filter if it cuts into the band, or measure only the axis that moved.
 void advise(const std::vector<const Recording*>& recordings, const std::vector<PreparedTrial>& trials,
             Measurement& measured);
 

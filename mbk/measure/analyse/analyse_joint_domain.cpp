@@ -31,12 +31,12 @@ Vector2d joint_angles(const ArmPosture& posture) {
 
 Result<JointDomain> analyse_joint_domain(const Identification& identification, const ArmPosture& posture) {
   if (identification.axes != 2) {
-    return bad_data("one axis is one joint already", "the joint domain needs a result with two axes");
+    return bad_data("a result with one axis is already in the joint domain", "use a result with two axes");
   }
   if (posture.of == ArmPosture::Of::hand || posture.points.size() != 3) {
     return bad_data(fmt::format("the posture of the arm is not known{}",
                                 posture.note.empty() ? "" : fmt::format(" ({})", posture.note)),
-                    "name shoulder and lengths with --arm X,Y,UPPER,FORE in metres");
+                    "give shoulder position and arm lengths with --arm X,Y,UPPER,FORE in metres");
   }
   const Vector2d &shoulder = posture.points[0], &elbow = posture.points[1], &hand = posture.points[2];
   const bool of_arm = posture.of == ArmPosture::Of::arm;

@@ -7,10 +7,10 @@
 
 namespace mbk::analyse {
 
-/// A result as the joints of a posture have it (impedance/joint_domain.h): those of the person's arm, or where the
-/// posture is the robot's, those of the robot. Standard errors by the delta method from the covariance of the
-/// parameters; what is unsure of the posture is not in them.
-/// @fails  one axis; the posture is that of the hand alone (its note is said).
+/// A result in joint coordinates (impedance/joint_domain.h): joints of the person's arm or, if the posture is that of
+/// the robot, of the robot. Standard errors by the delta method from the covariance of the parameters; they do not
+/// include the uncertainty of the posture.
+/// @fails  one axis; only the hand position is known (the error contains the note of the posture).
 [[nodiscard]] Result<JointDomain> analyse_joint_domain(const Identification& identification, const ArmPosture& posture);
 
 }  // namespace mbk::analyse

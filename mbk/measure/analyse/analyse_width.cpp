@@ -48,12 +48,12 @@ bool surely_positive(const Identification& id, int matrix) {
 Result<WidthFindings> analyse_width(const Identification& first, const Identification& second) {
   if (first.axes != second.axes) {
     return bad_data(
-        fmt::format("one has {} and the other {} ax{}s", first.axes, second.axes, second.axes == 1 ? "i" : "e"),
-        "compare results with as many axes");
+        fmt::format("one result has {} and the other {} ax{}s", first.axes, second.axes, second.axes == 1 ? "i" : "e"),
+        "compare results with the same number of axes");
   }
   if (first.motion != second.motion && first.motion != Motion::unknown && second.motion != Motion::unknown) {
-    return bad_data(fmt::format("one has its inertia in {} and the other in {}", units_of(first.motion).inertia,
-                                units_of(second.motion).inertia),
+    return bad_data(fmt::format("the inertia is in {} in one result and in {} in the other",
+                                units_of(first.motion).inertia, units_of(second.motion).inertia),
                     "compare results of the same kind of motion");
   }
   const Index n = first.axes, size = n * n;

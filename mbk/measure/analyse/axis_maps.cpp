@@ -191,7 +191,7 @@ std::optional<AxisMap> map_by_reference(const std::vector<PreparedTrial>& trials
   return nearest_map(scale_y.cwiseInverse().asDiagonal() * yr * scale_r.cwiseInverse().asDiagonal());
 }
 
-/// "with Fx and Fy exchanged", "with the other sign of Fy".
+/// "with Fx and Fy exchanged", "with the sign of Fy reversed".
 std::string in_words(const AxisMap& map, const std::string& first, const std::string& second, int axes) {
   std::string text;
   if (map.exchanges()) text = fmt::format("with {} and {} exchanged", first, second);
@@ -200,7 +200,7 @@ std::string in_words(const AxisMap& map, const std::string& first, const std::st
     if (map.sign[static_cast<std::size_t>(axis)] > 0.0) continue;
     signs += (signs.empty() ? "" : " and ") + (map.from[static_cast<std::size_t>(axis)] == 0 ? first : second);
   }
-  if (!signs.empty()) text += (text.empty() ? "with the other sign of " : ", and the other sign of ") + signs;
+  if (!signs.empty()) text += (text.empty() ? "with the sign of " : " and the sign of ") + signs + " reversed";
   return text;
 }
 
@@ -218,7 +218,7 @@ struct Reading {
       (motion ? cure.position : cure.force)[i] = {map.from[i], map.sign[i] < 0.0, "", 1.0};
     }
     const auto option = cured_channels(recording, axes, cure);
-    text = words + (option ? ": " + *option : ", by --channels, where a minus flips: Fx=-10");
+    text = words + (option ? ": " + *option : ", using --channels, where a minus reverses the sign: Fx=-10");
   }
 };
 
@@ -246,8 +246,8 @@ std::optional<double> turned(const Identification& id) {
 /// What to do about a force that is turned by so many degrees.
 std::string turn_back(double angle) {
   return fmt::format(
-      "turn the force back with --force-rotation-deg {:.1f} where its sensor is mounted at that angle; where the "
-      "frame of the position is the one that is turned, M, B and K come out in that frame",
+      "if the force sensor is mounted at that angle, correct it with --force-rotation-deg {:.1f}; if instead the frame "
+      "of the position is rotated, M, B and K are in that frame",
       -angle);
 }
 
@@ -362,21 +362,20 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
     const auto angle = turned(id);
     const bool both_axes_moved = axes == 2 && id.excitation.motion_ratio > kBothMoved;
     if (!angle && both_axes_moved && contradicts(id) && (!measured.alternative || contradicts(*measured.alternative))) {
-      return Warning{
-          WarningCode::axes_mismatched,
-          "force and motion cannot belong to one limb, by none of the signs and orders of their axes",
-          "check with 'mbk info' that every channel of --channels is the column that it says, of the hand, in "
-          "one frame"};
+      return Warning{WarningCode::axes_mismatched,
+                     "force and motion are inconsistent for a limb, with any sign and order of the axes",
+                     "check with 'mbk info' that --channels names the columns of the hand's force and position, all in "
+                     "the same frame"};
     }
     if (!angle) return std::nullopt;
-    return Warning{
-        WarningCode::axes_mismatched,
-        fmt::format("the force is turned by {:.0f}° against the motion: inertia, damping and stiffness are all "
-                    "lopsided by that angle, which no limb is",
-                    *angle),
-        turn_back(*angle)};
+    return Warning{WarningCode::axes_mismatched,
+                   fmt::format("the force is rotated by {:.0f}° relative to the motion: inertia, damping and stiffness "
+                               "are all asymmetric by that angle, which is impossible for a limb",
+                               *angle),
+                   turn_back(*angle)};
   }
-  // Either the force as read is Rᵀ F, or the motion as read R x: then the reference, which moves x, is seen by R.
+  // Either the force as read is Rᵀ F, or the motion as read is R x. In the second case the reference, which moves x,
+  // reveals R.
   const bool by_position = trials.front().reference_quantity == ReferenceQuantity::position;
   const auto seen = map_by_reference(trials);
   const AxisMap identity;
@@ -386,17 +385,18 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
       of_motion(recording, kPositionChannels, map->transposed(), axes);
   const Reading& likelier = motion ? of_motion : of_force;
   std::string remedy =
-      "F is what the limb exerts on the machine, in the frame of the position; read it " + likelier.text;
-  if (!motion && !force) remedy += "; or, where the motion was read wrongly, " + of_motion.text;
+      "F must be the force of the limb on the machine, in the frame of the position: read it " + likelier.text;
+  if (!motion && !force) remedy += "; or, if the motion was read wrongly, " + of_motion.text;
   const bool all_reversed = !map->exchanges() && map->sign[0] < 0.0 && (axes == 1 || map->sign[1] < 0.0);
   if (all_reversed) {
     return Warning{
         WarningCode::force_sign_reversed,
-        "inertia, damping and stiffness are those of a limb with the other sign: the force has the other sign", remedy};
+        "inertia, damping and stiffness have the wrong sign for a limb: the force was recorded with the opposite sign",
+        remedy};
   }
-  return Warning{WarningCode::axes_mismatched,
-                 fmt::format("as given, force and motion cannot belong to one limb; {} they do", likelier.words),
-                 remedy};
+  return Warning{
+      WarningCode::axes_mismatched,
+      fmt::format("force and motion are inconsistent for a limb as given, but consistent {}", likelier.words), remedy};
 }
 
 std::optional<Warning> check_symmetry(const Measurement& measured) {
@@ -421,30 +421,31 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
   const auto scale = scaled_by(id, parts);
   const bool turn_fits = turn && turn->misfit < agree;
   const std::string what =
-      fmt::format("the inertia is not symmetric, which no limb's is: m_yx − m_xy is {:.2g} ± {:.1g} kg",
+      fmt::format("the inertia is not symmetric, which is impossible for a limb: m_yx − m_xy is {:.2g} ± {:.1g} kg",
                   id.model.M(1, 0) - id.model.M(0, 1),
                   numeric::kNormal95 * std::abs((id.model.M(1, 0) - id.model.M(0, 1)) / asymmetry));
   if (!turn_fits && scale && scale->misfit < agree && scale->value > 0.0) {
-    return Warning{WarningCode::inertia_not_symmetric,
-                   fmt::format("{}; M, B and K are symmetric if Fy is read {:.3g} ± {:.2g} times too large against Fx",
-                               what, scale->value, numeric::kNormal95 * scale->standard_error),
-                   "check the gain of both axes of the force: 'mbk sensor calibrate'"};
+    return Warning{
+        WarningCode::inertia_not_symmetric,
+        fmt::format("{}; M, B and K would be symmetric if Fy were {:.3g} ± {:.2g} times too large relative to Fx", what,
+                    scale->value, numeric::kNormal95 * scale->standard_error),
+        "check the gain of both force axes with 'mbk sensor calibrate'"};
   }
-  if (!turn_fits && biased(id)) return std::nullopt;  // what biases M is said already
+  if (!turn_fits && biased(id)) return std::nullopt;  // the cause of the bias is reported already
   if (!turn_fits) turn = turned_by(id, kInertia);
   if (!turn) {
     return Warning{WarningCode::inertia_not_symmetric, what,
                    "check the frames, gains and crosstalk of force and position"};
   }
   const double angle = kDegrees * turn->value, half = kDegrees * numeric::kNormal95 * turn->standard_error;
-  return Warning{WarningCode::inertia_not_symmetric,
-                 turn_fits
-                     ? fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion, or has crosstalk",
-                                   what, angle, half)
-                     : fmt::format("{}: the force is turned by {:.1f}° ± {:.1f}° against the motion by M alone, "
-                                   "which B and K contradict: gains, crosstalk or reflexes may be the cause",
-                                   what, angle, half),
-                 turn_back(angle)};
+  return Warning{
+      WarningCode::inertia_not_symmetric,
+      turn_fits ? fmt::format("{}: the force is rotated by {:.1f}° ± {:.1f}° relative to the motion, or has crosstalk",
+                              what, angle, half)
+                : fmt::format("{}: according to M alone the force is rotated by {:.1f}° ± {:.1f}° relative to the "
+                              "motion, but B and K contradict this: gains, crosstalk or reflexes may be the cause",
+                              what, angle, half),
+      turn_back(angle)};
 }
 
 }  // namespace mbk::analyse

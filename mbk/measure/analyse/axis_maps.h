@@ -9,22 +9,22 @@
 
 namespace mbk::analyse {
 
-/// Whether force and motion have the same signs and the same order of axes. For a symmetric positive definite Z and a
+/// Checks whether force and motion have the same signs and order of axes. For a symmetric positive definite Z and a
 /// signed permutation R other than I, the symmetric part of R Z is never positive definite: of the eight maps R (two
-/// with one axis), the force Rᵀ F gives a passive model by one at most. Where it is not the one that was given, and
-/// the given one is surely not passive in at least two of M, B and K, it is named, with the --channels that reads the
-/// recording so. Where the reference shows that the motion, and not the force, was mapped wrongly, the motion's
-/// channels are named. Beyond the eight, a force that is turned against the motion by the same angle in M, B and K is
-/// named too.
+/// with one axis), the force Rᵀ F gives a passive model by one at most. If it is not the given one, and
+/// the given one is significantly not passive in at least two of M, B and K, the warning names it with the
+/// corresponding
+/// --channels. If the reference shows that the motion, not the force, was mapped wrongly, the channels of the motion
+/// are named. A force rotated relative to the motion by the same angle in M, B and K is reported, too.
 [[nodiscard]] std::optional<Warning> check_axes(const std::vector<const Recording*>& recordings,
                                                 const std::vector<PreparedTrial>& trials, const Measurement& measured);
 
-/// Whether the inertia is symmetric, as that of every limb is: |m_yx − m_xy| above 4.4 standard errors says no (10⁻⁵
-/// by chance), by both methods where both are usable. The angle θ by which the force is then turned against the motion
+/// Checks whether the inertia is symmetric, as for every limb: not if |m_yx − m_xy| exceeds 4.4 standard errors
+/// (p = 10⁻⁵), with both methods if both are usable. The angle θ by which the force is rotated relative to the motion
 /// makes R(−θ)(M + Λ I), R(−θ) B and R(−θ) K symmetric, Λ the handle's mass: by generalised least squares over the
-/// three, or over M alone where the three contradict each other (a reflex may make B and K antisymmetric). Where a
-/// gain of one axis explains M, B and K and an angle does not, that is named; where neither does and another warning
-/// says that M is biased, nothing.
+/// three, or over M alone where the three contradict each other (a reflex may make B and K antisymmetric). If a
+/// gain of one axis explains M, B and K but an angle does not, the gain is named; if neither does and another warning
+/// already reports a biased M, there is no warning.
 [[nodiscard]] std::optional<Warning> check_symmetry(const Measurement& measured);
 
 }  // namespace mbk::analyse

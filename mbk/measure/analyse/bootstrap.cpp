@@ -95,7 +95,7 @@ std::vector<Quantity> quantities(const Identification& id) {
 }  // namespace
 
 Result<BootstrapFindings> bootstrap_findings(const Identification& id) {
-  if (!id.replicates) return bad_usage("the model was found without a bootstrap", "add --bootstrap 1000");
+  if (!id.replicates) return bad_usage("the model was identified without bootstrap", "add --bootstrap 1000");
   const Replicates& replicates = *id.replicates;
   const Index count = replicates.models.cols();
   BootstrapFindings result{static_cast<int>(count), replicates.block_s, replicates.blocks, replicates.seed, {}};

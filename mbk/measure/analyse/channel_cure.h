@@ -17,20 +17,20 @@ struct AxisCure {
   double gain = 1.0;    ///< times that much more
 };
 
-/// What should be read otherwise; nothing at first.
+/// Corrections to the reading; initially none.
 struct ChannelCure {
   std::array<AxisCure, 2> position{AxisCure{0}, AxisCure{1}}, force{AxisCure{0}, AxisCure{1}};
   std::string reference_unit, time_unit;  ///< "" as they were
 };
 
-/// A channel as --channels calls it, "Fx", or by its full name where it was not read from a file.
+/// A channel by its name in --channels, "Fx", or by its full name if it was not read from a file.
 [[nodiscard]] std::string name_of(const Channel& channel);
 
-/// The same of one axis of a quantity, recorded or not.
+/// The same for one axis of a quantity, recorded or not.
 [[nodiscard]] std::string name_of(const Recording& recording, const QuantityChannels& quantity, int axes, int axis);
 
-/// The whole of --channels that reads the recording so, as "--channels x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13"; nothing
-/// where the recording was not read from a file, or a source cannot be written there.
+/// The complete --channels for that reading, as "--channels x=2:mm,y=3:mm,Fx=10,Fy=11,xr=12,yr=13"; absent if the
+/// recording was not read from a file, or a source cannot be expressed in --channels.
 [[nodiscard]] std::optional<std::string> cured_channels(const Recording& recording, int axes, const ChannelCure& cure);
 
 /// --channels for one axis of a recording of two: "--axes 1 --channels x=3,F=11,xr=13".

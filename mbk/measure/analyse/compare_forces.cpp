@@ -24,13 +24,13 @@ Result<void> check(const std::vector<ForcePair>& segments) {
       return bad_data(fmt::format("forces of {}×{} and {}×{} values and velocities of {}×{} cannot be compared",
                                   pair.estimated.rows(), pair.estimated.cols(), pair.measured.rows(),
                                   pair.measured.cols(), pair.joint_velocity.rows(), pair.joint_velocity.cols()),
-                      "put both forces on the same rows");
+                      "give both forces and the velocity on the same rows");
     }
     const auto finite = [&](const char* what, const Matrix& values) -> Result<void> {
       for (Index axis = 0; axis < values.cols(); ++axis) {
         if (const Index bad = first_non_finite(values.col(axis)); bad >= 0) {
           return bad_data(fmt::format("{} {} is not a finite number at row {}", what, axis + 1, rows + bad),
-                          "leave the row out");
+                          "omit the row");
         }
       }
       return {};
@@ -147,7 +147,7 @@ Lag lag_of(const std::vector<ForcePair>& segments, Index axis, Index longest) {
 Result<ForceComparison> compare_forces(const std::vector<ForcePair>& segments, double sample_time,
                                        const ForceComparisonOptions& options) {
   MBK_TRY(above_zero({{"sample time", sample_time, "s"}}));
-  if (auto ok = not_negative({{"speed that counts as rest", options.rest_speed, ""},
+  if (auto ok = not_negative({{"speed below which a joint is at rest", options.rest_speed, ""},
                               {"window about a reversal", options.reversal_window, "s"},
                               {"longest lag", options.longest_lag, "s"}});
       !ok) {

@@ -21,11 +21,11 @@ struct ForceComparisonOptions {
 };
 
 /// Compares an estimated force with a measured one, row by row; rows of several segments count together.
-/// A joint turns back where its velocity goes from one side of ±rest_speed to the other: at the change of sign in
-/// between, the middle of them where there are several. Where it lingers within longer than twice the window it rests
-/// and starts anew, which is no reversal.
-/// The lag is that of the largest correlation, of which a parabola through the three largest gives fractions of a
-/// row. At every lag the same measured rows count, those with longest_lag before and after them in their segment.
+/// A joint reverses where its velocity crosses from one side of ±rest_speed to the other: at the change of sign in
+/// between, or the middle one of several. If it stays within ±rest_speed longer than twice the window, it rests; this
+/// is not a reversal. The lag is that of the largest correlation, of which a parabola through the three largest gives
+/// fractions of a row. The same measured rows are used at every lag: those with longest_lag before and after them in
+/// their segment.
 /// @fails  usage: an option or the sample time is out of its range; data: shapes differ, a value is not finite (the
 /// first is named), or there are fewer than two rows.
 [[nodiscard]] Result<ForceComparison> compare_forces(const std::vector<ForcePair>& segments, double sample_time,

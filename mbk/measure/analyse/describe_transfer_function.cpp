@@ -134,8 +134,7 @@ Vector frequencies_of(const TransferFunctionIdentification& found, bool within_b
 Result<InvertedAdmittance> inverted(const TransferFunctionIdentification& found, AdmittanceOutput output) {
   const TransferFunction& model = found.model;
   if (model.delay > 0.0) {
-    return bad_usage(fmt::format("the inverse of a delay of {:g} s would have to know the future", model.delay),
-                     "leave --delay out");
+    return bad_usage(fmt::format("the inverse of a delay of {:g} s is not causal", model.delay), "omit --delay");
   }
   const int derivatives = output == AdmittanceOutput::position ? 0 : output == AdmittanceOutput::velocity ? 1 : 2;
   InvertedAdmittance inverse;

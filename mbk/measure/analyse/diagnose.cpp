@@ -143,9 +143,9 @@ void add_recording(const Recording& recording, const Matrix& position, const Mat
 Result<void> check_origin(const Matrix& position, const Matrix& force, const PreparedTrial& trial,
                           const std::vector<Rows>& rows) {
   if (position.size() == 0 || force.size() == 0) {
-    return bad_data("the recording lacks the channels that the trial was prepared from");
+    return bad_data("the recording lacks channels from which the trial was prepared");
   }
-  if (rows.empty()) return bad_data("the trial has no row that counts");
+  if (rows.empty()) return bad_data("the trial has no rows in the analysed interval");
   const Index every = trial.preparation.every;
   for (const Rows& one : rows) {
     if (one.first_sample + (one.size() - 1) * every >= position.rows()) {

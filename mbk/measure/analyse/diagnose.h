@@ -8,15 +8,15 @@
 
 namespace mbk::analyse {
 
-/// What shows how good a measurement is: prediction, residual, spectra, filters, and the recording itself.
-/// Numbers (autocorrelation, spectra, agreement) come from every row of the trial; only what is drawn is decimated
-/// (decimation.h). The prediction is that of the model which did not see the held-out data, so that it is what the VAF
-/// says; the residual that is analysed is that of the reported model.
-/// @param recording which the trial was prepared from: put on an even clock first where that was asked
-/// @param identification may stem from other trials too (a pooled fit)
+/// Quality of a measurement: prediction, residual, spectra, filters, and the recording itself.
+/// Numbers (autocorrelation, spectra, agreement) use every row of the trial; only drawn data are decimated
+/// (decimation.h). The prediction is from the model that was not fitted to the held-out data, so it corresponds to the
+/// VAF; the analysed residual is that of the reported model.
+/// @param recording  the source of the trial, after resampling if that was requested
+/// @param identification  may also be from other trials (a pooled fit)
 /// @param other_acceleration the same trial with ẍ from the other source (sensor or derivative), or nullptr
-/// @fails  data: the recording is not the one of the trial: a channel is missing, or samples are; no row of the trial
-/// counts.
+/// @fails  data: the recording is not the source of the trial (a channel or samples are missing); the trial has no
+/// rows.
 [[nodiscard]] Result<Diagnostics> diagnose(const Recording& recording, const PreparedTrial& trial,
                                            const Identification& identification,
                                            const PreparedTrial* other_acceleration);

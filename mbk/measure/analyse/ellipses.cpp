@@ -109,7 +109,7 @@ AntisymmetryFinding antisymmetry_finding(const Matrix& Z, const Eigen::Matrix4d&
 }
 
 Result<Findings> analyse_ellipses(const Identification& identification) {
-  if (identification.axes != 2) return bad_data("one axis has no ellipse", "ellipses need a result with two axes");
+  if (identification.axes != 2) return bad_data("a result with one axis has no ellipses", "use a result with two axes");
   const auto block = [&](Index part) {
     return Eigen::Matrix4d(identification.covariance.block<4, 4>(4 * part, 4 * part));
   };

@@ -232,15 +232,15 @@ void add_intervals(std::size_t blocks, const Assembly& assembly, int replicates,
 void decide(bool perturbations, EnergyAccount& account) {
   const char* const what = perturbations ? "perturbation" : "block";
   if (account.blocks < static_cast<Index>(kEnoughBlocks)) {
-    account.reason = fmt::format("{} {}{} cannot show how the energy varies; {} can", account.blocks, what,
-                                 account.blocks == 1 ? "" : "s", kEnoughBlocks);
+    account.reason = fmt::format("only {} {}{}; at least {} are needed to show how the energy varies", account.blocks,
+                                 what, account.blocks == 1 ? "" : "s", kEnoughBlocks);
     return;
   }
   account.verdict = verdict_of(account.absorbed95);
   account.reason = fmt::format("the 95 % interval over {} {}s {}", account.blocks, what,
                                account.verdict == Verdict::passive  ? "is above zero"
                                : account.verdict == Verdict::active ? "is below zero"
-                                                                    : "holds zero");
+                                                                    : "includes zero");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace mbk::analyse {
 
-/// Sums since some sample.
+/// Sums since a start sample.
 struct EnergySums {
   double squared_velocity = 0;  ///< S = ∫ v·v dt
   double absorbed = 0;          ///< E
@@ -31,17 +31,17 @@ struct EnergyBlock {
 /// @param sums  not empty
 [[nodiscard]] EnergyBlock energy_block(double duration, std::vector<EnergySums> sums);
 
-/// The same block without the sums inside it, which `again` makes when they are needed.
+/// The same block without its inner sums, which `again` recomputes on demand.
 [[nodiscard]] EnergyBlock outline(EnergyBlock block, std::function<std::vector<EnergySums>()> again);
 
 /// The largest λ(t) = −E/S of blocks one after another, among all samples at which S has reached `first_share` of its
-/// end and is above 0; NaN where there is none.
-/// @param order  numbers of the blocks; a block may come more than once
+/// end and is above 0; NaN if there is none.
+/// @param order  numbers of the blocks; a block may occur more than once
 [[nodiscard]] double largest_shortage(const std::vector<EnergyBlock>& blocks, const std::vector<std::size_t>& order,
                                       double first_share);
 
 /// Sums, shortages, bootstrap intervals and verdict of blocks in their order.
-/// @param perturbations  what the blocks are called in the reason
+/// @param perturbations  whether the blocks are called perturbations in the reason
 [[nodiscard]] EnergyAccount account_of(const std::vector<EnergyBlock>& blocks, bool perturbations, double first_share,
                                        int replicates, std::uint64_t seed);
 

@@ -327,10 +327,10 @@ void warn_of_lines(const AssumptionTest& test, Identification& identification) {
   if (!test.contradicted) return;
   identification.warnings.push_back(
       {WarningCode::lack_of_fit,
-       fmt::format("at the frequencies of the perturbation M, B and K miss {:.0f} % of the force (root mean square) in "
-                   "the same way in every period: the limb's impedance has another shape than theirs",
+       fmt::format("at the frequencies of the perturbation, M, B and K miss {:.0f} % of the force (root mean square) "
+                   "in the same way in every period: the impedance of the limb has a different frequency dependence",
                    100.0 * test.size),
-       "do not read M, B and K as the limb's at each frequency; 'mbk explore' shows its frequency response"});
+       "do not use M, B and K at single frequencies; 'mbk explore' shows the frequency response of the limb"});
 }
 
 }  // namespace mbk::analyse

@@ -19,19 +19,19 @@
 namespace mbk::analyse {
 namespace {
 
-constexpr double kCoherent = 0.8;          ///< above it the band holds
-constexpr double kCoherentResidual = 0.2;  ///< share of the residual: above it the model is not all that there is
-constexpr double kAsPrinted = 0.01;        ///< a band, relative
+constexpr double kCoherent = 0.8;                  ///< above it a line belongs to the coherent band
+constexpr double kCoherentResidual = 0.2;          ///< share of the residual: above it the model is incomplete
+constexpr double kAsPrinted = 0.01;                ///< a band, relative
 constexpr double kOneSidedOfSeven = 2.6901095272;  ///< Φ⁻¹(1 − 0.025/7)
 constexpr std::size_t kSymmetricConditions = 3;    ///< M_s, B_s, K_s; then come the antisymmetric ones
 constexpr Index kCurvePoints = 200;
 constexpr double kSegmentsOfCoherence = 4.0;  ///< of the coherence, end to end; seven with the overlap
 
-/// With these force or motion is not what it says it is, and neither is their product.
+/// With these warnings force or motion is not what its channel says, so the energy is meaningless.
 constexpr std::array kImplausible = {WarningCode::force_sign_reversed,     WarningCode::torque_unit,
                                      WarningCode::implausible_scale,       WarningCode::axes_mismatched,
                                      WarningCode::axes_scaled_differently, WarningCode::same_column};
-/// With these the model explains too little of the force to predict any.
+/// With these warnings the model explains too little of the force for a prediction.
 constexpr std::array kPoorFit = {WarningCode::fit_poor,
                                  WarningCode::held_out_fit_poor,
                                  WarningCode::missing_dynamics,
@@ -108,13 +108,13 @@ std::optional<ExcessOfPassivity> excess_of(const Identification& id) {
       published.value, numeric::interval95(published.value, impedance::standard_error(published, id.covariance))};
 }
 
-/// Smallest multiple coherence of all outputs, line by line; empty where it cannot be had.
+/// Smallest multiple coherence of all outputs, line by line; empty if there are too few data.
 struct Coherence {
   Vector frequency, value;
 };
 
 /// Of position and force with the reference; of the force with the position, where no reference was recorded.
-/// @param highest  lines beyond the one above it are left out
+/// @param highest  lines beyond the one above it are omitted
 Coherence smallest_coherence(const std::vector<PreparedTrial>& trials, Hertz highest) {
   const Index n = trials.front().axes;
   const bool known =
@@ -207,10 +207,10 @@ std::string in_straight_motion(Verdict verdict) {
     case Verdict::undecided:
       break;
   }
-  return "is not known well enough in straight motion";
+  return "is too uncertain in straight motion";
 }
 
-/// What a model that may predict says in its band.
+/// The prediction of a model in its band.
 std::string predicted(const ModelPassivity& model, const PassivityPrediction& prediction) {
   const std::string band = words(model.band), subject = words(model);
   switch (*prediction.verdict) {
@@ -221,36 +221,36 @@ std::string predicted(const ModelPassivity& model, const PassivityPrediction& pr
       if (prediction.antisymmetric != Verdict::active) {
         return fmt::format("{} {} can generate energy: {}", band, subject, conditions_with(model, Verdict::active));
       }
-      return fmt::format("{} {} can generate energy in circular motion, {}; it {}", band, subject,
+      return fmt::format("{} {} can generate energy in circular motion {}; it {}", band, subject,
                          where_circles_generate(model), in_straight_motion(model.symmetric));
     case Verdict::undecided:
       break;
   }
   if (model.antisymmetric == Verdict::active) {
     return fmt::format(
-        "{} {} {}; its antisymmetric part would generate energy in circular motion, but {:.0f} % of "
-        "the residual follows the perturbation too: a voluntary or reflex response is part of this "
-        "model, and its intervals know noise only",
+        "{} {} {}; its antisymmetric part would generate energy in circular motion, but {:.0f} % of the residual is "
+        "coherent with the perturbation: the model includes part of a voluntary or reflex response, and its intervals "
+        "account for noise only",
         band, subject, in_straight_motion(model.symmetric), 100.0 * model.coherent_residual);
   }
   return fmt::format("{} {} {}: {}", band, subject,
                      model.symmetric == Verdict::passive
-                         ? "absorbs energy in straight motion; in circular motion it is not known well enough"
-                         : "is not known well enough",
+                         ? "absorbs energy in straight motion; in circular motion it is too uncertain"
+                         : "is too uncertain",
                      conditions_with(model, Verdict::undecided));
 }
 
 }  // namespace
 
 PassivityBand excited_band(const std::vector<PreparedTrial>& trials) {
-  PassivityBand band{trials.front().preparation.band_low, trials.front().preparation.band_high,
-                     "the excited band; at no frequency in it does the perturbation explain 0.8 of position and force",
-                     true};
+  PassivityBand band{
+      trials.front().preparation.band_low, trials.front().preparation.band_high,
+      "the excited band, in which the coherence of position and force with the perturbation nowhere exceeds 0.8", true};
   for (const PreparedTrial& trial : trials) {
     band.low = Hertz(std::max(band.low.value, trial.preparation.band_low.value));
     band.high = Hertz(std::min(band.high.value, trial.preparation.band_high.value));
   }
-  // Below one period in the longest segment nothing is seen.
+  // Frequencies with less than one period in the longest segment are not observable.
   double longest = 0.0;
   for (const PreparedTrial& trial : trials) {
     for (const Rows& rows : rows_of(trial)) {
@@ -277,10 +277,10 @@ std::optional<PassivityBand> coherent_band(const std::vector<PreparedTrial>& tri
   if (!(low < high)) return std::nullopt;
   const bool known = trials.front().reference_motion.size() > 0;
   return PassivityBand{Hertz(std::max(low, excited.low.value)), Hertz(std::min(high, excited.high.value)),
-                       known
-                           ? "the part of the excited band in which the perturbation explains 0.8 of position and force"
-                           : "the part of the excited band in which the motion explains 0.8 of the force; no reference "
-                             "was recorded",
+                       known ? "the part of the excited band in which the coherence of position and force with the "
+                               "perturbation exceeds 0.8"
+                             : "the part of the excited band in which the coherence of force with motion exceeds 0.8; "
+                               "no reference was recorded",
                        false};
 }
 
@@ -292,11 +292,12 @@ PassivityBand asked_band(Hertz low, Hertz high, const std::optional<PassivityBan
 
 Result<ModelPassivity> model_passivity(const Identification& id, const PassivityBand& band) {
   if (id.model.M.size() == 0 || !id.model.M.allFinite() || !id.model.B.allFinite() || !id.model.K.allFinite()) {
-    return bad_data("there is no model whose passivity could be judged", "see the warnings of mbk measure");
+    return bad_data("there is no model to judge for passivity", "see the warnings of mbk measure");
   }
   if (!(band.low.value > 0.0 && band.high.value >= band.low.value && std::isfinite(band.high.value))) {
-    return bad_usage(fmt::format("a band from {:g} to {:g} Hz is none", band.low.value, band.high.value),
-                     "a verdict needs frequencies above 0: --band LOW:HIGH");
+    return bad_usage(
+        fmt::format("the band from {:g} to {:g} Hz is empty or not above 0", band.low.value, band.high.value),
+        "choose 0 < LOW <= HIGH with --band LOW:HIGH");
   }
   const Units units = units_of(id.motion);
   ModelPassivity result;
@@ -349,7 +350,7 @@ Result<std::vector<ModelPassivity>> model_passivities(std::initializer_list<cons
   return passivities;
 }
 
-bool instruments_speak(const Identification& instrumental, const std::optional<Disagreement>& disagreement) {
+bool prefer_instruments(const Identification& instrumental, const std::optional<Disagreement>& disagreement) {
   return instrumental.usable && instrumental.instrument && instrumental.instrument->strong() && disagreement &&
          disagreement->significant;
 }
@@ -373,8 +374,8 @@ std::optional<TrialPassivity> trial_passivity(const Identification& result, Ener
       delivering += fmt::format("{}{:.3g}", delivering.empty() ? "" : ", ", line.frequency.value);
   }
   if (!delivering.empty())
-    text += fmt::format("; of the perturbation's lines it delivered energy at {} Hz", delivering);
-  if (energy.verdict == Verdict::undecided) text += ", which does not decide whether it absorbs or delivers energy";
+    text += fmt::format("; among the lines of the perturbation, it delivered energy at {} Hz", delivering);
+  if (energy.verdict == Verdict::undecided) text += "; this does not decide whether it absorbed or delivered energy";
   return TrialPassivity{std::move(energy), std::move(lines), std::move(text)};
 }
 
@@ -383,13 +384,13 @@ PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models,
                                       const std::vector<EnergyLine>& lines) {
   PassivityPrediction prediction;
   if (models.empty()) {
-    prediction.statement = "no prediction: there is no model";
+    prediction.statement = "there is no model";
     return prediction;
   }
   const ModelPassivity& model = models.front();
   prediction.extrapolated = model.band.extrapolated;
   if (!usable || !model.usable) {
-    prediction.statement = "no prediction: the model is not usable";
+    prediction.statement = "the model is not usable";
     return prediction;
   }
   if (!model.fits || !model.judged || !coherent) {
@@ -397,10 +398,9 @@ PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models,
     if (model.antisymmetric) prediction.antisymmetric = Verdict::undecided;
     prediction.statement =
         !model.judged
-            ? "nothing is predicted: without a recorded reference no method can be judged; what happened counts"
-        : model.fits ? "nothing is predicted: at no two frequencies are all axes excited with a coherence above 0.8"
-                     : fmt::format("nothing is predicted: {} does not describe the limb well enough, see the warnings",
-                                   words(model));
+            ? "no reference was recorded, so the model cannot be checked; rely on the measured energy of the trial"
+        : model.fits ? "the coherence of all axes exceeds 0.8 at fewer than two frequencies"
+                     : fmt::format("{} does not describe the limb well enough; see the warnings", words(model));
     return prediction;
   }
   prediction.symmetric = model.symmetric;
@@ -414,7 +414,7 @@ PassivityPrediction predict_passivity(const std::vector<ModelPassivity>& models,
     for (auto* verdict : {&prediction.verdict, &prediction.symmetric, &prediction.antisymmetric}) {
       if (*verdict) *verdict = Verdict::undecided;
     }
-    prediction.statement = fmt::format("{}, but the limb delivered energy at {}: the prediction is not decided",
+    prediction.statement = fmt::format("{}, but the limb delivered energy at {}, so the prediction is undecided",
                                        prediction.statement, contrary);
   }
   if (prediction.extrapolated) {

@@ -184,18 +184,18 @@ TEST(ModelPassivity, RefusesWhatIsNoModelAndWhatIsNoBand) {
   EXPECT_FALSE(model_passivity(Identification{}, kBand));
 }
 
-TEST(Instruments, SpeakOnlyWhereTheyAreStrongAndDiffer) {
+TEST(Instruments, ArePreferredOnlyIfStrongAndDifferent) {
   Identification id = arm();
   const Disagreement yes{"k_xx", 10.0, 1.0, 40.0, true}, no{"k_xx", 1.0, 1.0, 40.0, false};
-  EXPECT_FALSE(instruments_speak(id, yes));
+  EXPECT_FALSE(prefer_instruments(id, yes));
   id.instrument = InstrumentCheck{ReferenceQuantity::force, Vector::Constant(6, kStrongInstruments + 0.1), {}};
-  EXPECT_TRUE(instruments_speak(id, yes));
-  EXPECT_FALSE(instruments_speak(id, no));
-  EXPECT_FALSE(instruments_speak(id, std::nullopt));
+  EXPECT_TRUE(prefer_instruments(id, yes));
+  EXPECT_FALSE(prefer_instruments(id, no));
+  EXPECT_FALSE(prefer_instruments(id, std::nullopt));
   id.instrument->strength[4] = kStrongInstruments - 0.1;
-  EXPECT_FALSE(instruments_speak(id, yes));
+  EXPECT_FALSE(prefer_instruments(id, yes));
   id.instrument->strength[4] = kNaN;
-  EXPECT_FALSE(instruments_speak(id, yes));
+  EXPECT_FALSE(prefer_instruments(id, yes));
 }
 
 EnergyAccount energy_of(double absorbed, double low, double high) {
@@ -260,7 +260,7 @@ TEST(Prediction, IsThatOfTheModelForStraightAndForCircularMotion) {
   EXPECT_EQ(active.symmetric, Verdict::passive);
   EXPECT_EQ(active.antisymmetric, Verdict::active);
   EXPECT_THAT(active.statement,
-              HasSubstr("can generate energy in circular motion, below 0.85 Hz; it absorbs energy in straight motion"));
+              HasSubstr("can generate energy in circular motion below 0.85 Hz; it absorbs energy in straight motion"));
   Identification unsure = arm();
   unsure.covariance(8, 8) = 1e4;
   const PassivityPrediction undecided = predicted(unsure);

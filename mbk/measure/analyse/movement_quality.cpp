@@ -16,12 +16,14 @@ constexpr double kAmplitude = 0.05;     ///< of the largest, above which the spe
 constexpr int kPadding = 4;             ///< powers of two of zeros
 
 Result<void> check_speed(const Vector& speed) {
-  if (speed.size() < 3) return bad_data(fmt::format("{} samples are no speed profile", speed.size()), "record longer");
+  if (speed.size() < 3)
+    return bad_data(fmt::format("{} samples are too few for a speed profile", speed.size()), "record longer");
   if (const Index bad = first_non_finite(speed); bad >= 0) {
     return bad_data(fmt::format("the speed is not a number at sample {}", bad + 1));
   }
   if (!(speed.maxCoeff() > speed.minCoeff())) {
-    return bad_data("a speed that never changes has no smoothness", "choose an interval in which the hand moves");
+    return bad_data("the speed is constant, so its smoothness is undefined",
+                    "choose an interval in which the hand moves");
   }
   return {};
 }
@@ -46,8 +48,9 @@ std::optional<double> force_angle(const Matrix& force, const Matrix& position) {
 Result<double> spectral_arc_length(const Vector& speed, Hertz rate) {
   MBK_TRY(check_speed(speed));
   if (!(rate.value >= 2.0 * kTopFrequency)) {
-    return bad_data(fmt::format("{:.4g} Hz do not show a spectrum up to {:.0f} Hz", rate.value, kTopFrequency),
-                    "record at 20 Hz or more");
+    return bad_data(
+        fmt::format("a sample rate of {:.4g} Hz is too low for a spectrum up to {:.0f} Hz", rate.value, kTopFrequency),
+        "record at 20 Hz or more");
   }
   const int power = static_cast<int>(std::ceil(std::log2(static_cast<double>(speed.size())))) + kPadding;
   const Index n = Index{1} << power;
@@ -61,7 +64,7 @@ Result<double> spectral_arc_length(const Vector& speed, Hertz rate) {
     if (first < 0) first = k;
     last = k;
   }
-  if (!(last > first)) return bad_data("the speed has no spectrum within 10 Hz", "choose an interval with a movement");
+  if (!(last > first)) return bad_data("the speed has no power below 10 Hz", "choose an interval with a movement");
   const double range = static_cast<double>(last - first);
   double length = 0.0;
   for (Index k = first; k < last; ++k) {
@@ -80,7 +83,7 @@ Result<double> log_dimensionless_jerk(const Vector& speed, Hertz rate) {
     const double jerk = (speed[i + 2] - 2.0 * speed[i + 1] + speed[i]) / (T * T);
     squares += jerk * jerk;
   }
-  if (!(squares > 0.0)) return bad_data("a speed that changes at a constant rate has no jerk");
+  if (!(squares > 0.0)) return bad_data("the acceleration is constant, so the jerk is zero");
   return -std::log(duration * duration * duration / (peak * peak) * squares * T);
 }
 
@@ -136,7 +139,7 @@ Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& f
         fmt::format("a cutoff of {:.4g} Hz is not between 0 and half of {:.4g} Hz", options.cutoff_hz, rate.value));
   }
   if (!(options.rest_share > 0.0) || !(options.peak_share > options.rest_share) || !(options.peak_share < 1.0)) {
-    return bad_usage("the shares of the largest speed have to rise from above 0 to below 1");
+    return bad_usage("the shares of the maximum speed are not increasing between 0 and 1");
   }
   for (const Matrix* signals : {&position, &force_hand_on_robot, &target}) {
     for (Index k = 0; k < signals->cols(); ++k) {
@@ -151,7 +154,7 @@ Result<MovementQuality> movement_quality(const Matrix& position, const Matrix& f
   const auto velocity = MBK_TRY(dsp::savitzky_golay(filter, 1, position, rate));
   const Vector speed = velocity.rowwise().norm();
   const double extent = (smooth.colwise().maxCoeff() - smooth.colwise().minCoeff()).norm();
-  if (!(extent > 0.0)) return bad_data("the hand never moves", "record a movement");
+  if (!(extent > 0.0)) return bad_data("the hand does not move", "record a movement");
   const Index lost = filter.half_window();
 
   MovementQuality found;

@@ -107,28 +107,27 @@ std::optional<Warning> check_columns(const Recording& recording, int axes) {
       return Warning{
           WarningCode::same_column,
           fmt::format("{} and {} are the same column{}", a.name, b.name,
-                      a.origin->source.empty() || !same_place ? ", but for a factor and a constant"
+                      a.origin->source.empty() || !same_place ? " except for a factor and an offset"
                                                               : fmt::format(", '{}'", bare(a.origin->source))),
-          fmt::format("name the right column of {} or {} with --channels; 'mbk info' shows what the file holds "
-                      "in each",
+          fmt::format("name the right column of {} or {} with --channels; 'mbk info' lists the contents of each",
                       a.name, b.name)};
     }
   }
   return std::nullopt;
 }
 
-/// Channels that the file itself calls otherwise.
+/// Channels that have another name in the file.
 std::optional<Warning> check_names(const Recording& recording, int axes) {
   std::string contradictions, channels;
   for (const Column& column : columns_of(recording, axes)) {
     if (column.origin->called.empty()) continue;
-    contradictions += fmt::format("{}{} is read from '{}', which the file calls {}", contradictions.empty() ? "" : ", ",
+    contradictions += fmt::format("{}{} is read from '{}', which the file names {}", contradictions.empty() ? "" : ", ",
                                   column.name, bare(column.origin->source), column.origin->called);
     channels += (channels.empty() ? "" : " and ") + column.name;
   }
   if (contradictions.empty()) return std::nullopt;
   return Warning{WarningCode::other_column, contradictions,
-                 fmt::format("check {} in --channels; without --channels the file's own names are taken", channels)};
+                 fmt::format("check {} in --channels, or omit --channels to use the names in the file", channels)};
 }
 
 /// A handle that weighs more than what was measured in one direction.
@@ -139,10 +138,11 @@ std::optional<Warning> check_handle(const Identification& id) {
   if (!(left < -error && measured > error)) return std::nullopt;
   return Warning{
       WarningCode::handle_mass_too_large,
-      fmt::format("a handle of {:.3g} kg is taken off, and only {:.3g} kg were measured in the lightest direction",
-                  id.handle_mass, measured),
-      fmt::format("correct --handle-mass: it is what moves between force sensor and hand, here less than {:.3g} "
-                  "kg; leave it out where the sensor is nearer to the hand than the handle's mass",
+      fmt::format(
+          "a handle mass of {:.3g} kg is subtracted, but only {:.3g} kg were measured in the lightest direction",
+          id.handle_mass, measured),
+      fmt::format("correct --handle-mass: it is the mass between force sensor and hand, here less than {:.3g} kg; omit "
+                  "it if the handle is on the robot's side of the sensor",
                   measured)};
 }
 
@@ -199,7 +199,7 @@ void judge_plausibility(const std::vector<const Recording*>& recordings, const s
     for (const PlausibleQuantity quantity : ignored) {
       switched_off += (switched_off.empty() ? "" : ", ") + std::string(word_of(quantity));
     }
-    id.notes.push_back(fmt::format("plausible ranges that were not checked, as asked: {}", switched_off));
+    id.notes.push_back(fmt::format("plausible ranges not checked, as requested: {}", switched_off));
   }
   if (plausible) advise(recordings, trials, measured);
 }

@@ -379,7 +379,7 @@ class Explanations {
   std::vector<Explanation> all_;
 };
 
-/// How to read it so: "--channels …", "--rate 1000"; "" where no option is known.
+/// The option for that reading: "--channels …", "--rate 1000"; "" if there is none.
 std::string option_of(const Explanation& one, const Recording& recording, int axes) {
   if (one.rate > 0.0) return fmt::format("--rate {:g}", one.rate);
   return cured_channels(recording, axes, one.cure).value_or("");
@@ -394,21 +394,22 @@ std::string cures_of(std::span<const Explanation> likely, const Recording& recor
   for (const Explanation& one : likely.first(std::min(likely.size(), kNamed))) {
     const std::string option = option_of(one, recording, axes);
     text += fmt::format("{}if {}: {}", text.empty() ? "" : "; or, ", one.what,
-                        option.empty() ? "say so with --channels, as in x=2:mm" : option);
+                        option.empty() ? "state the unit with --channels, as in x=2:mm" : option);
   }
   return text;
 }
 
 std::string remedy_of(std::span<const Explanation> likely, const Recording& recording, int axes) {
   if (likely.empty()) {
-    return fmt::format("{}, and say them with --channels, as in x=2:mm; --ranges prints what is plausible", kCheck);
+    return fmt::format("{} and state them with --channels, as in x=2:mm; --ranges lists the plausible ranges", kCheck);
   }
-  return fmt::format("{}; else {}; --ranges prints what is plausible", cures_of(likely, recording, axes), kCheck);
+  return fmt::format("{}; otherwise {}; --ranges lists the plausible ranges", cures_of(likely, recording, axes),
+                     kCheck);
 }
 
 std::string message_of(const std::vector<Violation>& found, const Recording& recording, int axes, bool joint) {
   constexpr std::size_t kShown = 4;
-  std::string text = joint ? "this is not the size of a joint's:" : "this is not the size of a hand's:";
+  std::string text = joint ? "outside the plausible range of a joint:" : "outside the plausible range of a hand:";
   for (std::size_t k = 0; k < std::min(found.size(), kShown); ++k) {
     const Violation& one = found[k];
     const QuantityChannels& channels =
@@ -474,7 +475,7 @@ Error explain_clock(Error error, const Recording& recording, const Inspection& i
   trial.axes = n;
   trial.recording_rate = inspection.rate_hz;
   const auto likely = of_clock_alone(Explanations(recording, {trial}, n).take(), inspection.rate_hz, range);
-  error.message = fmt::format("the clock runs at {:.3g} Hz, and {:g} to {:g} Hz are plausible; {}", inspection.rate_hz,
+  error.message = fmt::format("the sample rate is {:.3g} Hz, but {:g} to {:g} Hz are plausible; {}", inspection.rate_hz,
                               range.low, range.high, error.message);
   error.kind = ErrorKind::data;  // an option that does not fit is no mistake then
   error.remedy = remedy_of(std::span(likely).first(std::min<std::size_t>(likely.size(), 1)), recording, n);
@@ -567,12 +568,11 @@ std::optional<Warning> check_scale(const std::vector<const Recording*>& recordin
                    remedy};
   }
   const double times = std::pow(10.0, std::abs(imbalance(numbers)));
-  return Warning{
-      WarningCode::axes_scaled_differently,
-      fmt::format("inertia and stiffness act {:.2g} times more from {} than the other way round, which no limb "
-                  "does: one axis has another scale",
-                  times, imbalance(numbers) > 0.0 ? "y on x" : "x on y"),
-      remedy};
+  return Warning{WarningCode::axes_scaled_differently,
+                 fmt::format("inertia and stiffness couple {:.2g} times more from {} than in the other direction, "
+                             "which is impossible for a limb: the axes have different scales",
+                             times, imbalance(numbers) > 0.0 ? "y on x" : "x on y"),
+                 remedy};
 }
 
 }  // namespace mbk::analyse

@@ -16,7 +16,7 @@ namespace mbk::analyse {
 /// Whether motion, force, clock and model have the size of a limb's (plausible_ranges.h), and whether the axes have the
 /// same scale, which the symmetry of the inertia shows. Where they have not, every unit that a channel can have, and
 /// powers of ten, are tried in its place; what makes all plausible is named with the --channels that reads it so.
-/// A model's size counts where it is known to better than a quarter of itself, so that nothing is said of noise.
+/// A value is checked only if its standard error is below a quarter of it, so that noise causes no warning.
 /// @param recordings which the trials were prepared from    @param ignored  ranges that are switched off
 [[nodiscard]] std::optional<Warning> check_scale(const std::vector<const Recording*>& recordings,
                                                  const std::vector<PreparedTrial>& trials, const Measurement& measured,

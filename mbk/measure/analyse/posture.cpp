@@ -59,15 +59,15 @@ ArmPosture arm_posture(const Recording& recording, const Vector2d& hand) {
     }
     const auto value = number_of(found->second);
     if (!value || (k >= 2 && !(*value > 0.0))) {
-      posture.note = fmt::format("the arm is not drawn: metadata {} is '{}', which is no {}", kArmKeys[k],
-                                 found->second, k >= 2 ? "length in metres" : "place in metres");
+      posture.note = fmt::format("the arm is not drawn: metadata {} is '{}', which is not a {}", kArmKeys[k],
+                                 found->second, k >= 2 ? "length in metres" : "position in metres");
       return posture;
     }
     values[k] = *value;
   }
   if (!missing.empty()) {
     const bool any = std::ranges::any_of(kArmKeys, [&](const char* key) { return metadata.contains(key); });
-    if (any) posture.note = fmt::format("the arm is not drawn: the metadata lack {}", missing);
+    if (any) posture.note = fmt::format("the arm is not drawn: the metadata do not contain {}", missing);
     return posture;
   }
   const auto stated = metadata.find("elbow");

@@ -48,7 +48,7 @@ Result<void> check_alike(const Identification& first, const Identification& othe
     if (twin == theirs.end() || value.empty() || twin->second.empty() || twin->second == value) continue;
     return bad_data(fmt::format("the recordings differ in {}: '{}' in {}, '{}' in {}", name, value, file_of(first),
                                 twin->second, file_of(other)),
-                    "measure what belongs together in one command");
+                    "measure only recordings of the same kind in one command");
   }
   return {};
 }

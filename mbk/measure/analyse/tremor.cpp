@@ -175,10 +175,10 @@ void warn_of_tremor(const AssumptionTest& tremor, Identification& identification
   if (!tremor.contradicted || identification.method == Method::instrumental_variables) return;
   identification.warnings.push_back(
       {WarningCode::tremor,
-       fmt::format("the force has a rhythm of {:.3g} Hz, {:.2g} {} (standard deviation), that the perturbation did not "
-                   "make: the limb trembles, and M, B and K by least squares are biased",
+       fmt::format("the force contains a rhythm at {:.3g} Hz, {:.2g} {} (standard deviation), that the perturbation "
+                   "did not cause: tremor, which biases M, B and K from least squares",
                    tremor.frequency_hz, tremor.size, units_of(identification.motion).force),
-       "instrumental variables take it for noise: use --method iv"});
+       "use --method iv, which treats tremor as noise"});
 }
 
 }  // namespace mbk::analyse

@@ -322,7 +322,7 @@ class Calibrator {
   Result<void> check() const {
     if (runs_.empty()) return bad_usage("no runs");
     if (options_.lever_arm && !(*options_.lever_arm > 0.0 && std::isfinite(*options_.lever_arm))) {
-      return bad_usage(fmt::format("lever arm {:g} m is not above 0", *options_.lever_arm));
+      return bad_usage(fmt::format("the lever arm of {:g} m is not above 0", *options_.lever_arm));
     }
     if (const auto& c = options_.converter;
         c && (c->bits < 2 || c->bits > 32 || !(c->range > 0.0 && std::isfinite(c->range)))) {
@@ -331,24 +331,24 @@ class Calibrator {
     }
     if (!(options_.hac_lag_s >= 0.0 && std::isfinite(options_.hac_lag_s)) ||
         !(options_.longest_delay >= 0.0 && std::isfinite(options_.longest_delay))) {
-      return bad_usage("the reach of the residual's correlation and the longest delay are not 0 or more");
+      return bad_usage("the noise correlation time or the longest delay is not 0 or more");
     }
     Index rows = 0;
     for (const SensorRun& run : runs_) {
       if (run.axes != runs_.front().axes) {
-        return bad_data("its axes are not those of the first file", "calibrate each sensor by itself",
+        return bad_data("its axes differ from those of the first file", "calibrate each sensor separately",
                         run.source.label());
       }
       if (run.interval.has_value() != runs_.front().interval.has_value()) {
-        return bad_data("tables of loads and recordings over time do not go together", "calibrate them apart",
+        return bad_data("tables of loads and recordings over time cannot be combined", "calibrate them separately",
                         run.source.label());
       }
       rows += run.force.rows();
     }
     const Index parameters = n() + std::ssize(runs_);
     if (rows < parameters + 1) {
-      return bad_data(fmt::format("{} rows are too few for {} parameters and the errors of them", rows, parameters),
-                      "hang on more loads, of both signs on each axis, and each more than once",
+      return bad_data(fmt::format("{} rows are too few for {} parameters and their errors", rows, parameters),
+                      "apply more loads, of both signs on each axis, each more than once",
                       runs_.front().source.label());
     }
     for (Index i = 0; i < n(); ++i) {
@@ -358,7 +358,7 @@ class Calibrator {
       }
       if (spread > 0.0) continue;
       return fail(ErrorKind::not_usable, fmt::format("the load on {} never changes within a run", name(i)),
-                  fmt::format("load that axis too, or leave voltage_{} out of --channels", name(i)),
+                  fmt::format("load that axis too, or remove voltage_{} from --channels", name(i)),
                   runs_.front().source.label());
     }
     return {};
@@ -377,14 +377,14 @@ class Calibrator {
       const auto whole = MBK_TRY(fit_voltage(data_, all, result_.continuous));
       constexpr double kNearlyOneLine = 30.0;
       if (whole.rank < p || !(whole.condition < 1e6)) {
-        return fail(ErrorKind::not_usable,
-                    "the loads lie on one line, so that crosstalk is not distinguishable from the slopes",
-                    "load each axis separately, or fit each axis alone with --axes 1", runs_.front().source.label());
+        return fail(
+            ErrorKind::not_usable, "the loads lie on one line, so crosstalk cannot be distinguished from the slopes",
+            "load each axis separately, or fit each axis separately with --axes 1", runs_.front().source.label());
       }
       if (whole.condition > kNearlyOneLine) {
         warn(SensorWarningCode::loads_nearly_collinear,
-             fmt::format("the loads are nearly on one line (condition {:.0f})", whole.condition),
-             "load each axis separately too");
+             fmt::format("the loads are nearly on one line (condition number {:.0f})", whole.condition),
+             "also load each axis separately");
       }
       C_ = whole.C;
       zeros_ = whole.zeros;
@@ -528,14 +528,14 @@ class Calibrator {
     axis.loads = std::unique(loads.begin(), loads.end()) - loads.begin();
     if (by_load && axis.loads < kMin) {
       warn(SensorWarningCode::few_loads, fmt::format("{} has {} different loads", axis.name, axis.loads),
-           "hang on at least five, on both sides");
+           "apply at least five, in both directions");
     }
     const double low = load.minCoeff(), high = load.maxCoeff();
     if (!(low < -kOtherSide * axis.full_scale) || !(high > kOtherSide * axis.full_scale)) {
       warn(SensorWarningCode::one_sided_loads,
-           fmt::format("the loads on {} are from {:.3g} to {:.3g} N: nothing is known of the other side", axis.name,
-                       low, high),
-           "load it the other way too");
+           fmt::format("the loads on {} are from {:.3g} to {:.3g} N: the opposite direction is not calibrated",
+                       axis.name, low, high),
+           "also load it in the opposite direction");
     }
   }
 
@@ -543,10 +543,10 @@ class Calibrator {
     constexpr double kShare = 0.01, kSeen = 3.0;
     if (axis.nonlinearity > kShare * axis.full_scale && axis.nonlinearity > kSeen * largest.error) {
       warn(SensorWarningCode::nonlinear,
-           fmt::format("{} leaves its line by {:.3g} N, {:.1f} % of the largest load", axis.name, axis.nonlinearity,
-                       100.0 * axis.nonlinearity / axis.full_scale),
-           "look for a load that was read wrongly, a beam that touches, or crosstalk that was not fitted; "
-           "or calibrate over the loads that you need");
+           fmt::format("{} deviates from its line by {:.3g} N, {:.1f} % of the largest load", axis.name,
+                       axis.nonlinearity, 100.0 * axis.nonlinearity / axis.full_scale),
+           "look for a misread load, a beam that touches something, or crosstalk that was not fitted; or calibrate "
+           "over the range that you need");
     }
   }
 
@@ -557,7 +557,7 @@ class Calibrator {
       warn(SensorWarningCode::hysteresis,
            fmt::format("loading and unloading of {} differ by {:.3g} N, {:.1f} % of the largest load", axis.name,
                        *axis.hysteresis, 100.0 * *axis.hysteresis / axis.full_scale),
-           "tighten what holds the sensor; wait until the load hangs still");
+           "tighten the mounting of the sensor, and wait until the load hangs still");
     }
   }
 
@@ -567,16 +567,15 @@ class Calibrator {
     axis.step = quantisation_step(voltage);
     if (options_.converter) axis.conversion = options_.converter->step();
     if (axis.step && axis.conversion && std::abs(*axis.step / *axis.conversion - 1.0) > kSameStep) {
-      warn(
-          SensorWarningCode::step_contradicts_converter,
-          fmt::format("the voltages of {} are in steps of {:.4g} mV, and {} bits over ±{:g} V are {:.4g} mV", axis.name,
-                      1e3 * *axis.step, options_.converter->bits, options_.converter->range, 1e3 * *axis.conversion),
-          "correct --bits and --range, or leave them out");
+      warn(SensorWarningCode::step_contradicts_converter,
+           fmt::format("the voltages of {} have steps of {:.4g} mV, but {} bits over ±{:g} V give {:.4g} mV", axis.name,
+                       1e3 * *axis.step, options_.converter->bits, options_.converter->range, 1e3 * *axis.conversion),
+           "correct --bits and --range, or omit them");
     }
     const double largest = voltage.cwiseAbs().maxCoeff();
     if (largest > kUnlikely) {
       warn(SensorWarningCode::voltage_unlikely, fmt::format("voltage_{} reaches {:.4g} V", axis.name, largest),
-           fmt::format("if the file is in millivolts, say so: --channels V{}=NAME:mV", axis.name));
+           fmt::format("if the file is in millivolts, use --channels V{}=NAME:mV", axis.name));
     }
     for (const double end : {voltage.minCoeff(), voltage.maxCoeff()}) {
       std::vector<Index> rows;
@@ -591,14 +590,14 @@ class Calibrator {
            fmt::format("voltage_{} stays at {:.5g} V in {} rows{}", axis.name, end, rows.size(),
                        flat ? fmt::format(", with loads from {:.3g} to {:.3g} N", there.minCoeff(), there.maxCoeff())
                             : ", the end of the converter's range"),
-           "leave these rows out, and lower the gain of the amplifier");
+           "omit these rows, and lower the gain of the amplifier");
     }
     if (axis.noise && axis.resolution() && *axis.noise < *axis.resolution() / std::sqrt(12.0)) {
       warn(SensorWarningCode::noise_below_resolution,
-           fmt::format("the noise of {} at constant load, {:.2g} mV, is below the {:.2g} mV that rounding alone makes "
-                       "of a moving load: one step hides it",
+           fmt::format("the noise of {} at constant load, {:.2g} mV, is below the {:.2g} mV of rounding noise at a "
+                       "changing load: the converter step hides it",
                        axis.name, 1e3 * *axis.noise, 1e3 * *axis.resolution() / std::sqrt(12.0)),
-           "take the rounding for the resolution, not this noise");
+           "use the rounding noise as the resolution");
     }
   }
 
@@ -617,7 +616,7 @@ class Calibrator {
       warn(SensorWarningCode::zero_changed,
            fmt::format("the zero of {} differs by {:.3g} V ({:.3g} N) between runs", name(i), spread,
                        spread * std::abs(result_.slope(i, i))),
-           "measure it anew in each recording: --sensor-zero auto:2");
+           "measure the zero in each recording with --sensor-zero auto:2");
     }
   }
 
@@ -635,7 +634,7 @@ Result<Matrix> columns(const Recording& recording, const std::vector<std::string
     const Channel* const channel = recording.find(names[k]);
     for (Index i = 0; i < channel->values.size(); ++i) {
       if (std::isfinite(channel->values[i])) continue;
-      return bad_data(fmt::format("{} is not a number at row {}", names[k], i + 1), "leave that row out");
+      return bad_data(fmt::format("{} is not a number at row {}", names[k], i + 1), "omit that row");
     }
     values.col(static_cast<Index>(k)) = channel->values;
   }
@@ -650,14 +649,14 @@ Result<void> turn_into_link(const Recording& recording, SensorRun& run) {
                     "name it, as in --channels q2=NAME, or pass --sensor-frame base");
   }
   if (run.axes.size() < 2) {
-    return bad_data("the sensor turns with the last link, and one axis of the force alone cannot be turned",
+    return bad_data("the sensor turns with the last link, but a force with one axis cannot be rotated",
                     "name both axes, or pass --sensor-frame base");
   }
   const auto theta = MBK_TRY(columns(recording, {"joint_2"}));
   for (Index i = 0; i < run.force.rows(); ++i) {
     run.force.row(i) = run.force.row(i) * robot::link_axes(theta(i, 0));  // (Rᵀ f)ᵀ = fᵀ R
   }
-  run.notes.emplace_back("the force was turned into the axes of the last link with joint_2 (eq. E.4)");
+  run.notes.emplace_back("the force was rotated into the axes of the last link with joint_2 (eq. E.4)");
   return {};
 }
 
@@ -682,9 +681,10 @@ Result<SensorRun> sensor_run(const Recording& recording, SensorFrame frame) {
   }
   if (run.axes.empty()) {
     const bool any_voltage = has("voltage", "x") || has("voltage", "y");
-    return bad_data(any_voltage ? "there is no force beside the voltage" : "there is no voltage_x or voltage_y",
-                    "name loads and voltages, as in --channels Fx=1,Fy=2,Vx=3,Vy=4; a hung mass in kg is Fx=mass*9.81",
-                    run.source.label());
+    return bad_data(
+        any_voltage ? "the recording has a voltage but no force" : "the recording has neither voltage_x nor voltage_y",
+        "name loads and voltages, as in --channels Fx=1,Fy=2,Vx=3,Vy=4; a hung mass in kg is Fx=mass*9.81",
+        run.source.label());
   }
   const auto force = columns(recording, forces);
   if (!force) return tl::unexpected(force.error().in(run.source.label()));
@@ -694,7 +694,7 @@ Result<SensorRun> sensor_run(const Recording& recording, SensorFrame frame) {
     voltages.push_back("voltage_" + axis);
     run.force.conservativeResize(Eigen::NoChange, run.force.cols() + 1);
     run.force.col(run.force.cols() - 1).setZero();
-    run.notes.push_back(fmt::format("{}: there is no force_{}, which is taken as 0 N", run.source.label(), axis));
+    run.notes.push_back(fmt::format("{}: force_{} is missing and assumed to be 0 N", run.source.label(), axis));
   }
   const auto voltage = columns(recording, voltages);
   if (!voltage) return tl::unexpected(voltage.error().in(run.source.label()));
@@ -711,7 +711,7 @@ Result<SensorRun> sensor_run(const Recording& recording, SensorFrame frame) {
   if (recording.untimed) return run;
   for (Index i = 1; i < recording.samples(); ++i) {
     if (recording.time[i] > recording.time[i - 1]) continue;
-    return bad_data(fmt::format("time does not increase at sample {}", i + 1), "mend the clock, or give --rate",
+    return bad_data(fmt::format("time does not increase at sample {}", i + 1), "correct the time, or give --rate",
                     run.source.label());
   }
   if (recording.samples() > 1) {

@@ -17,7 +17,7 @@ struct SensorRun {
   std::vector<std::string> axes;   ///< n names, the same in every run
   Matrix force;                    ///< N×n [N]
   Matrix voltage;                  ///< N×n [V]
-  std::optional<double> interval;  ///< between samples [s] > 0; absent where every row is a load by itself
+  std::optional<double> interval;  ///< between samples [s] > 0; absent if every row is an independent load
   std::vector<std::string> notes;
 };
 
@@ -32,12 +32,12 @@ struct SensorCalibrationOptions {
   std::optional<double> lever_arm;  ///< L₀ [m] > 0
   std::optional<Converter> converter;
   double hac_lag_s = 1.0;       ///< of continuous runs ≥ 0
-  double longest_delay = 0.05;  ///< looked for in continuous runs [s] ≥ 0; 0: none
+  double longest_delay = 0.05;  ///< longest delay tried in continuous runs [s] ≥ 0; 0: none
 };
 
-/// In which axes the force stands that a recording holds beside the voltages.
+/// Frame of the force recorded with the voltages.
 enum class SensorFrame {
-  automatic,  ///< link where joint_2 is recorded, else base
+  automatic,  ///< link if joint_2 is recorded, otherwise base
   link,       ///< the sensor turns with the last link, at joint_2: (E.4)
   base,       ///< sensor and force have the same axes
 };

@@ -16,7 +16,7 @@ struct SensorUse {
   std::string name;                    ///< of the calibration's file, for notes
   std::optional<double> lever_arm;     ///< L from the gauges to the hand here [m] > 0; absent: as in the calibration
   std::optional<Vector> zero_voltage;  ///< V₀ here [V], one for each axis; absent: as in the calibration
-  std::optional<double> zero_from_s;   ///< V₀ is the mean of so many first seconds, in which nothing pulls [s] > 0
+  std::optional<double> zero_from_s;   ///< V₀ is the mean over this time at the start, without load [s] > 0
   SensorFrame frame = SensorFrame::automatic;
   bool undo_delay = false;  ///< the force is moved earlier by the calibration's delay
 };

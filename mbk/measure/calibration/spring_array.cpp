@@ -29,20 +29,20 @@ Matrix2d rotation_by(double angle) {
 }  // namespace
 
 Result<SpringArray> SpringArray::create(std::vector<Spring> springs, Compression compression) {
-  if (springs.empty()) return bad_data("there is no spring", "give at least two that pull in different directions");
+  if (springs.empty()) return bad_data("no spring was given", "give at least two that pull in different directions");
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const Spring& spring = springs[i];
     const std::string where = fmt::format("spring {}", i + 1);
     if (!(spring.stiffness > 0.0 && std::isfinite(spring.stiffness))) {
-      return bad_data(fmt::format("a stiffness of {:g} N/m is not above 0", spring.stiffness),
-                      "leave out a spring that is not there", where);
+      return bad_data(fmt::format("the stiffness of {:g} N/m is not above 0", spring.stiffness),
+                      "remove the spring if it does not exist", where);
     }
     if (!(spring.rest_length >= 0.0 && std::isfinite(spring.rest_length))) {
-      return bad_data(fmt::format("a rest length of {:g} mm is not 0 or more", kMillimetres * spring.rest_length),
-                      "give the length at which its force begins", where);
+      return bad_data(fmt::format("the rest length of {:g} mm is not 0 or more", kMillimetres * spring.rest_length),
+                      "give the length at which its force starts", where);
     }
     if (!spring.anchor.allFinite() || !spring.hole.allFinite()) {
-      return bad_data("a place is not a finite number", "give x and y of the screw eye and of the hole", where);
+      return bad_data("a position is not a finite number", "give x and y of the screw eye and of the hole", where);
     }
   }
   return SpringArray(std::move(springs), compression);
@@ -143,7 +143,7 @@ Result<void> check_equilibrium(const SpringArray& array, const Vector2d& place, 
                       "{:.2f} mm at rest",
                       i + 1, kMillimetres * place.x(), kMillimetres * place.y(), kMillimetres * length,
                       kMillimetres * springs[i].rest_length),
-          "take a shorter spring or a screw eye that is further away");
+          "use a shorter spring or a screw eye that is further away");
     }
   }
   const Vector2d lambda = numeric::symmetric_eigenvalues(array.stiffness(place, rotation));
@@ -151,7 +151,7 @@ Result<void> check_equilibrium(const SpringArray& array, const Vector2d& place, 
     return fail(ErrorKind::not_usable,
                 fmt::format("the equilibrium x {:.2f}, y {:.2f} mm is not stable: its smallest stiffness is {:.3g} N/m",
                             kMillimetres * place.x(), kMillimetres * place.y(), lambda[0]),
-                "pull from more sides, or begin elsewhere");
+                "pull from more directions, or start elsewhere");
   }
   return {};
 }
@@ -160,7 +160,7 @@ Result<void> check_equilibrium(const SpringArray& array, const Vector2d& place, 
 
 Result<Vector2d> equilibrium(const SpringArray& array, const Vector2d& start, double disc_rotation) {
   constexpr int kMaxSteps = 200, kMaxHalvings = 60;
-  if (!start.allFinite()) return bad_usage("the place where the search begins is not a finite number");
+  if (!start.allFinite()) return bad_usage("the start of the search is not a finite position");
   Vector2d place = start;
   Vector2d force = array.force(place, disc_rotation);
   for (int step = 0; step < kMaxSteps && !(force.norm() <= kEquilibriumForce); ++step) {
@@ -186,9 +186,9 @@ Result<Vector2d> equilibrium(const SpringArray& array, const Vector2d& start, do
   }
   if (!(force.norm() <= kEquilibriumForce)) {
     return fail(ErrorKind::not_usable,
-                fmt::format("no equilibrium is found: at x {:.2f}, y {:.2f} mm the force is still {:.3g} N",
+                fmt::format("no equilibrium was found: at x {:.2f}, y {:.2f} mm the force is still {:.3g} N",
                             kMillimetres * place.x(), kMillimetres * place.y(), force.norm()),
-                "begin nearer to where it is expected");
+                "start nearer to the expected equilibrium");
   }
   MBK_TRY(check_equilibrium(array, place, disc_rotation));
   return place;
@@ -201,7 +201,7 @@ Result<GridField> grid_field(const SpringArray& array, const Vector2d& centre, d
                        last = ((centre.array() + reach) / step).floor();
   const Eigen::Array2d count = last - first + 1.0;
   if (!(step > 0.0 && count.minCoeff() >= kMin && count.maxCoeff() <= kMax)) {
-    return bad_usage(fmt::format("a grid of {:g} mm over {:g} mm has not from 3 to 4000 points along a side",
+    return bad_usage(fmt::format("a grid of {:g} mm over {:g} mm does not have 3 to 4000 points per side",
                                  kMillimetres * step, 2.0 * kMillimetres * reach),
                      "choose another step");
   }
@@ -256,7 +256,7 @@ Linearisation linearisation(const SpringArray& array, const Vector2d& equilibriu
 
 Result<SpringField> spring_field(const SpringArray& array, const Vector2d& start, double radius, double disc_rotation) {
   if (!(radius > 0.0 && std::isfinite(radius))) {
-    return bad_usage(fmt::format("a circle of radius {:g} mm is none", kMillimetres * radius));
+    return bad_usage(fmt::format("the radius of {:g} mm is not above 0", kMillimetres * radius));
   }
   const auto place = MBK_TRY(equilibrium(array, start, disc_rotation));
   SpringField field;

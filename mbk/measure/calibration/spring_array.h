@@ -58,12 +58,12 @@ class SpringArray {
   Compression compression_;
 };
 
-/// Largest force that counts as none at an equilibrium [N].
+/// Largest force accepted as zero at an equilibrium [N].
 inline constexpr double kEquilibriumForce = 1e-10;
 
 /// R₀ with F(R₀) = 0 and K(R₀) positive definite, by Newton steps downhill in the energy: −(K + μI)⁻¹ with the least μ
 /// that makes the matrix positive definite, halved until the energy falls.
-/// @param start where the search begins [m]
+/// @param start  start of the search [m]
 /// @fails  not usable: no place with |F| ≤ 1e-10 N is found; it is not stable; a spring is slack there, or its two ends
 /// coincide (each named with its number, from 1).
 [[nodiscard]] Result<Eigen::Vector2d> equilibrium(const SpringArray& array, const Eigen::Vector2d& start,

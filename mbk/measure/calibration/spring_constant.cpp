@@ -47,7 +47,7 @@ Result<SpringLine> line_through(const Stretch& stretch, double from) {
     rows.push_back(i);
   }
   const Vector s = stretch.s(rows), T = stretch.tension(rows);
-  if (s.size() < 3) return bad_data("fewer than 3 samples are straight");
+  if (s.size() < 3) return bad_data("the straight part has fewer than 3 samples");
   const double middle = s.mean();
   Matrix Z(s.size(), 2);
   Z << (s.array() - middle).matrix(), Vector::Ones(s.size());
@@ -175,7 +175,8 @@ std::optional<HookFit> fit_hooks(const Stretch& stretch) {
 Result<void> check(const Vector& time, const Vector& position, const Vector& reaction, const StretchOptions& options) {
   constexpr Index kMin = 20;
   if (time.size() != position.size() || time.size() != reaction.size()) {
-    return bad_data(fmt::format("{} times, {} positions and {} forces", time.size(), position.size(), reaction.size()));
+    return bad_data(fmt::format("{} times, {} positions and {} forces differ in number", time.size(), position.size(),
+                                reaction.size()));
   }
   if (time.size() < kMin) {
     return bad_data(fmt::format("{} samples are fewer than {}", time.size(), kMin), "record a longer stretch");
@@ -188,18 +189,17 @@ Result<void> check(const Vector& time, const Vector& position, const Vector& rea
   }
   for (Index i = 1; i < time.size(); ++i) {
     if (!(time[i] > time[i - 1])) {
-      return bad_data(fmt::format("time does not increase at sample {}", i + 1), "mend the clock, or give --rate");
+      return bad_data(fmt::format("time does not increase at sample {}", i + 1), "correct the time, or give --rate");
     }
   }
   if (!(position.maxCoeff() > position.minCoeff())) {
     return bad_data("the position does not change", "stretch the spring while recording");
   }
   if (!(options.hac_lag_s >= 0.0 && std::isfinite(options.hac_lag_s))) {
-    return bad_usage(
-        fmt::format("a reach of the residual's correlation of {:g} s is not 0 or more", options.hac_lag_s));
+    return bad_usage(fmt::format("the noise correlation time of {:g} s is not 0 or more", options.hac_lag_s));
   }
   if (!(options.hook_share > 0.0 && options.hook_share < 1.0)) {
-    return bad_usage(fmt::format("a share of {:g} that the hooks may add is not between 0 and 1", options.hook_share));
+    return bad_usage(fmt::format("the allowed share of the hooks, {:g}, is not between 0 and 1", options.hook_share));
   }
   return {};
 }
@@ -233,21 +233,22 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
   const auto whole = MBK_TRY(line_through(stretch, stretch.s.minCoeff()));
   constant.whole = whole;
   if (!(whole.stiffness > 0.0)) {
-    return fail(ErrorKind::not_usable, "the force pushes the way that the spring is stretched, and a spring pulls back",
-                "turn the sign of the force, as in --channels x=2,F=-3");
+    return fail(ErrorKind::not_usable, "the force acts in the direction of the stretch, but a spring pulls back",
+                "reverse the sign of the force, as in --channels x=2,F=-3");
   }
   if (!(whole.r_squared >= kMinFit)) {
-    return fail(ErrorKind::not_usable,
-                fmt::format("a line explains {:.0f} % of the tension's variance, and a spring's at least {:.0f} %",
-                            100.0 * whole.r_squared, 100.0 * kMinFit),
-                "name the channels of position and force; stretch slowly, and further");
+    return fail(
+        ErrorKind::not_usable,
+        fmt::format("a line explains only {:.0f} % of the variance of the tension, but at least {:.0f} % for a spring",
+                    100.0 * whole.r_squared, 100.0 * kMinFit),
+        "name the channels of position and force, and stretch slowly and further");
   }
   const auto hooks = fit_hooks(stretch);
   if (!hooks || !(hooks->deflection > kSeen * hooks->deflection_error) || !(hooks->rmse < whole.rmse)) {
     constant.whole.rest *= side;
     constant.straight = constant.whole;
     constant.rule =
-        fmt::format("everything: no bending of hooks stands out from the noise by {:g} standard errors", kSeen);
+        fmt::format("the whole range: no yielding of hooks exceeds the noise by {:g} standard errors", kSeen);
     return constant;
   }
   constant.hooks = hooks;
@@ -261,8 +262,8 @@ Result<SpringConstant> fit_spring_constant(const Vector& time, const Vector& pos
   const double end = stretch.s.maxCoeff(), begin = std::max(stretch.s.minCoeff(), hooks->rest);
   if (!(end - from >= kStraightPart * (end - begin))) {
     return fail(ErrorKind::not_usable,
-                fmt::format("the hooks bend up to {:.2f} N, and the stretch ends at {:.2f} N: {:.1f} of {:.1f} mm are "
-                            "straight, and a third of it is target",
+                fmt::format("the hooks yield up to {:.2f} N, but the stretch ends at {:.2f} N: only {:.1f} of {:.1f} "
+                            "mm are straight, and a third is needed",
                             tension, constant.whole.tension_to, kMillimetres * std::max(0.0, end - from),
                             kMillimetres * (end - begin)),
                 "stretch the spring further");
@@ -279,12 +280,12 @@ Result<SpringConstant> spring_constant_of(const Recording& recording, const Stre
   const Channel* const position = recording.find("position");
   const Channel* const reaction = recording.find("reaction");
   if (position == nullptr || reaction == nullptr) {
-    return bad_data(fmt::format("there is no {} of one axis", position == nullptr ? "position" : "reaction"),
+    return bad_data(fmt::format("channel {} of one axis is missing", position == nullptr ? "position" : "reaction"),
                     "name the columns, as in --channels time=1,x=2:mm,F=3", file);
   }
   if (position->unit == "rad" || reaction->unit == "N.m") {
-    return bad_data("it measures an angle or a moment, and a spring is stretched in mm and N",
-                    "name the units, as in --channels time=1,x=2:mm,F=3:N", file);
+    return bad_data("it contains an angle or a moment, but a spring needs a position and a force",
+                    "state the units, as in --channels time=1,x=2:mm,F=3:N", file);
   }
   auto constant = fit_spring_constant(recording.time, position->values, reaction->values, options);
   if (!constant) return tl::unexpected(constant.error().in(file));

@@ -8,7 +8,7 @@
 namespace mbk::calibration {
 
 struct StretchOptions {
-  double hac_lag_s = 1.0;    ///< reach of the residual's correlation for the standard errors [s] ≥ 0
+  double hac_lag_s = 1.0;    ///< correlation time of the residual for the standard errors [s] ≥ 0
   double hook_share = 0.01;  ///< share of the compliance that the hooks may still add in the straight part, in (0, 1)
 };
 

@@ -133,34 +133,35 @@ Result<void> check(const SpringRequest& request) {
   const Vector2d lambda = numeric::symmetric_eigenvalues(K);
   if (!K.allFinite() || K(0, 1) != K(1, 0)) return bad_usage("the target stiffness is not symmetric");
   if (!(lambda[0] > 0.0)) {
-    return bad_usage(fmt::format("the target stiffness has the principal values {:g} and {:g} N/m, and both must be "
-                                 "above 0",
-                                 lambda[0], lambda[1]),
-                     "springs hold the hand in every direction");
+    return bad_usage(
+        fmt::format("the principal values of the target stiffness are {:g} and {:g} N/m, but both must be above 0",
+                    lambda[0], lambda[1]),
+        "choose a stiffness that is positive in every direction");
   }
   const auto empty = [](const std::pair<double, double>& range) {
     return !(range.first > 0.0 && range.first < range.second && std::isfinite(range.second));
   };
   if (empty(request.stiffness)) {
-    return bad_usage(fmt::format("springs from {:g} to {:g} N/m: there are none", request.stiffness.first,
-                                 request.stiffness.second));
+    return bad_usage(fmt::format("the stiffness range of the springs from {:g} to {:g} N/m is empty",
+                                 request.stiffness.first, request.stiffness.second));
   }
   if (empty(request.rest_length)) {
-    return bad_usage(fmt::format("springs from {:g} to {:g} mm long: there are none",
+    return bad_usage(fmt::format("the length range of the springs from {:g} to {:g} mm is empty",
                                  kMillimetres * request.rest_length.first, kMillimetres * request.rest_length.second));
   }
   if (request.eyes.size() < kMinEyes || request.eyes.size() > kMaxEyes) {
-    return bad_usage(fmt::format("{} screw eyes are not from {} to {}", request.eyes.size(), kMinEyes, kMaxEyes));
+    return bad_usage(fmt::format("{} screw eyes are not between {} and {}", request.eyes.size(), kMinEyes, kMaxEyes));
   }
   if (!request.holes.empty() && request.holes.size() != request.eyes.size()) {
-    return bad_usage(fmt::format("{} holes for {} screw eyes", request.holes.size(), request.eyes.size()));
+    return bad_usage(fmt::format("{} holes were given for {} screw eyes", request.holes.size(), request.eyes.size()));
   }
   if (!(request.travel > 0.0 && request.min_extension >= 0.0)) {
-    return bad_usage(fmt::format("a travel of {:g} mm is not above 0, or a least extension of {:g} mm is below it",
-                                 kMillimetres * request.travel, kMillimetres * request.min_extension));
+    return bad_usage(
+        fmt::format("the travel of {:g} mm is not above 0, or the minimum extension of {:g} mm is below it",
+                    kMillimetres * request.travel, kMillimetres * request.min_extension));
   }
   if (request.payload && !(*request.payload > 0.0)) {
-    return bad_usage(fmt::format("a payload of {:g} kg is not above 0", *request.payload));
+    return bad_usage(fmt::format("the payload of {:g} kg is not above 0", *request.payload));
   }
   return {};
 }
@@ -197,7 +198,7 @@ tl::unexpected<Error> out_of_reach(const SpringRequest& request, const Places& a
                   request.stiffness.first, request.stiffness.second, kMillimetres * request.rest_length.first,
                   kMillimetres * request.rest_length.second, all.size(), request.eyes.size(),
                   kMillimetres * request.equilibrium.x(), kMillimetres * request.equilibrium.y(), nearest_words),
-      "allow shorter or other springs or less travel, or move the frame");
+      "allow shorter or different springs or less travel, or move the frame");
 }
 
 /// Every choice of at least 3 of the places.

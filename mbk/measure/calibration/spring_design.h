@@ -15,7 +15,7 @@ namespace mbk::calibration {
 /// @param centre of the frame, base frame [m]
 [[nodiscard]] std::vector<Eigen::Vector2d> frame_eyes(const Eigen::Vector2d& centre);
 
-/// Where the frame stands unless told otherwise: the equilibria of tables 3.1 and 5.1, 332 … 448 mm by −61 … 61 mm, lie
+/// Default position of the frame: the equilibria of tables 3.1 and 5.1, 332 … 448 mm by −61 … 61 mm, lie
 /// about this point [m].
 inline const Eigen::Vector2d kFrameCentre{0.390, 0.0};
 
@@ -48,7 +48,7 @@ struct SpringRequest {
 /// (k, m) with the bounds on k_i and l_i = m_i/k_i, and not one of several local answers. Every choice of screw eyes,
 /// from 3 to `max_springs`, is tried and the best taken.
 /// @fails  usage: K is not symmetric positive definite; a bound is empty; too few or too many eyes. not usable: no
-/// choice gives K there within the bounds (the nearest K is said).
+/// choice gives K there within the bounds (the nearest K is reported).
 [[nodiscard]] Result<SpringDesign> design_springs(const SpringRequest& request);
 
 }  // namespace mbk::calibration

@@ -188,11 +188,11 @@ double handle_mass_of(std::span<const ExplorationTrial> trials) {
 }  // namespace
 
 Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials, double window_s) {
-  if (trials.empty()) return bad_usage("there is no trial whose onsets could be found");
+  if (trials.empty()) return bad_usage("no trial was given");
   if (!(window_s > 2.0 * kSmoothing)) {
-    return bad_usage(
-        fmt::format("{:g} ms after an onset are too short for a filter of {:g} ms", 1e3 * window_s, 1e3 * kSmoothing),
-        "choose 100 to 200 ms");
+    return bad_usage(fmt::format("a window of {:g} ms after an onset is too short for a filter of {:g} ms",
+                                 1e3 * window_s, 1e3 * kSmoothing),
+                     "choose 100 to 200 ms");
   }
   AfterOnsetEstimate found;
   found.axes = trials.front().axes;
@@ -205,11 +205,12 @@ Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials,
   for (const ExplorationTrial& trial : trials) {
     if (trial.axes != found.axes) return bad_data("trials of one axis and of two cannot be explored together");
     if (trial.reference.size() == 0) {
-      return bad_data("without a reference there are no onsets",
-                      "record the perturbation as channel reference (xr, yr), or leave out --after-onset");
+      return bad_data("no reference was recorded, so there are no onsets",
+                      "record the perturbation as channel reference (xr, yr), or omit --after-onset");
     }
     const Lengths own = lengths_of(trial.sample_time, window_s);
-    if (lengths && lengths->window != own.window) return bad_data("trials have other sample rates", "use --resample");
+    if (lengths && lengths->window != own.window)
+      return bad_data("the trials have different sample rates", "use --resample");
     lengths = own;
     for (const Onset& onset : reference_onsets(trial.reference, own.before())) {
       ++seen;
@@ -222,15 +223,14 @@ Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials,
   found.onsets = static_cast<Index>(responses.size());
   found.omitted = seen - found.onsets;
   if (found.onsets < kMinOnsets * n) {
-    return bad_data(
-        fmt::format("{} onset{} of the reference after {:.0f} ms of rest, {} of which the limb rested before: "
-                    "at least {} are needed",
-                    seen, seen == 1 ? "" : "s", 1e3 * kBaseline, found.onsets, kMinOnsets * n),
-        "perturb with steps or pulses, with pauses between them; pool FILEs of one condition");
+    return bad_data(fmt::format("the reference has {} onset{} after {:.0f} ms of rest, and the limb rested before {} "
+                                "of them: at least {} are needed",
+                                seen, seen == 1 ? "" : "s", 1e3 * kBaseline, found.onsets, kMinOnsets * n),
+                    "perturb with steps or pulses, with pauses between them, or pool FILEs of one condition");
   }
   if (!steps_along_all_axes(responses)) {
-    return bad_data("the reference steps along one line, which tells nothing of the other axis",
-                    "perturb in several directions, or explore the one axis: --axes 1");
+    return bad_data("the reference steps along one line only, so the other axis is not identifiable",
+                    "perturb in several directions, or explore one axis: --axes 1");
   }
 
   OnsetSums sums(responses.front());
@@ -239,7 +239,7 @@ Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials,
     found.displacement += one.way / static_cast<double>(found.onsets);
   }
   const Matrix theta = sums.coefficients();
-  if (!theta.allFinite()) return bad_data("the motion after the onsets does not tell M, B and K apart");
+  if (!theta.allFinite()) return bad_data("the motion after the onsets does not distinguish M, B and K");
   Matrix covariance = Matrix::Zero(3 * n * n, 3 * n * n);
   for (const Response& one : responses) {
     OnsetSums rest = sums;

@@ -16,10 +16,10 @@ namespace mbk::explore {
 /// for each force f: instrumental variables by what other onsets move at the same time, so that neither noise of the
 /// position nor what the limb does on its own account is taken for mechanics, with α from the least root of |A − a H| =
 /// 0 and Fuller's correction by 1/G (Hausman, Newey, Woutersen, Chao & Swanson 2012): where the response to the steps
-/// hardly tells M, B and K apart, the estimate stays finite, drawn towards least squares. The covariance is the
-/// jackknife's over onsets (G − 1)/G Σ_g (θ₋g − θ)(θ₋g − θ)ᵀ, as onsets are independent and rows of one are not; the
-/// intervals are those of Student's t with G/n − 1 degrees of freedom: each onset tells of one direction. The handle
-/// mass, where all trials name the same, is subtracted from M.
+/// hardly distinguishes M, B and K, the estimate stays finite and is biased towards least squares. The covariance is
+/// the jackknife's over onsets (G − 1)/G Σ_g (θ₋g − θ)(θ₋g − θ)ᵀ, as onsets are independent and rows of one are not;
+/// the intervals are those of Student's t with G/n − 1 degrees of freedom: each onset tells of one direction. The
+/// handle mass, where all trials name the same, is subtracted from M.
 /// @param window_s above twice the filter's window
 /// @fails  usage: the window is too short. No trial has a reference; fewer than four onsets for each axis after which
 /// the limb moved from rest; two axes, and all steps along one line.

@@ -8,7 +8,7 @@
 namespace mbk::explore {
 
 Result<void> check_alike(std::span<const ExplorationTrial> trials) {
-  if (trials.empty()) return bad_data("there is no recording to explore");
+  if (trials.empty()) return bad_data("no recording was given");
   const ExplorationTrial& first = trials.front();
   for (const ExplorationTrial& trial : trials) {
     if (trial.input.cols() != first.input.cols() || trial.output.cols() != first.output.cols()) {
@@ -16,9 +16,11 @@ Result<void> check_alike(std::span<const ExplorationTrial> trials) {
                       trial.source.label());
     }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
-      return bad_data(fmt::format("{:.6g} Hz beside {:.6g} Hz: recordings at different rates are not averaged",
-                                  1.0 / trial.sample_time, 1.0 / first.sample_time),
-                      "bring them to one rate by --resample", trial.source.label());
+      return bad_data(
+          fmt::format(
+              "the sample rates are {:.6g} Hz and {:.6g} Hz; only recordings with the same rate can be averaged",
+              1.0 / trial.sample_time, 1.0 / first.sample_time),
+          "resample them to one rate with --resample", trial.source.label());
     }
   }
   return {};

@@ -7,7 +7,7 @@
 
 namespace mbk::explore {
 
-/// Trials that are averaged have the same signals at the same rate.
+/// Checks that trials to be averaged have the same signals at the same rate.
 /// @fails  no trial; different numbers of inputs or outputs; different sample times: the message names the file.
 [[nodiscard]] Result<void> check_alike(std::span<const ExplorationTrial> trials);
 

@@ -14,9 +14,9 @@ bool by_pulses(std::span<const ExplorationTrial> trials) {
   });
 }
 
-std::string periods_said(const FrequencyResponseEstimate& found) {
+std::string periods_text(const FrequencyResponseEstimate& found) {
   const PeriodicFacts& facts = *found.periodic;
-  return fmt::format("the {} repeats itself every {:g} s{}; {} realisation{} of {} period{}{}",
+  return fmt::format("the {} repeats every {:g} s{}; {} realisation{} of {} period{}{}",
                      found.by_reference ? "reference" : "input", facts.period_s, facts.period_found ? "" : ", as given",
                      facts.realisations, facts.realisations == 1 ? "" : "s", facts.periods,
                      facts.periods == 1 ? "" : "s", facts.realisations > 1 ? " or more" : "");
@@ -28,20 +28,20 @@ Result<FrequencyResponseEstimate> frequency_response(std::span<const Exploration
                                                      const FrequencyResponseOptions& options) {
   using enum FrequencyResponseMethod;
   const auto requested = [&](FrequencyResponseMethod method) { return !options.method || *options.method == method; };
-  const std::string given = options.method ? "as asked; " : "";
+  const std::string given = options.method ? "as requested; " : "";
   std::string refused;
   if (requested(robust) || requested(fast)) {
     if (!options.method && by_pulses(trials)) {
-      refused = "pulses do not repeat themselves; ";
+      refused = "pulses are not periodic; ";
     } else {
       auto found = periodic_response(trials, {options.period_s, options.max_frequency_hz, options.method == fast});
       if (found && options.method == robust && found->method != robust) {
-        return bad_data(fmt::format("the robust method needs several realisations; there {} {}",
+        return bad_data(fmt::format("the robust method needs several realisations, but there {} {}",
                                     found->periodic->realisations == 1 ? "is" : "are", found->periodic->realisations),
-                        "record trials with other phases, or let --method be fast");
+                        "record trials with different phases, or use --method fast");
       }
       if (found) {
-        found->method_rule = given + periods_said(*found);
+        found->method_rule = given + periods_text(*found);
         return found;
       }
       if (options.method || found.error().kind == ErrorKind::usage) return found;
@@ -50,12 +50,12 @@ Result<FrequencyResponseEstimate> frequency_response(std::span<const Exploration
   }
   if (requested(local_polynomial)) {
     auto found = local_polynomial_response(trials, {1.0 / options.segment_s, options.max_frequency_hz});
-    if (found) found->method_rule = given + refused + "any perturbation will do";
+    if (found) found->method_rule = given + refused + "suitable for any perturbation";
     if (found || options.method || found.error().kind == ErrorKind::usage) return found;
     refused += found.error().message + "; ";
   }
   auto found = welch_response(trials, {options.segment_s, options.max_frequency_hz});
-  if (found) found->method_rule = given + refused + "averages any perturbation";
+  if (found) found->method_rule = given + refused + "suitable for any perturbation";
   return found;
 }
 
@@ -66,12 +66,11 @@ std::vector<Warning> warnings_of(const FrequencyResponseEstimate& found) {
     const Vector coherence = found.multiple_coherence.col(i);
     const Index low = (coherence.array() < kHalf).count();
     if (2 * low <= coherence.size()) continue;
-    warnings.push_back({WarningCode::low_coherence,
-                        fmt::format("at {} of {} frequencies less than half of {} follows the motion: noise, or a limb "
-                                    "that is not linear",
-                                    low, coherence.size(), found.outputs[static_cast<std::size_t>(i)].name),
-                        "perturb more strongly or average more trials; choose --max-frequency within what the "
-                        "perturbation excites"});
+    warnings.push_back(
+        {WarningCode::low_coherence,
+         fmt::format("at {} of {} frequencies less than half of {} follows the motion: noise, or a nonlinear limb", low,
+                     coherence.size(), found.outputs[static_cast<std::size_t>(i)].name),
+         "perturb more strongly, average more trials, or choose --max-frequency within the excited band"});
     break;
   }
   if (!found.periodic) return warnings;
@@ -82,17 +81,17 @@ std::vector<Warning> warnings_of(const FrequencyResponseEstimate& found) {
         {WarningCode::few_realisations,
          fmt::format("{} realisations leave {:g} degree{} of freedom for the intervals, which are wide",
                      facts.realisations, found.degrees_of_freedom[0], found.degrees_of_freedom[0] == 1.0 ? "" : "s"),
-         "name more trials whose perturbation has other phases"});
+         "add trials with different phases of the perturbation"});
   }
   const bool by_realisations = facts.total_over_noise && facts.total_over_noise_p < 0.01;
   const bool by_lines = (facts.even && facts.even->detected()) || (facts.odd_lines && facts.odd_lines->detected());
   if (by_realisations || by_lines) {
     warnings.push_back({WarningCode::nonlinear_distortion,
-                        by_realisations ? fmt::format("realisations differ by {:.3g} times the variance of noise: the "
-                                                      "limb is not linear at this size of perturbation",
+                        by_realisations ? fmt::format("the variance between realisations is {:.3g} times that of "
+                                                      "noise: the limb is nonlinear at this amplitude of perturbation",
                                                       *facts.total_over_noise)
-                                        : "lines that the perturbation leaves empty hold more than noise: the limb is "
-                                          "not linear at this size of perturbation",
+                                        : "lines that the perturbation does not excite contain more than noise: the "
+                                          "limb is nonlinear at this amplitude of perturbation",
                         "perturb less, and compare the responses"});
   }
   return warnings;

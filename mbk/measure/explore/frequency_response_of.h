@@ -21,10 +21,10 @@ struct FrequencyResponseOptions {
   double max_frequency_hz = 50.0;
 };
 
-/// The frequency response by the method that was asked for or, by default, the first of these that the data allow:
+/// The frequency response by the requested method or, by default, the first of these that the data allow:
 /// periods and realisations (robust), periods of one realisation (fast), local polynomials, averaged spectra. Pulses,
 /// whose reference rests most of the time, are not searched for a period. `method_rule` says why.
-/// @fails  as the method; data: the method that was asked for needs other data.
+/// @fails  as the method; data: the data do not allow the requested method.
 [[nodiscard]] Result<FrequencyResponseEstimate> frequency_response(std::span<const ExplorationTrial> trials,
                                                                    const FrequencyResponseOptions& options = {});
 

@@ -107,15 +107,16 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   const auto rows = rows_of_memory(memories.back());
   const Index needed = kRowsPerCoefficient * n * (2 * memories.back() + 1);
   if (row_count(rows) < needed) {
-    return bad_data(fmt::format("an impulse response of ±{:.0f} ms needs {} rows, there are {}",
+    return bad_data(fmt::format("an impulse response of ±{:.0f} ms needs {} rows, but there are {}",
                                 1e3 * T * static_cast<double>(memories.back()), needed, row_count(rows)),
                     "record longer");
   }
   const Matrix Y = centred(rows_of(signals.resistance, rows));
   const Matrix motion = rows_of(signals.position, rows);
   for (Index i = 0; i < n; ++i) {
-    if (!(Y.col(i).squaredNorm() > 0.0)) return bad_data("a force that never varies answers no motion");
-    if (!(numeric::variance(motion.col(i)) > 0.0)) return bad_data("a motion that never varies shows no response");
+    if (!(Y.col(i).squaredNorm() > 0.0)) return bad_data("the force is constant; no response can be estimated");
+    if (!(numeric::variance(motion.col(i)) > 0.0))
+      return bad_data("the motion is constant; no response can be estimated");
   }
 
   std::vector<Choice> choices;
@@ -125,7 +126,7 @@ Result<ImpulseResponseEstimate> impulse_response(const LimbSignals& signals, con
   for (const Index memory : memories) choices.push_back(best_rank(moments, n, memory, longest, options.rank));
   const Choice chosen = shortest(choices);
   if (chosen.rank == 0) {
-    return fail(ErrorKind::not_usable, "no response to the motion predicts the force better than its mean does",
+    return fail(ErrorKind::not_usable, "the motion does not predict the force better than its mean does",
                 "move the limb more, or record longer");
   }
 

@@ -7,7 +7,7 @@
 
 namespace mbk::explore {
 
-/// What is said of a stiffness that was read off displacements of the hand.
+/// Warnings on a stiffness estimated from displacements of the hand.
 struct StiffnessVerdict {
   std::vector<Warning> warnings;
   bool usable = true;

@@ -75,7 +75,7 @@ void explain(const Matrix& reference, LimbSignals& signals) {
 }  // namespace
 
 Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
-  if (trials.empty()) return bad_usage("there is no trial whose response could be found");
+  if (trials.empty()) return bad_usage("no trial was given");
   LimbSignals signals;
   signals.axes = trials.front().axes;
   const double step = trials.front().sample_time;
@@ -91,14 +91,14 @@ Result<LimbSignals> limb_signals(std::span<const ExplorationTrial> trials) {
     if (std::abs(trial.sample_time - step) > 1e-9 * step) {
       return bad_data(
           fmt::format("one trial is sampled at {:.6g} Hz, another at {:.6g} Hz", 1.0 / step, 1.0 / trial.sample_time),
-          "bring them to one rate with --resample");
+          "resample them to one rate with --resample");
     }
     referenced = referenced && trial.reference.size() > 0;
   }
   for (const ExplorationTrial& trial : trials) {
     auto part = MBK_TRY(filtered(trial, signals.every));
     const Index ends = signals.every > 1 ? kEnds : 0;
-    if (part.rows() <= 2 * ends) return bad_data("a trial is too short for the low-pass", "record longer");
+    if (part.rows() <= 2 * ends) return bad_data("a trial is too short for the low-pass filter", "record longer");
     signals.first_sample = kStencil.half_window() + ends * signals.every;
     part = part.middleRows(ends, part.rows() - 2 * ends).eval();
     const Index rows = part.rows();

@@ -119,7 +119,7 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
   if (last < 1 + width) {
     return bad_data(fmt::format("{:.3g} s are too short for local polynomials of {} lines up to {:g} Hz",
                                 static_cast<double>(samples) * first.sample_time, width, options.max_frequency_hz),
-                    "record longer, or let --method be welch");
+                    "record longer, or use --method welch");
   }
   const Index lines = std::min(samples / 2, last + width);
   std::vector<Eigen::MatrixXcd> spectra;
@@ -132,9 +132,9 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
   found.by_reference = by_reference;
   found.inputs = first.input_labels;
   found.outputs = first.output_labels;
-  found.assumes = by_reference ? "noise that is unrelated to the reference and as strong at neighbouring frequencies"
-                               : "noise on the output alone, unrelated to the input and as strong at neighbouring "
-                                 "frequencies";
+  found.assumes =
+      by_reference ? "noise that is unrelated to the reference and equally strong at neighbouring frequencies"
+                   : "noise on the output alone, unrelated to the input and equally strong at neighbouring frequencies";
   const auto freedom = static_cast<double>(count * width - unknowns);
   found.averages = freedom;
   std::vector<double> frequencies, coherences;
@@ -179,8 +179,9 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
   }
   const auto kept = static_cast<Index>(frequencies.size());
   if (2 * kept < tried || kept == 0) {
-    return bad_data("the perturbation leaves most lines empty, so that its response is not told from a transient",
-                    "let --method be welch, or record several trials with other phases");
+    return bad_data(
+        "the perturbation leaves most lines empty, so the response cannot be distinguished from a transient",
+        "use --method welch, or record several trials with different phases");
   }
   found.frequency = Eigen::Map<const Vector>(frequencies.data(), kept);
   found.multiple_coherence = Eigen::Map<const Matrix>(coherences.data(), outputs, kept).transpose();

@@ -20,7 +20,7 @@ struct LocalPolynomialOptions {
 /// output; with a reference X is that and Z = [y; u], from which the response is G_yr G_ur⁻¹, in closed loop too. The
 /// covariance of V from 2R + 1 − 3 (n_u + 1) degrees of freedom, of one trial, gives that of G. Estimates stand half a
 /// bandwidth apart. Coherence is the share of y that the local response to X explains, beyond what it would of
-/// noise alone: in a closed loop noise that moves both u and y is none of it.
+/// noise alone: in a closed loop noise that moves both u and y is not part of it.
 /// @param trials  of the same signals and sample time; the longer are cut to the shortest
 /// @fails  data: too few samples for so many unknowns; the input leaves too many lines empty to tell its response from
 /// a transient, as a periodic one does; usage: a bandwidth or frequency that is not above 0.

@@ -109,14 +109,14 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const ExplorationTrial> tri
   for (std::size_t k = 0; k < trials.size(); ++k) {
     if (trials[k].axes != trials.front().axes ||
         std::abs(trials[k].sample_time / trials.front().sample_time - 1.0) > kSameRate) {
-      return bad_data("recordings of different axes or sample rates", "explore them apart, or --resample");
+      return bad_data("the recordings have different axes or sample rates",
+                      "explore them separately, or use --resample");
     }
     for (const ReferenceRamp& ramp : displacing_ramps(trials[k], options.asked())) {
       ramps.push_back({&trials[k], static_cast<int>(k), ramp});
     }
   }
-  if (ramps.empty())
-    return bad_data("the reference has no ramp to a place that it holds, or does not move along every axis");
+  if (ramps.empty()) return bad_data("the reference has no ramp followed by a hold, or does not move along every axis");
   PlateauStiffness found;
   found.axes = trials.front().axes;
   found.baseline_s = kBaseline;
@@ -125,9 +125,9 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const ExplorationTrial> tri
   found.to_s = options.to_s.value_or(std::min(kLatest, usual_hold_end(ramps)));
   if (options.from_s) found.from_s = *options.from_s;
   if (options.asked() && !(found.from_s >= 0.0 && found.to_s - found.from_s >= 4.0 * T)) {
-    return bad_usage(fmt::format("a plateau from {:g} ms to {:g} ms after the onset is no window", 1e3 * found.from_s,
-                                 1e3 * found.to_s),
-                     "it begins after the onset and takes four samples at least");
+    return bad_usage(fmt::format("the plateau from {:g} ms to {:g} ms after the onset is not a valid window",
+                                 1e3 * found.from_s, 1e3 * found.to_s),
+                     "start it after the onset, with at least four samples");
   }
   ramps = long_enough(ramps, found.to_s);
   found.left_out = all - static_cast<int>(ramps.size());
@@ -139,10 +139,10 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const ExplorationTrial> tri
   if (!options.from_s) {
     const double ramp = longest_ramp(ramps), last = found.to_s - kShortestWindow;
     if (ramp > last + 0.5 * T) {
-      return bad_data(fmt::format("the ramps take {:.0f} ms: too little of the plateau is left until {:.0f} ms after "
-                                  "the onset",
-                                  1e3 * ramp, 1e3 * found.to_s),
-                      "ramp faster; or a later --plateau-to, if the participant does not react within it");
+      return bad_data(
+          fmt::format("the ramps take {:.0f} ms, so too little of the plateau is left until {:.0f} ms after the onset",
+                      1e3 * ramp, 1e3 * found.to_s),
+          "ramp faster, or choose a later --plateau-to if the participant does not react before it");
     }
     found.from_s = kStep * std::ceil(ramp / kStep - 1e-6);
     while (found.from_s + kStep <= last + 1e-9 &&
@@ -151,8 +151,8 @@ Result<PlateauStiffness> plateau_stiffness(std::span<const ExplorationTrial> tri
     }
     found.from_s = std::min(found.from_s, last);
   }
-  found.window_rule = fmt::format("{}, {}", options.from_s ? "from where it was asked" : "from where the hand rests",
-                                  options.to_s           ? "to where it was asked"
+  found.window_rule = fmt::format("{}, {}", options.from_s ? "from the requested time" : "from when the hand rests",
+                                  options.to_s           ? "to the requested time"
                                   : found.to_s < kLatest ? "to the end of the hold"
                                                          : "to the earliest voluntary reaction");
   const SampleWindow window = in_samples(found.from_s, found.to_s, T);

@@ -17,11 +17,11 @@ struct PlateauOptions {
   [[nodiscard]] bool asked() const { return from_s || to_s; }
 };
 
-/// The ramps of a trial that displace the hand: none where the reference is a force or was not recorded. Steps count
-/// where they are asked for.
+/// The ramps of a trial that displace the hand: none if the reference is a force or was not recorded. Steps are
+/// included on request.
 [[nodiscard]] std::vector<ReferenceRamp> displacing_ramps(const ExplorationTrial& trial, bool steps_too = false);
 
-/// Whether the reference is ramps and holds: at least so many that a stiffness can be read from them.
+/// Whether the reference consists of ramps and holds, enough to estimate a stiffness.
 [[nodiscard]] bool is_ramp_and_hold(const ExplorationTrial& trial, const PlateauOptions& options);
 
 /// Stiffness from the mean restoring force on plateaus (Mussa-Ivaldi, Hogan & Bizzi 1985): for each ramp place and
@@ -29,7 +29,7 @@ struct PlateauOptions {
 /// them. By default the window ends 0.3 s after the onset, or with the hold where that is shorter, and begins as soon
 /// after the ramp as what inertia and damping add is below 1 % of K, but not later than 60 ms before its end. The mean
 /// force of inertia and damping over a window of length T is exactly M Δẋ/T + B Δx/T, with Δ from its begin to its end:
-/// what the hand's motion adds is said for a limb of stated B/K and M/K (PlateauStiffness).
+/// this contribution is reported for a limb with stated B/K and M/K (PlateauStiffness).
 /// @param trials  whole recordings, with the rest before the first ramp
 /// @fails  usage: a window of fewer than four samples, or that begins before the onset. data: no ramp with a hold and
 /// a rest that are long enough; as regress_stiffness.

@@ -51,7 +51,7 @@ Result<Reaches> reaches_of(std::span<const ExplorationTrial> trials, const std::
   Reaches found;
   for (const ExplorationTrial& trial : trials) {
     if (std::abs(trial.sample_time - trials.front().sample_time) > kSameRate * trial.sample_time) {
-      return bad_data("it has another sample rate than the first one", "", trial.source.label());
+      return bad_data("its sample rate differs from that of the first file", "", trial.source.label());
     }
     const bool with_reference = trial.reference.size() > 0;
     if (with_reference && trial.reference_quantity == ReferenceQuantity::force) {
@@ -75,8 +75,8 @@ Result<Reaches> reaches_of(std::span<const ExplorationTrial> trials, const std::
     }
   }
   if (all.empty() && found.left_out == 0) {
-    return bad_data(fmt::format("there is no event '{}'", trigger),
-                    "reaches are aligned at an event: --trigger names it");
+    return bad_data(fmt::format("event '{}' is missing", trigger),
+                    "name the event at which reaches are aligned with --trigger");
   }
   double largest = 0.0;
   for (const Reach& one : all) largest = std::max(largest, one.commanded.norm());
@@ -88,15 +88,15 @@ Result<Reaches> reaches_of(std::span<const ExplorationTrial> trials, const std::
     }
   }
   if (found.displaced.empty()) {
-    return bad_data("no reach was displaced: the reference does not move after any trigger",
-                    "the reference is the displacement that was commanded relative to the predicted way: "
-                    "--channels xr=…,yr=…");
+    return bad_data(
+        "no reach was displaced: the reference does not move after any trigger",
+        "give as reference the commanded displacement relative to the predicted path: --channels xr=…,yr=…");
   }
   if (found.undisturbed.size() < kMin) {
-    return bad_data(fmt::format("{} of {} reaches are undisturbed, and {} are needed to predict the others",
+    return bad_data(fmt::format("{} of {} reaches are undisturbed, but {} are needed to predict the others",
                                 found.undisturbed.size(), all.size(), kMin),
-                    "add recordings of undisturbed reaches; the reference is the displacement alone, zero where there "
-                    "is none, and not the way of the hand");
+                    "add recordings of undisturbed reaches, and give as reference the displacement only (zero if there "
+                    "is none), not the path of the hand");
   }
   return found;
 }
@@ -111,8 +111,7 @@ Result<ReachStiffness> reach_stiffness(std::span<const ExplorationTrial> trials,
   how.to = options.to_s.value_or(how.to);
   if (!(how.from >= 0.0 && how.to > how.from && how.to <= how.prediction.future)) {
     return bad_usage(
-        fmt::format("a plateau from {:g} ms to {:g} ms after the trigger is no window of the {:g} ms that "
-                    "are predicted",
+        fmt::format("the plateau from {:g} ms to {:g} ms after the trigger is not within the predicted {:g} ms",
                     1e3 * how.from, 1e3 * how.to, 1e3 * how.prediction.future));
   }
   auto all = MBK_TRY(reaches_of(trials, options.trigger, how));

@@ -22,7 +22,7 @@ struct ReachOptions {
 /// was let go on undisturbed. A reach is displaced where the mean reference over the window differs from that just
 /// before the trigger by a tenth, or more, of the largest such difference.
 /// servo_displacement_stiffness is made twice: by each reach's own past, and by the mean of the undisturbed reaches.
-/// @param warnings  to which what the user must know is added
+/// @param warnings  warnings are appended
 /// @fails  data: no such event; no reference of a position; fewer than 8 undisturbed reaches; as
 /// servo_displacement_stiffness.
 [[nodiscard]] Result<ReachStiffness> reach_stiffness(std::span<const ExplorationTrial> trials,

@@ -85,8 +85,8 @@ class Cascade {
     if (T_ > kEarliest) {
       result_.found = DelayedResponse::not_identifiable;
       result_.why = fmt::format(
-          "samples {:.3g} ms apart cannot separate a reflex after {:g} to {:g} ms from the intrinsic response; {:g} Hz "
-          "are needed at least",
+          "a sample interval of {:.3g} ms cannot separate a reflex after {:g} to {:g} ms from the intrinsic response; "
+          "at least {:g} Hz are needed",
           1e3 * T_, 1e3 * kEarliest, 1e3 * kLatest, 1.0 / kEarliest);
       return result_;
     }
@@ -95,16 +95,15 @@ class Cascade {
     const Index count = row_count(rows_);
     if (count < kRowsPerCoefficient * coefficients) {
       result_.found = DelayedResponse::not_identifiable;
-      result_.why =
-          fmt::format("a response of up to {:.2f} s has {} coefficients, and {} rows of {:.3g} ms do not hold them",
-                      kLongest, coefficients, count, 1e3 * T_);
+      result_.why = fmt::format("a response of up to {:.2f} s has {} coefficients, too many for {} rows of {:.3g} ms",
+                                kLongest, coefficients, count, 1e3 * T_);
       return result_;
     }
     Y_ = centred(rows_of(s_.resistance, rows_));
     for (Index j = 0; j < n_; ++j) {
-      if (!(Y_.col(j).squaredNorm() > 0.0)) return bad_data("a force that never varies answers no motion");
+      if (!(Y_.col(j).squaredNorm() > 0.0)) return bad_data("the force is constant; no response can be estimated");
       if (!(numeric::variance(s_.position.col(j)) > 0.0))
-        return bad_data("a motion that never varies shows no response");
+        return bad_data("the motion is constant; no response can be estimated");
     }
     fit_intrinsic();
     choose_direction();
@@ -249,28 +248,27 @@ class Cascade {
     if (rectified_helps && one_sided) {
       result_.found = DelayedResponse::reflex;
       result_.why = fmt::format(
-          "stretch in one direction predicts {:.2f} % of the force, in both alike {:.2f} %, without a delayed response "
-          "{:.2f} % (cross-validated); {} that both directions are answered alike",
+          "stretch in one direction predicts {:.2f} % of the force, in both directions {:.2f} %, without a delayed "
+          "response {:.2f} % (cross-validated); {} for equal responses in both directions",
           100.0 * (1.0 - one), 100.0 * (1.0 - both), 100.0 * (1.0 - none), p_text(result_.p_value));
     } else if (rectified_helps) {
       result_.found = DelayedResponse::none;
       result_.why = fmt::format(
           "stretch in one direction predicts {:.2f} % of the force, in the opposite one {:.2f} %, without a delayed "
-          "response {:.2f} % (cross-validated): the force is nearly the same to and fro, as where the limb or its "
-          "posture is not linear, and a reflex answers one direction alone",
+          "response {:.2f} % (cross-validated): the force is nearly the same in both directions, which indicates a "
+          "nonlinear limb or posture, whereas a reflex responds to one direction only",
           100.0 * (1.0 - one), 100.0 * (1.0 - to_and_fro_.mean()), 100.0 * (1.0 - none));
     } else if (both < none && better(both_ways_, none_)) {
       result_.found = DelayedResponse::both_directions;
       result_.why = fmt::format(
-          "a delayed response to motion in both directions alike predicts {:.2f} % of the force, to one alone {:.2f} "
-          "%, "
-          "without it {:.2f} % (cross-validated); {} that both directions are answered alike",
+          "a delayed response to motion in both directions predicts {:.2f} % of the force, to one direction only "
+          "{:.2f} %, without it {:.2f} % (cross-validated); {} for equal responses in both directions",
           100.0 * (1.0 - both), 100.0 * (1.0 - one), 100.0 * (1.0 - none), p_text(result_.p_value));
     } else {
       result_.found = DelayedResponse::none;
       result_.why = fmt::format(
-          "no delayed response to stretch predicts the force better than the limb alone does ({:.2f} against {:.2f} %, "
-          "cross-validated), or {} that both directions are answered alike is too large",
+          "a delayed response to stretch does not predict the force better than the limb alone ({:.2f} against {:.2f} "
+          "%, cross-validated), or {} for equal responses in both directions is too large",
           100.0 * (1.0 - std::min(one, both)), 100.0 * (1.0 - none), p_text(result_.p_value));
     }
   }

@@ -57,7 +57,7 @@ Cx spectra_of(const ExplorationTrial& trial, Index begin, const Sizes& sizes, bo
   return spectra;
 }
 
-/// What tells realisations apart: the reference, or the mean input.
+/// The signal that distinguishes realisations: the reference, or the mean input.
 Cx identity_of(const Realisation& one, const Sizes& sizes) {
   Cx mean = Cx::Zero(sizes.inputs, sizes.lines);
   for (const Cx& period : one.periods) mean += period.bottomRows(sizes.inputs);
@@ -116,15 +116,15 @@ Result<Index> period_of(std::span<const ExplorationTrial> trials, const Periodic
     const auto whole = static_cast<Index>(std::llround(samples));
     if (whole < 8) return bad_usage(fmt::format("a period of {:g} s has fewer than 8 samples", *options.period_s));
     if (std::abs(samples - static_cast<double>(whole)) > 1e-3) {
-      return bad_usage(fmt::format("a period of {:g} s is no whole number of samples at {:g} Hz", *options.period_s,
+      return bad_usage(fmt::format("a period of {:g} s is not a whole number of samples at {:g} Hz", *options.period_s,
                                    1.0 / first.sample_time));
     }
     return whole;
   }
   const auto found = find_period(by_reference ? first.reference : first.input, by_reference);
   if (!found || *found < 8) {
-    return bad_data(fmt::format("the {} does not repeat itself", by_reference ? "reference" : "input"),
-                    "name its period by --period, or let --method be welch or local-polynomial");
+    return bad_data(fmt::format("the {} is not periodic", by_reference ? "reference" : "input"),
+                    "give its period with --period, or use --method welch or local-polynomial");
   }
   return *found;
 }
@@ -478,12 +478,13 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
 
   std::vector<Realisation> realisations = realisations_of(trials, sizes, by_reference);
   const auto count = static_cast<Index>(realisations.size());
-  if (count == 0) return bad_data(fmt::format("no two periods of {:g} s follow each other", period_s), "record longer");
+  if (count == 0)
+    return bad_data(fmt::format("there are no two consecutive periods of {:g} s", period_s), "record longer");
   if (count < sizes.inputs) {
-    return bad_data(fmt::format("{} realisation{} of a periodic perturbation cannot tell {} inputs apart at the same "
+    return bad_data(fmt::format("{} realisation{} of a periodic perturbation cannot distinguish {} inputs at the same "
                                 "line",
                                 count, count == 1 ? "" : "s", sizes.inputs),
-                    "record several trials with other phases, or let --method be welch or local-polynomial");
+                    "record several trials with different phases, or use --method welch or local-polynomial");
   }
   PeriodicFacts facts;
   facts.period_s = period_s;
@@ -543,8 +544,8 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
     known.G.push_back(B * inverses.back());
   }
   if (known.at.empty()) {
-    return bad_data("at no line the inputs are excited in all directions",
-                    "record trials with other phases of the axes, or let --method be welch or local-polynomial");
+    return bad_data("the inputs are not excited in all directions at any line",
+                    "record trials with different phases of the axes, or use --method welch or local-polynomial");
   }
 
   FrequencyResponseEstimate found;
@@ -617,11 +618,11 @@ Result<FrequencyResponseEstimate> periodic_response(std::span<const ExplorationT
                                                             2.0 * terms * noise_freedom);
   }
   if (robust) {
-    found.assumes = "errors of realisations that are unrelated and alike: noise and distortion together";
+    found.assumes = "independent, identically distributed errors of realisations: noise and distortion together";
   } else if (!odd_known.empty()) {
-    found.assumes = "noise as it changes from period to period, and odd distortion as at the odd lines left empty";
+    found.assumes = "noise as it varies between periods, and odd distortion as at the empty odd lines";
   } else {
-    found.assumes = "noise as it changes from period to period; distortion that repeats with the period is not in them";
+    found.assumes = "noise as it varies between periods; they do not include distortion that repeats in every period";
   }
   found.periodic = facts;
   add_intervals(found);

@@ -50,15 +50,15 @@ Result<Vector> ReachPrediction::past_of(const RecordedReach& reach) const {
   if (reach.position.cols() != axes_) return bad_data("reaches of different axes");
   if (reach.trigger < step_ * lags_ || reach.trigger >= reach.position.rows()) {
     return bad_data(
-        fmt::format("a reach has {} samples before its trigger, and {} are needed", reach.trigger, step_ * lags_),
-        "look at less of the past, or trigger later");
+        fmt::format("a reach has {} samples before its trigger, but {} are needed", reach.trigger, step_ * lags_),
+        "use less of the past, or trigger later");
   }
   Vector past(lags_ * axes_);
   for (Index k = 0; k < lags_; ++k) {
     past.segment(k * axes_, axes_) =
         (reach.position.row(reach.trigger - (k + 1) * step_) - reach.position.row(reach.trigger)).transpose();
   }
-  if (!past.allFinite()) return bad_data("a place of a reach is not finite");
+  if (!past.allFinite()) return bad_data("a position of a reach is not finite");
   return past;
 }
 
@@ -82,7 +82,7 @@ Result<ReachPrediction> ReachPrediction::create(std::span<const RecordedReach> u
   }
   const auto n = static_cast<Index>(undisturbed.size());
   if (n < kMinReaches) {
-    return bad_data(fmt::format("{} undisturbed reaches are fewer than {}", n, kMinReaches), "make more of them");
+    return bad_data(fmt::format("{} undisturbed reaches are fewer than {}", n, kMinReaches), "record more of them");
   }
   ReachPrediction made;
   made.axes_ = undisturbed.front().position.cols();
@@ -95,16 +95,16 @@ Result<ReachPrediction> ReachPrediction::create(std::span<const RecordedReach> u
     const RecordedReach& reach = undisturbed[static_cast<std::size_t>(i)];
     auto past = MBK_TRY(made.past_of(reach));
     if (reach.trigger + made.future_ > reach.position.rows()) {
-      return bad_data(fmt::format("an undisturbed reach ends {} samples behind its trigger, and {} are needed",
+      return bad_data(fmt::format("an undisturbed reach ends {} samples after its trigger, but {} are needed",
                                   reach.position.rows() - reach.trigger, made.future_),
                       "record longer");
     }
     if (made.with_force_ != (reach.force_hand_on_robot.rows() == reach.position.rows()) ||
         (made.with_force_ && reach.force_hand_on_robot.cols() != made.axes_)) {
-      return bad_data("forces of a reach are not as many as its places");
+      return bad_data("a reach has different numbers of forces and positions");
     }
     const Vector future = made.future_of(reach);
-    if (!future.allFinite()) return bad_data("a place or force of a reach is not finite");
+    if (!future.allFinite()) return bad_data("a position or force of a reach is not finite");
     if (data.future.size() == 0) data.future.resize(n, future.size());
     data.past.row(i) = past.transpose();
     data.future.row(i) = future.transpose();

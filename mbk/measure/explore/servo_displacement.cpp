@@ -19,7 +19,7 @@ Result<ServoDisplacementStiffness> servo_displacement_stiffness(std::span<const 
   const auto from = static_cast<Index>(std::llround(options.from / sample_time)),
              to = static_cast<Index>(std::llround(options.to / sample_time));
   if (!(from >= 0 && to - from >= 4 && to <= prediction.future_rows())) {
-    return bad_usage(fmt::format("a plateau from {:g} ms to {:g} ms after the trigger is no window of the prediction",
+    return bad_usage(fmt::format("the plateau from {:g} ms to {:g} ms after the trigger is not within the prediction",
                                  1e3 * options.from, 1e3 * options.to));
   }
   std::vector<DisplacedHand> hands;

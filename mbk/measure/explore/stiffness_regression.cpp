@@ -91,14 +91,14 @@ Result<StiffnessRegression> regress_stiffness(std::span<const DisplacedHand> dis
   const Matrix squares = z.transpose() * z;
   const Vector spread = numeric::symmetric_eigenvalues(squares);
   if (!(spread[0] > kOneLine * spread[axes - 1])) {
-    return bad_data("the displacements lie along one line: the stiffness across it is not identifiable",
-                    "displace the hand in several directions, best in eight");
+    return bad_data("the displacements lie along one line: the stiffness perpendicular to it is not identifiable",
+                    "displace the hand in several directions, ideally eight");
   }
   StiffnessRegression fit;
   const Matrix crossed = d.transpose() * z;
   fit.reached = numeric::singular_values(crossed * numeric::inverse(squares))[axes - 1];
   if (!(fit.reached > 1e-6)) {
-    return bad_data("the hand does not follow the reference at all", "look at the units and the order of the channels");
+    return bad_data("the hand does not follow the reference at all", "check the units and the order of the channels");
   }
   const Matrix a = z * numeric::inverse(crossed);  // rows a_iᵀ
   fit.K = f.transpose() * a;

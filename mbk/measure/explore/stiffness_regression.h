@@ -7,7 +7,7 @@
 
 namespace mbk::explore {
 
-/// Below so many displacements nothing is said.
+/// Minimum number of displacements.
 inline constexpr int kMinDisplacements = 6;
 
 /// K = Σ f zᵀ (Σ d zᵀ)⁻¹ and, with a_i = (Σ z dᵀ)⁻¹ z_i, e_i = f_i − K d_i, h_i = a_iᵀ d_i,

@@ -94,7 +94,7 @@ Result<CourseRows> course_rows(const LimbSignals& signals, const CourseVariable&
   to.s = Eigen::Map<const Vector>(s.data(), total);
   course.from = to.s.minCoeff();
   course.to = to.s.maxCoeff();
-  if (!(course.to > course.from)) return bad_data(fmt::format("{} never changes", variable.name));
+  if (!(course.to > course.from)) return bad_data(fmt::format("{} is constant", variable.name));
   to.s = ((to.s.array() - course.from) / (course.to - course.from)).cwiseMin(1.0).cwiseMax(0.0);
   return course;
 }
@@ -201,24 +201,24 @@ Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseV
   const VaryingModel& model = chosen.model;
   const Index functions = model.basis.size();
   const VaryingFit constants = fit_varying(rows, constant, noise_of(rows, constant));
-  if (!constants.coefficients.allFinite()) return bad_data("the motion does not tell M, B and K apart");
+  if (!constants.coefficients.allFinite()) return bad_data("the motion does not distinguish M, B and K");
   found.bic_gain = std::min(chosen.bic_constant, chosen.bic_last) - chosen.bic;
   const Vector places = Vector::LinSpaced(kPoints, 0.0, 1.0);
   if (functions == 1) {
-    found.why = "BIC prefers constants";
+    found.why = "BIC prefers a constant model";
     found.bic_gain = 0.0;
   } else if (!(found.bic_gain > 0.0)) {
-    found.why = "BIC prefers constants with a force that drifts";
+    found.why = "BIC prefers a constant model with drifting force";
     found.bic_gain = 0.0;
   } else {
     const VaryingFit fit = fit_varying(rows, model, noise_of(rows, model));
-    if (!fit.coefficients.allFinite()) return bad_data("the motion does not tell M, B and K apart");
+    if (!fit.coefficients.allFinite()) return bad_data("the motion does not distinguish M, B and K");
     found.p_value = std::min(1.0, chance_of(fit, functions, p, model.varying));
     set_courses(constants, fit, spline_values(model.basis, places), model.varying, found);
     const double change = std::max({found.M.change, found.B.change, found.K.change});
     found.changes = found.p_value < kChanceOfChange && change > kChange;
     if (!found.changes) {
-      found.why = found.p_value < kChanceOfChange ? fmt::format("they change by {:.0f} % at most, less than {:.0f} %",
+      found.why = found.p_value < kChanceOfChange ? fmt::format("they change by at most {:.0f} %, less than {:.0f} %",
                                                                 100.0 * change, 100.0 * kChange)
                                                   : "the change that BIC prefers is not significant";
     }
@@ -229,7 +229,7 @@ Result<TimeCourseEstimate> time_course(const LimbSignals& signals, const CourseV
     found.varying = model.varying == p ? "M, B and K" : model.varying > n + 1 ? "B and K" : "K";
     found.at = found.from + places.array() * (found.to - found.from);
     for (const double knot : model.basis.knots) found.knots.push_back(found.from + knot * (found.to - found.from));
-    found.why = fmt::format("BIC prefers {} {} splines of {} to constants", functions,
+    found.why = fmt::format("BIC prefers {} {} splines of {} to a constant model", functions,
                             model.basis.degree == 1 ? "linear" : "cubic", found.varying);
     return found;
   }

@@ -126,7 +126,7 @@ Matrix folding(Index J, Index p, Index varying) {
   return fold;
 }
 
-/// The residual's sum of squares; absent where the columns cannot be told apart.
+/// The residual's sum of squares; absent if the columns are linearly dependent.
 std::optional<double> rest_of(const Matrix& gram, const Vector& moment, double power) {
   const Vector scale = gram.diagonal().cwiseMax(0.0).cwiseSqrt();
   if (!(scale.minCoeff() > 0.0)) return std::nullopt;

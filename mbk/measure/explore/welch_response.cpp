@@ -66,10 +66,10 @@ Result<FrequencyResponseEstimate> welch_response(std::span<const ExplorationTria
   const auto spectra = MBK_TRY(dsp::cross_spectra(pieces, Hertz(1.0 / first.sample_time), segment));
   const double n = spectra.independent_segments, dof = n - static_cast<double>(inputs);
   if (!(dof >= 1.0)) {
-    return bad_data(
-        fmt::format("{} segment{} of {:g} s cannot show how sure a response of {} input{} is", spectra.segments,
-                    spectra.segments == 1 ? "" : "s", options.segment_s, inputs, inputs == 1 ? "" : "s"),
-        "record longer, or average shorter segments by --segment");
+    return bad_data(fmt::format("{} segment{} of {:g} s are too few for the uncertainty of a response to {} input{}",
+                                spectra.segments, spectra.segments == 1 ? "" : "s", options.segment_s, inputs,
+                                inputs == 1 ? "" : "s"),
+                    "record longer, or average shorter segments with --segment");
   }
 
   FrequencyResponseEstimate found;

@@ -7,11 +7,11 @@
 
 namespace mbk::identify {
 
-/// A robot's base parameters (Gautier 1991): which of its coefficients some motion could identify, and what the others
-/// are made of. From the regressors of motions that are random and always the same ones, each joint over a whole turn
-/// or 2 m, so that the count is that of the robot's geometry and not of its limits. A coefficient whose column, or its
-/// distance from the span of those before, is below 10⁻⁵ does not count: a right angle that a URDF states as 1.5708
-/// is 4·10⁻⁶ away from one, and is one. Columns are counted among those that are not `fixed`.
+/// Base parameters of a robot (Gautier 1991): the coefficients that a motion can identify, and how the others depend on
+/// them. Computed from the regressors of fixed random motions, each joint over a full turn or 2 m, so that they depend
+/// on the geometry and not on the joint limits. A coefficient is dropped if its column, or the distance of the column
+/// from the span of those before, is below 10⁻⁵: a right angle written as 1.5708 in a URDF, an error of 4·10⁻⁶, remains
+/// a right angle. Columns are counted among those that are not `fixed`.
 [[nodiscard]] numeric::IndependentColumns structural_columns(const robot::DynamicModel& model,
                                                              const std::vector<Index>& fixed = {});
 

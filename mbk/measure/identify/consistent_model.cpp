@@ -78,7 +78,7 @@ Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, co
                                                   double handle_mass) {
   const Index n = coefficients.cols(), p = 3 * n + 1;
   if (n == 0 || coefficients.rows() != p || gram.rows() != p || gram.cols() != p) {
-    return bad_usage(fmt::format("coefficients of {}×{} and a weight of {}×{} do not fit", coefficients.rows(), n,
+    return bad_usage(fmt::format("coefficients of {}×{} and a weight of {}×{} do not match", coefficients.rows(), n,
                                  gram.rows(), gram.cols()));
   }
   if (!coefficients.allFinite() || !gram.allFinite() || !std::isfinite(handle_mass)) {
@@ -121,7 +121,7 @@ Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, co
 
 Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials, const Identification& found) {
   const auto foreign = [] {
-    return bad_usage("the trials are not those of the model", "give those that it was identified from");
+    return bad_usage("the model was not identified from these trials", "give the trials that it was identified from");
   };
   if (trials.empty() || !std::ranges::all_of(trials, [&](const auto& trial) { return trial.axes == found.axes; })) {
     return foreign();
@@ -136,8 +136,7 @@ Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
                               found.structure, found.handle_mass);
   };
   if (!impedance::stacked(found.model).allFinite() || !impedance::stacked(found.judged).allFinite()) {
-    return fail(ErrorKind::not_usable, "there is no model to begin with",
-                "perturb the limb in more directions and frequencies");
+    return fail(ErrorKind::not_usable, "there is no model", "perturb the limb in more directions and frequencies");
   }
   const auto fit = nearest(found.model, Z);
   if (!fit) return tl::unexpected(fit.error());

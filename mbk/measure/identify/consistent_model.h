@@ -24,13 +24,13 @@ struct ConsistentCoefficients {
 [[nodiscard]] Result<ConsistentCoefficients> nearest_consistent(const Matrix& coefficients, const Matrix& gram,
                                                                 Structure structure, double handle_mass);
 
-/// The consistent model nearest to a free one, in the force that both predict for the motion that was measured:
+/// The consistent model nearest to a free one, in terms of the force that both predict for the measured motion:
 ///   minimise Σ_t ‖f(t; θ) − f(t; θ₀)‖² = Σ_j (θ_j − θ₀_j)ᵀ ZᵀZ (θ_j − θ₀_j).
-/// For a model by least squares that is the constrained least squares of the same rows. Call it as
+/// For a least-squares model this is constrained least squares on the same rows. Call it as
 ///   auto found = identify_impedance(trials, options);   auto consistent = consistent_model(trials, *found);
-/// The handle's mass, the structure and the data behind the parameters are those of `found`, by whatever method it was
-/// made. A constraint hides a bias: use a method that has none where the limb pushes back.
-/// @fails the trials are not those of `found`; `found` has no model (rank, or x₀ without a number).
+/// Handle mass, structure and data are those of `found`, with either method. A constraint hides a bias: use an unbiased
+/// method if the limb moves the robot.
+/// @fails the trials are not those of `found`; `found` has no model (rank, or x₀ not finite).
 [[nodiscard]] Result<ConsistentFit> consistent_model(const std::vector<PreparedTrial>& trials,
                                                      const Identification& found);
 

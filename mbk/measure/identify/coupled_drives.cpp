@@ -99,11 +99,11 @@ void warn_of_coupled_drives(const std::vector<PreparedDynamics>& trials, RobotId
   if (joint < 0) return;
   found.warnings.push_back(
       {WarningCode::missing_dynamics,
-       fmt::format("{:.0f} % of the residual torque of joint {} go with the speed of joint {}, as where gears couple "
-                   "both drives; the model has no term for it, and friction of both joints is biased",
+       fmt::format("{:.0f} % of the residual torque of joint {} follow the speed of joint {}, as if gears coupled both "
+                   "drives; the model has no term for this, so the friction of both joints is biased",
                    100.0 * most, joint + 1, other + 1),
-       "undo the coupling in the torques and angles that are recorded, if the robot's maker states it; do not compute "
-       "a force from motion in which both joints turn"});
+       "correct the coupling in the recorded torques and angles, if the manufacturer states it; do not compute a force "
+       "from motion in which both joints turn"});
 }
 
 }  // namespace mbk::identify

@@ -4,10 +4,10 @@
 
 namespace mbk::identify {
 
-/// What a finite impulse response makes of the past and present of `reference` in `signal`, its mean included: the part
-/// of a signal in a loop that its noise has no share in. As long as a twentieth of the samples, at most 300. The
-/// response for each half of the samples is that of the other half: with its own, the response would follow the noise
-/// of that very half a little, and the bias of instruments that are many and weak would come back.
+/// The part of `signal` that a finite impulse response explains from past and present of `reference`, including its
+/// mean: the noise-free part of a signal in a loop. The response is as long as a twentieth of the samples, at most 300.
+/// Each half of the samples uses the response estimated on the other half: its own would fit some of the noise of that
+/// half and reintroduce the bias of many weak instruments.
 [[nodiscard]] Vector explained_by_past(const Vector& reference, const Vector& signal);
 
 }  // namespace mbk::identify

@@ -43,18 +43,18 @@ class Checker {
       id_.usable = false;
     } else if (excitation.condition > kLargestCondition) {
       warn(WarningCode::poorly_conditioned,
-           fmt::format("the regressors are nearly dependent (condition {:.2g})", excitation.condition),
+           fmt::format("the regressors are nearly linearly dependent (condition number {:.2g})", excitation.condition),
            "perturb at several frequencies and in both directions");
     }
     if (axes() == 2 && excitation.motion_ratio < kSmallestMotionRatio) {
-      warn(
-          WarningCode::motion_on_one_line,
-          fmt::format("the hand moved along one line: across it only {:.1f} % as far", 100.0 * excitation.motion_ratio),
-          "perturb both axes independently, or measure the one axis: --axes 1, with its columns in --channels");
+      warn(WarningCode::motion_on_one_line,
+           fmt::format("the hand moved along one line: perpendicular to it only {:.1f} % as far",
+                       100.0 * excitation.motion_ratio),
+           "perturb both axes independently, or measure one axis: --axes 1, with its columns in --channels");
     }
     if (excitation.duration < kShortestDuration) {
       warn(WarningCode::too_little_data,
-           fmt::format("{:.1f} s of data stand behind the parameters, too few for the standard errors to be trusted",
+           fmt::format("the parameters are estimated from only {:.1f} s of data, too few for reliable standard errors",
                        excitation.duration),
            fmt::format("record at least {:g} s, or pool several trials with --pool", kShortestDuration));
     }
@@ -67,34 +67,35 @@ class Checker {
     const bool damped = id_.structure != Structure::mass_spring;
     if (inertia.largest < 0.0 && stiffness.largest < 0.0 && (!damped || damping.largest < 0.0)) {
       warn(WarningCode::force_sign_reversed,
-           "inertia, damping and stiffness are all negative: the force has the other sign",
-           "F is what the limb exerts on the machine: put a minus before its columns in a map of all channels, as in "
+           "inertia, damping and stiffness are all negative: the force was recorded with the opposite sign",
+           "F must be the force of the limb on the machine: put a minus before its columns, naming all channels, as in "
            "--channels x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13");
       id_.usable = false;
       return;
     }
     if (!(inertia.smallest > 0.0)) {
       warn(WarningCode::inertia_not_positive,
-           fmt::format("the inertia is {}: no limb has that", stated(inertia, units_.inertia)),
+           fmt::format("the inertia is {}, which is impossible for a limb", stated(inertia, units_.inertia)),
            "perturb at higher frequencies, for longer, or pool trials with --pool");
       id_.usable = false;
     }
     if (!(stiffness.smallest > 0.0)) {
-      warn(WarningCode::stiffness_not_positive, fmt::format("the stiffness is {}", stated(stiffness, units_.stiffness)),
+      warn(WarningCode::stiffness_not_positive,
+           fmt::format("the stiffness is {}, not positive", stated(stiffness, units_.stiffness)),
            "perturb at lower frequencies, for longer, or pool trials with --pool");
       id_.usable = false;
     }
     if (damped && !(damping.smallest > 0.0)) {
       warn(WarningCode::damping_not_positive,
-           fmt::format("the damping is {}: the limb feeds in energy, or force and position are not simultaneous",
+           fmt::format("the damping is {}: the limb delivers energy, or force and position are not synchronised",
                        stated(damping, units_.damping)),
-           "'mbk passivity' shows by the energy whether the limb itself acted; if it did not, force and position are "
-           "not simultaneous");
+           "check with 'mbk passivity' whether the limb absorbed energy in the trial; if it did, synchronise "
+           "force and position");
     }
   }
 
   void check_band() {
-    // Of pooled trials, the one whose filter leaves least of its band.
+    // Of pooled trials, the one whose filter passes the smallest part of its band.
     const Preparation& how =
         *std::ranges::min_element(id_.preparations, [](const Preparation& a, const Preparation& b) {
           return passed_band(a) * b.band_high.value < passed_band(b) * a.band_high.value;
@@ -103,13 +104,13 @@ class Checker {
     const Eigenvalues inertia = eigenvalues(id_.model.M, 0);
     if (cuts_into_band(how)) {
       warn(WarningCode::band_too_narrow,
-           fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; what is left may not "
+           fmt::format("the {:.3g} Hz filter cuts into the excited band, which reaches {:.3g} Hz; the rest may not "
                        "show the inertia",
                        top, how.band_high.value),
-           "leave --cutoff out, or raise it; --mode reference has a filter of its own");
+           "omit --cutoff or raise it (--mode reference uses its own filter)");
     } else if (inertia.smallest > 0.0 && inertia.smallest < numeric::kNormal95 * inertia.standard_error) {
       warn(WarningCode::band_too_narrow,
-           fmt::format("in the band up to {:.3g} Hz the inertia is not distinguishable from zero: {}", top,
+           fmt::format("in the band up to {:.3g} Hz the inertia is not significantly different from zero: {}", top,
                        stated(inertia, units_.inertia)),
            "perturb at higher frequencies");
     }
@@ -119,26 +120,25 @@ class Checker {
     const Fit& fit = id_.fit;
     const char* const what = axes() == 1 ? "reaction" : "force in one axis";
     if (!fit.held_out) {
-      warn(WarningCode::no_held_out_data, "no data were held out, so the fit is judged on the data that made it",
+      warn(WarningCode::no_held_out_data, "no data were held out, so the fit is evaluated on the data used for fitting",
            "record more, or set --split");
     } else if ((fit.vaf_in_sample - fit.vaf).maxCoeff() > kVafDrop) {
       warn(WarningCode::held_out_fit_poor,
-           fmt::format("the model explains {:.1f} % of the force that made it, and only {:.1f} % of the force held out",
-                       fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
-           "the limb changed during the recording, or there is too little data: look at the parts with --from and "
-           "--to");
+           fmt::format(
+               "the model explains {:.1f} % of the force in the fitted data, but only {:.1f} % in the held-out data",
+               fit.vaf_in_sample.minCoeff(), fit.vaf.minCoeff()),
+           "measure parts with --from and --to to see whether the limb changed during the recording, or record longer");
     }
     if (!fit.vaf.array().isFinite().all()) {
-      warn(WarningCode::fit_poor, fmt::format("the {} never changes, so that nothing of it can be explained", what),
+      warn(WarningCode::fit_poor, fmt::format("the {} is constant, so there is nothing to explain", what),
            "check the force sensor and its channel");
       id_.usable = false;
     } else if (const double least = std::min(fit.vaf.minCoeff(), fit.vaf_in_sample.minCoeff()); least < kPoorVaf) {
-      warn(
-          WarningCode::fit_poor,
-          fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
-                      least < fit.vaf.minCoeff() ? " that made them" : ""),
-          "the limb may have acted, or its reflexes may be strong, as 'mbk explore' shows: do not read M, B and K as a "
-          "passive limb's; 'mbk passivity' shows by the energy whether it acted");
+      warn(WarningCode::fit_poor,
+           fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
+                       least < fit.vaf.minCoeff() ? " in the fitted data" : ""),
+           "look for voluntary activity or reflexes with 'mbk explore', and check with 'mbk passivity' whether the "
+           "limb absorbed energy; do not interpret M, B and K as those of a passive limb");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
     }
   }
@@ -150,26 +150,26 @@ class Checker {
                                      {"posture", &TrialConditions::posture}}) {
       std::string first;
       for (const TrialConditions& one : id_.conditions) {
-        const std::string& said = one.*part;
-        if (first.empty()) first = said;
-        if (said.empty() || said == first) continue;
+        const std::string& value = one.*part;
+        if (first.empty()) first = value;
+        if (value.empty() || value == first) continue;
         warn(WarningCode::mixed_conditions,
-             fmt::format("the pooled recordings differ in {}: '{}' and '{}'; one model is found for all", name, first,
-                         said),
-             "pool only what belongs together");
+             fmt::format("the pooled recordings differ in {}: '{}' and '{}'; one model is fitted to all", name, first,
+                         value),
+             "pool only recordings of one participant, condition and posture");
         break;
       }
     }
   }
 
-  /// Instruments know what the reference moves. A limb that responds to each pulse after a delay of its own does what
-  /// the reference made it do, too: then they take that response for mechanics, and nothing in the data tells it apart.
+  /// Instruments are the motion caused by the reference. If the limb responds to each pulse after a delay, its response
+  /// is caused by the reference, too, and is attributed to mechanics; the data cannot distinguish the two.
   void check_response() {
     const bool by_instruments = id_.method == Method::instrumental_variables;
     if (by_instruments && id_.instrument && !id_.instrument->strong()) {
       warn(WarningCode::weak_instruments,
-           fmt::format("what the reference alone moves is too little beside the rest: first-stage F {:.3g}, and below "
-                       "{:g} the intervals of instrumental variables do not hold",
+           fmt::format("the reference explains too little of the motion: first-stage F is {:.3g}, but the intervals of "
+                       "instrumental variables need more than {:g}",
                        id_.instrument->weakest(), kStrongInstruments),
            "perturb more or for longer, pool several trials with --pool, or use --method ls and read its warnings");
       id_.usable = false;
@@ -178,20 +178,22 @@ class Checker {
     const double induced = largest_share(id_.response->induced);
     const bool pulses = induced > kUnmodelled;
     warn(WarningCode::unmodelled_response,
-         fmt::format("{:.0f} % of the force follows the perturbation and is neither inertia nor damping nor stiffness: "
-                     "the limb responds by will or reflex, and M, B and K are biased by the part that looks like them",
+         fmt::format("{:.0f} % of the force follows the perturbation without being inertia, damping or stiffness: a "
+                     "voluntary or reflex response of the limb, which biases M, B and K",
                      100.0 * id_.response->largest()),
-         "ask for no response, perturb less or less predictably, and do not read M, B and K as a passive limb's");
+         "ask the participant to give no response, or perturb less or less predictably; do not interpret M, B and K as "
+         "those of a passive limb");
     if (!by_instruments || !pulses) return;
     warn(WarningCode::invalid_instruments,
-         fmt::format("the residual has {:.0f} % of the force's variance more than at rest between the pulses: it is no "
-                     "noise but the limb's response to each of them, which instrumental variables take for mechanics",
-                     100.0 * induced),
+         fmt::format(
+             "during pulses the variance of the residual is higher than at rest between them, by {:.0f} % of that of "
+             "the force: the limb responds to each pulse, which instrumental variables attribute to mechanics",
+             100.0 * induced),
          "use --method ls and read its warnings, or perturb with a multisine");
     id_.usable = false;
   }
 
-  /// What M, B and K take for granted, and the data contradict.
+  /// Assumptions of the model that the data contradict.
   void check_assumptions() {
     for (const AssumptionTest& test : id_.assumptions) {
       if (!test.contradicted) continue;
@@ -200,77 +202,70 @@ class Checker {
         case Assumption::simultaneous:
           warn(WarningCode::missing_dynamics,
                fmt::format(
-                   "the force does what no inertia, damping and stiffness does, much as if it came {:.1f} ms {}: "
-                   "force and position are not simultaneous, the grip yields, or the limb responds after a "
-                   "delay",
+                   "part of the force is not explained by inertia, damping and stiffness, as if it came {:.1f} ms too "
+                   "{}: force and position are not synchronised, the grip yields, or the limb responds after a delay",
                    1e3 * size, test.size > 0.0 ? "late" : "early"),
-               "find the delay of the force sensor with a known mass and 'mbk sensor delay', and give it with "
-               "--force-delay-ms; hold the handle more rigidly; 'mbk explore' shows what the force does beside M, B "
-               "and K");
+               "measure the delay of the force sensor with a known mass ('mbk sensor delay') and correct it with "
+               "--force-delay-ms; hold the handle more firmly; look for other dynamics with 'mbk explore'");
           break;
         case Assumption::linear_stiffness:
-          warn(
-              WarningCode::nonlinear_stiffness,
-              fmt::format("the stiffness depends on the amplitude: at that of this motion the limb is {:.0f} % {} than "
-                          "for small motion",
-                          100.0 * size, test.size > 0.0 ? "stiffer" : "less stiff"),
-              "perturb less, and state the amplitude beside M, B and K; 'mbk explore' of trials with other phases "
-              "shows how "
-              "much of the force is not linear");
+          warn(WarningCode::nonlinear_stiffness,
+               fmt::format("the stiffness depends on the amplitude: at the amplitude of this motion the limb is {:.0f} "
+                           "% {} than for small motion",
+                           100.0 * size, test.size > 0.0 ? "stiffer" : "less stiff"),
+               "perturb less, and report the amplitude with M, B and K; 'mbk explore' with trials of different phases "
+               "shows the nonlinear part of the force");
           break;
         case Assumption::no_dry_friction:
           warn(WarningCode::dry_friction,
-               fmt::format("{:.2g} {} of the force depend on the direction of the motion and not on its speed: damping "
-                           "and stiffness are biased by that friction",
+               fmt::format("{:.2g} {} of the force depend on the direction of motion but not on its speed: dry "
+                           "friction, which biases damping and stiffness",
                            size, units_.force),
-               "look for friction between the limb and the force sensor; perturb more or faster, which makes its share "
-               "smaller");
+               "look for friction between limb and force sensor; perturb more or faster to reduce its share");
           break;
         case Assumption::constant_stiffness:
           warn(WarningCode::stiffness_changes,
-               fmt::format(
-                   "the stiffness changed during the recording, by {:.0f} % (standard deviation): M, B and K are "
-                   "means of it",
-                   100.0 * size),
-               "'mbk explore' shows its course over time; measure the parts with --from and --to, and ask for the same "
-               "state "
-               "throughout");
+               fmt::format("the stiffness changed during the recording by {:.0f} % (standard deviation), so M, B and K "
+                           "are averages",
+                           100.0 * size),
+               "look at the change over time with 'mbk explore'; measure parts with --from and --to, and ask the "
+               "participant to keep the same state");
           break;
         case Assumption::constant_damping:
           warn(WarningCode::damping_changes,
-               fmt::format("the damping changed during the recording, by {:.0f} % (standard deviation): M, B and K are "
-                           "means of it",
+               fmt::format("the damping changed during the recording by {:.0f} % (standard deviation), so M, B and K "
+                           "are averages",
                            100.0 * size),
-               "'mbk explore' shows its course over time; measure the parts with --from and --to, and ask for the same "
-               "state throughout");
+               "look at the change over time with 'mbk explore'; measure parts with --from and --to, and ask the "
+               "participant to keep the same state");
           break;
         case Assumption::no_memory:
           warn(WarningCode::memory,
-               fmt::format("{:.0f} % of the force (root mean square) lags behind the position by 0.1 s to 1.5 s: the "
-                           "limb relaxes, or follows the motion slowly, and K depends on how fast it is moved",
+               fmt::format("{:.0f} % of the force (root mean square) lags the position by 0.1 s to 1.5 s: the limb "
+                           "relaxes or follows the motion slowly, so K depends on how fast it is moved",
                            100.0 * size),
-               "read K as that of the perturbed frequencies, not as a static stiffness; ask for no response; 'mbk "
-               "explore' shows the frequency response");
+               "interpret K as the stiffness at the perturbed frequencies, not as a static stiffness; ask the "
+               "participant to give no response; 'mbk explore' shows the frequency response");
           break;
         case Assumption::alike_both_ways:
           warn(WarningCode::even_nonlinearity,
                fmt::format("{:.0f} % of the force (root mean square) is the same for opposite motions: stiffness, "
-                           "damping or a reflex act in one direction more than in the other, and x0 is biased",
+                           "damping or a reflex is stronger in one direction, and x0 is biased",
                            100.0 * size),
-               "perturb less, and do not read M, B and K as those of both directions; 'mbk explore' of trials with "
-               "other phases shows how much of the force is not linear");
+               "perturb less, and interpret M, B and K as averages of both directions; 'mbk explore' with trials of "
+               "different phases shows the nonlinear part of the force");
           break;
         case Assumption::fits_at_lines:
-          break;  // found in the periods of the recording, which are not here
+          break;  // tested elsewhere, on the periods of the recording
         case Assumption::constant_rest:
           warn(WarningCode::force_drifts,
-               fmt::format("the force drifts by {:.2g} {} from beginning to end: the equilibrium moved, or the force "
-                           "sensor's zero; x0 is a mean",
+               fmt::format("the force drifts by {:.2g} {} from beginning to end: the equilibrium or the zero of the "
+                           "force sensor shifted, so x0 is an average",
                            size, units_.force),
                "zero the force sensor before each trial; measure a shorter part with --from and --to");
           break;
         case Assumption::no_tremor:
-          break;  // found in the whole spectrum of the force, which is not here
+          break;  // tested elsewhere, on the spectrum of the force
       }
     }
   }
@@ -280,7 +275,7 @@ class Checker {
     warn(WarningCode::decimation_changes_model,
          fmt::format("at {:g} Hz the model differs by {:.1f} %", id_.decimation->rate_hz,
                      100.0 * id_.decimation->largest_change),
-         fmt::format("the signals hold something above {:g} Hz: leave --sg-window out or raise it, or lower --cutoff",
+         fmt::format("remove signal content above {:g} Hz: omit --sg-window or raise it, or lower --cutoff",
                      0.5 * id_.decimation->rate_hz));
   }
 
@@ -296,7 +291,7 @@ class Checker {
     id_.warnings.push_back({code, std::move(message), std::move(remedy)});
   }
 
-  /// @param part 0, 1, 2 for M, B, K: where the matrix stands in the covariance
+  /// @param part 0, 1, 2 for M, B, K: position of the matrix in the covariance
   [[nodiscard]] Eigenvalues eigenvalues(const Matrix& Z, Index part) const {
     const Index n = axes();
     const auto [values, vectors] = numeric::symmetric_eigen(impedance::symmetric_part(Z));
@@ -341,7 +336,7 @@ Excitation measure_excitation(const Spread& spread, const impedance::Model& mode
   const double smallest = all[0], largest = all[3 * n - 1];
   result.condition = smallest > 0.0 ? std::sqrt(largest / smallest) : std::numeric_limits<double>::infinity();
 
-  // What of ẍ velocity and position cannot imitate: the Schur complement of their covariance.
+  // Variance of ẍ not explained by velocity and position: the Schur complement of their covariance.
   const numeric::CompleteOrthogonal others(cov.bottomRightCorner(2 * n, 2 * n));
   const Matrix own =
       cov.topLeftCorner(n, n) - cov.topRightCorner(n, 2 * n) * others.solve(cov.bottomLeftCorner(2 * n, n));
@@ -357,7 +352,7 @@ Excitation measure_excitation(const Spread& spread, const impedance::Model& mode
 void add_warnings(Identification& identification) {
   Checker checker(identification);
   checker.check_excitation();
-  if (identification.excitation.rank == 3 * identification.axes + 1) {  // otherwise there is no model to speak of
+  if (identification.excitation.rank == 3 * identification.axes + 1) {  // otherwise there is no model
     checker.check_signs();
     checker.check_band();
   }
@@ -374,11 +369,10 @@ void warn_of_closed_loop(const Identification& instrumental, const Disagreement&
   const char* const unit = unit_of_parameter(disagreement.parameter, least_squares.motion);
   least_squares.warnings.push_back(
       {WarningCode::closed_loop_bias,
-       fmt::format(
-           "least squares is biased towards the negative robot impedance: {} is {:.3g} {}, and {:.3g} ± {:.2g} {} "
-           "more by instrumental variables",
-           disagreement.parameter, disagreement.least_squares, unit, disagreement.difference,
-           numeric::kNormal95 * disagreement.standard_error, unit),
+       fmt::format("least squares is biased towards the negative robot impedance: {} is {:.3g} {}, but {:.3g} ± {:.2g} "
+                   "{} more with instrumental variables",
+                   disagreement.parameter, disagreement.least_squares, unit, disagreement.difference,
+                   numeric::kNormal95 * disagreement.standard_error, unit),
        "use --method iv"});
 }
 

@@ -6,7 +6,7 @@
 
 namespace mbk::identify {
 
-/// What of a regression the excitation follows from.
+/// Moments of a regression from which the excitation is computed.
 struct Spread {
   Matrix motion;  ///< 3n×3n, covariance of [ẍ ẋ x]
   Vector force;   ///< n, variance of each axis
@@ -18,14 +18,14 @@ struct Spread {
 /// How well the motion identifies the terms of the model.   @param rank of the regressors, from the fit
 [[nodiscard]] Excitation measure_excitation(const Spread& spread, const impedance::Model& model, int rank);
 
-/// Adds what the user must know about an otherwise complete Identification, and decides whether it is usable: the
-/// regressors can be distinguished, the symmetric parts of M and K are positive definite, and the model explains more
-/// of the held-out force than its mean does; instrumental variables are strong, and the limb does not respond to each
-/// pulse with a force that they take for mechanics.
+/// Adds warnings to an otherwise complete Identification and decides whether it is usable: the regressors are linearly
+/// independent, the symmetric parts of M and K are positive definite, and the model explains more of the held-out force
+/// than its mean does; instruments are strong, and the limb does not respond to each pulse with a force that they would
+/// attribute to mechanics.
 void add_warnings(Identification& identification);
 
-/// Warns of a model by least squares that instruments contradict, where those hold: the limb or noise acts back on the
-/// motion, and least squares takes that for mechanics.
+/// Warns if valid instrumental variables contradict the least-squares model: the limb or noise acts back on the motion,
+/// which biases least squares.
 void warn_of_closed_loop(const Identification& instrumental, const Disagreement& disagreement,
                          Identification& least_squares);
 

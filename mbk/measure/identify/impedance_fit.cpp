@@ -112,24 +112,23 @@ class Fitter {
 };
 
 Result<void> check_options(const std::vector<PreparedTrial>& trials, const Options& options) {
-  if (trials.empty()) return bad_usage("no trial to identify from");
+  if (trials.empty()) return bad_usage("no trial was given");
   if (!(options.hac_lag_s >= 0.0 && std::isfinite(options.hac_lag_s))) {
-    return bad_usage(
-        fmt::format("a reach of the residual's correlation of {:g} s is not 0 or more", options.hac_lag_s));
+    return bad_usage(fmt::format("the noise correlation time of {:g} s is not 0 or more", options.hac_lag_s));
   }
   if (options.handle_mass && !std::isfinite(*options.handle_mass)) {
-    return bad_usage(fmt::format("a handle mass of {:g} kg is none", *options.handle_mass));
+    return bad_usage(fmt::format("the handle mass of {:g} kg is not 0 or more", *options.handle_mass));
   }
   const PreparedTrial& first = trials.front();
   for (const PreparedTrial& trial : trials) {
     if (trial.axes != first.axes || trial.motion != first.motion) {
-      return bad_data("its axes or units are not those of the first file, so they cannot be pooled",
-                      "measure it by itself", trial.sources.empty() ? "" : trial.sources.front().label());
+      return bad_data("its axes or units differ from those of the first file, so they cannot be pooled",
+                      "measure it separately", trial.sources.empty() ? "" : trial.sources.front().label());
     }
     if (std::abs(trial.sample_time - first.sample_time) > 1e-6 * first.sample_time) {
-      return bad_data(
-          fmt::format("trials of {:g} Hz and {:g} Hz cannot be pooled", first.recording_rate, trial.recording_rate),
-          "put them on one clock with --resample HZ");
+      return bad_data(fmt::format("trials sampled at {:g} Hz and {:g} Hz cannot be pooled", first.recording_rate,
+                                  trial.recording_rate),
+                      "resample them to one rate with --resample HZ");
     }
   }
   return {};
@@ -151,10 +150,10 @@ Result<void> Fitter::choose_handle_mass() {
       return bad_data("its 'handle_mass_kg' is not a mass", "give it with --handle-mass KG", file);
     }
     if (mass.has_value() != first.has_value() || (mass && std::abs(*mass - *first) > kSame)) {
-      return bad_data(fmt::format("its handle mass ({}) is not that of the first file ({})",
+      return bad_data(fmt::format("its handle mass ({}) differs from that of the first file ({})",
                                   mass ? fmt::format("{:g} kg", *mass) : "not recorded",
                                   first ? fmt::format("{:g} kg", *first) : "not recorded"),
-                      "give one for all with --handle-mass KG, or measure it alone", file);
+                      "give one mass for all with --handle-mass KG, or measure it separately", file);
     }
   }
   handle_mass_ = first.value_or(0.0);
@@ -163,7 +162,7 @@ Result<void> Fitter::choose_handle_mass() {
 }
 
 Result<void> Fitter::prepare() {
-  if (r_.identification.empty()) return bad_data("no data to identify from", "move --split to a later time");
+  if (r_.identification.empty()) return bad_data("no data are left for identification", "move --split to a later time");
   MBK_TRY(choose_handle_mass());
   S_ = structure_matrix(options_.structure, r_.axes());
   const Preparation& how = trials_.front().preparation;
@@ -176,8 +175,8 @@ Result<void> Fitter::prepare() {
   for (const RowRange& range : ranges_) samples_ += range.size();
   const double data_s = static_cast<double>(samples_) * r_.sample_time;
   if (options_.hac_lag_s > std::max(data_s, Options{}.hac_lag_s)) {
-    return bad_usage(fmt::format("--hac-lag {:g} s reaches beyond the {:.3g} s of data", options_.hac_lag_s, data_s),
-                     "choose a shorter one; the residual's correlation seldom lasts for a second");
+    return bad_usage(fmt::format("--hac-lag {:g} s is longer than the {:.3g} s of data", options_.hac_lag_s, data_s),
+                     "choose a shorter one; the noise correlation time is rarely as long as 1 s");
   }
   lags_ = static_cast<Index>(std::llround(options_.hac_lag_s / r_.sample_time));
   const double coefficients = static_cast<double>(r_.Z.cols());

@@ -173,14 +173,14 @@ Instruments from_position(const Regression& r, const InstrumentRows& rows) {
 Result<Instruments> make_instruments(const Regression& r, ReferenceQuantity quantity, const InstrumentRows& rows) {
   const Index n = r.axes();
   if (r.reference.size() == 0) {
-    return bad_data("there is no reference, so that nothing is known that could serve as an instrument",
+    return bad_data("no reference was recorded, so there are no instruments",
                     "record the perturbation as channel reference (xr, yr), or use --method ls");
   }
   const SelectedRows reference(r.reference, rows.ranges);
   for (Index j = 0; j < n; ++j) {
     const auto moves = reference->col(2 * n + j);
     if (moves.maxCoeff() > moves.minCoeff()) continue;
-    return bad_data("the reference never changes in one axis, so that it cannot serve as an instrument",
+    return bad_data("the reference is constant on one axis, so it cannot serve as an instrument",
                     "perturb in every axis, or use --method ls");
   }
   if (quantity == ReferenceQuantity::force) return from_force(r, rows);

@@ -142,7 +142,7 @@ class Tester {
     measured_.position.rowwise() -= measured_.position.colwise().mean().eval();
   }
 
-  /// The position behind 1/(1 + sτ) at the thinned rows, from rest at the beginning of each range.
+  /// The position behind 1/(1 + sτ) at the decimated rows, from rest at the beginning of each range.
   [[nodiscard]] Matrix lagging_position() const {
     constexpr std::size_t kCount = kRelaxationTimes.size();
     Matrix lagging(rows(), static_cast<Index>(kCount) * n_);

@@ -768,7 +768,7 @@ Result<PredictionErrorFit> Fitter::run() {
   MBK_TRY(check_experiments(experiments_, continuous_options()));
   const Vector& given = options_.start_denominator;
   if (given.size() > 0 && given.size() != n_) {
-    return bad_usage(fmt::format("a start with {} poles for a model with {}", given.size(), n_));
+    return bad_usage(fmt::format("the start has {} poles, but the model has {}", given.size(), n_));
   }
   if (!given.allFinite()) return bad_usage("a coefficient of the start is not a finite number");
   for (const SignalPair& pair : experiments_) {
@@ -828,14 +828,16 @@ Result<double> common_step(const std::vector<SignalPair>& experiments, const std
   for (const auto* pairs : {&experiments, &held_out}) {
     for (const SignalPair& pair : *pairs) {
       if (!pair.step) {
-        return bad_usage("a discrete-time model needs an even clock",
-                         "take --method srivc, or put the clock right by --resample");
+        return bad_usage("a discrete-time model needs uniform sampling",
+                         "use --method srivc, or resample with --resample");
       }
       if (step == 0.0) step = *pair.step;
       if (std::abs(*pair.step - step) <= kSame * step) continue;
-      return bad_usage(fmt::format("samples every {:.6g} ms and every {:.6g} ms are no one discrete-time model",
-                                   1e3 * step, 1e3 * *pair.step),
-                       "take --method srivc, or one clock for all by --resample");
+      return bad_usage(
+          fmt::format(
+              "the sample intervals {:.6g} ms and {:.6g} ms differ, but a discrete-time model needs a single one",
+              1e3 * step, 1e3 * *pair.step),
+          "use --method srivc, or resample all to one rate with --resample");
     }
   }
   return step;

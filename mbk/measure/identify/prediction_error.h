@@ -14,17 +14,17 @@ struct PredictionErrorOptions {
   bool free_start = true;           ///< an initial state and an offset of the output for each experiment
   bool noise_model = false;         ///< Box–Jenkins; otherwise output error
   Index max_noise_order = 8;        ///< of the noise model
-  double hac_lag_s = 0.0;           ///< reach of the innovations' correlation in the covariance [s]; 0: white
+  double hac_lag_s = 0.0;           ///< correlation time of the innovations in the covariance [s]; 0: white
   double tolerance = 1e-4;          ///< of a coefficient or of its standard error, by which the last step moves it
   int max_iterations = 200;
-  unsigned threads = 0;  ///< for the starts; 0: as many as there are cores
+  unsigned threads = 0;  ///< for the starts; 0: number of cores
 };
 
-/// What a search found, from the best start that settled on a stable model, or from the best one where none did.
+/// Result of a search, from the best start that converged to a stable model, or from the best one if none did.
 struct PredictionErrorFit {
   Vector f, b;              ///< f₁ … f_n and b₀ … b_m
-  bool converged = false;   ///< settled inside the region of stable models
-  bool stable = true;       ///< false where the search wants to leave it
+  bool converged = false;   ///< converged inside the region of stable models
+  bool stable = true;       ///< false if the search leaves it
   Matrix covariance;        ///< of [f; b]
   Matrix white_covariance;  ///< the same as if the innovations were white
   double variance = 0;      ///< of the innovations
@@ -40,11 +40,11 @@ struct PredictionErrorFit {
 /// with C = D = 1 for output error. Levenberg–Marquardt on exact derivatives, which are signals through filters:
 ///   ∂ε/∂b_k = −C/(D F) u[t − k],   ∂ε/∂f_k = C/(D F) x̂[t − k],   ∂ε/∂c_k = v[t − k]/D,   ∂ε/∂d_k = −ε[t − k]/D
 /// with v = y − x̂. The initial state P and the offset c of each experiment are linear, and projected out (Golub &
-/// Pereyra 1973). A step out of the stable models is not taken; a search that is held up there has not settled, and its
-/// start is tried again unsharpened, and then with the poles it was held up with moved away from the unit circle.
+/// Pereyra 1973). Steps to unstable models are rejected; a search blocked there has not converged, and its start is
+/// tried again without refinement, then with the blocked poles moved away from the unit circle.
 ///   Starts, as one alone can end in a local minimum: the continuous-time model of fit_continuous, z = e^{pT}; an ARX
 /// model of high order reduced; an ARX model; instrumental variables from it; real poles over the band, and those
-/// given. Each is sharpened by the iteration of Steiglitz & McBride (1965), and the numerator is always the best for
+/// given. Each is refined by the iteration of Steiglitz & McBride (1965), and the numerator is always the best for
 /// its poles.
 ///   Box–Jenkins: the dynamics first behind the noise model of the high-order ARX model, which is held, and those of
 /// output error; then as many c as d, or c alone, as the BIC of what is left says, then all at once; a noise model that
@@ -56,12 +56,12 @@ struct PredictionErrorFit {
 [[nodiscard]] Result<PredictionErrorFit> fit_prediction_error(const std::vector<SignalPair>& experiments,
                                                               const PredictionErrorOptions& options);
 
-/// The one step of all clocks [s]; 0 where there is no experiment.
-/// @fails usage: a clock is uneven, or two differ.
+/// The common sample interval [s]; 0 without experiments.
+/// @fails usage: a clock is not uniform, or two differ.
 [[nodiscard]] Result<double> common_step(const std::vector<SignalPair>& experiments,
                                          const std::vector<SignalPair>& held_out = {});
 
-/// What the best initial state and offset leave of `residual`, the error of a simulation from rest.
+/// `residual`, the error of a simulation from rest, after removing the best initial state and offset.
 /// @param f f₁ … f_n
 [[nodiscard]] Vector without_discrete_free_motion(const Vector& f, const Vector& residual);
 

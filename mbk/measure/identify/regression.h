@@ -13,14 +13,14 @@ namespace mbk::identify {
 
 using numeric::RowRange;
 
-/// −F on [ẍ ẋ x−x̄ 1]; positions are measured from their mean, which costs no digits and changes nothing else.
+/// −F on [ẍ ẋ x−x̄ 1]; positions are relative to their mean, which keeps precision and changes nothing else.
 struct Regression {
   Matrix Z;          ///< N×(3n+1)
   Matrix Y;          ///< N×n, −F_h
   Matrix reference;  ///< N×(3n+1), [r̈ ṙ r 1] of the known perturbation, filtered like the motion; empty: not known
   Vector centre;     ///< x̄, n
-  Matrix force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ of a force that rests on a robot's coefficients; empty otherwise
-  Matrix robot_covariance;  ///< p×p, of those; all trials rest on the same
+  Matrix force_sensitivity;  ///< N×(n·p), ∂F_h/∂θ of a force computed from coefficients of a robot; empty otherwise
+  Matrix robot_covariance;  ///< p×p, of those coefficients; common to all trials
   std::vector<RowRange> identification, validation;
   double sample_time = 0;
 
@@ -29,28 +29,28 @@ struct Regression {
   [[nodiscard]] auto perturbation() const { return reference.middleCols(2 * axes(), axes()); }
 };
 
-/// The segments of all trials under each other; rows that do not count are left out. A break in time always starts a
-/// new range, and where two segments follow each other without one, `joined` may merge them.
+/// The segments of all trials, stacked; unused rows are omitted. A break in time always starts a new range; contiguous
+/// segments may be merged with `joined`.
 [[nodiscard]] Regression stack(const std::vector<PreparedTrial>& trials);
 
-/// The same without the reference and what the force rests on.
+/// The same without the reference and the sensitivity of the force.
 [[nodiscard]] Regression stack_motion_and_force(const std::vector<PreparedTrial>& trials);
 
-/// Takes the mean of the rows that count from the known perturbation, its derivatives too.
+/// Subtracts the mean over the rows used from the known perturbation and its derivatives.
 void centre_reference(Regression& r, const std::vector<RowRange>& ranges);
 
-/// Puts the columns of a long one on disk, from where the system reads them again as they are used (disk_pages.h).
+/// Moves the columns of a long regression to disk, from where the system reads them on demand (disk_pages.h).
 void put_on_disk(Regression& r);
 void put_on_disk(Matrix& columns);
 
-/// Both lists in order; neighbours without a break in between are one range: the residual's correlation does not stop
-/// at the split.
+/// Both lists in order; contiguous neighbours are merged, because the correlation of the residual does not stop at the
+/// split.
 [[nodiscard]] std::vector<RowRange> joined(const std::vector<RowRange>& a, const std::vector<RowRange>& b);
 
-/// Every `step`-th row of the ranges, under each other.
+/// Every `step`-th row of the ranges, stacked.
 [[nodiscard]] Matrix rows_of(const Matrix& all, const std::vector<RowRange>& ranges, Index step = 1);
 
-/// The same in place, where every row of one range is asked for; a copy otherwise. What it is made from must stay.
+/// The same in place if every row of one range is requested, otherwise a copy. The source must outlive it.
 class SelectedRows {
  public:
   SelectedRows(const Matrix& all, const std::vector<RowRange>& ranges, Index step = 1)
@@ -81,9 +81,9 @@ class SelectedRows {
 [[nodiscard]] Matrix model_covariance(const Matrix& structure, const Matrix& V, const impedance::Model& model,
                                       const Vector& centre);
 
-/// How well the coefficients explain the force: on what was held out, or in sample where nothing was.
+/// Fit of the coefficients to the force, on held-out data or, without them, in sample.
 [[nodiscard]] Fit judge(const Regression& r, const Matrix& coefficients);
-/// The same from what they leave, Y − Z θ of every row.
+/// The same from the residual Y − Z θ of every row.
 [[nodiscard]] Fit judge_residuals(const Regression& r, const Matrix& residuals);
 
 }  // namespace mbk::identify

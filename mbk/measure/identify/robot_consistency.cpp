@@ -243,14 +243,14 @@ Result<Vector> NearestRobot::inside(const DefiniteProgram& program) const {
   }
   const auto found = MBK_TRY(numeric::solve_definite_program(wider));
   if (!(found.value < 0.0)) {
-    return bad_data("no robot that can exist has the values that --fix keeps",
-                    "leave --fix out, or correct those values in the description of the robot");
+    return bad_data("the values that --fix keeps are physically inconsistent",
+                    "omit --fix, or correct those values in the description of the robot");
   }
   return Vector(found.x.head(v_));
 }
 
 Result<ConsistentParameters> NearestRobot::find() {
-  if (conditions_.empty()) return bad_usage("nothing is known of what bodies of this robot could exist");
+  if (conditions_.empty()) return bad_usage("this robot has no conditions for physical consistency");
   for (Index k = 0; k < p_; ++k) {
     if (!is_fixed(k)) names_.push_back(k);
   }
@@ -266,9 +266,8 @@ Result<ConsistentParameters> NearestRobot::find() {
     // Friction and rotors may be nothing at all.
     const bool possible = conditions_[k].A.rows() == 1 ? S(0, 0) >= 0.0 : well_inside(S);
     if (possible) continue;
-    return bad_usage(
-        fmt::format("the value that is fixed for {} is none of a robot that can exist", conditions_[k].name),
-        "correct it in the description of the robot, or leave it out of --fix");
+    return bad_usage(fmt::format("the fixed value of {} is physically impossible", conditions_[k].name),
+                     "correct it in the description of the robot, or remove it from --fix");
   }
   take_stated();
   take_drives();

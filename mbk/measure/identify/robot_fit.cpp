@@ -40,7 +40,7 @@ Matrix stacked(const std::vector<Matrix>& of_joint, const std::vector<Index>& ke
   return all;
 }
 
-/// "0.25·link_2.mass + …": what a column that stays holds of those that do not.
+/// "0.25·link_2.mass + …": contribution of the dropped columns to a kept one.
 std::string holds(const numeric::IndependentColumns& columns, Index row, const std::vector<robot::Coefficient>& names) {
   constexpr double kNothing = 1e-9;
   std::string text;
@@ -102,31 +102,31 @@ class RobotFitter {
 };
 
 Result<void> RobotFitter::prepare() {
-  if (trials_.empty()) return bad_data("no recording to identify from");
+  if (trials_.empty()) return bad_data("no recording was given");
   const PreparedDynamics& first = trials_.front();
   n_ = first.torque.cols();
   p_ = first.regressors.front().cols();
   for (const Index k : options_.fixed) {
     if (k < 0 || k >= p_ || model_.parameters.size() != p_ || !std::isfinite(model_.parameters[k])) {
-      return bad_usage("a coefficient that is fixed has no value", "state it in the robot's description");
+      return bad_usage("a fixed coefficient has no value", "state it in the robot's description");
     }
   }
-  if (p_ == 0) return bad_usage("a robot without coefficients has nothing to be identified");
+  if (p_ == 0) return bad_usage("the robot has no coefficients to identify");
   for (const auto* list : {&trials_, &held_out_}) {
     for (const PreparedDynamics& trial : *list) {
       if (trial.torque.cols() != n_ || trial.regressors.front().cols() != p_) {
-        return bad_data("the recordings are of different robots", "identify each robot by itself");
+        return bad_data("the recordings are of different robots", "identify each robot separately");
       }
       constexpr double kSameClock = 1e-3;
       if (list == &trials_ && std::abs(trial.sample_time / first.sample_time - 1.0) > kSameClock) {
-        return bad_data(fmt::format("rows {:.4g} and {:.4g} s apart cannot be fitted together", first.sample_time,
-                                    trial.sample_time),
-                        "give one --every and one --cutoff for all, or put them on one clock with --resample");
+        return bad_data(fmt::format("the rows are {:.4g} s apart in one recording and {:.4g} s in another",
+                                    first.sample_time, trial.sample_time),
+                        "use the same --every and --cutoff for all, or resample to one rate with --resample");
       }
     }
   }
   if (!(options_.hac_lag_s >= 0.0 && std::isfinite(options_.hac_lag_s))) {
-    return bad_usage(fmt::format("a reach of the autocovariance of {:g} s", options_.hac_lag_s));
+    return bad_usage(fmt::format("the noise correlation time of {:g} s is not 0 or more", options_.hac_lag_s));
   }
   rows_ = stack_rows(trials_, held_out_.empty() ? std::optional(Purpose::identification) : std::nullopt);
   if (rows_.rows() * n_ < 3 * p_) {
@@ -148,7 +148,7 @@ Result<void> RobotFitter::prepare() {
   for (const Index k : all) free_names_.push_back(names[static_cast<std::size_t>(k)]);
   take_columns(all);
   if (kept_.empty()) {
-    return bad_data("no joint moved: nothing of the robot's dynamics was excited", "move every joint");
+    return bad_data("no joint moved, so the dynamics of the robot were not excited", "move every joint");
   }
   return {};
 }
@@ -399,15 +399,15 @@ Result<void> RobotFitter::make_consistent(RobotIdentification& found) {
   made.newton_steps = nearest.solution.steps;
   for (const std::string& link : nearest.replaced) {
     found.notes.push_back(
-        fmt::format("the description states no body that can exist for {}: one near to it, or a ball, "
-                    "stands in where the data do not decide",
+        fmt::format("the description states no physically consistent body for {}: a similar body, or a ball, is used "
+                    "where the data do not decide",
                     link));
   }
   found.consistent = std::move(made);
   return {};
 }
 
-/// Where no robot that can exist does nearly as well as the free fit, and noise does not explain that.
+/// If the consistent robot fits much worse than the free fit, and noise does not explain the difference.
 void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
   constexpr double kMaxLoss = 0.5;  // [points of VAF]
   const ConsistentRobot& consistent = *found.consistent;
@@ -422,30 +422,30 @@ void warn_of_loss(RobotIdentification& found, double loss_by_chance) {
   if (!(most > kMaxLoss)) return;
   constexpr double kMaxByChance = 5.0;  // a wrong sign leaves a residual that looks like large noise
   if (!(consistent.loss > loss_by_chance) && most < kMaxByChance) {
-    found.notes.push_back(
-        fmt::format("a robot that can exist explains {:.3g} points less of the torque of joint {} than the free fit: "
-                    "with this much "
-                    "noise that is chance, since the free fit explains the noise too",
-                    most, worst + 1));
+    found.notes.push_back(fmt::format(
+        "the consistent robot explains {:.3g} percentage points less of the torque of joint {} than the "
+        "free fit: with this much noise the loss is not significant, because the free fit also explains noise",
+        most, worst + 1));
     return;
   }
   constexpr std::size_t kNamed = 3;
   std::string which;
   for (std::size_t k = 0; k < std::min(kNamed, consistent.pressing.size()); ++k) {
-    which += (which.empty() ? "; what the data contradict most is " : ", ") + consistent.pressing[k];
+    which += (which.empty() ? "; the most violated conditions are " : ", ") + consistent.pressing[k];
   }
   found.warnings.push_back(
       {WarningCode::consistent_fit_poor,
-       fmt::format("a robot that can exist explains {:.3g} points less of the torque of joint {} than the free fit{}",
-                   most, worst + 1, which),
-       "check the sign and the unit of each torque, the order of the joints and --fix; add drive terms that are "
-       "missing, as in --terms motor_inertia,viscous,coulomb,offset"});
+       fmt::format(
+           "the consistent robot explains {:.3g} percentage points less of the torque of joint {} than the free fit{}",
+           most, worst + 1, which),
+       "check the sign and unit of each torque, the order of the joints and --fix; add missing drive terms, as in "
+       "--terms motor_inertia,viscous,coulomb,offset"});
   found.usable = false;
 }
 
-/// Whether a model that explains a joint's torque poorly must not be used: the mean of the torque would explain more,
-/// or its residual grows where it was not fitted. A joint that hardly moves while it is held out, or whose torque is
-/// mostly noise, shows neither.
+/// Whether a model that explains the torque of a joint poorly is not usable: the mean of the torque would explain more,
+/// or the residual is larger on held-out data. Neither is true if the joint hardly moves there or its torque is mostly
+/// noise.
 bool does_not_hold(const TorqueFit& fit) {
   constexpr double kAlike = 1.1, kLarger = 1.5;  // residual held out over that in sample
   const double growth = fit.rmse / std::max(fit.rmse_in_sample, 1e-300);
@@ -457,27 +457,28 @@ void warn(RobotIdentification& found, double loss_by_chance) {
   if (!(found.inertia.smallest > 0.0)) {
     std::string where;
     for (const double q : found.inertia.where) where += fmt::format("{}{:.3g}", where.empty() ? "" : ", ", q);
-    warnings.push_back({WarningCode::inertia_not_positive,
-                        fmt::format("the inertia matrix is not positive definite with the joints at [{}] (smallest "
-                                    "eigenvalue {:.3g})",
-                                    where, found.inertia.smallest),
-                        std::string(found.model.drive.motor_inertia
-                                        ? ""
-                                        : "where motors stand behind gears, add what their rotors weigh, --terms "
-                                          "motor_inertia,viscous,coulomb,offset; ") +
-                            "--consistent finds bodies that can exist; move faster and over more of the workspace; "
-                            "check order and signs of the torques"});
+    warnings.push_back(
+        {WarningCode::inertia_not_positive,
+         fmt::format("the inertia matrix is not positive definite with the joints at [{}] (smallest "
+                     "eigenvalue {:.3g})",
+                     where, found.inertia.smallest),
+         std::string(found.model.drive.motor_inertia ? ""
+                                                     : "for geared motors, add the inertia of their rotors with "
+                                                       "--terms motor_inertia,viscous,coulomb,offset; ") +
+             "find physically consistent bodies with --consistent; move faster and over more of the workspace; check "
+             "order and signs of the torques"});
     found.usable = false;
   }
   constexpr double kHeaviest = 300.0, kLightest = 1e-3;  // [kg] of a robot that a person can hold
   if (found.model.mechanism->hand_axes() == 2 && found.inertia.smallest > 0.0 &&
       (found.inertia.mass_at_hand > kHeaviest || found.inertia.mass_at_hand < kLightest)) {
     const bool heavy = found.inertia.mass_at_hand > kHeaviest;
-    warnings.push_back({WarningCode::torque_unit,
-                        fmt::format("moved at its hand, this robot would weigh at least {:.3g} kg: its torques are "
-                                    "probably not in N·m but in {}",
-                                    found.inertia.mass_at_hand, heavy ? "N·mm" : "kN·m"),
-                        heavy ? "say so in --channels, as in tau1=14:N.mm,tau2=15:N.mm" : "check the torques' unit"});
+    warnings.push_back(
+        {WarningCode::torque_unit,
+         fmt::format("the robot would have an inertia of at least {:.3g} kg at its hand: its torques are probably not "
+                     "in N·m but in {}",
+                     found.inertia.mass_at_hand, heavy ? "N·mm" : "kN·m"),
+         heavy ? "state the unit with --channels, as in tau1=14:N.mm,tau2=15:N.mm" : "check the unit of the torques"});
     found.usable = false;
   }
   if (found.rank < found.structural_rank) {
@@ -486,18 +487,18 @@ void warn(RobotIdentification& found, double loss_by_chance) {
       if (!one.identified && !one.fixed) missing += (missing.empty() ? "" : ", ") + one.coefficient.name;
     }
     warnings.push_back({WarningCode::poorly_conditioned,
-                        fmt::format("{} of the {} combinations that a motion can show were excited; nothing by itself "
-                                    "is known of {}",
+                        fmt::format("only {} of the {} identifiable combinations were excited; not identifiable: {}",
                                     found.rank, found.structural_rank, missing),
-                        "add a recording in which every joint moves, several files in one fit"});
+                        "add a recording in which every joint moves (several files in one fit)"});
   }
   constexpr double kLargestCondition = 300.0;
   if (found.condition > kLargestCondition) {
     std::string which;
     for (const auto& [name, share] : found.weakest) which += (which.empty() ? "" : ", ") + name;
-    warnings.push_back({WarningCode::poorly_conditioned,
-                        fmt::format("the motion hardly tells apart {} (condition {:.3g})", which, found.condition),
-                        "move more, and differently; leave terms out with --terms"});
+    warnings.push_back(
+        {WarningCode::poorly_conditioned,
+         fmt::format("the motion hardly distinguishes {} (condition number {:.3g})", which, found.condition),
+         "move more and more variedly, or omit terms with --terms"});
   }
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     constexpr double kPoor = 80.0;
@@ -506,13 +507,13 @@ void warn(RobotIdentification& found, double loss_by_chance) {
     std::string message = fmt::format("only {:.1f} % of the torque of joint {} is explained{}", fit.vaf, joint + 1,
                                       found.held_out ? " on held-out data" : "");
     std::string remedy =
-        "look for terms that are missing (--terms), a delay (--motor-delay auto), a lower --cutoff, or "
-        "noise of the motion (--method iv)";
+        "add missing terms (--terms), estimate a delay (--motor-delay auto), lower --cutoff, or allow for noise of the "
+        "motion (--method iv)";
     if (found.held_out && fit.vaf_in_sample >= kPoor) {
-      message += fmt::format("; {:.1f} % of it is explained where the model was fitted", fit.vaf_in_sample);
+      message += fmt::format("; in the fitted data, {:.1f} %", fit.vaf_in_sample);
       remedy =
-          "the model fits one recording and not another: use fewer --terms, record longer and more varied motion, and "
-          "keep load, temperature and gains of the robot the same";
+          "use fewer --terms, record longer and more varied motion, and keep load, temperature and gains of the robot "
+          "constant";
     }
     warnings.push_back({found.held_out ? WarningCode::held_out_fit_poor : WarningCode::fit_poor, std::move(message),
                         std::move(remedy)});
@@ -524,7 +525,7 @@ void warn(RobotIdentification& found, double loss_by_chance) {
     if (!one.identified || !positive || one.value + numeric::kNormal95 * one.standard_error >= 0.0) continue;
     warnings.push_back({WarningCode::damping_not_positive,
                         fmt::format("{} is negative: friction would drive the joint", one.coefficient.name),
-                        "check the sign of the torque, and --motor-delay auto"});
+                        "check the sign of the torque, or estimate a delay with --motor-delay auto"});
   }
 }
 

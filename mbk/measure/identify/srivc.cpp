@@ -847,13 +847,12 @@ Fitter::Search Fitter::search(double pole) const {
 Result<void> Fitter::check() {
   if (n_ < 1 || n_ > kMaxPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMaxPoles));
   if (q_ < 1 || q_ > n_ + 1) {
-    return bad_usage(
-        fmt::format("{} zeros beside {} poles: a model may have as many zeros as poles, not more", q_ - 1, n_));
+    return bad_usage(fmt::format("{} zeros exceed the {} poles of the model", q_ - 1, n_));
   }
-  if (experiments_.empty()) return bad_usage("no experiment to fit");
+  if (experiments_.empty()) return bad_usage("no experiment was given");
   for (const double pole : options_.start_poles) {
     if (!(pole > 0.0) || !std::isfinite(pole))
-      return bad_usage(fmt::format("start pole {} rad/s is not above 0", pole));
+      return bad_usage(fmt::format("the start pole of {} rad/s is not above 0", pole));
   }
   double input_squares = 0.0;
   const auto squares = [](const Vector& x) { return numeric::variance(x) * static_cast<double>(x.size() - 1); };
@@ -868,20 +867,20 @@ Result<void> Fitter::check() {
       if (std::isfinite(sum)) continue;
       if (const Index bad = first_non_finite(*signal); bad >= 0) {
         return bad_data(fmt::format("sample {} of a signal is not a finite number", bad + 1),
-                        "cut it out by --from and --to");
+                        "exclude it with --from and --to");
       }
     }
     if (!pair.step && (options_.max_noise_order > 0 || options_.reference_instruments)) {
-      return bad_usage("a noise model and the closed-loop variant need an even clock", "take --method srivc");
+      return bad_usage("a noise model and the closed-loop variant need uniform sampling", "use --method srivc");
     }
     if (options_.reference_instruments && pair.reference.size() != pair.time.size()) {
-      return bad_usage("the closed-loop variant needs the reference", "name it: --reference NAME");
+      return bad_usage("the closed-loop variant needs the reference", "name it with --reference NAME");
     }
   }
   const Index unknown = n_ + q_ + (options_.free_start ? (n_ + 1) * static_cast<Index>(experiments_.size()) : 0);
   if (samples_ < 2 * unknown + 10) {
     return bad_data(fmt::format("{} samples are too few for {} unknowns", samples_, unknown),
-                    "record longer, or take fewer poles");
+                    "record longer, or use fewer poles");
   }
   if (!(output_squares_ > 0.0)) return bad_data("the output is constant", "check --output");
   if (!(input_squares > 0.0)) return bad_data("the input is constant", "check --input");

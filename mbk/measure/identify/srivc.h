@@ -10,29 +10,29 @@ namespace mbk::identify {
 
 struct ContinuousFitOptions {
   Index poles = 2, zeros = 0;          ///< n ≥ 1 and 0 ≤ m ≤ n
-  std::vector<double> start_poles;     ///< [rad/s] of the first filter; empty: a few over the band of the samples
-  bool only_given_starts = false;      ///< otherwise those over the band are tried beside them
+  std::vector<double> start_poles;     ///< [rad/s] of the first filter; empty: several over the band of the samples
+  bool only_given_starts = false;      ///< otherwise those over the band are tried, too
   bool free_start = true;              ///< an initial state and an offset of the output for each experiment
   Index max_noise_order = 0;           ///< RIVC: autoregressive noise model up to this order, by BIC; 0: SRIVC
   bool reference_instruments = false;  ///< closed loop: instruments from the reference alone
-  double hac_lag_s = 0.0;              ///< reach of the residual's correlation in the covariance [s]; 0: white
-  double tolerance = 1e-4;             ///< largest relative change of a coefficient at which the search has settled
+  double hac_lag_s = 0.0;              ///< noise correlation time in the covariance [s]; 0: white
+  double tolerance = 1e-4;             ///< largest relative change of a coefficient at convergence
   int max_iterations = 100;
-  bool refine = true;        ///< go on to rounding once it has settled
+  bool refine = true;        ///< continue to rounding precision after convergence
   bool delay_found = false;  ///< from the same data: it is one more parameter of the covariance; fewer zeros than poles
-  unsigned threads = 0;      ///< for the starts; 0: as many as there are cores
+  unsigned threads = 0;      ///< for the starts; 0: number of cores
 };
 
-/// What a search found, from the best start that settled on a stable model, or from the best one where none did.
+/// Result of a search, from the best start that converged to a stable model, or from the best one if none did.
 struct ContinuousFit {
   Vector a, b;             ///< a₀ … a_{n−1} and b₀ … b_m, physical time
-  bool converged = false;  ///< settled, and the solution itself is stable
+  bool converged = false;  ///< converged, and the solution is stable
   bool stable = true;
   Matrix covariance;                     ///< of [a; b]
-  std::optional<double> delay_variance;  ///< [s²] where the delay is one of the parameters
+  std::optional<double> delay_variance;  ///< [s²] if the delay is a parameter
   double delay_correction = 0;           ///< by which one Gauss–Newton step would move that delay [s]
-  Matrix white_covariance;               ///< the same as if what is left were white
-  double variance = 0;                   ///< of what is left (with a noise model: of its innovations)
+  Matrix white_covariance;               ///< the same assuming a white residual
+  double variance = 0;                   ///< of the residual (with a noise model: of its innovations)
   double fit = 0;                        ///< R_T² = 1 − Σe²/Σ(y − ȳ)²
   Vector noise;                          ///< 1, c₁ … of the noise model; [1] without one
   std::vector<Vector> residuals;         ///< y − x̂ of each experiment
@@ -51,9 +51,9 @@ struct ContinuousFit {
 /// offset, are projected out for each experiment. Time is scaled by the geometric mean of the poles.
 ///   First pass: least squares on filters (s + λ)⁻ⁿ, for several λ, as one alone can end in a local minimum.
 ///   A λ that determines nothing is doubled.
-///   RIVC: X, Z and e also pass an autoregressive model of e, found anew until both settle.
-///   Closed loop: Z = [−x̂_f, û_f], where û is what a finite impulse response makes of the reference. It begins with û
-///   for u, and of several starts takes that whose model leaves least of y from û.
+///   RIVC: X, Z and e also pass an autoregressive model of e, re-estimated until both converge.
+///   Closed loop: Z = [−x̂_f, û_f], where û is the response of a finite impulse response to the reference. It starts
+///   with û for u, and uses the start whose model gives the smallest residual of y from û.
 /// @param experiments  each [1 … N] samples; their clocks may be uneven, but not with a noise model or closed loop
 /// @fails  usage: orders out of range; no experiment; a noise model or closed loop on an uneven clock; no reference.
 ///         data: too few samples; a value is not finite; input or output is constant.

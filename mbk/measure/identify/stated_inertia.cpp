@@ -104,9 +104,9 @@ void compare_with_stated(const std::vector<PreparedDynamics>& trials, const robo
   }
   found.warnings.push_back(
       {WarningCode::torque_unit,
-       fmt::format("the torque is a constant factor times what the inertia and weight of the URDF take: {}", which),
-       "check the torque constant and the gear ratio; where the torque is wrong, divide it by the factor in "
-       "--channels, and where the URDF is, correct its masses"});
+       fmt::format("the torque differs from that for inertia and weight of the URDF by a constant factor: {}", which),
+       "check the torque constant and the gear ratio; if the torque is wrong, divide it by the factor with --channels; "
+       "if the URDF is wrong, correct its masses"});
 }
 
 }  // namespace mbk::identify

@@ -367,24 +367,25 @@ tl::unexpected<Error> Identifier::nothing_settled(const std::vector<SearchStart>
     if (!start.stable && start.growth > 0.0) growth.push_back(start.growth);
   }
   const auto unstable = std::ranges::count(starts, false, &SearchStart::stable);
-  std::string text =
-      fmt::format("no stable model of {} was found: of {} starts, {} ended on an unstable one and {} did not settle",
-                  model, starts.size(), unstable, std::ssize(starts) - unstable);
+  std::string text = fmt::format(
+      "no stable model with {} was found: of {} starts, {} converged to an unstable model and {} did not converge",
+      model, starts.size(), unstable, std::ssize(starts) - unstable);
   const char* const otherwise =
-      "exchange input and output if the cause was taken for the effect, take fewer poles, or name a start near the "
-      "slowest pole by --start-pole";
+      "exchange input and output if cause and effect are swapped, use fewer poles, or give a start near the slowest "
+      "pole with --start-pole";
   if (2 * unstable < std::ssize(starts)) return fail(ErrorKind::not_usable, text, otherwise);
   constexpr double kAgree = 1.5;
   if (!growth.empty() && std::ranges::max(growth) <= kAgree * std::ranges::min(growth)) {
-    text += fmt::format(", with a motion that grows by e in {:.2g} s", 1.0 / numeric::upper_median(std::move(growth)));
+    text +=
+        fmt::format(", whose response grows by a factor e in {:.2g} s", 1.0 / numeric::upper_median(std::move(growth)));
   }
   const bool loop = options_.method == TransferFunctionMethod::closed_loop;
   return fail(ErrorKind::not_usable, text,
-              fmt::format("if a loop holds a system that is unstable by itself, identify the loop, which is stable: "
-                          "--input {0} --output OUTPUT, and --input {0} --output INPUT; the first over the second is "
-                          "the system. If it is stable by itself, {1}{2}",
-                          loop ? "REFERENCE" : "WHAT-DRIVES-THE-LOOP", loop ? "" : "take --method clsrivc in a loop, ",
-                          otherwise));
+              fmt::format("if the system is unstable without its control loop, identify the closed loop, which is "
+                          "stable: --input {0} --output OUTPUT and --input {0} --output INPUT; the system is the first "
+                          "over the second; if the system itself is stable, {1}{2}",
+                          loop ? "REFERENCE" : "WHAT-DRIVES-THE-LOOP",
+                          loop ? "" : "use --method clsrivc in a closed loop, ", otherwise));
 }
 
 Result<Fit> Identifier::choose_order() {
@@ -550,43 +551,45 @@ void Identifier::warn() {
           ? ""
           : fmt::format(", or --hold {}", word_of(hold_ == InputHold::zero ? InputHold::first : InputHold::zero));
   const bool some_unstable = !std::ranges::all_of(found_.starts, &SearchStart::stable);
-  const std::string loop = some_unstable ? "; where a loop holds a system that is unstable by itself, take what drives "
-                                           "the loop for --input: the loop is stable"
-                                         : "";
+  const std::string loop =
+      some_unstable
+          ? "; if the system is unstable without its control loop, use the signal that drives the loop as --input"
+          : "";
   constexpr double kPoor = 0.8;
   if (found_.held_out_fit && *found_.held_out_fit < kPoor) {
-    warnings.push_back({WarningCode::held_out_fit_poor,
-                        fmt::format("only {:.1f} % of the held-out output is explained", 100.0 * *found_.held_out_fit),
-                        fmt::format("more poles (--orders), {}, or look whether the system changes{}", delay, loop)});
+    warnings.push_back(
+        {WarningCode::held_out_fit_poor,
+         fmt::format("only {:.1f} % of the held-out output is explained", 100.0 * *found_.held_out_fit),
+         fmt::format("try more poles (--orders), {}, or check whether the system changes{}", delay, loop)});
   } else if (found_.fit < kPoor) {
     warnings.push_back({WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
-                        fmt::format("more poles (--orders) and {}; noise may be the rest{}", delay, loop)});
+                        fmt::format("try more poles (--orders) and {}; the remainder may be noise{}", delay, loop)});
   }
   if (held_out_.empty()) {
-    warnings.push_back({WarningCode::no_held_out_data, "no data were held out: the fit is in sample",
-                        "hold some back by --split or --held-out"});
+    warnings.push_back({WarningCode::no_held_out_data, "no data were held out, so the fit is in sample",
+                        "hold data out with --split or --held-out"});
   }
   if (!found_.residuals.white() && options_.hac_lag_s == 0.0) {
     warnings.push_back({WarningCode::residual_not_white,
-                        "what is left is not white noise, and the intervals take it as that: they are too narrow",
-                        "leave --hac-lag at 1 s, or model the noise with --method rivc"});
+                        "the residual is not white noise, but the intervals assume that it is, so they are too narrow",
+                        "use --hac-lag 1, or model the noise with --method rivc"});
   }
   if (!found_.residuals.independent()) {
     warnings.push_back({WarningCode::input_explains_residual,
-                        "the input still explains something of what is left: the model misses a part",
-                        fmt::format("more poles or zeros (--orders), {}{}{}", delay, hold,
-                                    in_loop ? "" : "; in a loop --method clsrivc")});
+                        "the input still explains part of the residual, so the model is incomplete",
+                        fmt::format("try more poles or zeros (--orders), {}{}{}", delay, hold,
+                                    in_loop ? "" : "; in a closed loop, --method clsrivc")});
   }
   if (options_.find_delay && !found_.delay_found) {
     warnings.push_back(
         {WarningCode::delay_at_limit,
          delay_at_limit()
              ? fmt::format("the longest delay that was tried, {:.4g} s, fits best: the true one may be longer", delay_)
-             : fmt::format("no delay up to {:.4g} s fits: with the best, {:.4g} s, the input still explains something "
-                           "of what is left, and the true one may be longer",
+             : fmt::format("no delay up to {:.4g} s fits: with the best, {:.4g} s, the input still explains part of "
+                           "the residual; the true delay may be longer",
                            options_.max_delay, delay_),
-         fmt::format("look further by --max-delay {:.2g}, or set it by --delay", 2.0 * options_.max_delay)});
+         fmt::format("search up to --max-delay {:.2g}, or set the delay with --delay", 2.0 * options_.max_delay)});
   }
   std::string outside;
   double highest = 0.0;
@@ -601,42 +604,44 @@ void Identifier::warn() {
       !held_out_.empty() && !outside.empty() &&
       power_below(spectrum_of(held_out_, &SignalPair::input, rate), rate, kMax).value > highest;
   if (!outside.empty()) {
-    warnings.push_back({WarningCode::pole_outside_band,
-                        fmt::format("poles at {} lie beyond {:.4g} Hz, up to which 98 % of the input's power is: they "
-                                    "rest on the form of the model",
-                                    outside, found_.band_high),
-                        held_out_excites_them ? "leave --split out: the data that are held out excite the system there"
-                                              : "excite the system there, or do not use them"});
+    warnings.push_back(
+        {WarningCode::pole_outside_band,
+         fmt::format(
+             "poles at {} lie above {:.4g} Hz, below which 98 % of the power of the input lies: they are extrapolated",
+             outside, found_.band_high),
+         held_out_excites_them ? "omit --split: the held-out data excite the system there"
+                               : "excite the system there, or do not use them"});
   }
   if (!found_.even) {
-    warnings.push_back({WarningCode::uneven_clock, "the samples are unevenly spaced, which is taken into account",
-                        "the tests of what is left count samples, not seconds"});
+    warnings.push_back({WarningCode::uneven_clock,
+                        "the samples are unevenly spaced; the model accounts for this, but the residual tests do not",
+                        "interpret the residual tests with care: they count samples, not seconds"});
   }
 }
 
-/// In discrete time everything counts in samples of one clock.
+/// In discrete time the delay must be a whole number of samples.
 Result<void> Identifier::check_clock() const {
   if (!discrete()) return {};
   const auto step = MBK_TRY(common_step(experiments_, held_out_));
   const double samples = delay_ / step;
   constexpr double kWhole = 1e-3;
   if (options_.find_delay || std::abs(samples - std::round(samples)) <= kWhole) return {};
-  return bad_usage(fmt::format("a delay of {:g} s is no whole number of samples of {:.6g} ms", delay_, 1e3 * step),
-                   fmt::format("give {:.6g} or {:.6g} s, or take --method srivc", std::floor(samples) * step,
+  return bad_usage(fmt::format("a delay of {:g} s is not a whole number of samples of {:.6g} ms", delay_, 1e3 * step),
+                   fmt::format("give {:.6g} or {:.6g} s, or use --method srivc", std::floor(samples) * step,
                                std::ceil(samples) * step));
 }
 
-/// A jump of a held input has no place of its own between samples that are unevenly spaced.
+/// A step of a held input has no defined time between unevenly spaced samples.
 Result<void> Identifier::check_hold() const {
   if (discrete() && options_.hold) {
-    return bad_usage("a model in discrete time holds what the input does between samples in its numerator",
-                     "leave --hold out, or take --method srivc");
+    return bad_usage("a discrete-time model needs no assumption about the input between samples",
+                     "omit --hold, or use --method srivc");
   }
   const bool even = std::ranges::all_of(experiments_, [](const SignalPair& pair) { return pair.step.has_value(); });
   const bool is_delayed = options_.find_delay || delay_ > 0.0;
   if (hold_ == InputHold::first || !is_delayed || even) return {};
-  return bad_usage("a delay of an input that is held between samples needs an even clock",
-                   "take --hold first, or put the clock right by --resample");
+  return bad_usage("a delay with a zero-order hold needs uniform sampling",
+                   "use --hold first, or resample with --resample");
 }
 
 Result<TransferFunctionIdentification> Identifier::run() {

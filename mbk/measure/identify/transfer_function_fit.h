@@ -20,7 +20,7 @@ struct TransferFunctionOptions {
   std::optional<InputHold> hold;                ///< of the input; absent: as its steps show (input_hold)
   bool free_start = true;                       ///< an initial state and an offset of the output for each experiment
   Index max_noise_order = 8;                    ///< of the noise model, where the method has one
-  double hac_lag_s = 1.0;                       ///< reach of the residual's correlation in the standard errors [s]
+  double hac_lag_s = 1.0;                       ///< correlation time of the residual in the standard errors [s]
   unsigned threads = 0;                         ///< 0: as many as there are cores
 };
 

@@ -382,7 +382,7 @@ bool adds(const TransmissionColumn& one, const TransmissionColumn& other) {
 constexpr double kNegligible = 1e-3;  ///< of the torque: no robot is known better
 
 const char* side_of(double coefficient) {
-  return coefficient < 0.0 ? "on the motor's side of it" : "on the link's side of it";
+  return coefficient < 0.0 ? "on the motor side of it" : "on the link side of it";
 }
 
 }  // namespace
@@ -408,7 +408,7 @@ void test_transmission(const std::vector<PreparedDynamics>& trials, RobotIdentif
 }
 
 void warn_of_transmission(RobotIdentification& found) {
-  constexpr double kEnough = 0.5;    // of what counts, so that it surely does not
+  constexpr double kEnough = 0.5;    // of the limit, so that it is surely below it
   constexpr double kSlowest = 0.1;   // [Hz] at which a robot can be identified
   constexpr double kExplained = 80;  // [%] of the torque, for its residual to be that of a drive
   double top = 0.0;
@@ -424,27 +424,27 @@ void warn_of_transmission(RobotIdentification& found) {
       const double slower = top * std::sqrt(std::min(kEnough * kNegligible / bends.of_torque, 1.0));
       found.warnings.push_back(
           {WarningCode::elastic_drive,
-           fmt::format("the torque of joint {} goes with its own second derivative, as where motor and link turn "
-                       "against each other: an elastic drive with a resonance at about {:.2g} Hz, the encoder {}; "
-                       "inertia and friction are biased by that",
-                       joint + 1, resonance, side_of(bends.coefficient)),
+           fmt::format(
+               "the torque of joint {} is correlated with its own second derivative, which indicates an elastic drive "
+               "with a resonance at about {:.2g} Hz; the encoder is {}; inertia and friction are biased",
+               joint + 1, resonance, side_of(bends.coefficient)),
            slower > kSlowest ? fmt::format("move more slowly, below {:.2g} Hz, or stiffen the drive", slower)
-                             : "stiffen the drive, or record the angle of the link; slower motion would not help"});
+                             : "stiffen the drive, or record the angle of the link (slower motion does not help)"});
     }
     if (gap.found) {
       std::string size;
       const double inertia = inertia_about(static_cast<int>(joint), found.model);
       if (gap.coefficient < 0.0 && inertia > 0.0) {
         const double travel = -2.0 * gap.coefficient / inertia;
-        size = slides ? fmt::format(", of {:.2g} mm or more", 1e3 * travel)
-                      : fmt::format(", of {:.2g}° or more", travel * 180.0 / std::numbers::pi);
+        size = slides ? fmt::format(" of {:.2g} mm or more", 1e3 * travel)
+                      : fmt::format(" of {:.2g}° or more", travel * 180.0 / std::numbers::pi);
       }
       found.warnings.push_back(
           {WarningCode::backlash,
-           fmt::format("the residual of joint {} has a pulse wherever its torque turns round ({} times), as of a drive "
-                       "with backlash{}, the encoder {}; inertia and friction are biased by that",
+           fmt::format("the residual of joint {} has a pulse at each reversal of its torque ({} times), which "
+                       "indicates backlash{}; the encoder is {}; inertia and friction are biased",
                        joint + 1, test.reversals, size, side_of(gap.coefficient)),
-           "take the play out of the drive, or preload it so that its torque does not change its sign"});
+           "remove the play from the drive, or preload it so that its torque does not change sign"});
     }
   }
 }

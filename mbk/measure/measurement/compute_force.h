@@ -7,7 +7,7 @@
 
 namespace mbk::measurement {
 
-/// A recording with the force at the hand computed, as a recording.
+/// A recording with the computed force at the hand.
 struct ComputedForce {
   /// The samples at which the force could be computed. To the channels of the recording come force_x, force_y (the
   /// computed force, smoothed but not low-passed; what a sensor recorded moves as it is to sensor_force_x,
@@ -17,7 +17,7 @@ struct ComputedForce {
   ForceSummary summary;  ///< sample by sample, through the filters of a measurement
 };
 
-/// Of the options, those of preprocess and `resample` count.
+/// Uses the options of preprocess and `resample`.
 /// @fails  as preprocess::virtual_force
 [[nodiscard]] Result<ComputedForce> compute_force(const Recording& recording, const Options& options);
 

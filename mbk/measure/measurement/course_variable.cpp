@@ -35,15 +35,16 @@ std::vector<double> instants_of(const ExplorationTrial& trial, const std::string
 
 tl::unexpected<Error> nothing_to_align(std::span<const ExplorationTrial> trials, const std::string& align) {
   if (align == kAlignOnReference) {
-    return bad_data("the reference never steps from rest", "name an event with --align, or leave it out");
+    return bad_data("the reference never steps from rest", "name an event with --align, or omit it");
   }
   std::set<std::string> names;
   for (const ExplorationTrial& trial : trials) {
     for (const Event& event : trial.events) names.insert(event.name);
   }
-  return bad_data(fmt::format("there is no event '{}'{}", align,
-                              names.empty() ? std::string() : fmt::format("; there are {}", fmt::join(names, ", "))),
-                  "name one of them with --align, or --align reference");
+  return bad_data(
+      fmt::format("event '{}' is missing{}", align,
+                  names.empty() ? std::string() : fmt::format("; the events are {}", fmt::join(names, ", "))),
+      "name one of them with --align, or --align reference");
 }
 
 Result<explore::CourseVariable> aligned(std::span<const ExplorationTrial> trials, const std::string& align) {
@@ -69,8 +70,8 @@ Result<explore::CourseVariable> aligned(std::span<const ExplorationTrial> trials
     after = std::min(after, duration - all[k].back());
   }
   if (after < kShortest) {
-    return bad_data(fmt::format("only {:.2g} s follow each '{}' before the next or the end", after, align),
-                    "align to something that comes less often");
+    return bad_data(fmt::format("only {:.2g} s follow each '{}' before the next one or the end", after, align),
+                    "align to a less frequent event");
   }
   explore::CourseVariable variable;
   variable.name = align == kAlignOnReference ? "time since the onset of the reference"

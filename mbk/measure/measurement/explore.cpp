@@ -36,8 +36,8 @@ Result<Channel> named_channel(const Recording& recording, const std::string& nam
   }
   std::vector<std::string> names;
   for (const Channel& channel : recording.channels) names.push_back(channel.name);
-  return bad_data(fmt::format("there is no channel '{}'; there are {}", name, fmt::join(names, ", ")),
-                  "name a channel, a column's number or name, or a variable");
+  return bad_data(fmt::format("channel '{}' is missing; the channels are {}", name, fmt::join(names, ", ")),
+                  "name a channel, a column (number or name) or a variable");
 }
 
 /// The recording as that of one axis: the input in the place of the position, the output in that of −F.
@@ -166,7 +166,7 @@ Result<std::vector<ExplorationTrial>> named_trials(std::span<const Recording> re
     auto trial = MBK_TRY(named_trial(recording, options));
     trials.push_back(std::move(trial));
   }
-  if (trials.empty()) return bad_usage("there is no recording to explore");
+  if (trials.empty()) return bad_usage("no recording was given");
   return trials;
 }
 
@@ -211,10 +211,9 @@ Result<void> add_reaches(std::span<const ExplorationTrial> whole, const ExploreO
   found.usable = reaches->usable;
   found.reach_stiffness = std::move(*reaches);
   if (!options.only) {
-    found.notes.push_back(
-        fmt::format("the recordings hold the event '{}', so that they are taken for reaches, and "
-                    "nothing else is explored; --only names another part",
-                    options.reaches.trigger));
+    found.notes.push_back(fmt::format(
+        "the recordings contain the event '{}', so they are analysed as reaches only; choose another part with --only",
+        options.reaches.trigger));
   }
   return {};
 }
@@ -247,7 +246,7 @@ Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings, co
 }
 
 Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings, const ExploreOptions& options) {
-  if (!options.after_onset_s) return bad_usage("how long after the onset is not said");
+  if (!options.after_onset_s) return bad_usage("the time after the onset is missing");
   const auto trials = MBK_TRY(named_trials(recordings, options));
   return explore::after_onset(trials, *options.after_onset_s);
 }

@@ -24,7 +24,7 @@ struct ExploredSignals {
   std::string input_name, output_name;         ///< as they are shown
 };
 
-/// Everything that may be chosen on the way from recordings to what they say without a model.
+/// Options of an exploration of recordings without a model.
 struct ExploreOptions {
   preprocess::Options preprocess;
   std::optional<Hertz> resample;           ///< put the samples on an even clock first
@@ -42,7 +42,7 @@ struct ExploreOptions {
   std::optional<double> after_onset_s;  ///< M, B and K from so long after each onset of the reference; absent: not
 };
 
-/// What recordings of one limb in one condition say of it without a model of M, B and K. They are averaged.
+/// Explores recordings of one limb in one condition without a model of M, B and K. They are averaged.
 /// @fails  as preprocess::exploration_trial_of and the parts; the message names the file.
 [[nodiscard]] Result<Exploration> explore(std::span<const Recording> recordings, const ExploreOptions& options);
 
@@ -50,18 +50,17 @@ struct ExploreOptions {
 /// wide as those of the stiffness, by Student's t.
 void add_ellipse(StiffnessRegression& fit);
 
-/// The stiffness from the ramps and holds of recordings alone, with its ellipse, judged: the rest before the first ramp
-/// counts, so they are taken whole, unless options.preprocess.window says otherwise.
-/// @param warnings  to which what the user must know is added
+/// Only the stiffness from ramps and holds, with its ellipse and warnings. The rest before the first ramp is needed, so
+/// whole recordings are used unless options.preprocess.window is set.
+/// @param warnings  warnings are appended
 /// @fails  as preprocess::exploration_trial_of and explore::plateau_stiffness; the message names the file.
 [[nodiscard]] Result<PlateauStiffness> plateau_stiffness(std::span<const Recording> recordings,
                                                          const ExploreOptions& options, std::vector<Warning>& warnings);
-/// M, B and K over time, or over what the options name, alone (explore::time_course).
+/// Only M, B and K over time, or over the variable in the options (explore::time_course).
 /// @fails  as explore() and the parts
 [[nodiscard]] Result<TimeCourseEstimate> time_course(std::span<const Recording> recordings,
                                                      const ExploreOptions& options);
-/// M, B and K from so long after each onset of the reference as options.after_onset_s says, alone
-/// (explore::after_onset).
+/// Only M, B and K from the first options.after_onset_s after each onset of the reference (explore::after_onset).
 /// @fails  usage: the option is absent. As explore() and the part.
 [[nodiscard]] Result<AfterOnsetEstimate> after_onset(std::span<const Recording> recordings,
                                                      const ExploreOptions& options);

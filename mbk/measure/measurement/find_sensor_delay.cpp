@@ -76,23 +76,22 @@ double vaf_of(const Rows& rows, const Matrix& coefficients, Index axes) {
 void judge(MeasuredDelay& found) {
   const double half = numeric::kNormal95 * found.delay_error;
   if (!(found.vaf >= kSmallestVaf)) {
-    found.problems.push_back(
-        fmt::format("a mass explains only {:.1f} % of the force: something else is at the handle, "
-                    "or a channel is not what it is taken for",
-                    found.vaf));
+    found.problems.push_back(fmt::format(
+        "the mass explains only {:.1f} % of the force: something else is at the handle, or a channel is wrong",
+        found.vaf));
   }
   if (found.mass < 0.0) {
-    found.problems.emplace_back("the mass is negative: the force has the other sign");
+    found.problems.emplace_back("the mass is negative: the force was recorded with the opposite sign");
   } else if (std::abs(found.mass - found.stated_mass) >
              std::max(kSameMass * found.stated_mass, numeric::kNormal95 * found.mass_error)) {
     found.problems.push_back(
-        fmt::format("{:.4g} kg were found and {:.4g} kg stated: the gain of the sensor, a unit or "
-                    "the stated mass is wrong",
+        fmt::format("the mass found is {:.4g} kg, but {:.4g} kg was stated: the gain of the sensor, a unit or the "
+                    "stated mass is wrong",
                     found.mass, found.stated_mass));
   }
   if (!(half <= kWidest)) {
     found.problems.push_back(
-        fmt::format("the delay is known only to ±{:.2g} ms: move the mass faster, or for longer", 1e3 * half));
+        fmt::format("the delay is known only to ±{:.2g} ms: move the mass faster or longer", 1e3 * half));
   }
 }
 
@@ -111,8 +110,7 @@ Result<MeasuredDelay> find_sensor_delay(const Recording& recording, double mass,
     const Index axes = rows.Z.cols() - 2;
     const auto fit = MBK_TRY(numeric::fit_least_squares(rows.Z, rows.Y));
     if (fit.rank < rows.Z.cols() || fit.coefficients(0, 0) == 0.0) {
-      return bad_data("the mass does not move, so that it tells nothing of the force",
-                      "move it about, at several frequencies");
+      return bad_data("the mass does not move, so its force is not known", "move it, at several frequencies");
     }
     const auto lags = static_cast<Index>(std::llround(kCorrelation / rows.sample_time));
     const Matrix V = numeric::newey_west_covariance(fit, rows.Z, rows.Y - rows.Z * fit.coefficients, rows.ranges, lags);
@@ -131,7 +129,7 @@ Result<MeasuredDelay> find_sensor_delay(const Recording& recording, double mass,
   judge(found);
   if (!stays) {
     found.problems.push_back(
-        fmt::format("no delay up to {:g} ms makes force and acceleration agree", 1e3 * kLongestDelay));
+        fmt::format("no delay up to {:g} ms makes force and acceleration consistent", 1e3 * kLongestDelay));
   }
   return found;
 }

@@ -206,8 +206,8 @@ void check_friction(std::span<const Recording> recordings, std::span<const Recor
     if (!(most[joint].errors > 0.0)) continue;
     found.warnings.push_back(
         {WarningCode::dry_friction,
-         fmt::format("the friction of joint {} grows near standstill, by {:.0f} % of its Coulomb friction below about "
-                     "{:.2g} {}, and the model has no term for it",
+         fmt::format("the friction of joint {} increases near standstill (Stribeck effect), by {:.0f} % of its Coulomb "
+                     "friction below about {:.2g} {}, but the model has no term for it",
                      joint + 1, 100.0 * most[joint].share, most[joint].velocity,
                      model.mechanism->slides(static_cast<int>(joint)) ? "m/s" : "rad/s"),
          "add --terms viscous,coulomb,stribeck,offset --stribeck-velocity auto"});

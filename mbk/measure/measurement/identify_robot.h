@@ -19,11 +19,11 @@ struct RobotOptions {
   std::optional<Hertz> resample;   ///< put the samples on an even clock first
 };
 
-/// From recordings of a robot that moves by itself to its dynamics: inspect, prepare, fit. Where the delay is to be
-/// found, the torque is shifted and fitted again until the correction is below 1 % of a sample; the Stribeck velocity
-/// is the one that leaves least of the torque, by Brent's search over its logarithm about the best of a grid.
-/// @param held_out  whole recordings that only judge
-/// @fails  as its steps; where a recording has a source, the message names its file.
+/// Dynamics of a robot from recordings of it moving without a hand: inspect, prepare, fit. If the delay is estimated,
+/// the torque is shifted and refitted until the correction is below 1 % of a sample; the Stribeck velocity minimises
+/// the residual torque, with Brent's search over its logarithm around the best of a grid.
+/// @param held_out  whole recordings used only for validation
+/// @fails  as its steps; the message names the file if a recording has a source.
 [[nodiscard]] Result<RobotIdentification> identify_robot(std::span<const Recording> recordings,
                                                          std::span<const Recording> held_out,
                                                          const robot::DynamicModel& model, const RobotOptions& options);

@@ -90,8 +90,8 @@ Result<const Channel*> channel_of(const Recording& recording, const std::string&
   }
   std::vector<std::string> names;
   for (const Channel& channel : recording.channels) names.push_back(channel.name);
-  return bad_data(fmt::format("there is no channel '{}'; there are {}", name, fmt::join(names, ", ")),
-                  "name a channel, a column's number or name, or a variable");
+  return bad_data(fmt::format("channel '{}' is missing; the channels are {}", name, fmt::join(names, ", ")),
+                  "name a channel, a column (number or name) or a variable");
 }
 
 class Preparer {
@@ -159,8 +159,8 @@ Hertz top_of_response(const SignalPair& pair) {
 
 void Preparer::note_left_out() {
   if (!left_out_) return;
-  notes.push_back(fmt::format(
-      "the first {:.4g} s were left out: what the input was so long before them was not recorded", reach()));
+  notes.push_back(
+      fmt::format("the first {:.4g} s were omitted, because the input before them was not recorded", reach()));
 }
 
 /// Fast enough that the low-pass leaves the output's response as it is.
@@ -174,7 +174,7 @@ void Preparer::take_rate_of_model() {
   if (rate <= kMaxDiscreteRate.value) return;
   rate_of_model_ = Hertz(rate);
   notes.push_back(
-      fmt::format("kept above {:g} Hz: 5 % of the output's power that follows the input lies above {:.3g} Hz",
+      fmt::format("sample rate kept above {:g} Hz: 5 % of the output power that follows the input lies above {:.3g} Hz",
                   kMaxDiscreteRate.value, top));
 }
 
@@ -195,7 +195,7 @@ Result<Index> Preparer::every(const SignalPair& pair) const {
   if (requested ? *requested == 0.0 : !discrete) return 1;
   if (!pair.step) {
     if (!requested) return 1;  // the fit says what is wrong
-    return bad_usage("an uneven clock has no rate to leave samples out of", "put it right by --resample");
+    return bad_usage("unevenly spaced samples cannot be decimated", "resample them with --resample");
   }
   const double rate = 1.0 / *pair.step;
   constexpr double kRounding = 1e-6;
@@ -204,16 +204,16 @@ Result<Index> Preparer::every(const SignalPair& pair) const {
   }
   if (!requested) return static_cast<Index>(std::ceil(rate / kMaxDiscreteRate.value * (1.0 - kRounding)));
   if (*requested <= rate * (1.0 + kRounding)) return static_cast<Index>(std::llround(rate / *requested));
-  return bad_usage(fmt::format("samples come at {:.6g} Hz, and not at {:g} Hz", rate, *requested),
-                   "choose a lower --sample-rate, or --resample");
+  return bad_usage(fmt::format("the sample rate is {:.6g} Hz, so {:g} Hz is not possible", rate, *requested),
+                   "choose a lower --sample-rate, or use --resample");
 }
 
 Result<void> Preparer::thin_out(SignalPair& pair) {
   const auto every_one = MBK_TRY(every(pair));
   if (every_one == 1) return {};
   if (options_.fit.hold == InputHold::zero) {
-    return bad_usage("an input that was decimated behind a low-pass is not held between samples any more",
-                     "leave --sample-rate out, or take --hold first");
+    return bad_usage("a zero-order hold does not apply to an input decimated after a low-pass filter",
+                     "omit --sample-rate, or use --hold first");
   }
   const Hertz rate(1.0 / *pair.step);
   const Index begin = pair.first % every_one;
@@ -333,7 +333,7 @@ std::vector<Block> Preparer::blocks(const Recording& recording, double from, dou
 
 Result<void> Preparer::add(const Recording& recording, bool whole, bool hold_back) {
   const Index n = recording.samples();
-  if (n < 2) return bad_data("a recording of fewer than 2 samples shows nothing");
+  if (n < 2) return bad_data("the recording has fewer than 2 samples");
   for (Index i = 1; i < n; ++i) {
     if (recording.time[i] > recording.time[i - 1]) continue;
     return bad_data(fmt::format("time does not increase at sample {}", i + 1), "cut the file there");
@@ -388,8 +388,8 @@ Result<TransferFunctionIdentification> identify_transfer_function(std::span<cons
   }
   if (prepared.experiments.empty()) {
     return bad_data(options.fit.find_delay || options.fit.delay > 0.0
-                        ? "behind the delay no segment of at least 8 samples without a gap is left to identify"
-                        : "no segment of at least 8 samples without a gap is left to identify",
+                        ? "after the delay, no segment of at least 8 samples without a gap is left for identification"
+                        : "no segment of at least 8 samples without a gap is left for identification",
                     "choose a longer window");
   }
   prepared.note_left_out();

@@ -35,27 +35,26 @@
 namespace mbk::measurement {
 namespace {
 
-/// Of what counts: a sensor that was at its limit outside the window harms nothing.
+/// Within the analysed interval; saturation outside it is harmless.
 void warn_of_clipping(const Recording& recording, PreparedTrial& trial) {
   const Preparation& how = trial.preparation;
   for (const ChannelFacts& facts : recording::clipped_channels(recording, how.from_s, how.to_s)) {
     trial.warnings.push_back({WarningCode::clipping,
-                              fmt::format("channel '{}' rests at its extreme again and again ({:g} to {:g} {}): the "
-                                          "sensor or converter was at its limit",
+                              fmt::format("channel '{}' repeatedly stays at its extreme value ({:g} to {:g} {}): the "
+                                          "sensor or converter was saturated",
                                           facts.name, facts.min, facts.max, facts.unit),
-                              "perturb less, or raise the sensor's range; choose a window without it"});
+                              "perturb less, increase the range of the sensor, or choose a window without saturation"});
   }
 }
 
-/// Straight lines across a gap are an invention, and are said to be one.
+/// Interpolation across a gap is reported as such.
 void warn_of_resampling(const Inspection& recorded, Hertz rate, PreparedTrial& trial) {
-  std::string message =
-      fmt::format("the samples were put on an even clock of {:g} Hz by straight lines between them", rate.value);
+  std::string message = fmt::format("the samples were interpolated linearly to a uniform clock of {:g} Hz", rate.value);
   if (!recorded.gaps.empty()) {
     const Gap& longest = *std::ranges::max_element(recorded.gaps, {}, &Gap::length);
     message +=
-        fmt::format(", and {} gap{} bridged by a line that nobody measured, the longest of {:.3g} s at {:.3f} s",
-                    recorded.gaps.size(), recorded.gaps.size() == 1 ? " was" : "s were", longest.length, longest.time);
+        fmt::format(", and {} gap{} filled by interpolation, the longest of {:.3g} s at {:.3f} s", recorded.gaps.size(),
+                    recorded.gaps.size() == 1 ? " was" : "s were", longest.length, longest.time);
   }
   trial.warnings.push_back({WarningCode::resampled, std::move(message),
                             recorded.gaps.empty() ? "record with a steady clock"
@@ -124,7 +123,7 @@ Result<Source> make_ready(const Recording& recording, const Options& options) {
     source.even = MBK_TRY(preprocess::turn_force(source.recording(), options.force_rotation));
   }
   if (options.preprocess.force_source == ForceSource::sensor) return source;
-  if (!options.preprocess.robot) return bad_usage("a computed force needs a robot", "name it with --robot");
+  if (!options.preprocess.robot) return bad_usage("a computed force needs a robot model", "name it with --robot");
   const Inspection inspection = source.even ? recording::inspect(*source.even) : source.recorded;
   auto computed =
       MBK_TRY(preprocess::virtual_force(source.recording(), inspection, *options.preprocess.robot, options.preprocess));
@@ -165,11 +164,12 @@ Result<PreparedTrial> prepare_one(const Source& source, const Options& options) 
   }
   warn_of_clipping(*source.given, *trial);
   if (options.force_delay != 0.0) {
-    trial->notes.push_back(fmt::format("the force was moved {:g} ms earlier, as asked", 1e3 * options.force_delay));
+    trial->notes.push_back(
+        fmt::format("the force was shifted {:g} ms earlier, as requested", 1e3 * options.force_delay));
   }
   if (options.force_rotation != 0.0) {
     trial->notes.push_back(
-        fmt::format("the force was turned by {:g}° from x to y, as asked", kDegrees * options.force_rotation));
+        fmt::format("the force was rotated by {:g}° from x to y, as requested", kDegrees * options.force_rotation));
   }
   if (source.clock) warn_of_resampling(source.recorded, *source.clock, *trial);
   if (source.jitter) trial->warnings.push_back(*source.jitter);
@@ -211,22 +211,23 @@ Result<std::vector<PreparedTrial>> prepare_all(const std::vector<Source>& source
   return trials;
 }
 
-/// The method that a result is by where none was asked for, and why.
+/// The method of the result if none was requested, and why.
 std::pair<Method, std::string> recommended(const std::vector<PreparedTrial>& trials, const identify::Comparison& both) {
   const auto by_force = [](const PreparedTrial& trial) { return trial.reference_quantity == ReferenceQuantity::force; };
   if (trials.front().preparation.mode == Mode::reference) return {Method::least_squares, "the published procedure"};
   const Identification& instrumental = both.instrumental_variables;
   if (!instrumental.instrument || !instrumental.instrument->strong()) {
-    return {Method::least_squares, "the recorded reference explains too little of the motion for instruments"};
+    return {Method::least_squares,
+            "the recorded reference explains too little of the motion for instrumental variables"};
   }
   if (!instrumental.usable) return {Method::least_squares, "instrumental variables are not usable"};
   if (std::ranges::all_of(trials, by_force)) {
-    return {Method::instrumental_variables, "the reference is a force: the limb and the robot move in a closed loop"};
+    return {Method::instrumental_variables, "the reference is a force: limb and robot form a closed loop"};
   }
   return {Method::instrumental_variables, "the recorded reference explains the motion"};
 }
 
-/// By the method that was asked for or is recommended and, where a reference was recorded, by the other one too.
+/// With the requested or recommended method and, if a reference was recorded, also with the other one.
 Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, const identify::Options& options) {
   const bool by_instruments = options.method == Method::instrumental_variables;
   const bool known =
@@ -248,12 +249,11 @@ Result<Measurement> identify_by_both(const std::vector<PreparedTrial>& trials, c
   }
   auto alone = MBK_TRY(identify::identify_impedance(trials, options));
   if (trials.front().preparation.mode == Mode::default_mode && !known) {
-    alone.warnings.push_back(
-        {WarningCode::no_reference,
-         "no reference was recorded: whether the limb itself moved the robot, which biases least squares, cannot be "
-         "judged",
-         "record what the robot was told to do, as position or force (xr, yr); the energy of the trial holds all the "
-         "same"});
+    alone.warnings.push_back({WarningCode::no_reference,
+                              "no reference was recorded, so it cannot be checked whether the limb itself moved the "
+                              "robot, which would bias least squares",
+                              "record the commanded position or force of the robot (xr, yr); the measured energy of "
+                              "the trial remains valid"});
   }
   Measurement measured;
   measured.identification = std::move(alone);
@@ -279,12 +279,12 @@ Result<EnergyAccount> account_for_energy(const std::vector<Source>& sources, con
   return analyse::pooled_energy(recordings_of(sources), trials);
 }
 
-/// What one method found and, or null, what the other did: first the one that is to be believed.
+/// Results of both methods, the second one possibly null; first the one to rely on.
 std::pair<const Identification*, const Identification*> both_methods(const Measurement& measured) {
   const Identification* first = &measured.identification;
   const Identification* other = measured.alternative ? &*measured.alternative : nullptr;
   const bool by_instruments = first->method == Method::instrumental_variables;
-  if (!by_instruments && other != nullptr && analyse::instruments_speak(*other, measured.disagreement)) {
+  if (!by_instruments && other != nullptr && analyse::prefer_instruments(*other, measured.disagreement)) {
     std::swap(first, other);
   }
   return {first, other};
@@ -359,7 +359,7 @@ Result<void> compare_with_sensor(const std::vector<Source>& sources, const std::
   return {};
 }
 
-/// A parameter of M, B or K that the sensor's force puts outside the interval of the computed force; "" where none is.
+/// A parameter of M, B or K that differs significantly between sensor and computed force; "" if none does.
 std::string contradicted_by_sensor(const Identification& computed, const Identification& sensed) {
   const Vector of_computed = stacked(computed.model), of_sensed = stacked(sensed.model);
   const Vector error = stacked(computed.standard_error), sensed_error = stacked(sensed.standard_error);
@@ -372,16 +372,16 @@ std::string contradicted_by_sensor(const Identification& computed, const Identif
     if (!(apart > most)) continue;
     most = apart;
     const std::string& name = computed.parameters[static_cast<std::size_t>(k)];
-    which = fmt::format("{} is {:.3g} ± {:.2g} {unit} by the computed force and {:.3g} by the force sensor", name,
+    which = fmt::format("{} is {:.3g} ± {:.2g} {unit} with the computed force and {:.3g} with the force sensor", name,
                         of_computed[k], numeric::kNormal95 * error[k], of_sensed[k],
                         fmt::arg("unit", unit_of_parameter(name, computed.motion)));
   }
   return which;
 }
 
-/// A computed force is not used where the recording shows that the robot is not the one that was identified: by a force
-/// sensor, or by friction or a damping that feeds in energy, which the robot's own friction leaves in the force where
-/// it has changed. A momentum observer's force comes late, which a sensor contradicts whatever the robot is.
+/// A computed force is not usable if the recording shows that the robot has changed since its identification: a force
+/// sensor contradicts it, or the force contains friction or negative damping, which changed friction of the robot
+/// leaves in it. A sensor contradicts the force of a momentum observer in any case, because that force is delayed.
 void warn_of_changed_robot(Measurement& measured) {
   Identification& id = measured.identification;
   std::string message;
@@ -389,8 +389,8 @@ void warn_of_changed_robot(Measurement& measured) {
     message = contradicted_by_sensor(id, *measured.by_sensor);
   } else {
     for (const auto& [code, what] :
-         {std::pair(WarningCode::dry_friction, "the computed force holds dry friction, which a limb has not"),
-          std::pair(WarningCode::damping_not_positive, "the damping by the computed force is negative")}) {
+         {std::pair(WarningCode::dry_friction, "the computed force contains dry friction, which a limb does not have"),
+          std::pair(WarningCode::damping_not_positive, "the damping from the computed force is negative")}) {
       if (std::ranges::find(id.warnings, code, &Warning::code) != id.warnings.end()) message = what;
     }
   }
@@ -399,9 +399,9 @@ void warn_of_changed_robot(Measurement& measured) {
   if (measured.alternative) measured.alternative->usable = false;
   id.warnings.insert(
       id.warnings.begin(),
-      {WarningCode::robot_changed, message + ": the robot is not as it was identified, as where it was cold",
-       "identify the robot anew, at the temperature and with the load and gains of the measurement, or "
-       "take the force of a sensor"});
+      {WarningCode::robot_changed,
+       message + ": the robot has changed since it was identified, for example its temperature",
+       "identify the robot again, with the temperature, load and gains of the measurement, or use a force sensor"});
 }
 
 /// The result at the joints of the posture in which it was measured.

@@ -17,42 +17,41 @@
 
 namespace mbk::measurement {
 
-/// Everything that may be chosen on the way from a recording to a result. With the defaults
+/// Options of a measurement. With the defaults
 ///
 ///   const auto measured = mbk::measurement::measure(std::vector{recording}, {});
 ///
 /// does what `mbk measure` does without options.
 struct Options {
   /// Channels, windows, filters and derivatives. `preprocess.mode` chooses between the default and the published
-  /// procedure; whatever else is set there replaces what the mode would choose.
+  /// procedure; other settings override those of the mode.
   preprocess::Options preprocess;
 
   /// Method and structure of the fit, handle mass [kg], bootstrap.
   identify::Options identify;
 
-  /// Put all samples on an even clock at this rate first, by straight lines between them. Absent: only if a session
-  /// missed ticks, as `measure` says.
+  /// Resample to a uniform clock at this rate first, by linear interpolation. Absent: only if a session missed ticks,
+  /// see `measure`.
   std::optional<Hertz> resample;
 
-  /// How late the force was read against the position [s]; it is moved back by as much, by straight lines between
-  /// samples. Negative if it was read early. Shorter than the recording.
+  /// Delay of the force relative to the position [s]; corrected by linear interpolation. Negative if the force is
+  /// early. Shorter than the recording.
   double force_delay = 0.0;
 
-  /// Angle by which the force is turned first, from x to y [rad]: undoes a sensor that is mounted at an angle. Two axes
+  /// Angle by which the force is rotated first, from x to y [rad]: corrects a sensor mounted at an angle. Two axes
   /// only.
   double force_rotation = 0.0;
 
-  /// Judge passivity too: what energy the limb absorbed, and what its model predicts.
+  /// Also judge passivity: energy absorbed by the limb, and prediction of its model.
   bool passivity = true;
 
-  /// Give the result at the joints of the arm too. Needs the posture of the arm, which the recording has to say.
+  /// Also give the result at the joints of the arm. The recording must contain the posture of the arm.
   bool joint_domain = false;
 
-  /// Frequencies between which the model is judged for passivity. Absent: those at which the data show how the limb
-  /// answers. A model says nothing outside of them.
+  /// Band in which the model is judged for passivity. Absent: the coherent band. Beyond it the model is extrapolated.
   std::optional<std::pair<Hertz, Hertz>> band;
 
-  /// Plausible ranges that are not checked: a warning less for a device that is far from an arm.
+  /// Plausible ranges that are not checked, for devices that differ much from an arm.
   std::set<PlausibleQuantity> ignored_ranges;
 };
 
@@ -61,13 +60,13 @@ struct Options {
 /// Solves M ẍ + B ẋ + K (x − x₀) = −F for one axis or two, with F the force of the hand on the robot, in SI units and
 /// radians. Several recordings are pooled into one fit; each keeps its own preparation and energy.
 ///
-/// What is not asked for follows from the recording, so that whoever measures it gets one answer:
+/// Unspecified options follow from the recording, so that every user gets the same result:
 /// - the method, in default mode: instrumental variables if a reference is recorded that explains the motion well (the
 ///   limb moves the robot too, and least squares is biased) and the instruments are valid; else least squares.
 ///   Reference mode uses least squares;
-/// - the handle mass, as identify::Options says;
+/// - the handle mass, see identify::Options;
 /// - a clock, in default mode: if a session missed ticks (gaps of at most 0.1 s, at most 5 % of the time), samples are
-///   put on the even clock that the recording names (`rate_hz`), and the result warns of it.
+///   resampled to the uniform clock of the recording (`rate_hz`), with a warning.
 ///
 /// Success does not mean that the numbers can be trusted: look at `identification.usable` and
 /// `identification.warnings`. The numbers do not depend on the number of threads.
@@ -76,11 +75,11 @@ struct Options {
 /// @fails  the person has withdrawn (preprocess::check_consent); a channel is missing; time repeats, runs backwards or
 /// has a gap inside the window; a value there is not finite; a window is shorter than the filters need; recordings
 /// differ in axes, units or rate; the same file is pooled twice; an option contradicts the recording or is outside its
-/// range; the joint domain is asked for and no posture is known, or postures differ. A message names the file if the
+/// range; the joint domain is requested but no posture is known, or postures differ. A message names the file if the
 /// recording has one.
 [[nodiscard]] Result<Measurement> measure(std::span<const Recording> recordings, const Options& options);
 
-/// A result, and what shows how good it is: predicted force, autocorrelation of the residual, spectra, filters.
+/// A result with diagnostics: predicted force, autocorrelation of the residual, spectra, filters.
 struct Examined {
   Measurement measured;
 

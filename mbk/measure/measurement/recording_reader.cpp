@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 Result<RecordingReader> RecordingReader::open(const Reading& reading) {
   if (reading.parts && !reading.options.trial.empty()) {
-    return bad_usage("--parts joins files of one record each, --trial takes one of several in a file",
-                     "leave one of them out");
+    return bad_usage("--parts and --trial exclude each other: one joins files, the other selects a trial of a file",
+                     "omit one of them");
   }
   constexpr std::size_t kMany = 64;  // files that a process may well hold open
   const bool many = reading.files.size() > kMany;

@@ -17,18 +17,18 @@
 
 namespace mbk::measurement {
 
-/// Which recordings are read, and how.
+/// The recordings to read, and how.
 struct Reading {
   std::vector<std::filesystem::path> files;
   bool parts = false;                            ///< they are numbered parts of one record
   recording::ReadOptions options;                ///< without `trial` all trials of each file
   std::optional<calibration::SensorUse> sensor;  ///< the force is that of its voltages
-  /// The recording that a caller holds in memory under the name of a file, or null. May be empty.
+  /// A recording in memory under the name of a file, or null. May be empty.
   std::function<std::shared_ptr<const recording::InMemory>(const std::filesystem::path&)> in_memory;
 };
 
-/// Reads recordings one by one, also from several threads at once: only what is being worked on has to be in memory.
-/// Every file is opened once, whatever is asked of it. A file that cannot be opened is reported by whoever reads it.
+/// Reads recordings one by one, also from several threads: only those in use are in memory. Every file is opened only
+/// once. If it cannot be opened, the function that reads it reports the error.
 class RecordingReader {
  public:
   /// @fails  usage: `parts` with a trial or with arrays in memory; a trial that is not there.
@@ -48,7 +48,7 @@ class RecordingReader {
   /// The same for whoever measures it: of a session's recording only the perturbation.
   /// @fails  as read and preprocess::check_consent
   [[nodiscard]] Result<Recording> read_perturbation(int k) const;
-  /// What the file holds under its own names.   @fails  as recording::list_contents
+  /// Contents of the file under its own names.   @fails  as recording::list_contents
   [[nodiscard]] Result<FileContents> list_contents(int k) const;
   /// The same with all numbers.   @fails  as recording::read_contents
   [[nodiscard]] Result<recording::Contents> read_contents(int k) const;

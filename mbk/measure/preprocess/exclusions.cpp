@@ -75,8 +75,8 @@ std::string window_text(const ExcludedWindow& window) {
 Result<void> check_consent(const Recording& recording) {
   const auto withdrawn = recording.metadata.find("withdrawn");
   if (withdrawn == recording.metadata.end() || withdrawn->second != "yes") return {};
-  return with_code("withdrawn", bad_data("the person has withdrawn: these data must not be used",
-                                         "leave the file out, and remove it"));
+  return with_code("withdrawn", bad_data("the participant has withdrawn: these data must not be used",
+                                         "omit the file and delete it"));
 }
 
 std::string excluded_windows_text(std::span<const ExcludedWindow> windows) {
@@ -95,7 +95,7 @@ Result<std::vector<ExcludedWindow>> parse_excluded_windows(std::string_view text
     auto window = take_window(text);
     if (!window || !(window->from_s < window->to_s)) {
       return bad_data(fmt::format("its excluded windows cannot be read: '{}'", given),
-                      "they stand in the metadata as '1.5-4 s: why; 7-9 s: why'");
+                      "write them in the metadata as '1.5-4 s: why; 7-9 s: why'");
     }
     std::size_t end = text.find(kBetween);
     for (; end != std::string_view::npos; end = text.find(kBetween, end + 1)) {
@@ -133,13 +133,13 @@ Result<void> leave_out(std::span<const ExcludedWindow> windows, const Clock& clo
                        WindowPlan& plan) {
   constexpr double kShortest = 2.0;  // [s]; the filters lose a tenth of it
   std::vector<Segment> excluded;
-  std::string said;
+  std::string omitted;
   const Index first = plan.cuts.front().begin, last = plan.cuts.back().end;
   for (const ExcludedWindow& window : windows) {
     const Segment samples = samples_of(window, clock, origin_s);
     if (samples.size() == 0 || samples.end <= first || samples.begin >= last) continue;
     excluded.push_back(samples);
-    said += fmt::format("; left out: {}, excluded: {}", window_text(window), window.why);
+    omitted += fmt::format("; omitted: {}, excluded: {}", window_text(window), window.why);
   }
   if (excluded.empty()) return {};
   std::ranges::sort(excluded, {}, &Segment::begin);
@@ -154,12 +154,12 @@ Result<void> leave_out(std::span<const ExcludedWindow> windows, const Clock& clo
   }
   const bool any = std::ranges::any_of(left, [](const Cut& cut) { return !cut.keep.empty(); });
   if (!any) {
-    return bad_data(fmt::format("nothing is left beside what its operator excluded{}", said),
+    return bad_data(fmt::format("no data are left after the exclusions of the operator{}", omitted),
                     "measure another trial, or choose --from and --to where nothing was excluded");
   }
   plan.cuts = std::move(left);
   plan.excluded = std::move(excluded);
-  plan.rule += said;
+  plan.rule += omitted;
   return {};
 }
 

@@ -67,7 +67,7 @@ Result<ExplorationTrial> exploration_trial_of(const Recording& recording, const 
   const Cut& cut = plan.cuts.front();
   const Index rows = cut.end - cut.begin;
   if (rows < kMinSamples) {
-    return bad_data(fmt::format("{} samples of the analysed interval are too few", rows), "choose a longer interval");
+    return bad_data(fmt::format("the analysed interval has only {} samples", rows), "choose a longer interval");
   }
   trial.sample_time = 1.0 / rate.value;
   trial.from_s = clock.seconds(cut.begin);

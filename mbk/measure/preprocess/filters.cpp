@@ -49,7 +49,7 @@ FilterPlan reference_filters(const Options& options) {
   return with_choices(
       {{6, chapter5 ? 151 : 101},
        Hertz(chapter5 ? 4.5 : 5.0),
-       fmt::format("{} of the published procedure{}", word_of(procedure), changed ? ", changed as asked" : "")},
+       fmt::format("{} of the published procedure{}", word_of(procedure), changed ? ", modified as requested" : "")},
       options);
 }
 
@@ -58,7 +58,7 @@ FilterPlan improved_filters(const Options& options, const Band& band, Hertz rate
   const double asked = options.cutoff.value_or(Hertz(band.high.value / kPassed)).value;
   const double cutoff = std::min(asked, 0.4 * rate.value);
   plan.cutoff = Hertz(cutoff);
-  plan.rule = fmt::format("{:.3g} Hz, the top of the excited band, over 0.6", band.high.value);
+  plan.rule = fmt::format("{:.3g} Hz, the upper end of the excited band, divided by 0.6", band.high.value);
   if (cutoff < asked) plan.rule += ", limited to 0.4 of the sample rate";
   const int order = options.smoothing_order.value_or(6);
   plan.smoothing.order = order;

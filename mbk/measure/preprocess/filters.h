@@ -16,12 +16,12 @@
 
 namespace mbk::preprocess {
 
-/// Filter settings and the words that say where they come from. What the user chose goes before either plan.
+/// Filter settings and the reasons for them. Choices of the user override both plans.
 struct FilterPlan {
   dsp::SavitzkyGolay smoothing;
-  std::optional<Hertz> cutoff;  ///< of the zero-phase Butterworth filter of order five; none: it is not applied
+  std::optional<Hertz> cutoff;  ///< of the zero-phase Butterworth filter of order five; none: not applied
   std::string rule;
-  Index every = 1;  ///< of the filtered samples, the first of so many is kept
+  Index every = 1;  ///< decimation: every Nth filtered sample is used
 };
 
 /// Those of the published procedure: (6, 101) and 5 Hz, or in chapter 5 (6, 151) and 4.5 Hz.
@@ -39,7 +39,7 @@ struct FilterPlan {
 /// One cut through both filters: [x ẋ ẍ F], each n columns, then [r̈ ṙ r] of the reference where it is wanted and what a
 /// computed force's sensitivity has; row i belongs to sample cut.begin + half window + trim + i·every.
 /// @param to  the columns' first numbers; each has room for `filtered_rows`
-/// @fails as filtered_rows; the settings are none that a filter can have.
+/// @fails as filtered_rows; the filter settings are invalid.
 [[nodiscard]] Result<void> filter_cut(const Signals& signals, const Cut& cut, const FilterPlan& filters, Index trim,
                                       Hertz rate, const dsp::Padding& padding, bool with_reference,
                                       std::span<double* const> to);

@@ -22,15 +22,15 @@ Result<Recording> undo_force_delay(const Recording& recording, double delay) {
   const Vector& time = recording.time;
   const Index samples = recording.samples();
   if (!std::isfinite(delay)) return bad_usage("a delay of the force must be finite");
-  if (std::ranges::none_of(recording.channels, is_force)) return bad_data("there is no force that could be late");
+  if (std::ranges::none_of(recording.channels, is_force)) return bad_data("no force was recorded");
   if (samples < 2 || !((time.tail(samples - 1) - time.head(samples - 1)).minCoeff() > 0.0)) {
-    return bad_data("time does not increase, so that no delay can be undone", "put it on one clock with --resample HZ");
+    return bad_data("time does not increase, so a delay cannot be corrected", "resample with --resample HZ");
   }
   Index begin = 0, end = samples;
   while (begin < samples && time[begin] + delay < time[0]) ++begin;
   while (end > begin && time[end - 1] + delay > time[samples - 1]) --end;
   if (end - begin < 2) {
-    return bad_usage(fmt::format("a delay of {:g} s is as long as the recording", delay), "it is given in ms");
+    return bad_usage(fmt::format("a delay of {:g} s is as long as the recording", delay), "give the delay in ms");
   }
   Recording result = recording;
   result.time = time.segment(begin, end - begin);

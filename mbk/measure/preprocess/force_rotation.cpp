@@ -8,14 +8,14 @@
 namespace mbk::preprocess {
 
 Result<Recording> turn_force(const Recording& recording, double angle) {
-  if (!std::isfinite(angle)) return bad_usage("the angle by which the force is turned must be finite");
+  if (!std::isfinite(angle)) return bad_usage("the rotation angle of the force must be finite");
   Recording result = recording;
   const auto channel = [&](std::size_t axis) {
     return std::ranges::find(result.channels, kForceChannels.plane[axis], &Channel::name);
   };
   const auto x = channel(0), y = channel(1);
   if (x == result.channels.end() || y == result.channels.end()) {
-    return bad_data("only a force with two axes can be turned", "leave --force-rotation-deg out, or name both axes");
+    return bad_data("only a force with two axes can be rotated", "omit --force-rotation-deg, or name both axes");
   }
   const double c = std::cos(angle), s = std::sin(angle);
   const Vector turned = c * x->values - s * y->values;

@@ -92,21 +92,22 @@ Result<EvenRecording> on_even_clock(const Recording& recording, const Inspection
   if (evidence.slope + 1.96 * evidence.standard_error < 0.5) {
     Recording even = recording;
     even.time = even_clock(recording.time);
-    return EvenRecording{std::move(even),
-                         {WarningCode::clock_jitter,
-                          jitter + ", but the position moves as if sampled evenly: the samples are taken as even",
-                          "compare with --resample HZ; record with a steadier clock"}};
+    return EvenRecording{
+        std::move(even),
+        {WarningCode::clock_jitter,
+         jitter + ", but the position moves as if sampled uniformly, so the samples are treated as uniform",
+         "record with a steadier clock, or compare with --resample HZ"}};
   }
   auto even = MBK_TRY(resample(recording, rate));
   const bool shown = evidence.slope - 1.96 * evidence.standard_error > 0.5;
   return EvenRecording{
       std::move(even),
       {WarningCode::clock_jitter,
-       fmt::format("{}, and the samples were put on an even clock of {:.6g} Hz by straight lines between them: {}",
-                   jitter, rate.value,
+       fmt::format("{}, and the samples were interpolated linearly to a uniform clock of {:.6g} Hz: {}", jitter,
+                   rate.value,
                    shown ? "the position moves as if sampled at the recorded times"
-                         : "whether they were taken at the recorded times cannot be seen in the position"),
-       "record with a steadier clock; --resample HZ chooses another rate"}};
+                         : "the position does not show whether it was sampled at the recorded times"),
+       "record with a steadier clock, or choose another rate with --resample HZ"}};
 }
 
 Result<Reclocked> reclocked(const Recording& recording, const Inspection& inspection, std::optional<Hertz> rate) {

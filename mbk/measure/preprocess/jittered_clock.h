@@ -14,7 +14,7 @@ namespace mbk::preprocess {
 /// of the position on those of v δ. 1 where they were taken at the recorded times, 0 where they were taken evenly and
 /// only the stamps jitter; neither motion slower than some samples nor noise biases it.
 struct StampEvidence {
-  double slope = 0.0;           ///< NaN where no position moves
+  double slope = 0.0;           ///< NaN if no position moves
   double standard_error = 0.0;  ///< infinite there
 };
 
@@ -27,8 +27,8 @@ struct EvenRecording {
   Warning warning;  ///< clock_jitter, with what was done and why
 };
 
-/// The intervals vary by more than 1 % (standard deviation) and nothing else is wrong with the clock: no gap, no time
-/// that repeats or runs backwards, none that is not finite, no sample missing.
+/// Whether jitter is the only problem of the clock: the intervals vary by more than 1 % (standard deviation), but there
+/// is no gap, no repeated, backward or non-finite time and no missing sample.
 [[nodiscard]] bool jitters_only(const Inspection& inspection);
 
 /// The recording on an even clock at its mean rate. Recorded time is taken for true, and the samples are put on the
@@ -39,11 +39,11 @@ struct EvenRecording {
 
 /// What is analysed in place of a recording whose clock is not the one that it is analysed on.
 struct Reclocked {
-  std::optional<Recording> recording;  ///< none: the recording as it is
-  std::optional<Warning> warning;      ///< clock_jitter, where that is why
+  std::optional<Recording> recording;  ///< absent: the recording as it is
+  std::optional<Warning> warning;      ///< clock_jitter, if that is the reason
 };
 
-/// The recording at `rate` where one is given (resample), else on_even_clock() where its clock jitters_only().
+/// The recording at `rate` if given (resample), otherwise on_even_clock() if its clock jitters_only().
 /// @fails  as resample
 [[nodiscard]] Result<Reclocked> reclocked(const Recording& recording, const Inspection& inspection,
                                           std::optional<Hertz> rate);

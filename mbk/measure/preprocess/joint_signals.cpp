@@ -19,7 +19,7 @@ namespace {
 std::string there(const Recording& recording) {
   std::vector<std::string> names;
   for (const Channel& channel : recording.channels) names.push_back(channel.name);
-  return names.empty() ? "there are no channels" : fmt::format("there are {}", fmt::join(names, ", "));
+  return names.empty() ? "there are no channels" : fmt::format("the channels are {}", fmt::join(names, ", "));
 }
 
 std::string quoted(const std::vector<std::string>& names) {
@@ -46,9 +46,9 @@ class JointChannels {
     std::vector<std::string> there;
     for (const Channel* channel : named_) there.push_back(channel->origin.joint);
     if (robot_.empty() && std::ssize(there) > joints) {
-      return bad_data(fmt::format("the recording has the joints {}, and the robot {} without names", quoted(there),
+      return bad_data(fmt::format("the recording has the joints {}, but the robot has {} without names", quoted(there),
                                   joints == 1 ? "one" : fmt::format("{}", joints)),
-                      fmt::format("say which are the robot's with --channels, as in q1=NAME,tau1=NAME"));
+                      fmt::format("select those of the robot with --channels, as in q1=NAME,tau1=NAME"));
     }
     if (!by_name()) return {};
     for (int k = 0; k < joints; ++k) {
@@ -57,7 +57,7 @@ class JointChannels {
       if (count == 1 || (count == 0 && unnamed(k) != nullptr && in_order(joints))) continue;
       return bad_data(fmt::format("the recording has {} joint '{}'; its joints are {}, those of the robot {}",
                                   count == 0 ? "no" : "more than one", name, quoted(there), quoted(robot_)),
-                      "correct the names in the description of the robot, or say which joint is which with --channels, "
+                      "correct the names in the description of the robot, or assign the joints with --channels, "
                       "as in q1=NAME,tau1=NAME");
     }
     return {};
@@ -104,7 +104,7 @@ Result<void> check_unit(const Recording& recording, const Channel* channel, cons
     const std::string& joint = channel->origin.joint;
     return bad_data(fmt::format("channel '{}' is in {}, but this joint{} needs {}", channel->name, channel->unit,
                                 joint.empty() ? "" : fmt::format(" ('{}')", joint), unit),
-                    fmt::format("give the unit that the file holds in --channels, as in {}=6:{}", name, unit));
+                    fmt::format("state the unit in the file with --channels, as in {}=6:{}", name, unit));
   }
   return {};
 }
@@ -183,10 +183,10 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
     return a.by_name() == b.by_name() || (a.in_order(static_cast<int>(n)) && b.in_order(static_cast<int>(n)));
   };
   if (!count_alike(positions, torques)) {
-    return bad_data(fmt::format("only the channels {}… say to which joints they belong, and their order is not that of "
-                                "the robot: {}",
-                                positions.by_name() ? "joint_1" : "torque_1", quoted(mechanism.joint_names())),
-                    "say which joint is which with --channels, as in q1=NAME,tau1=NAME");
+    return bad_data(
+        fmt::format("only the channels {}… name their joints, and their order differs from that of the robot: {}",
+                    positions.by_name() ? "joint_1" : "torque_1", quoted(mechanism.joint_names())),
+        "assign the joints with --channels, as in q1=NAME,tau1=NAME");
   }
   std::vector<std::string> joint_references;
   for (int joint = 0; joint < n; ++joint) {
@@ -240,7 +240,7 @@ Result<void> check_joint_signals(const JointSignals& signals, const robot::Mecha
         if (where < 0) return {};
         return bad_data(fmt::format("channel '{}_{}'{} is not a number at {}", name, joint + 1, named(joint),
                                     at(cut.begin + where)),
-                        "choose a window without it with --from and --to, or mend the recording");
+                        "choose a window without it with --from and --to, or correct the recording");
       };
       MBK_TRY(bad(signals.position, "joint"));
       MBK_TRY(bad(signals.torque, "torque"));

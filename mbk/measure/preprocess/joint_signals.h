@@ -14,17 +14,17 @@
 
 namespace mbk::preprocess {
 
-/// What a recording holds of a robot's joints.
+/// Signals of the joints of a robot in a recording.
 struct JointSignals {
   Matrix position;           ///< N×n [rad, or m where a joint slides]
   Matrix torque;             ///< N×n, of the motors [N·m, or N where a joint slides]
-  Matrix joint_reference;    ///< N×n; empty where it was not recorded
-  Matrix hand_reference;     ///< N×axes, a position of the hand, base frame [m]; empty where there is none
-  Matrix hand_acceleration;  ///< N×axes, of the accelerometer, base frame [m/s²]; empty unless it was asked for
+  Matrix joint_reference;    ///< N×n; empty if not recorded
+  Matrix hand_reference;     ///< N×axes, a position of the hand, base frame [m]; empty if not recorded
+  Matrix hand_acceleration;  ///< N×axes, of the accelerometer, base frame [m/s²]; empty unless requested
 };
 
 /// joint_1 …, torque_1 … of a recording; a robot of one joint may call it `position`.
-/// @fails  data: a channel is missing (it is named, with those that are there); its unit is none of that joint.
+/// @fails  data: a channel is missing (named, with the existing ones); its unit does not match the joint.
 [[nodiscard]] Result<JointSignals> select_joint_signals(const Recording& recording, const robot::Mechanism& mechanism,
                                                         bool hand_acceleration);
 
@@ -59,7 +59,7 @@ struct SmoothedJoints {
                                                    const Cut& cut, const dsp::SavitzkyGolay& smoothing, Hertz rate,
                                                    double delay);
 
-/// A motion by itself, value and derivatives through the smoothing filter alone.
+/// Motion only: value and derivatives through the smoothing filter.
 [[nodiscard]] Result<robot::JointMotion> smooth_motion(const Eigen::Ref<const Matrix>& position,
                                                        const dsp::SavitzkyGolay& smoothing, Hertz rate);
 

@@ -295,7 +295,7 @@ TEST(SmoothJoints, TakeTheAccelerationFromTheHandsAccelerometer) {
   ASSERT_TRUE(joints) << joints.error().line();
   const Matrix truth = motion.acceleration.middleRows(smoothing.half_window(), joints->torque.rows());
   EXPECT_LE((joints->motion.acceleration - truth).cwiseAbs().maxCoeff(), 1e-5 * truth.cwiseAbs().maxCoeff());
-  signals.hand_acceleration *= 2.0;  // it is the sensor that is asked, not the joints
+  signals.hand_acceleration *= 2.0;  // the sensor is used, not the joints
   const auto twice = smooth_joints(signals, kPlanar, Cut{0, 1000, {}}, smoothing, Hertz(kRate), 0.0);
   EXPECT_GT((twice->motion.acceleration - truth).cwiseAbs().maxCoeff(), 0.5 * truth.cwiseAbs().maxCoeff());
 }

@@ -16,7 +16,7 @@ struct WindowLimits {
   std::optional<double> from_s, split_s, to_s;
 };
 
-/// What the user may choose; absent = what the mode, the procedure and the recording say.
+/// Choices of the user; absent: from mode, procedure and recording.
 struct Options {
   Mode mode = Mode::default_mode;
   std::optional<Procedure> procedure;  ///< of reference mode; absent: chapter3
@@ -28,10 +28,11 @@ struct Options {
   std::optional<AccelerationSource> acceleration;
   WindowLimits window;
   dsp::Padding padding;      ///< of the zero-phase filter
-  bool instruments = false;  ///< filter the reference too: what instrumental variables need
+  bool instruments = false;  ///< also filter the reference, for instrumental variables
   ForceSource force_source = ForceSource::sensor;
-  std::shared_ptr<const robot::DynamicModel> robot;  ///< what a computed force rests on
-  std::optional<Index> every;  ///< rows that the fit takes; absent: all in reference mode, else what the cutoff needs
+  std::shared_ptr<const robot::DynamicModel> robot;  ///< for a computed force
+  std::optional<Index>
+      every;  ///< use every Nth row for the fit; absent: all in reference mode, otherwise from the cutoff
 };
 
 }  // namespace mbk::preprocess

@@ -65,18 +65,18 @@ Vector variance_at_rest(const Signals& signals, const WindowPlan& plan, const Fi
   return (all.rowwise() - all.colwise().mean()).colwise().squaredNorm().transpose() / static_cast<double>(rows);
 }
 
-/// What the operator excluded: windows are cut out of the plan where mbk chooses it; the published procedure takes its
-/// own window whole, which is said.
+/// Exclusions of the operator: excluded windows are cut out of the plan in default mode; the published procedure uses
+/// its whole window, with a warning.
 Result<void> heed_exclusions(const Recording& recording, const Clock& clock, const Preparation& how, WindowPlan& plan,
                              std::vector<Warning>& warnings) {
   if (const std::string why = why_excluded(recording); !why.empty()) {
-    warnings.push_back({WarningCode::excluded_trial, fmt::format("the operator excluded this trial: {}", why),
-                        "leave the recording out"});
+    warnings.push_back(
+        {WarningCode::excluded_trial, fmt::format("the operator excluded this trial: {}", why), "omit the recording"});
   }
   const auto windows = excluded_windows(recording);
   if (!windows) {
-    warnings.push_back({WarningCode::excluded_window, windows.error().message + ", and nothing is left out",
-                        windows.error().remedy + "; leave them out with --from and --to"});
+    warnings.push_back({WarningCode::excluded_window, windows.error().message + ", so nothing was omitted",
+                        windows.error().remedy + "; or omit them with --from and --to"});
     return {};
   }
   const double origin = recording.time[0];
@@ -86,10 +86,10 @@ Result<void> heed_exclusions(const Recording& recording, const Clock& clock, con
   const bool left = leave_out(*windows, clock, origin, displacements, without).has_value();
   if (left && without.excluded.empty()) return {};
   warnings.push_back({WarningCode::excluded_window,
-                      fmt::format("the operator excluded a part of what is measured, and reference mode takes the "
-                                  "published window whole: {}",
+                      fmt::format("the operator excluded part of the analysed interval, but reference mode uses the "
+                                  "whole published window: {}",
                                   excluded_windows_text(*windows)),
-                      "use default mode, which leaves it out, or choose --from and --to beside it"});
+                      "use default mode, which omits it, or choose --from and --to outside it"});
   return {};
 }
 

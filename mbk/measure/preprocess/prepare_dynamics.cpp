@@ -129,7 +129,7 @@ void leave_out_held_joints(PreparedDynamics& made) {
     for (auto* const part : {&made.regressors, &made.instruments, &made.smoothed}) {
       if (!part->empty()) (*part)[joint].setZero();
     }
-    made.notes.push_back(fmt::format("joint {} stands still, held by friction: its torque does not count", joint + 1));
+    made.notes.push_back(fmt::format("joint {} stands still, held by friction: its torque is ignored", joint + 1));
   }
 }
 
@@ -223,7 +223,7 @@ Result<PreparedDynamics> prepare_dynamics(const Recording& recording, const Insp
   if (model.drive.coulomb || model.drive.stribeck) leave_out_held_joints(made);
 
   Preparation& how = made.preparation;
-  how.protocol_rule = "a robot by itself";
+  how.protocol_rule = "a robot without a limb";
   how.window_rule = plan.rule;
   how.from_s = made.time[made.segments.front().begin];
   how.to_s = made.time[made.segments.back().end - 1];

@@ -14,7 +14,8 @@ namespace mbk::preprocess {
 
 Result<void> check_choices(const Options& options) {
   constexpr int kLongestWindow = 1000000;
-  if (options.axes < 0 || options.axes > 2) return bad_usage(fmt::format("{} axes: 1 or 2 are possible", options.axes));
+  if (options.axes < 0 || options.axes > 2)
+    return bad_usage(fmt::format("{} axes are not supported; use 1 or 2", options.axes));
   if (options.smoothing_window && (*options.smoothing_window < 1 || *options.smoothing_window > kLongestWindow)) {
     return bad_usage(
         fmt::format("a Savitzky–Golay window of {} samples is not in 1…{}", *options.smoothing_window, kLongestWindow));
@@ -27,16 +28,18 @@ Result<void> check_choices(const Options& options) {
     return bad_usage(fmt::format("a cutoff of {:g} Hz is not above 0", options.cutoff->value));
   }
   if (options.every && *options.every < 1) {
-    return bad_usage(fmt::format("every {}-th sample is none", *options.every), "choose 1 or more for --every");
+    return bad_usage(fmt::format("--every {} is not 1 or more", *options.every), "choose 1 or more for --every");
   }
-  if (options.padding.samples < 0) return bad_usage(fmt::format("a padding of {} samples", options.padding.samples));
+  if (options.padding.samples < 0)
+    return bad_usage(fmt::format("a padding of {} samples is not 0 or more", options.padding.samples));
   return {};
 }
 
 std::string why_missing(const Recording& recording, std::string_view channel) {
   for (const std::string& note : recording.notes) {
     const std::size_t end = note.find(':');
-    if (note.find("not taken") < end && note.find(channel) < end) return "; " + note;
+    const bool not_used = std::min(note.find("not used"), note.find("not taken")) < end;
+    if (not_used && note.find(channel) < end) return "; " + note;
   }
   return "";
 }
@@ -46,15 +49,15 @@ Result<void> check_length(Index samples, const Inspection& inspection) {
     return bad_data(fmt::format("{} sample{} cannot show a motion", samples, samples == 1 ? "" : "s"), "record longer");
   }
   if (!std::isfinite(inspection.duration)) {
-    return bad_data("the first or last time is not a number", "mend the recording");
+    return bad_data("the first or last time is not a number", "correct the recording");
   }
   if (!(inspection.rate_hz > 0.0)) {
-    return bad_data("time never rises", "check which channel is the time, and whether it is turned around");
+    return bad_data("time never increases", "check which channel is the time, and whether it is reversed");
   }
   if (inspection.duration <= 0.0 && inspection.backward_times > 0) {
-    return bad_data(fmt::format("time ends before it begins: it runs backwards{} at sample {}",
+    return bad_data(fmt::format("the last time is before the first: time runs backwards{} at sample {}",
                                 inspection.backward_times == 1 ? "" : ", first", inspection.first_backward + 1),
-                    "cut the recording there, or name another time with --channels");
+                    "cut the recording there, or name another time channel with --channels");
   }
   return {};
 }
@@ -73,14 +76,13 @@ Result<void> check_step(const Clock& clock, const Inspection& inspection, Index 
       return fmt::format("time {} {}", interval == 0.0 ? "repeats" : "runs backwards", at());
     };
     const bool coarse = interval == 0.0 && kOften * inspection.duplicated_times > clock.samples();
-    return bad_data(fault(), coarse ? "time is told too coarsely: pass the sample rate, as in --rate 1000"
+    return bad_data(fault(), coarse ? "time is too coarse: give the sample rate, as in --rate 1000"
                                     : "choose a window without it with --from and --to");
   }
   if (std::ranges::binary_search(inspection.gaps, i - 1, {}, &Gap::sample)) {
-    return bad_data(fmt::format("a gap of {:.4g} s in time {}, where samples are {:.4g} s apart", interval, at(),
+    return bad_data(fmt::format("time has a gap of {:.4g} s {}; the sample interval is {:.4g} s", interval, at(),
                                 inspection.interval_median),
-                    "choose a window without it with --from and --to, or put the samples on an even clock with "
-                    "--resample HZ");
+                    "choose a window without it with --from and --to, or resample with --resample HZ");
   }
   return {};
 }
@@ -123,9 +125,9 @@ Result<void> check_clock(const Clock& clock, const Inspection& inspection, const
   if (jitter > 0.01 * median) {
     warnings.push_back({WarningCode::clock_jitter,
                         fmt::format("the clock jitters by {:.2g} ms (standard deviation; at most {:.2g} ms) around "
-                                    "{:.4g} ms, and the samples are taken as even",
+                                    "{:.4g} ms, but the samples are treated as uniform",
                                     1e3 * jitter, 1e3 * largest, 1e3 * median),
-                        "compare with --resample HZ; record with a steadier clock"});
+                        "record with a steadier clock, or compare with --resample HZ"});
   }
   return {};
 }
@@ -159,7 +161,7 @@ Result<void> check_reference(const Clock& clock, const Signals& signals, const W
 
 namespace {
 
-/// "; force freezes again and again, …" where the recording was found to lack samples of that channel.
+/// "; force freezes repeatedly, …" if samples of that channel were found to be missing.
 std::string why_lost(const std::vector<Warning>& warnings, const std::string& channel) {
   for (const Warning& warning : warnings) {
     const bool lost = warning.code == WarningCode::missing_samples || warning.code == WarningCode::held_signal;
@@ -185,7 +187,7 @@ Result<void> check_finite(const Clock& clock, const Signals& signals, const Wind
         const std::string name(quantity.name(signals.axes, axis));
         return bad_data(fmt::format("channel '{}' is not a number at sample {} ({:.6f} s){}", name, sample + 1,
                                     clock.seconds(sample), why_lost(warnings, name)),
-                        "choose a window without it with --from and --to, or mend the recording");
+                        "choose a window without it with --from and --to, or correct the recording");
       }
     }
   }
@@ -206,12 +208,13 @@ void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::v
     }
   }
   if (motion < kStepsEnough * step) {
-    warnings.push_back({WarningCode::motion_too_small,
-                        std::isinf(step) ? std::string("the position does not move")
-                                         : fmt::format("the position moves by {:.2g} (standard deviation) and is "
-                                                       "recorded in steps of {:.2g}",
-                                                       motion, step),
-                        "perturb more, and check that the position channel and its unit are the right ones"});
+    warnings.push_back(
+        {WarningCode::motion_too_small,
+         std::isinf(step)
+             ? std::string("the position does not move")
+             : fmt::format("the position moves by only {:.2g} (standard deviation), but is recorded in steps of {:.2g}",
+                           motion, step),
+         "perturb more, and check the position channel and its unit"});
   }
 }
 

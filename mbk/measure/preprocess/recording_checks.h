@@ -14,18 +14,17 @@
 
 namespace mbk::preprocess {
 
-/// Settings that no filter can have are refused before anything is sized by them.
+/// Rejects invalid filter settings before memory is allocated from them.
 [[nodiscard]] Result<void> check_choices(const Options& options);
 
-/// What the reader says of a channel that is not there, to be put behind a message: "; '/ft' is not taken as force_x:
-/// …".
-/// "" where it says nothing.
+/// The note of the reader on a missing channel, to append to a message: "; '/ft' was not used as force_x: …"; "" if
+/// there is none.
 [[nodiscard]] std::string why_missing(const Recording& recording, std::string_view channel);
 
 /// About three for each parameter of one axis.
 inline constexpr Index kMinSamples = 20;
 
-/// Samples enough, on a clock that rises.
+/// Checks for enough samples and increasing time.
 [[nodiscard]] Result<void> check_length(Index samples, const Inspection& inspection);
 
 /// Time inside the cuts must be even enough to be called even: it neither repeats nor runs backwards nor leaves a gap
@@ -33,7 +32,7 @@ inline constexpr Index kMinSamples = 20;
 [[nodiscard]] Result<void> check_clock(const Clock& clock, const Inspection& inspection, const WindowPlan& plan,
                                        std::vector<Warning>& warnings);
 
-/// No sample may be missing (NaN in every channel) throughout the limits: what a session lost is not bridged.
+/// No sample may be missing (NaN in every channel) within the limits: samples lost by a session are not interpolated.
 [[nodiscard]] Result<void> check_missing(const Clock& clock, const std::vector<MissingSamples>& missing,
                                          const WindowLimits& limits);
 
@@ -45,7 +44,7 @@ inline constexpr Index kMinSamples = 20;
 [[nodiscard]] Result<void> check_finite(const Clock& clock, const Signals& signals, const WindowPlan& plan,
                                         const std::vector<Warning>& warnings);
 
-/// A force that never changes is a sensor that did not measure; a position that never changes shows no motion.
+/// A constant force means a dead sensor; a constant position means no motion.
 [[nodiscard]] Result<void> check_alive(const Signals& signals, const WindowPlan& plan);
 
 /// The position must move well beyond the steps in which it is recorded.

@@ -28,7 +28,7 @@ bool is_held(const Channel& channel) {
 Result<Recording> resample(const Recording& recording, Hertz rate) {
   const Index n = recording.samples();
   if (!(rate.value > 0.0 && rate.value <= 1e6))
-    return bad_usage(fmt::format("--resample {:g} is no rate in Hz", rate.value));
+    return bad_usage(fmt::format("--resample {:g} is not a rate in Hz", rate.value));
   if (n < 2) return bad_data("a recording of fewer than 2 samples cannot be resampled");
   for (Index i = 1; i < n; ++i) {
     if (!(recording.time[i] > recording.time[i - 1])) {
@@ -41,8 +41,8 @@ Result<Recording> resample(const Recording& recording, Hertz rate) {
   const double span = (recording.time[n - 1] - first) * rate.value;
   constexpr double kMax = 100.0;  // times as many samples: more is a mistake in the unit of time or rate
   if (!(span <= kMax * static_cast<double>(n))) {
-    return bad_usage(fmt::format("--resample {:g} Hz would make {:.3g} samples of {}", rate.value, span, n),
-                     "give the rate in Hz, near that of the recording");
+    return bad_usage(fmt::format("--resample {:g} Hz would give {:.3g} samples from {}", rate.value, span, n),
+                     "give a rate in Hz near that of the recording");
   }
   const auto count = static_cast<Index>(std::floor(span * (1.0 + 1e-12))) + 1;
 

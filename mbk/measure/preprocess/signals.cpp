@@ -21,9 +21,9 @@ Result<Columns> require(const Recording& recording, const QuantityChannels& quan
     if (first.empty()) first = name;
   }
   for (const Channel& channel : recording.channels) present += (present.empty() ? "" : ", ") + channel.name;
-  return bad_data(fmt::format("channel {} is missing (there are: {}){}", missing, present.empty() ? "none" : present,
-                              why_missing(recording, first)),
-                  fmt::format("say where it is: --channels {}=COLUMN", first));
+  return bad_data(fmt::format("channel {} is missing (the channels are: {}){}", missing,
+                              present.empty() ? "none" : present, why_missing(recording, first)),
+                  fmt::format("name its column with --channels {}=COLUMN", first));
 }
 
 /// What moves, by the units of position and force; where one is unknown the other decides.
@@ -32,7 +32,7 @@ Result<Motion> motion_of(const Recording& recording, int axes) {
   const std::string &position = recording.find("position")->unit, &reaction = recording.find("reaction")->unit;
   const bool rotates = position == "rad" || reaction == "N.m", shifts = position == "m" || reaction == "N";
   if (rotates && shifts) {
-    return bad_data(fmt::format("position in {} and reaction in {} do not belong together", position, reaction),
+    return bad_data(fmt::format("position in {} and reaction in {} are inconsistent", position, reaction),
                     "correct the units in --channels, as in x=2:deg,F=3:N.m");
   }
   return rotates ? Motion::rotation : (shifts ? Motion::translation : Motion::unknown);

@@ -8,15 +8,15 @@
 
 namespace mbk::preprocess {
 
-/// The channels that a fit needs, side by side, where they stand in the recording.
+/// The channels for a fit, as views into the recording.
 struct Signals {
   int axes = 2;                 ///< n
   Columns position;             ///< N×n [m or rad]
   Columns force_hand_on_robot;  ///< N×n [N or N·m]
   Columns force_sensitivity;    ///< N×(n·p) of a force that was computed, or empty
-  Columns reference;            ///< N×n; empty where none was recorded
+  Columns reference;            ///< N×n; empty if not recorded
   ReferenceQuantity reference_quantity = ReferenceQuantity::unknown;
-  Columns acceleration;  ///< N×n [m/s² or rad/s²]; empty where it is not asked for
+  Columns acceleration;  ///< N×n [m/s² or rad/s²]; empty unless requested
   Motion motion = Motion::translation;
 };
 

@@ -34,14 +34,14 @@ Result<void> check_torque_unit(const Matrix& force, const Matrix& torque, const 
     return bad_data(fmt::format("the force at the hand would be {:.3g} kN (rms): the torques (rms {:.3g}) are probably "
                                 "not in {}",
                                 1e-3 * rms(force), rms(torque), unit),
-                    "say their unit in --channels, as in tau1=14:N.mm,tau2=15:N.mm");
+                    "state their unit with --channels, as in tau1=14:N.mm,tau2=15:N.mm");
   }
   if (rms(torque) < kMinTorque * rms(of_model)) {
     return bad_data(
-        fmt::format("the torques (rms {:.3g} {unit}) are {:.2g} % of what the robot's own motion takes "
-                    "({:.3g} {unit}): they or the robot's parameters are in another unit",
+        fmt::format("the torques (rms {:.3g} {unit}) are {:.2g} % of those needed for the motion of the robot itself "
+                    "({:.3g} {unit}): the torques or the robot's parameters are in another unit",
                     rms(torque), 100.0 * rms(torque) / rms(of_model), rms(of_model), fmt::arg("unit", unit)),
-        "say the torques' unit in --channels, or identify the robot from recordings in the same unit");
+        "state the unit of the torques with --channels, or identify the robot from recordings in the same unit");
   }
   return {};
 }
@@ -74,9 +74,9 @@ std::string assumed_of_hand(const robot::Mechanism& mechanism, const robot::Join
   std::string axes;
   for (int k = 0; k < mechanism.hand_axes(); ++k) axes += (k == 0 ? "" : " and ") + mechanism.hand_axis_name(k);
   const Index told = robot::told_across(mechanism, position);
-  return fmt::format("the force is that along {} of the base, of a hand that exerts no moment{}", axes,
-                     told == others ? "; a push across them is estimated and left out"
-                                    : "; the joints do not show a push across them, so none is assumed");
+  return fmt::format("the force is along {} of the base frame, assuming that the hand exerts no moment{}", axes,
+                     told == others ? "; a force perpendicular to them is estimated and ignored"
+                                    : "; a force perpendicular to them is not observable and assumed to be zero");
 }
 
 /// Damping at the hand that a tenth of the robot's friction would be, the largest of the axes: friction that changes as
@@ -210,18 +210,16 @@ Result<VirtualForce> virtual_force(const Recording& recording, const Inspection&
     }
     put(made.recording, hand, turns ? "rad" : "m", place.col(axis));
   }
-  made.recording.notes.push_back(
-      observed
-          ? fmt::format("the force is not measured: a momentum observer makes it of motion, torques and a model of "
-                        "the robot, {:.0f} ms late",
-                        1e3 * made.lag)
-          : fmt::format("the force is not measured: it is what the motors' torques and a model of the robot leave "
-                        "(virtual sensor), q̈ {}",
-                        accelerometer ? "from the accelerometer" : "from the joints"));
+  made.recording.notes.push_back(observed ? fmt::format("the force is not measured: a momentum observer computes it "
+                                                        "from motion, torques and a model of the robot, {:.0f} ms late",
+                                                        1e3 * made.lag)
+                                          : fmt::format("the force is not measured: a virtual sensor computes it from "
+                                                        "motor torques, motion and a model of the robot, q̈ {}",
+                                                        accelerometer ? "from the accelerometer" : "from the joints"));
   if (const double damping = damping_of_tenth(model, joints.motion, W); damping > 0.0) {
     made.recording.notes.push_back(
-        fmt::format("friction of the robot that is 10 % less than when it was identified, as where it is warmer, makes "
-                    "the damping up to {:.2g} {} too small, and nothing shows it",
+        fmt::format("if the friction of the robot is 10 % lower than at identification, for example because it is "
+                    "warmer, the damping is up to {:.2g} {} too small, which the recording cannot show",
                     damping, turns ? "N·m·s/rad" : "N·s/m"));
   }
   if (auto assumed = assumed_of_hand(mechanism, joints.motion.position.row(0).transpose()); !assumed.empty()) {

@@ -8,16 +8,16 @@
 
 namespace mbk::preprocess {
 
-/// A recording whose force was computed, and how sure it is.
+/// A recording with computed force, and its uncertainty.
 struct VirtualForce {
   Recording
       recording;  ///< with the computed force in the place of the sensor's; the hand's place where it was not in it
   Matrix joint_velocity;  ///< N×n [rad/s or m/s]
-  double lag = 0;         ///< by which slow forces come late [s]; 0 where the future is known too
-  Matrix sensor_force;    ///< N×axes, what was recorded as force; empty where there was none
-  Matrix sensitivity;  ///< N×(axes·p), ∂F/∂θ axis by axis [N per unit of θ]; empty where θ has no covariance
-  Matrix standard_error;      ///< N×axes [N], of the robot's coefficients alone; empty likewise
-  FilterPlan filters;         ///< of the measurement that follows
+  double lag = 0;         ///< delay of slow forces [s]; 0 if computed with future samples
+  Matrix sensor_force;    ///< N×axes, recorded force; empty if not recorded
+  Matrix sensitivity;     ///< N×(axes·p), ∂F/∂θ for each axis [N per unit of θ]; empty if θ has no covariance
+  Matrix standard_error;  ///< N×axes [N], of the robot's coefficients alone; empty likewise
+  FilterPlan filters;     ///< of the measurement that follows
   Index first = 0, last = 0;  ///< samples [first, last) at which the force was computed; before and after it is held
 };
 

@@ -63,7 +63,7 @@ struct SampleLimits {
 tl::unexpected<Error> split_outside(double split_s, Index from, Index to, const Clock& clock) {
   return bad_data(
       fmt::format("--split {:g} s is not between {:g} s and {:g} s", split_s, clock.seconds(from), clock.seconds(to)),
-      "it divides the data to identify from the data held out");
+      "choose a time that divides the data into fitted and held-out data");
 }
 
 Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to, const Clock& clock) {
@@ -75,9 +75,9 @@ Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to
   if (inside && limits.from_s) result.from = clock.sample(from_s);
   if (inside && limits.to_s) result.to = std::min(clock.sample(to_s), clock.samples());
   if (!inside || result.from >= result.to) {
-    return bad_data(fmt::format("the window from {:g} s to {:g} s does not lie in this recording of {:g} s", from_s,
-                                to_s, duration),
-                    "choose --from and --to inside it");
+    return bad_data(
+        fmt::format("the window from {:g} s to {:g} s is not within this recording of {:g} s", from_s, to_s, duration),
+        "choose --from and --to within it");
   }
   if (limits.split_s) {
     const bool between = *limits.split_s > 0.0 && *limits.split_s <= duration + tolerance;
@@ -135,10 +135,10 @@ ProtocolFinding detect_protocol(const Columns& reference) {
   for (Index begin = 1; begin < reference.rows(); begin += kTogether) {
     changes += changed_rows(reference, begin, std::min(begin + kTogether, reference.rows()));
   }
-  if (changes == 0) return {Protocol::free, "the reference never changes"};
+  if (changes == 0) return {Protocol::free, "the reference is constant"};
   const double share = static_cast<double>(changes) / static_cast<double>(reference.rows() - 1);
   if (share < 0.02) {
-    return {Protocol::underdamped, fmt::format("the reference is constant but for {} steps", changes)};
+    return {Protocol::underdamped, fmt::format("the reference is piecewise constant, with {} steps", changes)};
   }
   return {Protocol::sinusoidal, "the reference varies continuously"};
 }
@@ -152,15 +152,15 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Columns& reference
 
   const Index samples = clock.samples();
   if (std::abs(clock.rate().value - kPublishedRate) > 1e-3 * kPublishedRate) {
-    return bad_data(fmt::format("the published procedure counts samples at {:g} Hz, and this recording has {:g} Hz",
-                                kPublishedRate, clock.rate().value),
+    return bad_data(fmt::format("the published procedure needs {:g} Hz, but this recording has {:g} Hz", kPublishedRate,
+                                clock.rate().value),
                     "use --mode default");
   }
   const bool pulses = protocol == Protocol::underdamped;
   const bool sines = protocol == Protocol::sinusoidal;
   const Index begin = sines ? kSinusoidalBegin : (pulses ? kUnderdampedBegin : 0);
   if (!limits.from_s && samples <= begin) {
-    return bad_data(fmt::format("the published {} window begins at {:g} s, and this recording lasts {:g} s",
+    return bad_data(fmt::format("the published {} window starts at {:g} s, but this recording lasts only {:g} s",
                                 word_of(protocol), clock.seconds(begin), clock.seconds(samples)),
                     "use --mode default, or name a window with --from and --to");
   }
@@ -179,9 +179,10 @@ Result<WindowPlan> reference_windows(Protocol protocol, const Columns& reference
           range->split ? cut.keep[k].begin >= *range->split : k >= kIdentificationPulses + (under_way ? 1 : 0);
       cut.keep[k].purpose = later ? Purpose::validation : Purpose::identification;
     }
-    plan.rule = fmt::format("filtered from {:g} s on, then the {} displacements of the reference cut out{}",
-                            clock.seconds(range->from), cut.keep.size(),
-                            range->split ? "" : fmt::format("; the first {} identify", kIdentificationPulses));
+    plan.rule = fmt::format(
+        "filtered from {:g} s on, then the {} displacements of the reference are cut out{}", clock.seconds(range->from),
+        cut.keep.size(),
+        range->split ? "" : fmt::format("; the first {} are used for identification", kIdentificationPulses));
     plan.cuts = {std::move(cut)};
     return plan;
   }
@@ -204,9 +205,9 @@ Result<WindowPlan> default_windows(Protocol protocol, const Columns& reference, 
     constexpr Index kShortest = 8;  // samples; noise alone does not stay the same for so long
     const Segment rest = longest_rest(reference, range->from, range->to);
     if (rest.size() < kShortest) {
-      return bad_data(fmt::format("the reference rests nowhere: it keeps no value for {} samples", kShortest),
-                      "omit --protocol where it varies continuously; name the reference that was commanded, not one "
-                      "that was measured");
+      return bad_data(
+          fmt::format("the reference never rests: it is never constant for {} samples", kShortest),
+          "omit --protocol if it varies continuously, and name the commanded reference, not a measured one");
     }
     const std::vector<Segment> runs = displacements(reference, rest.begin, range->from, range->to);
     if (runs.empty()) {

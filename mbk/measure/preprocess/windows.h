@@ -21,13 +21,13 @@ struct Cut {
   std::vector<Segment> keep;
 };
 
-/// What counts, and why.
+/// The analysed interval, and why.
 struct WindowPlan {
   std::vector<Cut> cuts;
   std::string rule;               ///< in words
-  std::optional<double> split_s;  ///< where validation begins
-  Index trim = 0;                 ///< samples that the published procedure leaves unused at each end of a cut
-  std::vector<Segment> excluded;  ///< what was left out of the cuts, in order; none of it is looked at
+  std::optional<double> split_s;  ///< start of the held-out data
+  Index trim = 0;                 ///< samples unused at each end of a cut in the published procedure
+  std::vector<Segment> excluded;  ///< excluded from the cuts, in order; not used
 };
 
 /// The protocol that a reference signal shows, and the reason.
@@ -36,8 +36,8 @@ struct ProtocolFinding {
   std::string rule;
 };
 
-/// Underdamped where the reference is constant but for steps (it changes at fewer than 2 % of the samples),
-/// sinusoidal where it varies continuously, free where there is none or it never changes.
+/// Underdamped if the reference is piecewise constant (it changes at fewer than 2 % of the samples), sinusoidal if it
+/// varies continuously, free if there is none or it is constant.
 /// @param reference N×n, or empty
 [[nodiscard]] ProtocolFinding detect_protocol(const Columns& reference);
 
@@ -49,7 +49,7 @@ struct ProtocolFinding {
 [[nodiscard]] Result<WindowPlan> reference_windows(Protocol protocol, const Columns& reference, const Clock& clock,
                                                    const WindowLimits& limits, Index half_window);
 
-/// mbk's own windows: what lies outside is cut away before any filter sees it.
+/// Windows of default mode: data outside are removed before filtering.
 /// sinusoidal: from the instant at which the reference stays within the range that it keeps in its second half, to its
 /// last change; underdamped: each displacement of the reference is a piece of its own, the first half of them to
 /// identify; free: everything. Sinusoidal and free identify on the first 80 %.
@@ -57,7 +57,7 @@ struct ProtocolFinding {
 [[nodiscard]] Result<WindowPlan> default_windows(Protocol protocol, const Columns& reference, const Clock& clock,
                                                  const WindowLimits& limits);
 
-/// The segments of a cut as rows of what was made of it, behind those that are there.
+/// Appends the segments of a cut, as rows of its filtered signals.
 /// @param first_sample  that the first of its rows belongs to   @param every  samples between rows
 /// @param rows  of the cut, beginning at `first_row`
 void append_segments(const Cut& cut, Index first_sample, Index every, Index first_row, Index rows,

@@ -94,7 +94,7 @@ double volume(const HandJacobian& J) {
   return std::sqrt(std::max(0.0, gram.rows() == 1 ? gram(0, 0) : gram.determinant()));
 }
 
-/// J without what a push across its axes would do to the joints, too, as far as the joints tell both apart.
+/// J without what a push across its axes would do to the joints, too, as far as the joints distinguish the two.
 /// @param told  in how many directions across they do
 HandJacobian apart_from_across(const HandJacobian& J, HandJacobian across, Index& told) {
   constexpr double kNoMotion = 1e-6, kLeft = 0.1;

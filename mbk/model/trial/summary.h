@@ -26,7 +26,7 @@ struct Summary {
   impedance::Model half_width95;                  ///< of the mean's 95 % interval: Student's t times that
 };
 
-/// What is said of several recordings beside the result of each.
+/// Findings about several recordings together, beside the result of each.
 struct SeveralTrials {
   std::optional<Summary> summary;
   std::string no_summary;     ///< why there is none, in words

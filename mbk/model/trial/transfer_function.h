@@ -66,7 +66,7 @@ struct Root {
   double frequency_standard_error = 0;  ///< [Hz]
   double damping_standard_error = 0;    ///< 0 for a real root, whose damping is not estimated
   bool pair = false;
-  bool outside_band = false;  ///< the input hardly excites its frequency: what is said of it rests on the model's form
+  bool outside_band = false;  ///< the input hardly excites its frequency: the pole follows from the form of the model
 };
 
 /// One start of the search and where it led.
@@ -106,7 +106,7 @@ struct TransferFunctionIdentification {
   TransferFunction model;
   TransferFunctionMethod method = TransferFunctionMethod::srivc;
   Matrix covariance;     ///< of [a₀ … a_{n−1}, b₀ … b_m], or of [f₁ … f_n, b_0 … b_m]
-  double hac_lag_s = 0;  ///< reach of the residual's correlation in it; 0: taken as white
+  double hac_lag_s = 0;  ///< correlation time of the residual in it; 0: assumed white
   std::vector<Root> poles, zeros;
   double gain = 0, gain_standard_error = 0;  ///< at frequency zero
   double fit = 0;                            ///< R_T² in sample

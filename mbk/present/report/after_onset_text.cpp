@@ -43,18 +43,18 @@ std::string after_onset_text(const AfterOnsetEstimate& found, Motion motion) {
   const Units units = units_of(motion);
   std::string text = fmt::format("the first {:.0f} ms after onset\n", kMilliseconds * found.window_s);
   std::vector<std::vector<std::string>> rows;
-  std::string onsets = fmt::format("{}, less the mean of the {:.0f} ms before each; moved by {:.2g} {}", found.onsets,
-                                   kMilliseconds * found.baseline_s, found.displacement, units.position);
+  std::string onsets = fmt::format("{}, minus the mean of the {:.0f} ms before each; displacement {:.2g} {}",
+                                   found.onsets, kMilliseconds * found.baseline_s, found.displacement, units.position);
   if (found.omitted > 0) {
-    onsets +=
-        fmt::format("; {} omitted, before which the limb did not rest or the recording is too short", found.omitted);
+    onsets += fmt::format("; {} omitted, because the limb did not rest before them or the recording is too short",
+                          found.omitted);
   }
   rows.push_back({"onsets", onsets});
   add("M", found.M, units.inertia, rows);
   add("B", found.B, units.damping, rows);
   add("K", found.K, units.stiffness, rows);
   if (found.handle_mass > 0.0) {
-    rows.push_back({"handle", fmt::format("{:g} kg of the recording subtracted from M", found.handle_mass)});
+    rows.push_back({"handle", fmt::format("{:g} kg from the recording subtracted from M", found.handle_mass)});
   }
   std::string vaf;
   for (const ExplainedForce& one : found.explained) vaf += fmt::format("{}{:.2f} %", vaf.empty() ? "" : ", ", one.vaf);

@@ -538,7 +538,7 @@ std::string svg_legend(const Chart& chart, double left, double right, double& y)
           chart.series[k].name);
   }
   if (chart.identity) {
-    entry(R"(<path d="M0 0h28" stroke="#555" stroke-width="1.2" stroke-dasharray="5 4"/>)", "where both axes agree");
+    entry(R"(<path d="M0 0h28" stroke="#555" stroke-width="1.2" stroke-dasharray="5 4"/>)", "identity line");
   }
   y += kRow;
   return text + "\n";

@@ -6,7 +6,7 @@
 
 namespace mbk::report {
 
-/// What recordings say of a limb without a model of it, part by part, for the terminal.
+/// An exploration of recordings without a model, part by part, for the terminal.
 [[nodiscard]] std::string exploration_text(const Exploration& found);
 
 }  // namespace mbk::report

@@ -13,7 +13,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// So many decimals, never "-0", and a dash for what is undefined.
+/// With that number of decimals, never "-0"; a dash if undefined.
 std::string cell(double value, int decimals) {
   if (!std::isfinite(value)) return "–";
   const double unit = std::pow(10.0, decimals);
@@ -33,7 +33,7 @@ std::string force_comparison_text(const ForceComparison& comparison, std::string
   std::string text = fmt::format("{} against {}, {:.1f} s\n", estimated, measured, comparison.duration);
 
   Rows together = {{"", fmt::format("RMS in {}", unit), fmt::format("RMSE in {}", unit), "VAF in %", "gain",
-                    "correlation", "late by ms"}};
+                    "correlation", "delay in ms"}};
   for (Index axis = 0; axis < axes; ++axis) {
     together.push_back({axis_name(axis, axes), cell(comparison.measured_rms[axis], 2),
                         cell(comparison.all.rmse[axis], 3), cell(comparison.vaf[axis], 2),
@@ -59,10 +59,11 @@ std::string force_comparison_text(const ForceComparison& comparison, std::string
   add("at reversals", comparison.reversals);
   add("all", comparison.all);
   text += "\n" + table(apart);
-  text += paragraph("  ", fmt::format("bias: mean of the former less the latter; at rest: no faster than {:g} rad/s "
-                                      "(m/s where a joint slides); reversals: {:g} ms to each side of where a joint "
-                                      "turns back; RMS: of the latter about its mean",
-                                      comparison.rest_speed, kMilliseconds * comparison.reversal_window));
+  text += paragraph(
+      "  ",
+      fmt::format("bias: mean of the first minus the second; at rest: at most {:g} rad/s (m/s for sliding joints); "
+                  "reversals: within {:g} ms of a reversal of a joint; RMS: of the second about its mean",
+                  comparison.rest_speed, kMilliseconds * comparison.reversal_window));
   return text;
 }
 

@@ -7,9 +7,8 @@
 
 namespace mbk::report {
 
-/// Two small tables for the terminal: how the forces belong together, and how far they are apart in each part of the
-/// motion.
-/// @param estimated, measured  what the forces are called: "virtual sensor", "force sensor"
+/// Two tables for the terminal: agreement of the forces overall, and their differences in each part of the motion.
+/// @param estimated, measured  names of the forces: "virtual sensor", "force sensor"
 [[nodiscard]] std::string force_comparison_text(const ForceComparison& comparison, std::string_view estimated,
                                                 std::string_view measured, std::string_view unit = "N");
 

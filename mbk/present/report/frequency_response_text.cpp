@@ -23,28 +23,27 @@ const char* name_of(FrequencyResponseMethod method) {
   return "";
 }
 
-std::string distortion_said(const Distortion& distortion) {
+std::string distortion_text(const Distortion& distortion) {
   const std::string trace =
-      distortion.trace()
-          ? fmt::format(", with a trace above the {:.2g} that the noise of the input leaves", distortion.residual_noise)
-          : "";
+      distortion.trace() ? fmt::format(", with a trace above the {:.2g} due to input noise", distortion.residual_noise)
+                         : "";
   return fmt::format(
       "{}: {:.2g} of the output at {} empty lines, noise {:.2g} (p = {:.2g}){}{}",
       distortion.detected() ? "detected" : "not above the noise", distortion.relative, distortion.lines,
       distortion.noise, distortion.p, trace,
       distortion.uncorrected > 1.2 * distortion.relative
-          ? fmt::format("; {:.2g} before what the input carries there is subtracted", distortion.uncorrected)
+          ? fmt::format("; {:.2g} before subtracting the contribution of the input", distortion.uncorrected)
           : "");
 }
 
-/// What periods and realisations tell of noise and distortion, and what they cannot.
+/// Noise and distortion from periods and realisations.
 std::vector<std::vector<std::string>> periodic_rows(const FrequencyResponseEstimate& found) {
   const PeriodicFacts& facts = *found.periodic;
   std::vector<std::vector<std::string>> rows;
   if (facts.dropped_periods > 0) {
-    rows.push_back({"transients", fmt::format("the first period of {} realisation{} differs from the others and was "
-                                              "left out",
-                                              facts.dropped_periods, facts.dropped_periods == 1 ? "" : "s")});
+    rows.push_back(
+        {"transients", fmt::format("the first period of {} realisation{} differs from the others and was omitted",
+                                   facts.dropped_periods, facts.dropped_periods == 1 ? "" : "s")});
   }
   if (facts.skipped_lines > 0) {
     const auto lines = [](Index count) { return fmt::format("{} line{}", count, count == 1 ? "" : "s"); };
@@ -61,23 +60,23 @@ std::vector<std::vector<std::string>> periodic_rows(const FrequencyResponseEstim
                                              "{}",
                                              *facts.total_over_noise, facts.total_over_noise_p,
                                              facts.total_over_noise_p < 0.01 ? "nonlinear distortion"
-                                                                             : "no nonlinear distortion is detected")});
+                                                                             : "no nonlinear distortion detected")});
   } else {
-    rows.push_back({"nonlinear", "realisations with other phases would show it; here are too few"});
+    rows.push_back({"nonlinear", "not known: too few realisations with different phases"});
   }
-  if (facts.even) rows.push_back({"even", distortion_said(*facts.even)});
-  if (facts.odd_lines) rows.push_back({"odd", distortion_said(*facts.odd_lines)});
+  if (facts.even) rows.push_back({"even", distortion_text(*facts.even)});
+  if (facts.odd_lines) rows.push_back({"odd", distortion_text(*facts.odd_lines)});
   if (!facts.odd) {
-    rows.push_back({"even, odd",
-                    "not known: the perturbation excites even lines too, so that none shows even "
-                    "distortion alone"});
+    rows.push_back(
+        {"even, odd", "not known: the perturbation also excites even lines, so no line shows even distortion alone"});
   } else if (!facts.odd_lines) {
-    rows.push_back({"odd", "not known: fewer than three odd lines between the excited ones are left empty"});
+    rows.push_back(
+        {"odd", "not known: the perturbation leaves fewer than three odd lines empty between the excited ones"});
   }
   return rows;
 }
 
-/// At most that many lines, evenly spaced on a logarithmic scale.
+/// At most `most` lines, evenly spaced on a logarithmic scale.
 std::vector<Index> shown_lines(const Vector& frequency, Index most) {
   std::vector<Index> lines;
   const Index n = frequency.size();
@@ -106,8 +105,8 @@ std::string frequency_response_text(const FrequencyResponseEstimate& found) {
   if (found.method == FrequencyResponseMethod::welch) {
     facts.push_back({"averages", fmt::format("{:.3g} independent segments", found.averages)});
   }
-  facts.push_back({"loop", found.by_reference ? "projected on the reference: holds in closed loop"
-                                              : "no reference: biased where the force moves the robot"});
+  facts.push_back({"loop", found.by_reference ? "projected on the reference: valid in closed loop"
+                                              : "no reference: biased if the force moves the robot"});
   facts.push_back({"intervals", "95 %, for " + found.assumes});
   if (found.periodic) {
     for (auto& row : periodic_rows(found)) facts.push_back(std::move(row));
@@ -138,9 +137,9 @@ std::string frequency_response_text(const FrequencyResponseEstimate& found) {
       text += table(rows);
       const Index unknown = (found.magnitude_low.col(entry).array() <= 0.0).count();
       if (unknown > 0) {
-        text += paragraph("  ", fmt::format("({} of {} frequencies have an interval that reaches 0: the response there "
-                                            "is not known)",
-                                            unknown, found.size()));
+        text += paragraph(
+            "  ", fmt::format("(at {} of {} frequencies the interval reaches 0: the response there is not significant)",
+                              unknown, found.size()));
       }
     }
   }

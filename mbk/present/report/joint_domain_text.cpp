@@ -51,12 +51,12 @@ std::string joint_domain_text(const JointDomain& joints) {
   const auto force = [&](Index k) {
     return with_interval(joints.bias_force[k], numeric::kNormal95 * joints.bias_force_error[k]);
   };
-  text += table({{"antisymmetry", "m_a " + between(joints.m_a, joints.m_a95, units.inertia)},
-                 {"", "k_a " + between(joints.k_a, joints.k_a95, units.stiffness)},
-                 {"bias force",
-                  fmt::format("x {}, y {} N: what the hand exerts on the robot there, at rest", force(0), force(1))}});
-  return text + paragraph("  ", fmt::format("(M = JᵀMJ, B = JᵀBJ, K = JᵀKJ − Σ F ∂²x/∂q² of those at the hand, det J = "
-                                            "{:.3g} m²; what is unsure of the posture is not in ±)",
+  text +=
+      table({{"antisymmetry", "m_a " + between(joints.m_a, joints.m_a95, units.inertia)},
+             {"", "k_a " + between(joints.k_a, joints.k_a95, units.stiffness)},
+             {"bias force", fmt::format("x {}, y {} N: force of the hand on the robot at rest", force(0), force(1))}});
+  return text + paragraph("  ", fmt::format("(M = JᵀMJ, B = JᵀBJ, K = JᵀKJ − Σ F ∂²x/∂q² of the matrices at the hand, "
+                                            "det J = {:.3g} m²; ± does not include the uncertainty of the posture)",
                                             joints.jacobian.determinant()));
 }
 

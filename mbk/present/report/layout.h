@@ -9,10 +9,10 @@
 #include "mbk/model/trial/warning.h"
 
 /// @file
-/// How tables and paragraphs of a terminal are set. For the sources of this module only.
+/// Layout of tables and paragraphs in the terminal. For the sources of this module only.
 namespace mbk::report {
 
-/// A value and its half width with the digits that mean something: 1.2002 ± 0.0011.
+/// A value and its half width with their significant digits: 1.2002 ± 0.0011.
 [[nodiscard]] std::string with_interval(double value, double half_width);
 
 /// `first`, then the text, in lines of the terminal's width; they stand under each other.
@@ -21,7 +21,7 @@ namespace mbk::report {
 /// Left-aligned columns; the width of each is that of its longest cell. A last cell that is too long is broken.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
 
-/// Every warning with what to try.
+/// Every warning with its advice.
 [[nodiscard]] std::string warnings_text(const std::vector<Warning>& warnings);
 
 /// The filters of a preparation in one line.

@@ -23,9 +23,9 @@ std::string word_or_none(const std::optional<Verdict>& verdict) {
   return std::string(verdict ? word_of(*verdict) : "none");
 }
 
-/// What one method's model says of straight and of circular motion, beside how much it explains.
+/// Verdicts on straight and circular motion for the model of each method, with its VAF.
 std::string models_table(const std::vector<ModelPassivity>& models) {
-  std::vector<std::vector<std::string>> rows = {{"model of", "VAF", "straight motion", "circular motion", ""}};
+  std::vector<std::vector<std::string>> rows = {{"model by", "VAF", "straight motion", "circular motion", ""}};
   for (const ModelPassivity& model : models) {
     std::vector<std::string> vaf;
     for (const double one : model.vaf) vaf.push_back(fmt::format("{:.1f}", one));
@@ -35,7 +35,8 @@ std::string models_table(const std::vector<ModelPassivity>& models) {
   return table(rows);
 }
 
-/// Where a model absorbs in circular motion; empty where that is throughout the band and a decade to either side.
+/// Frequencies at which a model absorbs energy in circular motion; empty if that is the whole band and a decade around
+/// it.
 std::string circular_text(const ModelPassivity& model) {
   constexpr double kDecade = 10.0;
   if (!model.circular_hz) return "";
@@ -47,14 +48,14 @@ std::string circular_text(const ModelPassivity& model) {
 
 std::string model_text(const ModelPassivity& model) {
   std::string text =
-      fmt::format("  model of {}, {:.3g} to {:.3g} Hz{}\n", method_name(model.method), model.band.low.value,
+      fmt::format("  model by {}, {:.3g} to {:.3g} Hz{}\n", method_name(model.method), model.band.low.value,
                   model.band.high.value, model.band.extrapolated ? ", extrapolated" : "");
-  std::vector<std::vector<std::string>> rows = {{"condition: positive", "value", "unit", ""}};
+  std::vector<std::vector<std::string>> rows = {{"must be positive", "value", "unit", ""}};
   for (const PassivityCondition& c : model.conditions) {
     rows.push_back({c.name, with_interval(c.value, numeric::kNormal95 * c.standard_error), c.unit,
-                    c.verdict == Verdict::passive  ? "holds"
-                    : c.verdict == Verdict::active ? "fails"
-                                                   : "open"});
+                    c.verdict == Verdict::passive  ? "met"
+                    : c.verdict == Verdict::active ? "not met"
+                                                   : "undecided"});
   }
   text += table(rows);
   rows = {{"smallest index", fmt::format("{:.3g}", model.smallest_index), between(model.smallest_index95),
@@ -62,32 +63,29 @@ std::string model_text(const ModelPassivity& model) {
   if (model.excess) {
     rows.push_back({"excess of passivity", fmt::format("{:.3g}", model.excess->corrected),
                     between(model.excess->corrected95), "smallest eigenvalue of B"});
-    rows.push_back({"  by the published formula", fmt::format("{:.3g}", model.excess->published),
-                    between(model.excess->published95), "half of the largest"});
+    rows.push_back({"  published formula", fmt::format("{:.3g}", model.excess->published),
+                    between(model.excess->published95), "half the largest eigenvalue of B"});
   }
   if (const std::string circular = circular_text(model); !circular.empty()) {
-    rows.push_back({"absorbs in circles", circular, "", "as estimated"});
+    rows.push_back({"absorbs in circular motion", circular, "", "point estimate"});
   }
   return text + table(rows);
 }
 
 std::string energy_text(const EnergyAccount& account, const char* unit) {
-  const char* const what = account.shortage_at_end < 0.0 ? "excess at the end" : "shortage at the end";
-  const char* const largest = account.shortage_largest < 0.0 ? "excess, worst case" : "shortage, worst case";
-  const auto shortage = [](double value, const Interval& interval) {
-    return value < 0.0 ? std::pair{-value, Interval{-interval.second, -interval.first}} : std::pair{value, interval};
-  };
-  const auto [end, end95] = shortage(account.shortage_at_end, account.shortage_at_end95);
-  const auto [most, most95] = shortage(account.shortage_largest, account.shortage_largest95);
+  const auto excess = [unit](double shortage) { return fmt::format("{:.3g} {}", 0.0 - shortage, unit); };
+  const auto negated = [](const Interval& interval) { return Interval{-interval.second, -interval.first}; };
   return table({{"absorbed", fmt::format("{:.3g} J", account.absorbed), between(account.absorbed95),
                  fmt::format("in {:.1f} s", account.duration)},
-                {what, fmt::format("{:.3g} {}", end, unit), between(end95), "eq. (4.3)"},
-                {largest, fmt::format("{:.3g} {}", most, unit), between(most95), "over time"}});
+                {"excess of passivity at the end", excess(account.shortage_at_end),
+                 between(negated(account.shortage_at_end95)), "eq. (4.3)"},
+                {"excess, worst case during the trial", excess(account.shortage_largest),
+                 between(negated(account.shortage_largest95)), "negative: damping that is lacking"}});
 }
 
 std::string lines_text(const std::vector<EnergyLine>& lines) {
   if (lines.empty()) return "";
-  std::vector<std::vector<std::string>> rows = {{"line [Hz]", "absorbed [J]", "95 % for all lines at once"}};
+  std::vector<std::vector<std::string>> rows = {{"line [Hz]", "absorbed [J]", "95 % for all lines jointly"}};
   for (const EnergyLine& line : lines) {
     rows.push_back(
         {fmt::format("{:.3g}", line.frequency.value), fmt::format("{:.3g}", line.absorbed), between(line.absorbed95)});
@@ -104,7 +102,7 @@ std::string prediction_line(const PassivityPrediction& prediction) {
   return fmt::format("{}: {}", word_or_none(prediction.verdict), prediction.statement);
 }
 
-constexpr const char* kNoPromise = "Neither is a promise that a machine is stable with this person.";
+constexpr const char* kNoGuarantee = "Neither statement guarantees that a robot coupled to this person is stable.";
 
 }  // namespace
 
@@ -118,7 +116,7 @@ std::string passivity_text(const Passivity& passivity, Motion motion) {
   if (!passivity.models.empty()) text += models_table(passivity.models);
   text += "\n";
   for (const ModelPassivity& model : passivity.models) text += model_text(model) + "\n";
-  return text + paragraph("  ", fmt::format("Brackets are 95 % intervals. {}", kNoPromise));
+  return text + paragraph("  ", fmt::format("Brackets are 95 % intervals. {}", kNoGuarantee));
 }
 
 std::string consistent_text(const ConsistentFit& fit, Motion motion) {
@@ -132,13 +130,15 @@ std::string consistent_text(const ConsistentFit& fit, Motion motion) {
     return std::vector<std::string>{name, fmt::format("{:.3g}", one.free_smallest), fmt::format("{:.3g}", smallest),
                                     unit};
   };
-  const std::string held =
-      active.empty() ? "the data ask for nothing else but symmetry"
-                     : fmt::format("{} held at the edge of what a passive limb can have", fmt::join(active, " and "));
-  return paragraph("  ", fmt::format("nearest model with M and K symmetric and M, B, K positive semidefinite: {}; the "
-                                     "residual's power grows by {:.2g} %, {} moves by {:.2g} standard errors",
-                                     held, fit.increase_percent(), fit.largest_change, fit.largest_change_errors)) +
-         table({{"smallest eigenvalue", "as found", "nearest", ""},
+  const std::string constraint =
+      active.empty() ? "only symmetry had to be imposed"
+                     : fmt::format("{} constrained at the limit for a passive limb", fmt::join(active, " and "));
+  return paragraph(
+             "  ",
+             fmt::format("nearest model with M and K symmetric and M, B, K positive semidefinite: {}; the power of the "
+                         "residual increases by {:.2g} %; the largest change is in {}, by {:.2g} standard errors",
+                         constraint, fit.increase_percent(), fit.largest_change, fit.largest_change_errors)) +
+         table({{"smallest eigenvalue", "estimated", "nearest", ""},
                 row("M", fit.inertia, units.inertia),
                 row("B", fit.damping, units.damping),
                 row("K", fit.stiffness, units.stiffness)});
@@ -147,12 +147,12 @@ std::string consistent_text(const ConsistentFit& fit, Motion motion) {
 std::string passivity_lines(const Passivity& passivity) {
   return paragraph("  ", "passivity, what happened: " + trial_line(passivity.trial)) +
          paragraph("  ", "passivity, what the model predicts: " + prediction_line(passivity.prediction)) +
-         paragraph("  ", kNoPromise);
+         paragraph("  ", kNoGuarantee);
 }
 
 Chart energy_chart(const Energy& energy) {
   Chart chart;
-  chart.title = "energy that the limb absorbed";
+  chart.title = "Energy absorbed by the limb";
   chart.x = {"time", "s"};
   chart.y = {"energy", "J"};
   ChartSeries series;

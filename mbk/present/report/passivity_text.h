@@ -8,10 +8,10 @@
 
 namespace mbk::report {
 
-/// Both statements in full for the terminal: the energy of the trial; what each model says, every condition of it.
+/// Both statements in full for the terminal: the energy of the trial; each model with all its conditions.
 [[nodiscard]] std::string passivity_text(const Passivity& passivity, Motion motion);
 
-/// The nearest model that a passive limb can have, and what it costs.
+/// The nearest model that a passive limb can have, and its loss of fit.
 [[nodiscard]] std::string consistent_text(const ConsistentFit& fit, Motion motion);
 
 /// Both statements, each in a sentence.

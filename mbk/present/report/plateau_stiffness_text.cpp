@@ -38,7 +38,7 @@ std::string stiffness_regression_text(const StiffnessRegression& fit, Motion mot
            fmt::format("area {:.0f}{}, shape {:.2f}{}, orientation {}", e.area, bracketed(fit.ellipse->area95, 0),
                        e.shape, bracketed(fit.ellipse->shape95, 2),
                        fit.ellipse->round
-                           ? "any: it may be round"
+                           ? "any: may be a circle"
                            : fmt::format("{:.1f}°{}", 180.0 / std::numbers::pi * e.orientation,
                                          bracketed(fit.ellipse->orientation95, 1, 180.0 / std::numbers::pi)))});
     } else {
@@ -53,11 +53,11 @@ std::string stiffness_regression_text(const StiffnessRegression& fit, Motion mot
                     std::string text;
                     for (const double one : fit.residual_rms)
                       text += fmt::format("{}{:.2g}", text.empty() ? "" : ", ", one);
-                    return text + " " + units.force + " from displacement to displacement";
+                    return text + " " + units.force + " between displacements";
                   }()});
   if (fit.linear_p) {
     rows.push_back(
-        {"linearity", fmt::format("one K for all {} directions: p = {:.2g}", fit.directions, *fit.linear_p)});
+        {"linearity", fmt::format("test of one K for all {} directions: p = {:.2g}", fit.directions, *fit.linear_p)});
   }
   return table(rows);
 }
@@ -70,12 +70,13 @@ std::string plateau_stiffness_text(const PlateauStiffness& found, Motion motion)
                                                       : fmt::format("{:.3g} mm", kMillimetres * fit.amplitude);
   text += table(
       {{"plateaus", fmt::format("{} in {} directions, of {}{}", fit.displacements, fit.directions, size,
-                                found.left_out > 0 ? fmt::format("; {} left out: too short", found.left_out) : "")},
-       {"window", fmt::format("{:.0f} ms to {:.0f} ms after the onset, {}; less the {:.0f} ms before it",
+                                found.left_out > 0 ? fmt::format("; {} omitted: too short", found.left_out) : "")},
+       {"window", fmt::format("{:.0f} ms to {:.0f} ms after the onset, {}; minus the mean of the {:.0f} ms before it",
                               kMilliseconds * found.from_s, kMilliseconds * found.to_s, found.window_rule,
                               kMilliseconds * found.baseline_s)},
-       {"displacement", fmt::format("{:.1f} % of what was commanded; motion on the window adds {:.2g} % to K",
-                                    100.0 * fit.reached, 100.0 * found.motion_share)}});
+       {"displacement",
+        fmt::format("{:.1f} % of the commanded displacement; motion within the window adds {:.2g} % to K",
+                    100.0 * fit.reached, 100.0 * found.motion_share)}});
   if (!found.usable) text += "  not usable: see the warnings\n";
   return text + stiffness_regression_text(fit, motion);
 }

@@ -28,11 +28,10 @@ std::string family(std::string_view heading, std::span<const PlausibleRange> ran
 }  // namespace
 
 std::string ranges_text() {
-  return family("A hand at a robot, or springs with a payload in its place:", kHandRanges) + "\n" +
+  return family("A hand on a robot, or springs with a payload instead:", kHandRanges) + "\n" +
          family("One joint, from a finger to a hip:", kJointRanges) + "\n" +
          paragraph("",
-                   "A result outside is not usable. --ignore-range NAME switches one of them off, by the names on the "
-                   "left.");
+                   "A result outside a range is not usable. Disable a range with --ignore-range NAME (left column).");
 }
 
 }  // namespace mbk::report

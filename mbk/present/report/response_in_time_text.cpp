@@ -27,7 +27,7 @@ std::string p_text(double p) {
 /// One line for each matrix: its entries row by row.
 void add_model(const ResponseModel& model, Motion motion, std::vector<std::vector<std::string>>& rows) {
   if (!model.identifiable) {
-    rows.push_back({"M, B, K", "not identifiable: the motion excites fewer directions than they need"});
+    rows.push_back({"M, B, K", "not identifiable: the motion does not excite enough directions"});
     return;
   }
   const Units units = units_of(motion);
@@ -48,7 +48,7 @@ void add_model(const ResponseModel& model, Motion motion, std::vector<std::vecto
 
 /// A direction of stretch, in words.
 std::string direction_name(const Vector& direction) {
-  if (direction.size() == 0) return "both alike";
+  if (direction.size() == 0) return "both directions";
   if (direction.size() == 1) return direction[0] > 0.0 ? "positive" : "negative";
   return fmt::format("{:.0f}°", kDegrees * std::atan2(direction[1], direction[0]));
 }
@@ -60,11 +60,11 @@ std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion m
   std::string text = "impulse response\n";
   std::vector<std::vector<std::string>> rows = {
       {"memory", fmt::format("±{:.0f} ms by {}{}", kMilliseconds * found.memory, found.memory_rule,
-                             found.memory_at_limit ? ": the longest that was tried, it may be more" : "")},
+                             found.memory_at_limit ? " (the longest that was tried; it may be longer)" : "")},
       {"rank",
        fmt::format("{} of {} directions of the lagged motion, by cross-validation", found.rank, found.directions)},
-      {"loop", found.instruments ? "the reference stands for the motion: holds in closed loop"
-                                 : "no reference that explains the motion: biased where the force moves the robot"}};
+      {"loop", found.instruments ? "instrumental variables from the reference: valid in closed loop"
+                                 : "no reference that explains the motion: biased if the force moves the robot"}};
   const std::string rows_judged = found.held_out ? "held-out data" : "in sample";
   for (std::size_t i = 0; i < found.explained.size(); ++i) {
     rows.push_back({"VAF" + axis_name(i, found.axes), fmt::format("{}; M, B, K alone {} ({})", vaf(found.explained[i]),
@@ -73,7 +73,7 @@ std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion m
   add_model(found.model, motion, rows);
   if (found.model.identifiable && found.model.numerator > 0.0) {
     rows.push_back({"M-B-K", fmt::format("{}: F({:.0f}, {:.0f}) = {:.3g}, {}",
-                                         found.model.enough ? "enough" : "not enough", found.model.numerator,
+                                         found.model.enough ? "sufficient" : "not sufficient", found.model.numerator,
                                          found.model.denominator, found.model.statistic, p_text(found.model.p_value))});
   }
   return text + table(rows);
@@ -122,9 +122,9 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
   rows.push_back({"direction", direction_name(found.direction) + " stretch"});
   rows.push_back(
       {"delay",
-       fmt::format("a response shows from {:.0f} ms ({:.0f} to {:.0f} ms){}, until {:.0f} ms",
+       fmt::format("response starts at {:.0f} ms ({:.0f} to {:.0f} ms){} and lasts until {:.0f} ms",
                    kMilliseconds * found.delay, kMilliseconds * found.delay_low, kMilliseconds * found.delay_high,
-                   found.delay_at_limit ? ", the earliest that was tried" : "", kMilliseconds * found.memory)});
+                   found.delay_at_limit ? ", the shortest delay that was tried," : "", kMilliseconds * found.memory)});
   rows.push_back({"gain", fmt::format("{} {}{}{}", with_interval(found.gain_along.value, found.gain_along.half_width),
                                       unit, found.gain_along.value > 0.0 ? ", resists the stretch" : ", assists it",
                                       found.gain_identifiable ? "" : ": not identifiable")});
@@ -134,17 +134,16 @@ std::string parallel_cascade_text(const ParallelCascadeEstimate& found, Motion m
     for (const Margin& one : fit.gain) {
       gains += (gains.empty() ? "" : ", ") + with_interval(one.value, one.half_width);
     }
-    rows.push_back(
-        {"second order",
-         fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} ({})", gains, unit,
-                     with_interval(kMilliseconds * fit.delay.value, kMilliseconds * fit.delay.half_width),
-                     with_interval(fit.frequency.value, fit.frequency.half_width),
-                     with_interval(fit.damping.value, fit.damping.half_width),
-                     fit.p_value < 0.01 ? "the response is more than that" : "enough", p_text(fit.p_value))});
+    rows.push_back({"second order",
+                    fmt::format("gain {} {}, delay {} ms, {} Hz, damping ratio {}; {} ({})", gains, unit,
+                                with_interval(kMilliseconds * fit.delay.value, kMilliseconds * fit.delay.half_width),
+                                with_interval(fit.frequency.value, fit.frequency.half_width),
+                                with_interval(fit.damping.value, fit.damping.half_width),
+                                fit.p_value < 0.01 ? "not sufficient" : "sufficient", p_text(fit.p_value))});
   }
   rows.push_back({"nonlinearity",
                   found.nonlinearity.size() == 1
-                      ? std::string("the velocity rectified, no more")
+                      ? std::string("half-wave rectified velocity")
                       : fmt::format("polynomial of order {} of the rectified velocity", found.nonlinearity.size())});
   rows.push_back({"intrinsic", "M, B, K of the intrinsic path"});
   add_model(found.intrinsic_model, motion, rows);

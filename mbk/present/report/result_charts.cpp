@@ -51,7 +51,7 @@ Chart ellipse_chart(const EllipseFinding& finding, const char* name, const std::
   chart.vertical = {{0.0, ""}};
   chart.equal_scale = true;
   const std::string orientation =
-      finding.round ? "any: it may be round"
+      finding.round ? "any: may be a circle"
                     : fmt::format("{:.1f}°, {:.1f} to {:.1f}°", kDegrees * finding.ellipse.orientation,
                                   kDegrees * finding.orientation95.first, kDegrees * finding.orientation95.second);
   chart.notes = {fmt::format("shape {:.2f}, 95 % interval {:.2f} to {:.2f}; orientation {}", finding.ellipse.shape,
@@ -81,8 +81,8 @@ void add_prediction(const ForcePrediction& prediction, const Units& units, std::
     Chart chart = titled(with_axis("Measured and predicted force", i, axes), {"time", "s"}, {"force", units.force});
     chart.series = {line("measured", prediction.time, prediction.measured.col(i)),
                     line("predicted by the model", prediction.time, prediction.predicted.col(i))};
-    chart.notes = {prediction.held_out ? "held-out data, which the model has not seen"
-                                       : "the data that the model was fitted to: none were held out"};
+    chart.notes = {prediction.held_out ? "held-out (validation) data"
+                                       : "the data used for fitting: none were held out"};
     charts.push_back({axes == 1 ? "force" : fmt::format("force-{}", kAxes[static_cast<std::size_t>(i)]), chart});
   }
 }
@@ -214,7 +214,7 @@ std::vector<Chart> first_seconds(const Recording& recording, double seconds) {
     auto chart = std::ranges::find_if(charts, [&](const Chart& one) { return one.y.unit == channel.unit; });
     if (chart == charts.end()) {
       charts.push_back(
-          titled(fmt::format("The first {:.3g} s", seconds), {"time", "s"}, {"less its mean", channel.unit}));
+          titled(fmt::format("The first {:.3g} s", seconds), {"time", "s"}, {"minus its mean", channel.unit}));
       chart = charts.end() - 1;
     }
     chart->series.push_back(line(channel.name, recording.time.head(shown), values.array() - values.mean()));

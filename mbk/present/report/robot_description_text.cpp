@@ -16,7 +16,7 @@ namespace {
 
 std::string limits_text(const robot::Mechanism& mechanism, int joint) {
   const robot::JointRange range = mechanism.joint_range(joint);
-  if (!std::isfinite(range.high - range.low)) return "without end";
+  if (!std::isfinite(range.high - range.low)) return "unlimited";
   const bool slides = mechanism.slides(joint);
   const double unit = slides ? kMillimetres : kDegrees;
   return fmt::format("{:.5g} … {:.5g}{}", unit * range.low, unit * range.high, slides ? " mm" : "°");
@@ -28,7 +28,7 @@ std::string hand_text(const robot::Mechanism& mechanism) {
   for (const double metres : place) {
     numbers.push_back(fmt::format("{:.2f}", std::round(1e2 * kMillimetres * metres) / 1e2 + 0.0));
   }
-  return fmt::format("{} {}, with every joint at 0", fmt::join(numbers, ", "),
+  return fmt::format("{} {}, with all joints at 0", fmt::join(numbers, ", "),
                      mechanism.hand_turns() ? "·10⁻³ rad" : "mm");
 }
 
@@ -51,7 +51,7 @@ std::string drives_text(const robot::DynamicModel& model) {
   return text;
 }
 
-/// Coefficient j by those that can be distinguished: "in 0.04·upper.inertia_yy − 0.2·upper.mass_z".
+/// Coefficient j in terms of the identifiable ones: "in 0.04·upper.inertia_yy − 0.2·upper.mass_z".
 std::string part_of(const numeric::IndependentColumns& base, Index j, const std::vector<robot::Coefficient>& names) {
   constexpr double kNone = 1e-6;
   std::string text;
@@ -94,11 +94,12 @@ std::string robot_description_text(const robot::RobotDescription& description,
   }
   text += "\n" + table(rows);
   const std::size_t all = coefficients.size(), apart = base.kept.size();
-  text += paragraph("  ", apart == all ? fmt::format("A sufficiently rich motion identifies all {} coefficients.", all)
-                                       : fmt::format("A sufficiently rich motion identifies {} of {} coefficients; "
-                                                     "the others act only in those that stand behind them, or not at "
-                                                     "all.",
-                                                     apart, all));
+  text += paragraph(
+      "  ", apart == all
+                ? fmt::format("A sufficiently rich motion identifies all {} coefficients.", all)
+                : fmt::format("A sufficiently rich motion identifies {} of {} coefficients; "
+                              "the others have an effect only as part of those listed with them, or none at all.",
+                              apart, all));
   for (const std::string& one : description.impossible) {
     text += paragraph("  ! ", printable(one) +
                                   ": each principal moment is at most the sum of the other two. 'robot identify' does "

@@ -17,7 +17,7 @@ namespace {
 const char* method_text(RobotMethod method) {
   switch (method) {
     case RobotMethod::least_squares:
-      return "least squares, every joint alike";
+      return "least squares, all joints weighted equally";
     case RobotMethod::weighted_least_squares:
       return "least squares, each joint weighted by the noise of its torque";
     case RobotMethod::instrumental_variables:
@@ -56,13 +56,13 @@ std::string how_found(const RobotIdentification& found) {
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
   rows.push_back(
-      {"excitation", fmt::format("{} of {} coefficients identifiable ({} in any motion), condition {:.3g}", found.rank,
-                                 found.coefficients.size(), found.structural_rank, found.condition)});
+      {"excitation", fmt::format("{} of {} coefficients identifiable ({} with any motion), condition number {:.3g}",
+                                 found.rank, found.coefficients.size(), found.structural_rank, found.condition)});
   const double delay = 1e3 * found.model.delay;
-  rows.push_back(
-      {"motor delay", found.delay_standard_error
-                          ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) + " ms, found"
-                          : fmt::format("{:.4g} ms, given", delay)});
+  rows.push_back({"motor delay",
+                  found.delay_standard_error
+                      ? with_interval(delay, 1e3 * numeric::kNormal95 * *found.delay_standard_error) + " ms, estimated"
+                      : fmt::format("{:.4g} ms, given", delay)});
   for (const std::string& note : found.notes) rows.push_back({"note", note});
   return text + table(rows);
 }
@@ -86,13 +86,14 @@ std::string free_text(const RobotIdentification& found) {
     rows.push_back({one.coefficient.name, with_interval(one.value, numeric::kNormal95 * one.standard_error),
                     one.coefficient.unit, one.together_with});
   }
-  text += table(rows) + "  (± is the 95 % interval; W θ = τ + Jᵀ F, τ the motors', F the hand's force on the robot)\n";
+  text +=
+      table(rows) + "  (± is the 95 % interval; W θ = τ + Jᵀ F; τ: motor torques, F: force of the hand on the robot)\n";
   if (combined) {
     text += paragraph("  ",
-                      "What stands behind a value is part of it: only these sums can be distinguished (base "
-                      "parameters), and they are all that torque and force need.");
+                      "Coefficients listed after a value are included in it: only these sums are identifiable (base "
+                      "parameters), and they suffice for torque and force.");
   }
-  if (!nothing.empty()) text += paragraph("  not distinguishable, or without effect: ", nothing);
+  if (!nothing.empty()) text += paragraph("  not identifiable, or without effect: ", nothing);
   return text;
 }
 
@@ -100,7 +101,7 @@ std::string points(double lost) {
   return std::isfinite(lost) ? fmt::format("{:+.2f}", lost == 0.0 ? 0.0 : -lost) : "–";
 }
 
-/// The links, what the data decide of them, and what that costs.
+/// Bodies of the links, identifiable sums, and loss of VAF against the free fit.
 std::string consistent_text(const RobotIdentification& found, const ConsistentRobot& consistent) {
   std::string text;
   std::vector<std::vector<std::string>> rows;
@@ -116,10 +117,10 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
     }
     text += table(rows);
     text += paragraph("  ",
-                      "Bodies that can exist, in the frames of their links; inertia about the centre of mass (its "
-                      "products: --json); smallest: eigenvalue of the pseudo-inertia in SI units. They are one choice "
-                      "of many: other masses, centres and inertias move the robot alike as long as the sums below "
-                      "stay. What no torque shows is nearest to the description.");
+                      "Physically consistent bodies in the frames of their links; inertia about the centre of mass "
+                      "(products of inertia: --json); smallest: eigenvalue of the pseudo-inertia in SI units. The "
+                      "bodies are not unique: others with the same sums below give the same motion. Parameters that no "
+                      "torque shows are closest to the description.");
     text += "\n";
   }
   rows = {{"", "consistent", "free fit", "unit", ""}};
@@ -133,24 +134,24 @@ std::string consistent_text(const RobotIdentification& found, const ConsistentRo
   }
   text += table(rows);
   text += paragraph("  ",
-                    "These sums are what torque and motion decide, and all that torque and force need. ± is the 95 % "
-                    "interval of the free fit; by how much the conditions narrow it is not counted.");
+                    "Torque and motion determine these sums, and they suffice for torque and force. ± is the 95 % "
+                    "interval of the free fit; the constraints may narrow it.");
 
-  rows = {{"VAF, points", found.held_out ? "held out" : "in sample", "in sample"}};
+  rows = {{"change of VAF [percentage points]", found.held_out ? "held out" : "in sample", "in sample"}};
   for (std::size_t joint = 0; joint < consistent.vaf_lost.size(); ++joint) {
-    rows.push_back({fmt::format("joint {} against the free fit", joint + 1), points(consistent.vaf_lost[joint]),
+    rows.push_back({fmt::format("joint {} relative to the free fit", joint + 1), points(consistent.vaf_lost[joint]),
                     points(consistent.vaf_lost_in_sample[joint])});
   }
   if (consistent.vaf_lost.size() > 1) rows.push_back({"mean of the joints", points(consistent.mean_vaf_lost), ""});
   text += "\n" + table(rows);
   if (!consistent.pressing.empty()) {
-    text += paragraph("  at the edge of what can exist, strongest first: ",
+    text += paragraph("  active consistency constraints, strongest first: ",
                       fmt::format("{}", fmt::join(consistent.pressing, ", ")));
   }
   return text;
 }
 
-/// How well each joint's torque is explained.
+/// Fit of the torque of each joint.
 std::string fit_text(const RobotIdentification& found) {
   std::vector<std::vector<std::string>> rows = {
       {found.held_out ? "held out" : "in sample", "VAF %", "RMSE", "in sample", "RMSE"}};
@@ -168,16 +169,16 @@ std::string fit_text(const RobotIdentification& found) {
   return "\n" + table(rows);
 }
 
-/// The torque beside that of the URDF.
+/// The torque relative to that of the URDF.
 std::string stated_text(const RobotIdentification& found) {
-  std::vector<std::vector<std::string>> rows = {{"torque over that of the URDF", "ratio"}};
+  std::vector<std::vector<std::string>> rows = {{"torque relative to the URDF", "ratio"}};
   for (std::size_t joint = 0; joint < found.stated.size(); ++joint) {
     const StatedRatio& one = found.stated[joint];
     rows.push_back(
         {fmt::format("joint {}", joint + 1),
          std::isfinite(one.ratio) ? with_interval(one.ratio, numeric::kNormal95 * one.standard_error) : "–"});
   }
-  return "\n" + table(rows) + "  (of inertia and weight, friction left free)\n";
+  return "\n" + table(rows) + "  (from inertia and weight; friction estimated freely)\n";
 }
 
 }  // namespace
@@ -207,7 +208,7 @@ std::string force_text(const ForceSummary& force) {
   for (const SourceFile& source : force.sources) text += fmt::format("{}   {}\n", source.label(), source.format);
   for (const std::string& note : force.notes) text += paragraph("  ", note);
   std::vector<std::vector<std::string>> rows = {{"", "RMS", "peak"}};
-  if (sure) rows.front().emplace_back("± of the robot's dynamics");
+  if (sure) rows.front().emplace_back("± from the robot model");
   for (Index axis = 0; axis < force.rms.size(); ++axis) {
     rows.push_back({force.rms.size() == 1 ? "F" : "F" + force.axes[static_cast<std::size_t>(axis)],
                     fmt::format("{:.3g} {}", force.rms[axis], force.unit),

@@ -40,7 +40,7 @@ std::string schedule_text(const perturbation::Schedule& schedule) {
     text += fmt::format("  acceleration  {:.4g} {}/s² at most, at {:.2f} s\n", factor * facts.peak_acceleration, unit,
                         facts.peak_acceleration_time);
   }
-  text += fmt::format("  crest factor  {:.3g} and {:.3g}, pauses and moving in counted\n", facts.crest_factor[0],
+  text += fmt::format("  crest factor  {:.3g} and {:.3g}, including pauses and moving in\n", facts.crest_factor[0],
                       facts.crest_factor[1]);
   text +=
       fmt::format("  band          {:.3g} to {:.3g} Hz\n", facts.lowest_frequency.value, facts.highest_frequency.value);

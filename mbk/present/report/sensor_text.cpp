@@ -77,16 +77,16 @@ std::string qualities(const SensorCalibration& c) {
       row("nonlinearity", c, "N", [](const SensorAxis& a, Index) { return percent_of_full_scale(a.nonlinearity, a); }),
       row("hysteresis", c, "N",
           [](const SensorAxis& a, Index) {
-            return a.hysteresis ? percent_of_full_scale(*a.hysteresis, a) : "not seen";
+            return a.hysteresis ? percent_of_full_scale(*a.hysteresis, a) : "unknown";
           }),
       row("noise at constant load", c, "mV (N)",
           [&](const SensorAxis& a, Index k) {
-            return a.noise ? fmt::format("{:.3g} ({:.2g})", kMilli * *a.noise, force_of(*a.noise, k)) : "not seen";
+            return a.noise ? fmt::format("{:.3g} ({:.2g})", kMilli * *a.noise, force_of(*a.noise, k)) : "unknown";
           }),
       row("step", c, "mV (N)",
           [&](const SensorAxis& a, Index k) {
             const auto q = a.resolution();
-            return q ? fmt::format("{:.4g} ({:.3g})", kMilli * *q, force_of(*q, k)) : "not seen";
+            return q ? fmt::format("{:.4g} ({:.3g})", kMilli * *q, force_of(*q, k)) : "unknown";
           }),
       row("step/√12", c, "N",
           [&](const SensorAxis& a, Index k) {
@@ -106,10 +106,10 @@ std::string crosstalk(const SensorCalibration& c) {
                         &felt = c.axes[static_cast<std::size_t>(j)].name;
       text += paragraph(
           "  crosstalk    ",
-          fmt::format("{} feels {} % of a load on {}: {:.3g} N where {} goes from 0 to {:g} N; the slopes "
-                      "above take it out",
-                      felt, with_interval(100.0 * c.crosstalk(j, i), 100.0 * reach95(c) * c.crosstalk_error(j, i)), on,
-                      kPublishedLoad * c.crosstalk(j, i), on, kPublishedLoad));
+          fmt::format(
+              "{} shows {} % of a load on {}: {:.3g} N if {} goes from 0 to {:g} N; the slopes above correct it", felt,
+              with_interval(100.0 * c.crosstalk(j, i), 100.0 * reach95(c) * c.crosstalk_error(j, i)), on,
+              kPublishedLoad * c.crosstalk(j, i), on, kPublishedLoad));
     }
   }
   if (text.empty() && c.axes.size() > 1) text = paragraph("  crosstalk    ", "not fitted: each axis separately");
@@ -133,23 +133,24 @@ std::string published(const SensorCalibration& c) {
 std::string sensor_text(const SensorCalibration& c) {
   std::string text;
   for (const SourceFile& source : c.sources) text += fmt::format("{}   {}\n", source.label(), source.format);
-  text += paragraph("  data         ",
-                    c.continuous ? fmt::format("{} samples over time; standard errors hold for residuals that are "
-                                               "correlated over {:g} s",
-                                               c.rows, c.hac_lag_s)
-                                 : fmt::format("{} rows, each an independent load", c.rows));
+  text += paragraph(
+      "  data         ",
+      c.continuous ? fmt::format("{} samples over time; standard errors allow for residuals correlated over {:g} s",
+                                 c.rows, c.hac_lag_s)
+                   : fmt::format("{} rows, each an independent load", c.rows));
   for (const std::string& note : c.notes) text += paragraph("  read         ", note);
   text += "\n" + slopes(c) + "\n" + qualities(c) + "\n" + crosstalk(c) + published(c);
   if (c.delay != 0.0) {
-    text += paragraph("  delay        ", fmt::format("the voltage comes {:.3g} ms after the load", kMilli * c.delay));
+    text += paragraph("  delay        ", fmt::format("the voltage lags the load by {:.3g} ms", kMilli * c.delay));
   }
   text += c.lever_arm ? fmt::format("  lever arm    {:g} mm in this calibration\n", kMilli * *c.lever_arm)
-                      : paragraph("  lever arm    ", "not said; --lever-arm-mm keeps it for other points of attack");
+                      : paragraph("  lever arm    ",
+                                  "not given; state it with --lever-arm-mm to convert to other points of application");
   for (const SensorWarning& warning : c.warnings) {
     text += paragraph("  ! ", fmt::format("{}: {}", word_of(warning.code), warning.message));
     if (!warning.remedy.empty()) text += paragraph("    try: ", warning.remedy);
   }
-  return text + "\n(± is the 95 % interval; the slope of V on F, inverted, is the answer, and F on V stands beside)\n";
+  return text + "\n(± is the 95 % interval; the result is the inverted slope of V on F; F on V is for comparison)\n";
 }
 
 std::string sensor_delay_text(const MeasuredDelay& found) {
@@ -162,10 +163,9 @@ std::string sensor_delay_text(const MeasuredDelay& found) {
   text += fmt::format("  delay   {:.2f} ± {:.2f} ms: the force is read {} the motion\n", kMilli * found.delay, half,
                       found.delay < 0.0 ? "before" : "after");
   for (const std::string& problem : found.problems) text += paragraph("  ! ", problem);
-  if (!found.usable()) return text + paragraph("  ", "so the delay is not to be used");
-  if (std::abs(kMilli * found.delay) <= half)
-    return text + "  force and motion are simultaneous as far as this shows\n";
-  return text + fmt::format("  mbk measure --force-delay-ms {:.2f} ... undoes it (± is the 95 % interval)\n",
+  if (!found.usable()) return text + paragraph("  ", "do not use this delay");
+  if (std::abs(kMilli * found.delay) <= half) return text + "  no delay between force and motion was detected\n";
+  return text + fmt::format("  correct it with mbk measure --force-delay-ms {:.2f} ... (± is the 95 % interval)\n",
                             kMilli * found.delay);
 }
 

@@ -11,7 +11,7 @@ namespace mbk::report {
 /// noise and resolution, warnings, and the options that apply it.
 [[nodiscard]] std::string sensor_text(const SensorCalibration& calibration);
 
-/// By how much a force sensor is late, how sure that is, and the option that undoes it; or why it is not to be used.
+/// The delay of a force sensor with its interval, and the option that corrects it; or why it is not usable.
 [[nodiscard]] std::string sensor_delay_text(const MeasuredDelay& found);
 
 }  // namespace mbk::report

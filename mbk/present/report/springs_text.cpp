@@ -27,27 +27,29 @@ std::vector<std::string> matrix_row(const std::string& name, const Eigen::Matrix
   return {name, number(K(0, 0)), number(K(0, 1)), number(K(1, 0)), number(K(1, 1)), "N/m"};
 }
 
-std::string straightness(const Linearisation& line) {
+std::string linearity(const Linearisation& line) {
   std::string text =
-      fmt::format("the force is {:.2f} N at most, and differs from −K (x − x0) by {:.2g} N at most, {:.2g} % of that; ",
+      fmt::format("the force is at most {:.2f} N and deviates from −K (x − x0) by at most {:.2g} N, {:.2g} % of that; ",
                   line.largest_force, line.largest_error, 100.0 * line.relative_error());
-  text += line.smallest_extension > 0.0
-              ? fmt::format("every spring stays at least {} mm longer than at rest", in_mm(line.smallest_extension, 1))
-              : fmt::format("a spring comes to {} mm short of its rest length", in_mm(-line.smallest_extension, 1));
+  text +=
+      line.smallest_extension > 0.0
+          ? fmt::format("every spring stays extended by at least {} mm", in_mm(line.smallest_extension, 1))
+          : fmt::format("a spring is shorter than its rest length by up to {} mm", in_mm(-line.smallest_extension, 1));
   return text;
 }
 
 std::string grid_words(const SpringField& field, const GridField& grid) {
-  std::string text = fmt::format("as published, K at the point of a {:g} mm grid with the smallest force, {:.2g} N",
-                                 kMillimetres * grid.step, grid.residual);
-  if (grid.at_border) return text + "; it lies on the edge of the grid, so it need be no equilibrium";
-  text += fmt::format("; the point is {:.2g} mm off, K by {:.2g} N/m at most",
+  std::string text =
+      fmt::format("published procedure: K at the point of a {:g} mm grid with the smallest force, {:.2g} N",
+                  kMillimetres * grid.step, grid.residual);
+  if (grid.at_border) return text + "; the point is on the edge of the grid and may not be an equilibrium";
+  text += fmt::format("; error of the point {:.2g} mm, of K at most {:.2g} N/m",
                       kMillimetres * (grid.equilibrium - field.equilibrium).norm(),
                       (grid.K - field.K).cwiseAbs().maxCoeff());
   const double beside = std::abs(field.K(0, 1));
   if (beside > 0.0) {
     text += fmt::format(
-        ", beside the diagonal by {:.2g} %",
+        ", of the off-diagonal elements {:.2g} %",
         100.0 * std::max(std::abs(grid.K(0, 1) - field.K(0, 1)), std::abs(grid.K(1, 0) - field.K(0, 1))) / beside);
   }
   return text;
@@ -70,19 +72,19 @@ std::string constant_text(const SpringConstant& constant) {
   };
   text += table({{"", "k in N/m", "rest in mm", "R²", "RMSE in N", "N"},
                  row("straight part", constant.straight),
-                 row("whole stretch", constant.whole)});
+                 row("whole range", constant.whole)});
   text += paragraph("  straight part  ", constant.rule);
   if (constant.hooks) {
     const HookFit& hooks = *constant.hooks;
     text += paragraph(
         "  hooks          ",
-        fmt::format("give by {} mm in all, 63 % of it below {:.2f} N; behind them k is {} N/m (RMSE {:.3g} N)",
+        fmt::format("yield by {} mm in total, 63 % of it below {:.2f} N; without them k is {} N/m (RMSE {:.3g} N)",
                     plus_minus(hooks.deflection, hooks.deflection_error, kMillimetres), hooks.force,
                     plus_minus(hooks.stiffness, hooks.stiffness_error), hooks.rmse));
-    text += paragraph("  bias           ", fmt::format("a line through the whole stretch is {:.1f} % {} than the "
-                                                       "straight part",
-                                                       100.0 * std::abs(constant.bias_of_whole()),
-                                                       constant.bias_of_whole() < 0.0 ? "softer" : "stiffer"));
+    text += paragraph(
+        "  bias           ",
+        fmt::format("a line through the whole range is {:.1f} % {} than the straight part",
+                    100.0 * std::abs(constant.bias_of_whole()), constant.bias_of_whole() < 0.0 ? "softer" : "stiffer"));
   }
   for (const std::string& note : constant.notes) text += paragraph("  note           ", note);
   return text;
@@ -113,11 +115,11 @@ std::string spring_field_text(const SpringField& field) {
   constexpr double kRound = 1e-6;  // difference of the principal values that no figure shows
   text += principal.lambda_max - principal.lambda_min <= kRound * principal.lambda_max
               ? fmt::format("  principal    {:.3f} N/m in every direction\n", principal.lambda_max)
-              : fmt::format("  principal    {:.3f} N/m at {:.1f}°, {:.3f} N/m across\n", principal.lambda_max,
+              : fmt::format("  principal    {:.3f} N/m at {:.1f}°, {:.3f} N/m perpendicular\n", principal.lambda_max,
                             kDegrees * principal.orientation, principal.lambda_min);
   if (field.grid) text += paragraph("  grid         ", grid_words(field, *field.grid));
   text += paragraph(fmt::format("  {:<13}", fmt::format("within {} mm", in_mm(field.linearisation.radius, 0))),
-                    straightness(field.linearisation)) +
+                    linearity(field.linearisation)) +
           "\n";
   rows = {{"spring", "k in N/m", "rest in mm", "screw eye in mm", "hole in mm", "length in mm", "tension in N"}};
   for (std::size_t i = 0; i < field.springs.size(); ++i) {

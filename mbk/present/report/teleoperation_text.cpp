@@ -80,7 +80,7 @@ std::string verdict_line(const AbsoluteStability& stability, const char* where) 
     case StabilityVerdict::stable:
       return fmt::format("absolutely stable{}", where);
     case StabilityVerdict::marginal:
-      return fmt::format("marginal{}: absolutely stable, with nothing to spare", where);
+      return fmt::format("marginal{}: absolutely stable, without margin", where);
     case StabilityVerdict::unstable:
       break;
   }
@@ -115,10 +115,10 @@ std::string meaning(const AbsoluteStability& stability, std::optional<RadPerSec>
         limit->value);
   }
   if (stability.verdict == StabilityVerdict::unstable) {
-    return "some passive hand and some passive environment make the whole oscillate or run away; near the worst "
-           "frequency is where to look";
+    return "some passive hand and some passive environment make the system oscillate or run away, most likely near the "
+           "worst frequency";
   }
-  std::string words = "no passive hand and no passive environment can make the whole unstable";
+  std::string words = "no passive hand and no passive environment can make the system unstable";
   if (stability.verdict == StabilityVerdict::marginal) words += "; " + touches_text(stability);
   return words;
 }
@@ -128,8 +128,8 @@ std::string interval_text(const AdmissibleInterval& interval) {
   const auto [low, high] = limit_texts(interval);
   const auto side = [](const AdmissibleEnd& end) {
     if (end.limit_of_search) return " (the range ends there)";
-    if (!end.included) return " (itself not decided)";
-    return *end.included ? "" : " (not itself)";
+    if (!end.included) return " (undecided at this value)";
+    return *end.included ? "" : " (excluded)";
   };
   return fmt::format("{}{} to {}{}", low, side(interval.low), high, side(interval.high));
 }
@@ -147,15 +147,15 @@ std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
   if (!set.undecided.empty()) {
     std::vector<std::string> values;
     for (const double value : set.undecided) values.push_back(fmt::format("{:.10g}", value));
-    result += paragraph("  ", fmt::format("not decided at the single values {}", fmt::join(values, ", ")));
+    result += paragraph("  ", fmt::format("undecided at the isolated values {}", fmt::join(values, ", ")));
   }
   return result + paragraph("  ",
-                            "all boundaries are roots of polynomials, rounded to the stable side; between two of them "
-                            "every value has the same answer");
+                            "all boundaries are roots of polynomials, rounded to the stable side; the verdict is the "
+                            "same for all values between two boundaries");
 }
 
 std::string shortage_text(const LargestShortage& largest, const std::optional<FrequencyGrid>& grid) {
-  if (!largest.exists) return fmt::format("port {}: none; no excess of passivity would be enough", largest.port);
+  if (!largest.exists) return fmt::format("port {}: none; no excess of passivity is sufficient", largest.port);
   return fmt::format("port {}: a ≤ {} N·s/m{}", largest.port,
                      value_text(rounded_limit(grid ? largest.at_least : largest.value(), Side::down)),
                      grid && !grid->bounded ? ", on the grid" : "");
@@ -167,7 +167,7 @@ std::string run_text(const TeleoperationRun& run) {
   result += paragraph("    environment  ", run.environment);
   if (run.worst) {
     result += paragraph("    expected     ",
-                        fmt::format("grows at {:.5g} rad/s ({}), by e in {:.3g} s", run.worst->frequency.value,
+                        fmt::format("grows at {:.5g} rad/s ({}), by a factor e in {:.3g} s", run.worst->frequency.value,
                                     in_hz(run.worst->frequency), 1.0 / run.worst->growth));
   }
   const char* const outcome = run.outcome == MotionOutcome::grows      ? "GROWS"
@@ -176,22 +176,21 @@ std::string run_text(const TeleoperationRun& run) {
   std::string seen = fmt::format("{}: speed in the last quarter {:.3g} times that in the second", outcome, run.ratio);
   if (run.frequency.value > 0.0) seen += fmt::format(", at {:.5g} rad/s", run.frequency.value);
   seen += run.ran_away ? fmt::format("; ran away after {:.3g} s", run.duration)
-                       : fmt::format("; {:.3g} s, no further than {:.3g} mm", run.duration, 1e3 * run.largest_position);
+                       : fmt::format("; {:.3g} s, at most {:.3g} mm", run.duration, 1e3 * run.largest_position);
   result += paragraph("    simulated    ", seen);
   if (run.lost > 0) {
     result += paragraph("    line         ", fmt::format("{} of {} packets lost", run.lost, run.sent));
   }
   if (run.lowest_energy) {
-    result += paragraph("    controller   ", fmt::format("the teleoperator's energy at the master fell to {:.4g} J at "
-                                                         "lowest",
-                                                         *run.lowest_energy));
+    result += paragraph("    controller   ",
+                        fmt::format("minimum energy of the teleoperator at the master: {:.4g} J", *run.lowest_energy));
   }
   return result;
 }
 
 std::string simulation_text(const TeleoperationSimulation& simulation, const TeleoperationFinding& finding) {
-  std::string result =
-      fmt::format("\nIn time, with controllers of {:g} Hz whose forces are held:\n", 1.0 / simulation.sample_time);
+  std::string result = fmt::format("\nTime simulation, with controllers at {:g} Hz and zero-order hold:\n",
+                                   1.0 / simulation.sample_time);
   const auto predicted = [&](const char* who, const AbsoluteStability& designed,
                              const std::optional<AbsoluteStability>& sampled) {
     if (!sampled) return;
@@ -226,7 +225,7 @@ std::string excess_text(const ExcessSweep& sweep) {
                     step.felt ? fmt::format("{:.4g}", step.felt->free) : "",
                     step.felt ? fmt::format("{:.4g}", step.felt->clamped) : ""});
   }
-  return fmt::format("\nWhat an excess of passivity of the operator buys:\n{}", table(rows)) +
+  return fmt::format("\nEffect of an excess of passivity of the operator:\n{}", table(rows)) +
          paragraph("  ", fmt::format("felt: by the hand at {:.4g} rad/s ({}) with the largest stable value, |Z| with "
                                      "nothing at port 2 (transparent: 0) and |ω Z| with port 2 held fast (transparent: "
                                      "infinite)",
@@ -268,11 +267,11 @@ std::string teleoperation_text(const TeleoperationFinding& finding) {
     result += conditions_table(*finding.with_operator, finding.pade_limit);
     result += paragraph("  operator  ", finding.operator_shortage->rule);
   }
-  result += "\nHow much a termination may lack in passivity, the other one being passive:\n";
+  result += "\nLargest shortage of passivity of one termination if the other is passive:\n";
   for (const LargestShortage& largest : finding.largest_shortages) {
     result += paragraph("  ", shortage_text(largest, finding.grid));
   }
-  result += paragraph("  ", "a < 0 means that it must have that much excess (Re z ≥ −a at every frequency)");
+  result += paragraph("  ", "a < 0: the termination needs that much excess (Re z ≥ −a at every frequency)");
   if (finding.admissible) result += admissible_text(*finding.admissible, finding.with_operator.has_value());
   if (finding.excess) result += excess_text(*finding.excess);
   if (finding.simulation) result += simulation_text(*finding.simulation, finding);

@@ -56,7 +56,7 @@ std::string how_made(const Identification& id) {
   constexpr std::size_t kNotes = 4;
   for (std::size_t k = 0; k < std::min(id.notes.size(), kNotes); ++k) rows.push_back({"read", id.notes[k]});
   if (id.notes.size() > kNotes) {
-    rows.push_back({"", fmt::format("and {} notes more: see 'mbk info'", id.notes.size() - kNotes)});
+    rows.push_back({"", fmt::format("and {} more notes: see 'mbk info'", id.notes.size() - kNotes)});
   }
   rows.push_back({"mode", how.mode == Mode::reference
                               ? fmt::format("reference, {} of the published procedure", word_of(how.procedure))
@@ -68,25 +68,26 @@ std::string how_made(const Identification& id) {
   rows.push_back({"filters", filters_text(how)});
   if (how.force_source != ForceSource::sensor) {
     rows.push_back({"force", how.force_source == ForceSource::observer
-                                 ? "by a momentum observer, from motion, torques and a model of the robot"
-                                 : "from motion, torques and a model of the robot (virtual sensor)"});
+                                 ? "momentum observer, from motion, torques and a model of the robot"
+                                 : "virtual sensor, from motion, torques and a model of the robot"});
   }
   rows.push_back(
       {"acceleration", how.acceleration_from_sensor ? "from the accelerometer" : "second derivative of position"});
   std::string data = fmt::format("{:.1f} s", id.excitation.duration);
-  data += id.parameters_from == ParametersFrom::all ? ", all that counts" : "";
+  data += id.parameters_from == ParametersFrom::all ? ", the whole analysed interval" : "";
   if (id.preparations.size() > 1) data += fmt::format(", {} trials pooled", id.preparations.size());
   rows.push_back({"parameters", data});
   const Excitation& e = id.excitation;
   const bool metres = id.motion == Motion::translation;
   std::string motion =
       fmt::format("{:.3g} {} rms", metres ? 1e3 * e.motion : e.motion, metres ? "mm" : units_of(id.motion).position);
-  if (id.axes == 2) motion += fmt::format(", {:.0f} % of it across the main direction", 100.0 * e.motion_ratio);
-  rows.push_back({"motion", motion + fmt::format("; condition of the regressors {:.2g}", e.condition)});
+  if (id.axes == 2)
+    motion += fmt::format(", {:.0f} % of it perpendicular to the main direction", 100.0 * e.motion_ratio);
+  rows.push_back({"motion", motion + fmt::format("; condition number {:.2g}", e.condition)});
   if (id.handle_mass > 0.0) {
     const bool recorded = id.handle_mass_from == HandleMassSource::recording;
     rows.push_back({"handle mass", fmt::format("{:g} kg subtracted from the inertia, {}", id.handle_mass,
-                                               recorded ? "as the recording says" : "as given")});
+                                               recorded ? "as stated in the recording" : "as given")});
   } else if (how.mode == Mode::reference && how.procedure == Procedure::chapter5) {
     rows.push_back({"handle mass", "none subtracted (the published handle of 0.135 kg: --handle-mass 0.135)"});
   } else {
@@ -127,7 +128,7 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
   return table(rows);
 }
 
-/// Two, or as many as show four digits of what is smaller than ten.
+/// Two, or enough decimals for four digits of values below ten.
 int decimals_of(const ValidationRow& row) {
   double largest = 0.0;
   const auto [low, high] = row.interval95.value_or(Interval(row.value, row.value));
@@ -138,7 +139,7 @@ int decimals_of(const ValidationRow& row) {
   return std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 2, 9);
 }
 
-/// An interval of which an end may be infinite.
+/// An interval with possibly infinite ends.
 std::string validation_range(const Interval& interval, int decimals) {
   const auto end = [&](double value) {
     return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : value < 0.0 ? "-inf" : "inf";
@@ -220,7 +221,7 @@ std::string ellipses_text(const Findings& findings) {
       row.emplace_back();
     }
     row.push_back(finding.round
-                      ? "any: it may be round"
+                      ? "any: may be a circle"
                       : fmt::format("{:.1f}° {}", degrees * e.orientation, range(finding.orientation95, 1, degrees)));
     if (k != 1) {
       const AntisymmetryFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
@@ -229,30 +230,27 @@ std::string ellipses_text(const Findings& findings) {
     }
     rows.push_back(std::move(row));
   }
-  return table(rows) +
-         "  (area in the square of the matrix's unit; antisymmetry is z_mean; brackets are 95 % intervals)\n\n" +
+  return table(rows) + "  (area: squared unit of the matrix; antisymmetry: z_mean; brackets: 95 % intervals)\n\n" +
          draw_ellipses(panels);
 }
 
-/// What two errors that one recording cannot show would do: F + e moves x₀ by K⁻¹ e, and F(t − τ) makes M ẍ + B ẋ + K x
-/// of (B − τ K) ẋ and so on.
+/// Effect of two errors that one recording cannot show: F + e shifts x₀ by K⁻¹ e, and F(t − τ) lowers B by τ K.
 std::string unseen(const Identification& id) {
   const Vector stretched = numeric::singular_values(id.model.K);
   const Units units = units_of(id.motion);
   const bool metres = id.motion == Motion::translation;
   const double moved = 1.0 / stretched[stretched.size() - 1];
-  return paragraph(
-      "  ", fmt::format("(one recording does not show it: a force off by 1 {} moves x0 by up to {:.2g} {}, a "
-                        "force late by 1 ms makes B smaller by up to {:.2g} {})",
-                        units.force, metres ? 1e3 * moved : moved, metres ? "mm" : units.position, 1e-3 * stretched[0],
-                        units.damping));
+  return paragraph("  ", fmt::format("(not visible in one recording: an offset of 1 {} in the force would shift x0 by "
+                                     "up to {:.2g} {}; a delay of the force by 1 ms would lower B by up to {:.2g} {})",
+                                     units.force, metres ? 1e3 * moved : moved, metres ? "mm" : units.position,
+                                     1e-3 * stretched[0], units.damping));
 }
 
 std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
   std::string text = inputs_line(id) + how_made(id) + "\n";
   if (id.usable) {
     text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
-    text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F what the limb exerts on the machine)\n";
+    text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F: force of the limb on the machine)\n";
     text += unseen(id) + "\n";
   }
   text += table({{id.fit.held_out ? "fit on held-out data" : "fit on the same data",
@@ -261,7 +259,7 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
   if (id.standard_error_of_robot && id.usable) {
     const impedance::Model& of_robot = *id.standard_error_of_robot;
     const Units units = units_of(id.motion);
-    text += table({{"of ±, the robot's dynamics",
+    text += table({{"± from the robot model",
                     fmt::format("M {:.2g} {}, B {:.2g} {}, K {:.2g} {}", numeric::kNormal95 * of_robot.M.maxCoeff(),
                                 units.inertia, numeric::kNormal95 * of_robot.B.maxCoeff(), units.damping,
                                 numeric::kNormal95 * of_robot.K.maxCoeff(), units.stiffness)}});
@@ -274,7 +272,7 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
   if (findings && id.usable) text += "\n" + ellipses_text(*findings);
   if (!id.warnings.empty()) text += "\n" + warnings_text(id.warnings);
   if (!id.usable) {
-    text += "\n  NOT USABLE: no model is shown; see the warnings above. --json holds its numbers.\n";
+    text += "\n  NOT USABLE: no model is shown; see the warnings above. --json contains its numbers.\n";
   }
   return text;
 }
@@ -288,17 +286,17 @@ std::string alternative_text(const Identification& id, const Identification& alt
            model_table(alternative.model, alternative.standard_error, numeric::kNormal95, alternative.motion);
   };
   if (!instrumental.usable || !instrumental.instrument->strong()) {
-    std::string why = "they are not usable";
+    std::string why = "the result is not usable";
     for (const Warning& warning : instrumental.warnings) {
       if (warning.code == WarningCode::weak_instruments || warning.code == WarningCode::invalid_instruments) {
         why = warning.message;
       }
     }
-    const std::string said =
-        paragraph("  ", "instrumental variables do not hold here, and cannot check least squares: " + why);
+    const std::string invalid =
+        paragraph("  ", "instrumental variables are not valid here and cannot check least squares: " + why);
     return by_instruments && alternative.usable
-               ? said + model() + (alternative.warnings.empty() ? "" : "\n" + warnings_text(alternative.warnings))
-               : said;
+               ? invalid + model() + (alternative.warnings.empty() ? "" : "\n" + warnings_text(alternative.warnings))
+               : invalid;
   }
   const char* const unit = unit_of_parameter(disagreement.parameter, id.motion);
   const std::string largest =
@@ -308,19 +306,18 @@ std::string alternative_text(const Identification& id, const Identification& alt
                   100.0 * std::abs(disagreement.difference / disagreement.least_squares),
                   disagreement.difference > 0.0 ? "more" : "less");
   if (!disagreement.significant) {
-    return paragraph("  ", fmt::format("no parameter differs significantly by more than the standard error of least "
-                                       "squares; largest difference, {}",
+    return paragraph("  ", fmt::format("the two methods do not differ significantly (99 %): no difference clearly "
+                                       "exceeds the standard error of least squares; largest difference, {}",
                                        largest));
   }
-  return paragraph("  ",
-                   fmt::format("least squares and instrumental variables DIFFER significantly (99 %); largest "
-                               "difference, {}. The limb or noise acts back on the motion: least squares takes that "
-                               "for mechanics and is biased towards the negative robot impedance. What follows the "
-                               "known reference alone is not",
-                               largest)) +
+  return paragraph("  ", fmt::format("least squares and instrumental variables DIFFER significantly (99 %); largest "
+                                     "difference, {}. The limb or noise acts back on the motion, which biases least "
+                                     "squares towards the negative robot impedance. Instrumental variables use only "
+                                     "the motion that follows the known reference and are not biased in this way",
+                                     largest)) +
          (alternative.usable
               ? model()
-              : fmt::format("  {}: not usable, so that no model is shown\n", method_name(alternative.method)));
+              : fmt::format("  {}: the model is not usable and not shown\n", method_name(alternative.method)));
 }
 
 std::string by_sensor_text(const Identification& computed, const Identification& sensed,
@@ -328,13 +325,13 @@ std::string by_sensor_text(const Identification& computed, const Identification&
   const bool virtual_sensor = computed.preparations.front().force_source == ForceSource::virtual_sensor;
   std::string text =
       force_comparison_text(comparison, virtual_sensor ? "virtual sensor" : "momentum observer", "force sensor");
-  text += fmt::format("\n  by the force sensor, VAF {}\n", per_axis(sensed.fit.vaf, "%", 2));
+  text += fmt::format("\n  with the force sensor, VAF {}\n", per_axis(sensed.fit.vaf, "%", 2));
   text += model_table(sensed.model, sensed.standard_error, numeric::kNormal95, sensed.motion);
   const impedance::Model &a = computed.model, &b = sensed.model;
   const Index n = a.axes();
   const impedance::Model undefined =
       impedance::unstacked(Vector::Constant(3 * n * n + n, std::numeric_limits<double>::quiet_NaN()), n);
-  text += "  the computed force less the sensor\n";
+  text += "  difference: computed force minus force sensor\n";
   return text + model_table({a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0}, undefined, 1.0, computed.motion);
 }
 
@@ -350,7 +347,7 @@ std::string bootstrap_text(const BootstrapFindings& bootstrap) {
     rows.push_back({finding.name, fmt::format("{:.4g}", scale * finding.value), shown(finding.interval95, scale),
                     shown(finding.delta95, scale), angle ? "°" : finding.unit});
   }
-  return table(rows) + fmt::format("  ({} samples from blocks of {:g} s, {:.0f} of which the data hold; seed {})\n",
+  return table(rows) + fmt::format("  ({} replicates from blocks of {:g} s; the data contain {:.0f} blocks; seed {})\n",
                                    bootstrap.replicates, bootstrap.block_s, bootstrap.blocks, bootstrap.seed);
 }
 
@@ -379,7 +376,7 @@ std::string summary_text(const SeveralTrials& together) {
       fmt::format("mean of {}{} trials, by {}\n", summary.trials,
                   summary.omitted.empty() ? "" : fmt::format(" of {}", all), method_name(summary.method)) +
       model_table(summary.mean, summary.half_width95, 1.0, summary.motion) +
-      "  (± is the 95 % interval of the mean, by Student's t from how the trials differ)\n";
+      "  (± is the 95 % interval of the mean, from the differences between trials with Student's t)\n";
   for (const OmittedTrial& one : summary.omitted)
     text += paragraph("  omitted  ", fmt::format("{}: {}", one.file, one.why));
   return text;
@@ -393,13 +390,15 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
   std::vector<std::vector<std::string>> rows;
   rows.push_back({"samples", fmt::format("{}, {:.3f} s", inspection.samples, inspection.duration)});
   if (std::isfinite(inspection.rate_hz)) {
-    rows.push_back({"rate", fmt::format("{:.6g} Hz{}", inspection.rate_hz,
-                                        recording.time_from_rate ? " (from the rate; the file holds no time)" : "")});
+    rows.push_back(
+        {"rate",
+         fmt::format("{:.6g} Hz{}", inspection.rate_hz,
+                     recording.time_from_rate ? " (time from the given rate; the file contains no time)" : "")});
     rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
                                          1e3 * inspection.interval_min, 1e3 * inspection.interval_max,
                                          1e3 * inspection.interval_standard_deviation)});
   } else {
-    rows.push_back({"rate", "undefined: time never runs on"});
+    rows.push_back({"rate", "undefined: time never increases"});
   }
   text += table(rows) + "\n";
   rows = {{"channel", "unit", "from", "to", ""}};
@@ -410,9 +409,10 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
     } else if (facts.updates.staleness == Staleness::held) {
       remark = fmt::format("! updated at {:.4g} Hz", facts.update_hz);
     } else if (!facts.stale.empty()) {
-      remark = fmt::format("! {:.2g} % of the samples are no measurements", 100.0 * facts.updates.share);
+      remark = fmt::format("! {:.2g} % of the samples are repeated or constant values, not measurements",
+                           100.0 * facts.updates.share);
     } else if (facts.clipped) {
-      remark = "! rests at its extreme again and again: clipped?";
+      remark = "! repeatedly stays at its extreme value: clipped?";
     }
     rows.push_back(
         {facts.name, facts.unit, fmt::format("{:.6g}", facts.min), fmt::format("{:.6g}", facts.max), remark});
@@ -445,7 +445,7 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
         fmt::format("and {} more; {} samples are missing in all", inspection.missing.size() - kShown, missing));
   }
   for (const NonFinite& bad : inspection.non_finite) {
-    if (bad.channel != "time" && bad.count == missing) continue;  // said already
+    if (bad.channel != "time" && bad.count == missing) continue;  // reported already
     problems.push_back(
         fmt::format("{} is not a number {}, first at sample {}", bad.channel, times(bad.count), bad.first + 1));
   }
@@ -455,15 +455,15 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
         fmt::format("a gap of {:.4g} s after sample {} ({:.3f} s)", gap.length, gap.sample + 1, gap.time));
   }
   if (inspection.gaps.size() > kShown)
-    problems.push_back(fmt::format("and {} gaps more", inspection.gaps.size() - kShown));
+    problems.push_back(fmt::format("and {} more gaps", inspection.gaps.size() - kShown));
   if (inspection.interval_standard_deviation > 0.01 * inspection.interval_median && inspection.gaps.empty()) {
     problems.push_back("the clock jitters by more than 1 % of its interval");
   }
   for (const ChannelFacts& facts : inspection.channels) {
     if (!facts.stale.empty()) problems.push_back(facts.stale);
   }
-  if (!std::isfinite(inspection.rate_hz)) problems.emplace_back("no rate can be told from the time");
-  text += problems.empty() ? "\n  no gaps, no significant jitter, time increases monotonically\n" : "\n";
+  if (!std::isfinite(inspection.rate_hz)) problems.emplace_back("the sample rate cannot be determined from the time");
+  text += problems.empty() ? "\n  no gaps, no significant jitter, time increases\n" : "\n";
   for (const std::string& problem : problems) text += paragraph("  ! ", problem);
   for (const std::string& note : recording.notes) text += paragraph("  note: ", note);
   if (!recording.metadata.empty()) {
@@ -477,7 +477,7 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
 std::string trials_text(const std::string& file, const std::vector<std::pair<std::string, std::string>>& trials) {
   std::vector<std::vector<std::string>> rows = {{"trial", ""}};
   for (const auto& [name, description] : trials) rows.push_back({name, description});
-  return fmt::format("{}   {} trials; --trial takes one of them\n", file, trials.size()) + table(rows);
+  return fmt::format("{}   {} trials; select one with --trial\n", file, trials.size()) + table(rows);
 }
 
 std::string contents_text(const FileContents& contents, const Error& unrecognised) {
@@ -501,7 +501,7 @@ std::string contents_text(const FileContents& contents, const Error& unrecognise
 
 Chart workspace_chart(const robot::Workspace& workspace, const std::optional<robot::Posture>& posture) {
   Chart chart;
-  chart.title = "Where the hand can be";
+  chart.title = "Workspace of the hand";
   chart.x = {"x", "mm"};
   chart.y = {"y", "mm"};
   chart.equal_scale = true;
@@ -548,7 +548,7 @@ std::string workspace_text(const robot::Workspace& workspace, const std::optiona
               fmt::format("θ₁ {:.2f}°, θ₂ {:.2f}°", degrees * posture->theta[0], degrees * posture->theta[1])},
              {"Jacobian", fmt::format("[{:.4f} {:.4f}; {:.4f} {:.4f}] m", J(0, 0), J(0, 1), J(1, 0), J(1, 1))},
              {"manipulability", fmt::format("|det J| = {:.4f} m²", posture->manipulability)},
-             {"inertia at hand", fmt::format("{:.3g} to {:.3g} kg, most along {:.1f}° from x (J⁻ᵀ I J⁻¹, table A.1)",
+             {"inertia at hand", fmt::format("{:.3g} to {:.3g} kg, maximum along {:.1f}° from x (J⁻ᵀ I J⁻¹, table A.1)",
                                              felt.lambda_min, felt.lambda_max, degrees * felt.orientation)}});
   text += "\n";
   std::vector<std::vector<std::string>> rows = {{"limit", "is", "left"}};

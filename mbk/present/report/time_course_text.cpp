@@ -53,8 +53,8 @@ std::string time_course_text(const TimeCourseEstimate& found, Motion motion) {
   std::string over = fmt::format("{}, {:.4g} to {:.4g}{}", found.variable, found.from, found.to, unit);
   if (found.repetitions > 1) over += fmt::format(", {} repetitions pooled", found.repetitions);
   std::vector<std::vector<std::string>> rows = {{"over", over}};
-  rows.push_back({"loop", found.instruments ? "instrumental variables, from what the reference explains of the motion"
-                                            : "least squares: biased where the force moves the robot"});
+  rows.push_back({"loop", found.instruments ? "instrumental variables, from the motion that the reference explains"
+                                            : "least squares: biased if the force moves the robot"});
   if (!found.changes) {
     rows.push_back({"verdict", "constant: " + found.why});
     rows.push_back({"K", mean(found.K) + " " + units.stiffness});
@@ -62,9 +62,9 @@ std::string time_course_text(const TimeCourseEstimate& found, Motion motion) {
   }
   rows.push_back(
       {"verdict",
-       fmt::format("changes: {} (BIC falls by {:.0f}, {} knots); {}", found.why, found.bic_gain, found.knots.size(),
+       fmt::format("changes: {} (BIC decreases by {:.0f}, {} knots); {}", found.why, found.bic_gain, found.knots.size(),
                    found.p_value < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.1g}", found.p_value))});
-  rows.push_back({"size", fmt::format("M {:.0f} %, B {:.0f} %, K {:.0f} % (rms about what constants give)",
+  rows.push_back({"size", fmt::format("M {:.0f} %, B {:.0f} %, K {:.0f} % (rms about the constant model)",
                                       100.0 * found.M.change, 100.0 * found.B.change, 100.0 * found.K.change)});
   text += table(rows);
   std::vector<std::vector<std::string>> lines = {

@@ -33,22 +33,22 @@ const char* method_text(TransferFunctionMethod method) {
 
 std::string hold_text(InputHold hold, bool found) {
   const char* const because = hold == InputHold::zero ? ", as its steps show" : ", as it shows no steps";
-  return fmt::format("{}{}",
-                     hold == InputHold::zero ? "held between samples (zero-order hold)"
-                                             : "straight lines between samples (first-order hold)",
-                     found ? because : "");
+  return fmt::format(
+      "{}{}",
+      hold == InputHold::zero ? "held between samples (zero-order hold)" : "linear between samples (first-order hold)",
+      found ? because : "");
 }
 
 std::string delay_text(const TransferFunctionIdentification& found) {
-  const std::string where = fmt::format("found between 0 and {:.4g} s", found.max_delay);
+  const std::string where = fmt::format("estimated between 0 and {:.4g} s", found.max_delay);
   if (!found.delay_found) {
-    return fmt::format("{:.6g} s, the best of those up to {:.4g} s, but not found: see the warnings", found.model.delay,
+    return fmt::format("{:.6g} s, the best fit up to {:.4g} s, but unreliable: see the warnings", found.model.delay,
                        found.max_delay);
   }
   if (!found.delay_standard_error) {
-    return fmt::format("{:.6g} s, {}; the intervals take it as known", found.model.delay, where);
+    return fmt::format("{:.6g} s, {}; the intervals treat it as known", found.model.delay, where);
   }
-  return fmt::format("{} s, {}; its uncertainty is in the intervals",
+  return fmt::format("{} s, {}; the intervals include its uncertainty",
                      with_interval(found.model.delay, numeric::kNormal95 * *found.delay_standard_error), where);
 }
 
@@ -92,7 +92,7 @@ std::string orders_text(const std::vector<OrderChoice>& orders) {
   Rows rows = {{"poles", "zeros", "R_T²", "YIC", "AIC", "BIC", ""}};
   for (const OrderChoice& one : orders) {
     if (!one.usable) {
-      rows.push_back({fmt::format("{}", one.poles), fmt::format("{}", one.zeros), "no stable model that settled"});
+      rows.push_back({fmt::format("{}", one.poles), fmt::format("{}", one.zeros), "no converged stable model"});
       continue;
     }
     rows.push_back({fmt::format("{}", one.poles), fmt::format("{}", one.zeros), fmt::format("{:.6f}", one.fit),
@@ -100,7 +100,9 @@ std::string orders_text(const std::vector<OrderChoice>& orders) {
                     one.chosen ? "chosen" : ""});
   }
   return table(rows) +
-         paragraph("  ", "Chosen: of the models whose 1 − R_T² is within 2 % of the least, the one of least YIC.");
+         paragraph(
+             "  ",
+             "Chosen: among the models whose 1 − R_T² is within 2 % of the minimum, the one with the lowest YIC.");
 }
 
 std::string coefficients_text(const TransferFunctionIdentification& found) {
@@ -118,7 +120,7 @@ std::string coefficients_text(const TransferFunctionIdentification& found) {
   }
   return table(rows) + "  (± is the 95 % interval; coefficients in " +
          (continuous ? "seconds and SI units"
-                     : fmt::format("SI units, q a step of {:.6g} ms", 1e3 * found.model.sample_time)) +
+                     : fmt::format("SI units, q: shift by {:.6g} ms", 1e3 * found.model.sample_time)) +
          (found.hac_lag_s > 0.0 ? ", for noise correlated over up to " + fmt::format("{:g} s)\n", found.hac_lag_s)
                                 : ", for white noise)\n");
 }
@@ -133,13 +135,13 @@ void add_roots(const char* what, const std::vector<Root>& roots, Rows& rows) {
   }
 }
 
-std::string left_text(const ResidualTests& tests) {
-  Rows rows = {{"what is left", fmt::format("{}, p = {:.2g}; {:.0f} % of {} lags beyond the 99 % limit",
-                                            tests.white() ? "like white noise" : "coloured", tests.whiteness_p,
-                                            100.0 * tests.autocorrelation_outside, tests.lags)}};
-  rows.push_back({"against the input", fmt::format("{}, p = {:.2g}; {:.0f} % of the lags beyond the 99 % limit",
-                                                   tests.independent() ? "no relation left" : "a relation is left",
-                                                   tests.cross_p, 100.0 * tests.cross_correlation_outside)});
+std::string residual_text(const ResidualTests& tests) {
+  Rows rows = {{"residual", fmt::format("{}, p = {:.2g}; {:.0f} % of {} lags beyond the 99 % limit",
+                                        tests.white() ? "white noise" : "coloured", tests.whiteness_p,
+                                        100.0 * tests.autocorrelation_outside, tests.lags)}};
+  rows.push_back({"residual and input", fmt::format("{}, p = {:.2g}; {:.0f} % of the lags beyond the 99 % limit",
+                                                    tests.independent() ? "uncorrelated" : "correlated", tests.cross_p,
+                                                    100.0 * tests.cross_correlation_outside)});
   return table(rows);
 }
 
@@ -149,7 +151,7 @@ std::string starts_text(const TransferFunctionIdentification& found) {
   const auto same = std::ranges::count_if(found.starts, [&](const SearchStart& start) {
     return start.converged && std::abs(start.fit - found.fit) <= kSame;
   });
-  return fmt::format("{}: {} settled, {} of them here", found.starts.size(), settled, same);
+  return fmt::format("{}: {} converged, {} of them to this model", found.starts.size(), settled, same);
 }
 
 }  // namespace
@@ -165,11 +167,11 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
                    found.even ? fmt::format("every {:.6g} ms", 1e3 * found.sample_time)
                               : fmt::format("unevenly spaced, about every {:.6g} ms", 1e3 * found.sample_time))});
   if (found.recorded_rate_hz > 0.0) {
-    rows.push_back({"decimated", fmt::format("from {:.6g} to {:.6g} Hz, behind a low-pass", found.recorded_rate_hz,
-                                             1.0 / found.sample_time)});
+    rows.push_back({"decimated", fmt::format("from {:.6g} to {:.6g} Hz, after a low-pass filter",
+                                             found.recorded_rate_hz, 1.0 / found.sample_time)});
   }
   if (found.band_high > 0.0) {
-    rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz hold 96 % of the input's power", found.band_low,
+    rows.push_back({"excited", fmt::format("{:.3g} to {:.3g} Hz contain 96 % of the power of the input", found.band_low,
                                            found.band_high)});
   }
   rows.push_back({"starts", starts_text(found)});
@@ -196,7 +198,7 @@ std::string transfer_function_text(const TransferFunctionIdentification& found) 
   } else if (found.noise_denominator.size() > 1) {
     rows.push_back({"noise model", fmt::format("autoregressive, order {}", found.noise_denominator.size() - 1)});
   }
-  text += table(rows) + left_text(found.residuals);
+  text += table(rows) + residual_text(found.residuals);
   for (const std::string& note : found.notes) text += paragraph("  ", note);
   if (!found.warnings.empty()) text += "\n" + warnings_text(found.warnings);
   return text;
@@ -261,8 +263,8 @@ std::string inverted_admittance_text(const InvertedAdmittance& inverse) {
   text += table(rows);
   if (inverse.unstable) {
     text += paragraph("  ",
-                      "The admittance has zeros on the right half plane, so that this impedance is unstable: no "
-                      "limb is; take fewer zeros.");
+                      "The admittance has zeros in the right half-plane, so this impedance is unstable, which is "
+                      "impossible for a limb; use fewer zeros.");
   }
   return text;
 }

@@ -169,7 +169,7 @@ std::string latex_row(const Measurement& measured, const Shape& shape, int colum
   const auto instead = [&](const std::string& why) {
     return fmt::format("{} & \\multicolumn{{{}}}{{l}}{{{}}}", short_label(id), columns, latex_text(why));
   };
-  if (!shape.fits(id)) return instead("other axes or units than the first trial");
+  if (!shape.fits(id)) return instead("axes or units differ from those of the first trial");
   if (!id.usable) return instead("not usable");
   impedance::Model half = id.standard_error;
   for (Matrix* const matrix : {&half.M, &half.B, &half.K}) *matrix *= numeric::kNormal95;

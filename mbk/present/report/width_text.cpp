@@ -40,19 +40,20 @@ std::string width_text(const WidthFindings& widths) {
     rows.back().emplace_back(one.distinguishable ? "" : "not distinct");
     if (!one.surely_positive) {
       notes.push_back(
-          fmt::format("{}: a smallest eigenvalue is not surely above zero, and without it the distance has "
-                      "no upper end: do not trust the interval",
+          fmt::format("{}: a smallest eigenvalue is not significantly above zero, so the width has no upper limit: do "
+                      "not trust the interval",
                       name));
     }
   }
   std::string text;
   if (!rows.empty()) {
-    rows.insert(rows.begin(), directed ? std::vector<std::string>{"", "width", "second to first, least", "most", ""}
-                                       : std::vector<std::string>{"", "width", "second to first", ""});
+    rows.insert(rows.begin(), directed
+                                  ? std::vector<std::string>{"", "width", "ratio second/first, minimum", "maximum", ""}
+                                  : std::vector<std::string>{"", "width", "ratio second/first", ""});
     text += table(rows);
     text += paragraph("  ",
-                      "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives "
-                      "a width above 0: it means something where both are identifiable)");
+                      "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives a "
+                      "width above 0: interpret it only if both matrices are well identified)");
   }
   for (const std::string& note : notes) text += paragraph("  ! ", note);
   return text;

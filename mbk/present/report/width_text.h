@@ -6,7 +6,7 @@
 
 namespace mbk::report {
 
-/// How far two results are apart, matrix by matrix, and along which directions most and least.
+/// Width between two results for each matrix, with the minimum and maximum ratio and their directions.
 [[nodiscard]] std::string width_text(const WidthFindings& widths);
 
 }  // namespace mbk::report

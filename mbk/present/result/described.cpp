@@ -9,34 +9,33 @@ using document::Json;
 using document::through;
 
 void describe(Fields<Warning>& fields) {
-  fields.type("Warning", "Why an answer needs care.");
+  fields.type("Warning", "Why a result needs care.");
   fields.add("code", &Warning::code);
   fields.add("message", &Warning::message, "what was found");
   fields.add("try", &Warning::remedy, "what to do");
   const auto former = [](const Warning& warning) {
     return std::string(warning.was.empty() ? former_word_of(warning.code) : warning.was);
   };
-  fields.add_unless_empty("was", former, "the code until the version before, where it changed");
+  fields.add_unless_empty("was", former, "former code, for one version, if it changed");
 }
 
 void describe(Fields<SourceFile>& fields) {
   fields.type("Input", "A file that was read.");
-  fields.add("file", &SourceFile::path, "path, as it was given");
-  fields.add("sha256", &SourceFile::sha256, "of the file's bytes, in hexadecimal; empty where it was not a file");
-  fields.add("format", &SourceFile::format, "\"CSV\", \"MAT level 5\"; empty where it is not known");
-  fields.add_unless_empty("trial", &SourceFile::trial,
-                          "which of the trials that the file holds; absent where it holds one");
+  fields.add("file", &SourceFile::path, "path, as given");
+  fields.add("sha256", &SourceFile::sha256, "SHA-256 of the file, in hexadecimal; empty if it was not a file");
+  fields.add("format", &SourceFile::format, "such as \"CSV\" or \"MAT level 5\"; empty if unknown");
+  fields.add_unless_empty("trial", &SourceFile::trial, "trial within the file; absent if the file contains one only");
 }
 
 void describe(Fields<Error>& fields) {
   fields.type("Failure");
-  fields.add("file", &Error::where, "and the place in it");
+  fields.add("file", &Error::where, "file and place in it");
   fields.add("message", &Error::message);
   fields.add("try", &Error::remedy);
 }
 
 void describe(Fields<Units>& fields) {
-  fields.type("Units", "Of inertia, damping, stiffness, position and force: those of translation or of rotation.");
+  fields.type("Units", "Units of inertia, damping, stiffness, position and force, for translation or rotation.");
   const auto unit = [&fields](const char* name, const char* Units::*of) {
     const Json both = {units_of(Motion::translation).*of, units_of(Motion::rotation).*of};
     fields.add_as(name, {{"enum", both}}, of);
@@ -50,20 +49,22 @@ void describe(Fields<Units>& fields) {
 
 void describe(Fields<Preparation>& fields) {
   using How = const Preparation&;
-  fields.type("Preparation", "How the signals were made, so that any number can be reproduced.");
+  fields.type("Preparation", "How the signals were prepared, so that every number can be reproduced.");
   fields.add("protocol", &Preparation::protocol);
   fields.add("protocol_rule", &Preparation::protocol_rule, "why that protocol");
-  fields.add("window_rule", &Preparation::window_rule, "which samples count");
-  fields.add_number("from_s", &Preparation::from_s, "first sample that counts, from the recording's first [s]");
-  fields.add_number("to_s", &Preparation::to_s, "last sample that counts [s]");
+  fields.add("window_rule", &Preparation::window_rule, "how the analysed interval was chosen");
+  fields.add_number("from_s", &Preparation::from_s,
+                    "start of the analysed interval, from the first sample of the recording [s]");
+  fields.add_number("to_s", &Preparation::to_s, "end of the analysed interval [s]");
   fields.group("savitzky_golay", [](Fields<Preparation>& part) {
     part.type("SavitzkyGolay");
     part.add("order", &Preparation::smoothing_order);
     part.add("window", &Preparation::smoothing_window, "samples");
   });
-  fields.add_or_null("cutoff_hz", &Preparation::cutoff, "of the zero-phase low-pass [Hz]; null: none");
-  fields.add("cutoff_rule", &Preparation::cutoff_rule, "how it came about");
-  fields.add("every", &Preparation::every, "of the filtered samples, the first of so many is kept");
+  fields.add_or_null("cutoff_hz", &Preparation::cutoff,
+                     "cutoff frequency of the zero-phase low-pass filter [Hz]; null: none");
+  fields.add("cutoff_rule", &Preparation::cutoff_rule, "how the cutoff was chosen");
+  fields.add("every", &Preparation::every, "decimation: every Nth filtered sample is used");
   fields.add(
       "excited_band_hz", [](How how) { return std::pair(how.band_low.value, how.band_high.value); },
       "low and high [Hz]");
@@ -72,30 +73,30 @@ void describe(Fields<Preparation>& fields) {
     return how.acceleration_from_sensor ? AccelerationSource::sensor : AccelerationSource::derivative;
   });
   fields.add("cut_before_filter", &Preparation::cut_before_filter);
-  fields.add_number("split_s", &Preparation::split_s, "where identification ends and validation begins [s]");
+  fields.add_number("split_s", &Preparation::split_s, "end of the fitted and start of the held-out data [s]");
   fields.add_if([](How how) { return how.protocol == Protocol::underdamped; }, "perturbations",
-                &Preparation::perturbations, "that were cut out; underdamped only");
+                &Preparation::perturbations, "number of displacements cut out; protocol underdamped only");
   fields.add_if([](How how) { return how.mode == Mode::reference; }, "procedure", &Preparation::procedure,
                 "reference mode only");
 }
 
 void describe(Fields<Fit>& fields) {
-  fields.type("Fit", "How well a model explains the force, axis by axis.");
+  fields.type("Fit", "Fit of the model to the force, for each axis.");
   fields.add("VAF", &Fit::vaf, "variance accounted for [%]");
-  fields.add("RMSE", &Fit::rmse, "root mean square error [unit of force]");
+  fields.add("RMSE", &Fit::rmse, "root-mean-square error [unit of force]");
   result::add_validated_on(fields, &Fit::held_out);
-  fields.add("VAF_in_sample", &Fit::vaf_in_sample, "on the data that made the parameters [%]");
+  fields.add("VAF_in_sample", &Fit::vaf_in_sample, "VAF on the data used for fitting [%]");
 }
 
 void describe(Fields<EllipseFinding>& fields) {
   using From = const EllipseFinding&;
   const auto ellipse = &EllipseFinding::ellipse;
-  fields.type("Ellipse", "Of the symmetric part of a matrix.");
+  fields.type("Ellipse", "Ellipse of the symmetric part of a matrix.");
   fields.add("area", through(ellipse, &impedance::Ellipse::area), "π λ₁ λ₂");
   fields.add("shape", through(ellipse, &impedance::Ellipse::shape), "larger over smaller eigenvalue");
   fields.add(
       "orientation_deg", [](From one) { return kDegrees * one.ellipse.orientation; },
-      "of the long axis, counter-clockwise from x [°]");
+      "angle of the major axis, counter-clockwise from x [°]");
   fields.add(
       "eigenvalues",
       [](From one) {
@@ -109,7 +110,7 @@ void describe(Fields<EllipseFinding>& fields) {
     part.add(
         "orientation_deg",
         [](From one) { return Interval(kDegrees * one.orientation95.first, kDegrees * one.orientation95.second); },
-        "[°]; 180 wide: any angle, since a circle is not refuted");
+        "[°]; 180 wide: any angle, because the ellipse may be a circle");
     part.add(
         "eigenvalues",
         [](From one) {
@@ -130,30 +131,30 @@ void describe(Fields<AntisymmetryFinding>& fields) {
 void describe(Fields<ForceAgreement>& fields) {
   fields.type("ForceAgreement");
   fields.add("rows", &ForceAgreement::rows);
-  fields.add("bias", &ForceAgreement::bias, "mean of computed less measured [N]");
+  fields.add("bias", &ForceAgreement::bias, "mean of computed minus measured force [N]");
   fields.add("RMSE", &ForceAgreement::rmse, "[N]");
 }
 
 void describe(Fields<ForceComparison>& fields) {
-  fields.type("ForceComparison", "A computed force against the measured one, on the same rows.");
+  fields.type("ForceComparison", "Comparison of a computed with the measured force, on the same rows.");
   fields.add("duration_s", &ForceComparison::duration, "[s]");
   fields.add("all", &ForceComparison::all);
   fields.add("rest", &ForceComparison::rest);
   fields.add("motion", &ForceComparison::motion);
   fields.add("reversals", &ForceComparison::reversals);
-  fields.add("measured_rms", &ForceComparison::measured_rms, "about its mean [N]");
+  fields.add("measured_rms", &ForceComparison::measured_rms, "rms about the mean [N]");
   fields.add("VAF", &ForceComparison::vaf, "[%]");
   fields.add("gain", &ForceComparison::gain, "slope of computed over measured");
   fields.add("correlation", &ForceComparison::correlation);
-  fields.add("lag_s", &ForceComparison::lag, "by which the computed force comes late [s]");
+  fields.add("lag_s", &ForceComparison::lag, "delay of the computed force [s]");
   fields.add("correlation_at_lag", &ForceComparison::correlation_at_lag);
-  fields.add("rest_speed", &ForceComparison::rest_speed, "[rad/s, or m/s where a joint slides]");
-  fields.add("reversal_window_s", &ForceComparison::reversal_window, "to each side [s]");
-  fields.add("longest_lag_s", &ForceComparison::longest_lag, "that was tried [s]");
+  fields.add("rest_speed", &ForceComparison::rest_speed, "[rad/s, or m/s for a sliding joint]");
+  fields.add("reversal_window_s", &ForceComparison::reversal_window, "to each side of a reversal [s]");
+  fields.add("longest_lag_s", &ForceComparison::longest_lag, "longest lag tried [s]");
 }
 
 void describe(Fields<ChartReference>& fields) {
-  fields.type("Line", "A value that is marked across the whole chart.");
+  fields.type("Line", "A reference line across the chart.");
   fields.add("value", &ChartReference::value);
   fields.add("name", &ChartReference::name);
 }

@@ -59,7 +59,7 @@ inline constexpr const char* kHeldOut = "held-out";
 /// @param held_out  gives a bool
 template <class T, class Get>
 auto& add_validated_on(document::Fields<T>& fields, Get held_out) {
-  return fields.add_choice("validated_on", held_out, kHeldOut, "in-sample", "the data behind VAF and RMSE");
+  return fields.add_choice("validated_on", held_out, kHeldOut, "in-sample", "data for VAF and RMSE");
 }
 
 /// The units of what moves; none where that is not known.

@@ -19,23 +19,22 @@ void describe(Fields<ExploredRecording>& fields) {
   fields.add("rate_hz", &ExploredRecording::rate_hz, "sample rate [Hz]");
   fields.add("from_s", &ExploredRecording::from_s, "start of the analysed interval [s]");
   fields.add("to_s", &ExploredRecording::to_s, "its end [s]");
-  fields.add("window_rule", &ExploredRecording::window_rule, "why that interval, in words");
+  fields.add("window_rule", &ExploredRecording::window_rule, "how the interval was chosen");
   fields.add_unless_empty("trial", document::through(&ExploredRecording::source, &SourceFile::trial),
-                          "which of the trials that the file holds; absent where it holds one");
+                          "trial within the file; absent if the file contains one only");
 }
 
 void describe(Fields<Exploration>& fields) {
   using From = const Exploration&;
-  fields.type(
-      "Exploration",
-      "What `mbk explore --json` writes: what recordings say of a limb without a model of M, B and K. Each part "
-      "is there where the data allow it. SI units.");
+  fields.type("Exploration",
+              "Output of `mbk explore --json`: exploration of recordings without assuming a model of M, B and K. Each "
+              "part is present if the data allow it. SI units.");
   fields.header("mbk.explore/1");
   fields.add("inputs", &Exploration::recordings);
   fields.add("axes", &Exploration::axes);
   fields.add(
       "units", [](From found) { return found.other_signals ? std::nullopt : result::known_units(found.motion); },
-      "absent where the recording does not say what moves, and of other signals than motion and force");
+      "absent if the recording does not state the kind of motion, and for signals other than motion and force");
   fields.add("frequency_response", &Exploration::frequency_response);
   fields.add("impulse_response", &Exploration::impulse_response);
   fields.add("parallel_cascade", &Exploration::parallel_cascade);
@@ -106,9 +105,9 @@ struct ExplorationReport {
 
 void describe(Fields<ExplorationReport>& fields) {
   using From = const ExplorationReport&;
-  fields.type("Exploration report", "What stands in the page that `mbk explore --report` writes.");
+  fields.type("Exploration report", "Data of the page that `mbk explore --report` writes.");
   fields.header("mbk.explore_report/1");
-  fields.add("command", &ExplorationReport::command, "as it was typed");
+  fields.add("command", &ExplorationReport::command, "command line");
   fields.add_unless_empty("note", &ExplorationReport::note);
   const auto has_model = [](From report) {
     const Exploration& found = report.found;
@@ -116,8 +115,8 @@ void describe(Fields<ExplorationReport>& fields) {
   };
   fields.add_if(
       has_model, "model_responses", [](From report) { return model_responses(report.found); },
-      "K − Mω² + jωB of M, B and K as they were fitted to the impulse response, at the frequencies and in the order of "
-      "the responses; to be looked at, with six digits");
+      "K − Mω² + jωB from M, B and K fitted to the impulse response, at the frequencies and in the order of the "
+      "responses; six digits, for display");
   fields.add("result", [](From report) -> const Exploration& { return report.found; });
 }
 

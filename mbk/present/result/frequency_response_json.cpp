@@ -10,7 +10,7 @@ using document::Fields;
 void describe(Fields<SignalLabel>& fields) {
   fields.type("SignalLabel");
   fields.add("name", &SignalLabel::name, "channel; −force_x is the force of the robot on the hand");
-  fields.add("unit", &SignalLabel::unit, "empty where the recording does not say");
+  fields.add("unit", &SignalLabel::unit, "empty if unknown");
 }
 
 void describe(Fields<Distortion>& fields) {
@@ -18,37 +18,38 @@ void describe(Fields<Distortion>& fields) {
               "The output at lines that the perturbation leaves empty, relative to that at excited lines (root mean "
               "squares).");
   fields.add("lines", &Distortion::lines);
-  fields.add("relative", &Distortion::relative, "without what the input carries there times the response");
-  fields.add("uncorrected", &Distortion::uncorrected, "with it");
-  fields.add("noise", &Distortion::noise, "of the mean output, as the periods show it");
-  fields.add("residual_noise", &Distortion::residual_noise,
-             "the same without what the noise of the input explains of it");
+  fields.add("relative", &Distortion::relative, "after subtracting the contribution of the input");
+  fields.add("uncorrected", &Distortion::uncorrected, "before subtracting it");
+  fields.add("noise", &Distortion::noise, "noise of the mean output, from the periods");
+  fields.add("residual_noise", &Distortion::residual_noise, "the same, minus the contribution of input noise");
   fields.add("output_amplitude", &Distortion::output_amplitude,
-             "what they are relative to: root mean square of the transform over its length at the excited lines");
-  fields.add("p", &Distortion::p, "probability of so much where the noise of the output is all there is");
-  fields.add("residual_p", &Distortion::residual_p, "the same where residual_noise is all there is");
+             "reference of the relative values: root mean square of the transform, divided by its length, at the "
+             "excited lines");
+  fields.add("p", &Distortion::p, "p-value if there is only output noise");
+  fields.add("residual_p", &Distortion::residual_p, "p-value if there is only residual_noise");
   fields.add("trace", &Distortion::trace, "residual_p below 0.01, but not detected");
   fields.add("detected", &Distortion::detected, "p and residual_p below 0.01");
 }
 
 void describe(Fields<PeriodicFacts>& fields) {
-  fields.type("PeriodicFacts", "How a periodic perturbation was taken apart.");
+  fields.type("PeriodicFacts", "Analysis of a periodic perturbation.");
   fields.add_number("period_s", &PeriodicFacts::period_s);
-  fields.add("period_found", &PeriodicFacts::period_found, "otherwise it was given");
+  fields.add("period_found", &PeriodicFacts::period_found, "false: the period was given");
   fields.add("realisations", &PeriodicFacts::realisations, "different ones");
-  fields.add("periods", &PeriodicFacts::periods, "of the realisation that has fewest");
-  fields.add("dropped_periods", &PeriodicFacts::dropped_periods, "at the beginnings of realisations: transients");
+  fields.add("periods", &PeriodicFacts::periods, "of the realisation with the fewest");
+  fields.add("dropped_periods", &PeriodicFacts::dropped_periods,
+             "omitted at the start of realisations because of transients");
   fields.add("orthogonal", &PeriodicFacts::orthogonal, "experiments in groups with orthogonal references");
   fields.add("skipped_lines", &PeriodicFacts::skipped_lines, "excited, but not along every input, or weakly");
-  fields.add("weak_lines", &PeriodicFacts::weak_lines, "of these the ones with too little of the perturbation's power");
+  fields.add("weak_lines", &PeriodicFacts::weak_lines, "those of them with too little power of the perturbation");
   fields.add("odd_lines_only", &PeriodicFacts::odd, "excited: odd multiples of 1/period alone");
   const auto total = [](Fields<PeriodicFacts>& part) {
     part.add_or_null("ratio", &PeriodicFacts::total_over_noise);
-    part.add("p", &PeriodicFacts::total_over_noise_p, "probability of so much where the limb is linear");
+    part.add("p", &PeriodicFacts::total_over_noise_p, "p-value for a linear limb");
   };
   fields
       .group("total_over_noise", total,
-             "variance of the response over realisations over that over periods; 1 where the limb is linear")
+             "ratio of the variance of the response between realisations to that between periods; 1 for a linear limb")
       .only_if([](const PeriodicFacts& facts) { return facts.total_over_noise.has_value(); });
   fields.add("even_distortion", &PeriodicFacts::even);
   fields.add("odd_distortion", &PeriodicFacts::odd_lines);
@@ -109,25 +110,25 @@ void describe(Fields<Response>& fields) {
   const auto there = [](Vector Response::*member) {
     return [member](const Response& one) { return (one.*member).size() > 0; };
   };
-  fields.type("Response", "From one input to one output.");
+  fields.type("Response", "Response from one input to one output.");
   fields.add("input", &Response::input);
   fields.add("output", &Response::output);
   fields.add("magnitude", &Response::magnitude);
   fields.add_columns("magnitude_interval95", &Response::magnitude95, "low and high ends");
   fields.add("phase_deg", &Response::phase);
   fields.add_columns("phase_interval95_deg", &Response::phase95,
-                     "low and high ends; ±180° around the phase where the magnitude's interval reaches 0");
+                     "low and high ends; ±180° around the phase if the interval of the magnitude reaches 0");
   fields.add("real", &Response::real);
   fields.add("imaginary", &Response::imaginary);
   fields.add("standard_error", &Response::standard_error, "√E|δG|², of the complex response");
   fields.add("region95_radius", &Response::radius95,
-             "of the disc around the estimate that holds the response with 95 %");
+             "radius of the disc around the estimate that contains the response with 95 % confidence");
   fields.add_if(there(&Response::noise), "noise_standard_error", &Response::noise,
-                "of noise alone, as it changes from period to period");
+                "due to noise, from its variation between periods");
   fields.add_if(there(&Response::nonlinear), "nonlinear_standard_deviation", &Response::nonlinear,
                 "of stochastic nonlinear distortion in the response from one realisation");
   fields.add_if(there(&Response::coherence), "partial_coherence", &Response::coherence,
-                "of this output and input without what the other inputs explain of both");
+                "coherence of this output and input after removing the contribution of the other inputs");
 }
 
 }  // namespace
@@ -139,14 +140,14 @@ void describe(Fields<FrequencyResponseEstimate>& fields) {
               "Responses of the outputs to the inputs, Y = G U + V, with one entry of every list for each frequency. "
               "Of motion and force, G is the dynamic stiffness −F/X; the impedance is G/(jω).");
   fields.add("method", &Found::method);
-  fields.add("method_rule", &Found::method_rule, "why that method, in words");
+  fields.add("method_rule", &Found::method_rule, "how the method was chosen");
   fields.add("intervals_assume", &Found::assumes);
-  fields.add("by_reference", &Found::by_reference, "projected on the reference, which holds in closed loop");
+  fields.add("by_reference", &Found::by_reference, "projected on the reference, which is valid in closed loop");
   fields.add("averages", &Found::averages, "independent segments or experiments that were averaged");
   fields.add("inputs", &Found::inputs);
   fields.add("outputs", &Found::outputs);
   fields.add("frequency_hz", &Found::frequency);
-  fields.add("degrees_of_freedom", &Found::degrees_of_freedom, "complex ones, of the standard errors");
+  fields.add("degrees_of_freedom", &Found::degrees_of_freedom, "complex degrees of freedom of the standard errors");
   fields.add("periodic", &Found::periodic);
   fields.add("responses", [](From found) {
     std::vector<Response> all;

@@ -29,7 +29,7 @@ void describe(Fields<MissingSamples>& fields) {
 
 void describe(Fields<Updates>& fields) {
   fields.add("kind", &Updates::staleness);
-  fields.add_number("share", &Updates::share, "of the samples");
+  fields.add_number("share", &Updates::share, "share of the samples");
 }
 
 void describe(Fields<ChannelFacts>& fields) {
@@ -40,9 +40,9 @@ void describe(Fields<ChannelFacts>& fields) {
   fields.add("constant", &ChannelFacts::constant);
   fields.add("clipped", &ChannelFacts::clipped);
   fields.add("update_hz", &ChannelFacts::update_hz,
-             "how often the channel was measured [Hz]: the rate of the recording unless its values show another");
+             "update rate of the channel [Hz]: the rate of the recording unless its values show a lower one");
   fields.add_if([](const ChannelFacts& facts) { return facts.updates.staleness != Staleness::none; }, "stale",
-                &ChannelFacts::updates, "samples that are no measurements; absent where every sample is one");
+                &ChannelFacts::updates, "samples that are not measurements; absent if all are");
 }
 
 void describe(Fields<Event>& fields) {
@@ -62,8 +62,8 @@ void describe(Fields<StoredArray>& fields) {
     return array.rate_hz > 0;
   });
   fields.add_unless_empty("shape", &StoredArray::shape,
-                          "Lengths along all dimensions, where there are more than two; rows and columns then count "
-                          "its first one and all others together.");
+                          "Lengths along all dimensions if there are more than two; rows is then the first and columns "
+                          "the product of the others.");
 }
 
 namespace result {
@@ -76,7 +76,7 @@ struct Info {
 
 void describe(Fields<Info>& fields) {
   const auto of = [](auto member) { return through(&Info::inspection, member); };
-  fields.type("Info", "What `mbk info --json` writes of one recording. Samples are counted from 1.");
+  fields.type("Info", "Output of `mbk info --json` for one recording. Samples are counted from 1.");
   fields.header("mbk.info/1");
   fields.add("inputs", through(&Info::recording, &Recording::sources));
   fields.add("samples", of(&Inspection::samples));
@@ -101,7 +101,7 @@ void describe(Fields<Info>& fields) {
 }
 
 void describe(Fields<List<Info>>& fields) {
-  describe_list(fields, "Infos", "mbk.infos/1", "What `mbk info --json` writes of several recordings.");
+  describe_list(fields, "Infos", "mbk.infos/1", "Output of `mbk info --json` for several recordings.");
 }
 
 struct Contents {
@@ -111,7 +111,7 @@ struct Contents {
 
 void describe(Fields<Contents>& fields) {
   const auto of = [](auto member) { return through(&Contents::contents, member); };
-  fields.type("Contents", "What `mbk info --json` writes of a file in which nothing is recognised as a recording.");
+  fields.type("Contents", "Output of `mbk info --json` for a file that is not recognised as a recording.");
   fields.header("mbk.contents/1");
   fields.add("inputs", [](const Contents& from) { return std::span(&from.contents->source, 1); });
   fields.add_choice("kind", of(&FileContents::table), "table", "variables");
@@ -121,7 +121,7 @@ void describe(Fields<Contents>& fields) {
     part.add("message", through(&Contents::unrecognised, &Error::message));
     part.add("try", through(&Contents::unrecognised, &Error::remedy));
   };
-  fields.group("unrecognised", describe_reason, "Why it is no recording.");
+  fields.group("unrecognised", describe_reason, "Why it is not recognised as a recording.");
 }
 
 }  // namespace

@@ -8,11 +8,11 @@ using document::Fields;
 
 void describe(Fields<JointDomain>& fields) {
   using From = const JointDomain&;
-  fields.type("JointDomain", "The same impedance about the joints.");
+  fields.type("JointDomain", "The impedance in joint coordinates.");
   fields.add("of", document::through(&JointDomain::posture, &ArmPosture::of));
   fields.add_choice(
       "second_joint_against", [](From joints) { return joints.posture.of == ArmPosture::Of::arm; }, "first link",
-      "base", "what its angle is measured from");
+      "base", "reference of the angle of the second joint");
   fields.add("points_m", document::through(&JointDomain::posture, &ArmPosture::points), "base frame [m]");
   fields.add(
       "joint_angles_deg", [](From joints) { return Eigen::Vector2d(kDegrees * joints.angles); }, "[°]");

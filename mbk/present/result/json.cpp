@@ -38,7 +38,7 @@ std::vector<Warning> warnings_from(const Json& json) {
   for (const Json& one : json) {
     const std::string code = one.value("code", "");
     const auto known = value_of<WarningCode>(code);
-    if (!known) throw Malformed{fmt::format("there is no warning '{}'", code)};
+    if (!known) throw Malformed{fmt::format("unknown warning '{}'", code)};
     warnings.push_back({*known, one.value("message", ""), one.value("try", ""), one.value("was", "")});
   }
   return warnings;
@@ -123,7 +123,7 @@ auto each_result(std::string_view text, Read read) -> Result<std::vector<decltyp
     if (has_schema(json, kResultsSchema)) {
       const auto results = json.find("results");
       if (results == json.end() || !results->is_array() || results->empty()) {
-        throw Malformed{"'results' holds no result"};
+        throw Malformed{"'results' is empty"};
       }
       for (const Json& one : *results) all.push_back(read(one));
     } else {

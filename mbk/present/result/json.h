@@ -59,7 +59,7 @@ struct PassivityDocument {
 /// Reads back what `to_json` wrote, schema mbk.result/2, mbk.result/1 or mbk.results/1: model, covariance (from the
 /// standard errors where a file holds no covariance; NaN where it holds neither), fit, warnings, units, notes and
 /// inputs; not the preparation: written again, it says nothing of mode and protocol.
-/// @fails not JSON (the byte is named); another schema; no result; a matrix of the wrong shape (its name is said).
+/// @fails not JSON (the byte is named); another schema; no result; a matrix of the wrong shape (its name is reported).
 [[nodiscard]] Result<std::vector<Identification>> identifications_from_json(std::string_view text);
 
 /// What a stored result says of passivity beside its models.

@@ -27,7 +27,7 @@ inline bool has_schema(const Json& json, const char* schema) {
 inline double number_from(const Json& json) {
   if (json.is_null()) return kNaN;
   if (!json.is_number())
-    throw Malformed{fmt::format("a number was expected, and a value of type '{}' stands there", json.type_name())};
+    throw Malformed{fmt::format("a number was expected, but the value has type '{}'", json.type_name())};
   return json.get<double>();
 }
 

@@ -11,19 +11,19 @@ using document::Fields;
 
 void describe(Fields<Reach>& fields) {
   fields.type("Reach", "One movement from rest to rest.");
-  fields.add("begin_s", &Reach::begin_s, "from the recording's first sample [s]");
+  fields.add("begin_s", &Reach::begin_s, "from the first sample of the recording [s]");
   fields.add("end_s", &Reach::end_s, "[s]");
   fields.add("sparc", &Reach::sparc, "spectral arc length of the speed");
   fields.add("ldlj", &Reach::ldlj, "log dimensionless jerk");
-  fields.add("peaks", &Reach::peaks, "of the speed");
+  fields.add("peaks", &Reach::peaks, "number of peaks of the speed");
   fields.add("mean_speed", &Reach::mean_speed, "[m/s or rad/s]");
   fields.add("peak_speed", &Reach::peak_speed, "[m/s or rad/s]");
-  fields.add("path", &Reach::path, "length of the way [m or rad]");
-  fields.add("distance", &Reach::distance, "straight from begin to end [m or rad]");
-  fields.add_or_null("path_ratio", &Reach::path_ratio, "path/distance; null where the hand returns");
+  fields.add("path", &Reach::path, "path length [m or rad]");
+  fields.add("distance", &Reach::distance, "straight-line distance from begin to end [m or rad]");
+  fields.add_or_null("path_ratio", &Reach::path_ratio, "path/distance; null if the hand returns to its start");
   fields.add_or_null("endpoint_error", &Reach::endpoint_error,
-                     "from the reference at the end [m or rad]; null without one");
-  fields.add_or_null("robot_work_J", &Reach::robot_work, "done by the robot on the hand; null without a force");
+                     "distance from the reference at the end [m or rad]; null without a reference");
+  fields.add_or_null("robot_work_J", &Reach::robot_work, "work of the robot on the hand; null without a force");
   fields.add_or_null(
       "force_angle_deg",
       [](const Reach& reach) -> std::optional<double> {
@@ -37,21 +37,21 @@ void describe(Fields<MovementQuality>& fields) {
   using From = const MovementQuality&;
   fields.type("MovementRecording");
   fields.add(
-      "file", [](From one) { return one.source.path; }, "path, as it was given");
+      "file", [](From one) { return one.source.path; }, "path, as given");
   fields.add(
       "sha256", [](From one) { return one.source.sha256; },
-      "of the file's bytes, in hexadecimal; empty where it was not a file");
+      "SHA-256 of the file, in hexadecimal; empty if it was not a file");
   fields.add(
-      "format", [](From one) { return one.source.format; }, "empty where it is not known");
+      "format", [](From one) { return one.source.format; }, "empty if unknown");
   fields.add("axes", &MovementQuality::axes);
   fields.add("rate_hz", &MovementQuality::rate_hz, "sample rate [Hz]");
   fields.add("from_s", &MovementQuality::from_s, "start of the analysed interval [s]");
   fields.add("to_s", &MovementQuality::to_s, "its end [s]");
-  fields.add("cutoff_hz", &MovementQuality::cutoff_hz, "of the filter behind the speed [Hz]");
+  fields.add("cutoff_hz", &MovementQuality::cutoff_hz, "cutoff frequency of the filter for the speed [Hz]");
   fields.add("rest_speed", &MovementQuality::rest_speed, "below it the hand is at rest [m/s or rad/s]");
   fields.add_unless_empty(
       "trial", [](From one) { return one.source.trial; },
-      "which of the trials that the file holds; absent where it holds one");
+      "trial within the file; absent if the file contains one only");
   fields.add("reaches", &MovementQuality::reaches);
   fields.add("notes", &MovementQuality::notes);
   fields.add("warnings", &MovementQuality::warnings);
@@ -65,7 +65,7 @@ struct Movement {
 };
 
 void describe(Fields<Movement>& fields) {
-  fields.type("Movement", "What `mbk movement --json` writes: reaches of recordings and their quality. SI units.");
+  fields.type("Movement", "Output of `mbk movement --json`: reaches of recordings and their quality. SI units.");
   fields.header("mbk.movement/1");
   fields.add("recordings", &Movement::recordings);
 }

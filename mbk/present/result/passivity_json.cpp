@@ -34,12 +34,13 @@ std::pair<Hertz, Hertz> ends(const PassivityBand& band) {
 void describe(Fields<PassivityCondition>& fields) {
   fields.type("Condition", "A condition of passivity: it must be positive.");
   fields.add("name", &PassivityCondition::name);
-  fields.add("source", &PassivityCondition::source, "where it is published");
+  fields.add("source", &PassivityCondition::source, "publication");
   fields.add("unit", &PassivityCondition::unit);
   fields.add("value", &PassivityCondition::value);
   fields.add("standard_error", &PassivityCondition::standard_error);
-  fields.add("lower", &PassivityCondition::lower, "above it with 97.5 % confidence");
-  fields.add("upper", &PassivityCondition::upper, "below it with 97.5 % confidence for all conditions at once");
+  fields.add("lower", &PassivityCondition::lower, "lower limit: the value is above it with 97.5 % confidence");
+  fields.add("upper", &PassivityCondition::upper,
+             "upper limit: the value is below it with 97.5 % confidence for all conditions jointly");
   fields.add("verdict", &PassivityCondition::verdict);
 }
 
@@ -52,7 +53,7 @@ void describe(Fields<ExcessOfPassivity>& fields) {
 }
 
 void describe(Fields<PassivityIndexCurve>& fields) {
-  fields.type("PassivityIndex", "At each frequency the least damping in any direction of motion [unit of damping].");
+  fields.type("PassivityIndex", "Smallest damping over all directions of motion at each frequency [unit of damping].");
   fields.add("frequency_hz", &PassivityIndexCurve::frequency, "[Hz]");
   fields.add("value", &PassivityIndexCurve::index);
   fields.add("lower95", &PassivityIndexCurve::lower95);
@@ -61,38 +62,39 @@ void describe(Fields<PassivityIndexCurve>& fields) {
 
 void describe(Fields<ModelPassivity>& fields) {
   using From = const ModelPassivity&;
-  fields.type("ModelPassivity", "What the model of one method says in a band.");
+  fields.type("ModelPassivity", "Passivity of the model by one method in a band.");
   fields.add("method", &ModelPassivity::method);
-  fields.add("VAF", &ModelPassivity::vaf, "of each axis, on held-out data where there are any [%]");
+  fields.add("VAF", &ModelPassivity::vaf, "VAF of each axis, on held-out data if available [%]");
   fields.add("usable", &ModelPassivity::usable);
-  fields.add("fits", &ModelPassivity::fits, "it explains enough of the force to predict any");
-  fields.add("symmetric", &ModelPassivity::symmetric, "of the symmetric parts: all that straight motion can show");
+  fields.add("fits", &ModelPassivity::fits, "the model explains enough of the force for a prediction");
+  fields.add("symmetric", &ModelPassivity::symmetric,
+             "verdict on the symmetric parts, which do work in straight motion");
   fields.add(
       "antisymmetric", [](From model) { return predicted(model.antisymmetric); },
-      "of the antisymmetric parts, which do work in circular motion only; none with one axis");
+      "verdict on the antisymmetric parts, which do work in circular motion only; none with one axis");
   fields.add_choice("published_rule", &ModelPassivity::published_rule, "passive", "active",
-                    "theorem 3.2 of Dyck (2013) as it was applied: estimates, symmetric parts");
+                    "theorem 3.2 of Dyck (2013) as applied there: estimates without uncertainty, symmetric parts only");
   fields.add(
-      "band_hz", [](From model) { return ends(model.band); }, "in which it is judged [Hz]");
-  fields.add("band_rule", through(&ModelPassivity::band, &PassivityBand::rule), "how the band came about");
+      "band_hz", [](From model) { return ends(model.band); }, "band of the verdict [Hz]");
+  fields.add("band_rule", through(&ModelPassivity::band, &PassivityBand::rule), "how the band was chosen");
   fields.add("extrapolated", through(&ModelPassivity::band, &PassivityBand::extrapolated),
-             "the band reaches beyond `band_hz` of the passivity");
+             "the band extends beyond `band_hz` of `passivity`");
   fields.add("min_index", &ModelPassivity::smallest_index, "smallest passivity index in the band");
   fields.add("min_index_interval95", &ModelPassivity::smallest_index95);
   fields.add("min_index_at_hz", &ModelPassivity::smallest_at, "[Hz]");
   fields.add_or_null("circular_hz", &ModelPassivity::circular_hz,
-                     "between these frequencies the model, as estimated, absorbs energy in circular motion; high null: "
-                     "there is no upper one; null: at none, or one axis [Hz]");
+                     "frequencies between which the point estimate of the model absorbs energy in circular motion "
+                     "[Hz]; high null: no upper limit; null: none, or one axis");
   fields.add("conditions", &ModelPassivity::conditions);
   fields.add("eop", &ModelPassivity::excess, "absent unless the symmetric parts of M and K are positive semidefinite");
   fields.add("index", &ModelPassivity::curve);
 }
 
 void describe(Fields<EnergyAccount>& fields) {
-  fields.type("EnergyAccount", "What the energy of a recording says.");
+  fields.type("EnergyAccount", "Energy account of a recording.");
   fields.add("verdict", &EnergyAccount::verdict);
   fields.add("reason", &EnergyAccount::reason);
-  fields.add("absorbed_J", &EnergyAccount::absorbed, "energy that the limb took up [J]");
+  fields.add("absorbed_J", &EnergyAccount::absorbed, "energy that the limb absorbed [J]");
   fields.add("interval95", &EnergyAccount::absorbed95, "[J]");
   fields.add("lower95_J", &EnergyAccount::lower95, "[J]");
   fields.add("upper95_J", &EnergyAccount::upper95, "[J]");
@@ -107,15 +109,16 @@ void describe(Fields<EnergyAccount>& fields) {
     part.add("largest", &EnergyAccount::shortage_largest);
     part.add("largest_interval95", &EnergyAccount::shortage_largest95);
   });
-  fields.add("blocks", &EnergyAccount::blocks, "whose spread made the intervals");
+  fields.add("blocks", &EnergyAccount::blocks, "number of blocks used for the intervals");
 }
 
 void describe(Fields<EnergyLine>& fields) {
-  fields.type("EnergyLine", "What the limb absorbed at one line of a periodic perturbation, over whole periods.");
+  fields.type("EnergyLine",
+              "Energy that the limb absorbed at one line of a periodic perturbation, over whole periods.");
   fields.add("frequency_hz", &EnergyLine::frequency, "[Hz]");
-  fields.add("duration_s", &EnergyLine::duration, "of those periods [s]");
+  fields.add("duration_s", &EnergyLine::duration, "duration of those periods [s]");
   fields.add("absorbed_J", &EnergyLine::absorbed, "[J]");
-  fields.add("interval95", &EnergyLine::absorbed95, "for all lines at once [J]");
+  fields.add("interval95", &EnergyLine::absorbed95, "for all lines jointly [J]");
 }
 
 void describe(Fields<TrialPassivity>& fields) {
@@ -123,27 +126,27 @@ void describe(Fields<TrialPassivity>& fields) {
   fields.type("TrialPassivity", "What happened in the trial, by force and motion alone.");
   fields.add("verdict", through(energy, &EnergyAccount::verdict),
              "passive: `interval95` is above zero; active: it is below zero");
-  fields.add("absorbed_J", through(energy, &EnergyAccount::absorbed), "energy that the limb took up [J]");
+  fields.add("absorbed_J", through(energy, &EnergyAccount::absorbed), "energy that the limb absorbed [J]");
   fields.add("interval95", through(energy, &EnergyAccount::absorbed95), "[J]");
   fields.add("statement", &TrialPassivity::statement, "in words");
-  fields.add("reason", through(energy, &EnergyAccount::reason), "of the verdict");
-  fields.add_unless_empty("lines", &TrialPassivity::lines, "absent where the perturbation is not periodic");
+  fields.add("reason", through(energy, &EnergyAccount::reason), "reason for the verdict");
+  fields.add_unless_empty("lines", &TrialPassivity::lines, "absent if the perturbation is not periodic");
 }
 
 void describe(Fields<PassivityPrediction>& fields) {
   using From = const PassivityPrediction&;
   fields.type("PassivityPrediction",
-              "What the model predicts of other motions. It is no statement on the stability of a machine with this "
-              "person.");
+              "Prediction of the model for other motions. It is not a statement on the stability of a robot coupled to "
+              "this person.");
   fields.add(
       "verdict", [](From prediction) { return predicted(prediction.verdict); },
-      "of both parts; none where the result is not usable; undecided at most where the model fits poorly or `band_hz` "
-      "is null");
+      "verdict on both parts; none if the result is not usable; undecided if the model fits poorly, no reference was "
+      "recorded or `band_hz` is null");
   fields.add(
       "symmetric", [](From prediction) { return predicted(prediction.symmetric); }, "straight motion");
   fields.add(
       "antisymmetric", [](From prediction) { return predicted(prediction.antisymmetric); }, "circular motion");
-  fields.add("extrapolated", &PassivityPrediction::extrapolated, "it reaches beyond `band_hz`");
+  fields.add("extrapolated", &PassivityPrediction::extrapolated, "the band extends beyond `band_hz`");
   fields.add("statement", &PassivityPrediction::statement, "in words");
 }
 
@@ -151,20 +154,21 @@ void describe(Fields<Passivity>& fields) {
   using From = const Passivity&;
   const auto predicts = [](From passivity) { return passivity.prediction.verdict && !passivity.models.empty(); };
   fields.type("Passivity", "What happened in the trial, and what the model predicts: two statements.");
-  fields.add("trial", &Passivity::trial, "absent where force or motion is not plausible");
+  fields.add("trial", &Passivity::trial, "absent if force or motion is not plausible");
   fields.add("prediction", &Passivity::prediction);
   fields.add_or_null(
       "band_hz", [](From passivity) { return passivity.band ? std::optional(ends(*passivity.band)) : std::nullopt; },
-      "in which all axes are excited with a coherence above 0.8; null: there is none [Hz]");
+      "band in which all axes are excited with a coherence above 0.8 [Hz]; null: none");
   fields.add_if(
       predicts, "min_index", [](From passivity) { return passivity.models.front().smallest_index; },
-      "of the first model, where it predicts");
+      "of the first model, if it makes a prediction");
   fields.add_if(
       predicts, "eop", [](From passivity) { return passivity.models.front().excess; },
-      "of the first model, where it predicts");
-  fields.add_unless_empty("models", &Passivity::models, "the one that predicts comes first");
+      "of the first model, if it makes a prediction");
+  fields.add_unless_empty("models", &Passivity::models, "the model that makes the prediction comes first");
   fields.add(
-      "energy", [](From passivity) { return passivity.trial ? &passivity.trial->energy : nullptr; }, "behind `trial`");
+      "energy", [](From passivity) { return passivity.trial ? &passivity.trial->energy : nullptr; },
+      "energy account of `trial`");
 }
 
 void describe(Fields<EnergyPart>& fields) {
@@ -192,15 +196,15 @@ void describe(Fields<Energy>& fields) {
   fields.add("whole_recording_J", through(&Energy::curve, &EnergyCurve::end), "[J]");
   fields.add("time_s", through(&Energy::curve, &EnergyCurve::time), "[s]");
   fields.add("absorbed_J", through(&Energy::curve, &EnergyCurve::absorbed),
-             "from the beginning of the window to that time [J]");
+             "from the start of the window to that time [J]");
   fields.add_choice("parts_are", &Energy::parts_are_perturbations, "perturbations", "blocks");
   fields.add("parts", &Energy::parts);
   const auto curl = [](From energy) -> const CurlWork& { return *energy.curl; };
   const auto describe_curl = [curl](Fields<Energy>& part) {
-    part.type("Curl", "What the antisymmetric part of the stiffness does.");
+    part.type("Curl", "Work of the antisymmetric (rotational) stiffness.");
     part.add("k_a", through(curl, &CurlWork::k_a), "[unit of stiffness]");
     part.add("absorbed_J", through(curl, &CurlWork::absorbed), "[J]");
-    part.add("share", through(curl, &CurlWork::share), "of all energy");
+    part.add("share", through(curl, &CurlWork::share), "share of the total energy");
     part.add("over_time_J", through(&Energy::curve, &EnergyCurve::curl), "[J]");
   };
   fields.group("curl", describe_curl).only_if([](From energy) { return energy.curl.has_value(); });
@@ -272,7 +276,7 @@ StoredPassivity stored_passivity_from(const Json& json) {
 }
 
 void describe(Fields<PassivityDocument>& fields) {
-  fields.type("PassivityDocument", "What `mbk passivity --json` writes of one recording or result.");
+  fields.type("PassivityDocument", "Output of `mbk passivity --json` for one recording or result.");
   fields.header("mbk.passivity/2");
   fields.add("inputs", &PassivityDocument::inputs);
   fields.add("passivity", &PassivityDocument::passivity);
@@ -281,7 +285,7 @@ void describe(Fields<PassivityDocument>& fields) {
 
 void describe(Fields<document::List<PassivityDocument>>& fields) {
   describe_list(fields, "PassivityDocuments", "mbk.passivities/1",
-                "What `mbk passivity --json` writes of several recordings or results.");
+                "Output of `mbk passivity --json` for several recordings or results.");
 }
 
 std::string to_json(std::span<const PassivityDocument> all) {

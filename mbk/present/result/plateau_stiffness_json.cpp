@@ -9,8 +9,8 @@ using document::kTimeDigits;
 void describe(Fields<StiffnessRegression>& fields) {
   using Regression = StiffnessRegression;
   fields.type("StiffnessRegression",
-              "Stiffness K by regression of restoring forces on displacements, f = K d, with what was commanded as "
-              "instrument. Not made symmetric.");
+              "Stiffness K by regression of restoring forces on displacements, f = K d, with the commanded "
+              "displacements as instruments. Not symmetrised.");
   fields.add("K", &Regression::K, "[N/m or N·m/rad]");
   fields.add("standard_error", &Regression::standard_error);
   fields.add(
@@ -26,24 +26,23 @@ void describe(Fields<StiffnessRegression>& fields) {
         return rows;
       },
       "of each entry of K, by Student's t");
-  fields.add("degrees_of_freedom", &Regression::degrees_of_freedom, "the fewest of any entry");
+  fields.add("degrees_of_freedom", &Regression::degrees_of_freedom, "minimum over the entries");
   fields.add("relative_error", &Regression::relative_error,
              "root of the sum of squared standard errors over that of squared entries");
   fields.add("residual_rms", &Regression::residual_rms, "[N or N·m]");
-  fields.add("displacements", &Regression::displacements, "that were used");
-  fields.add("directions", &Regression::directions, "different ones");
-  fields.add("amplitude", &Regression::amplitude, "mean of the commanded ones [m or rad]");
+  fields.add("displacements", &Regression::displacements, "number used");
+  fields.add("directions", &Regression::directions, "number of different directions");
+  fields.add("amplitude", &Regression::amplitude, "mean commanded displacement [m or rad]");
   fields.add("reached", &Regression::reached,
-             "displacement over what was commanded, in the direction in which it is least");
-  fields.add("linear_p", &Regression::linear_p,
-             "probability of such a lack of fit over the directions where K is all there is");
+             "displacement relative to the commanded one, minimum over the directions");
+  fields.add("linear_p", &Regression::linear_p, "p-value of the misfit over the directions if one K holds for all");
   fields.add("ellipse", &Regression::ellipse);
   fields.add("antisymmetry", &Regression::antisymmetry);
 }
 
 void describe(Fields<DisplacedHand>& fields) {
   fields.type("DisplacedHand",
-              "A displacement of the hand and the force that answered it, both less their means before the onset.");
+              "A displacement of the hand and the force in response, both minus their means before the onset.");
   fields.add("input", &DisplacedHand::recording, "0 for the first of `inputs`");
   fields.add_rounded("onset_s", &DisplacedHand::onset_s, kTimeDigits, "[s] from the recording's first sample");
   fields.add_rounded("commanded", &DisplacedHand::commanded, kDigits, "[m or rad]");
@@ -58,40 +57,43 @@ void describe(Fields<PlateauStiffness>& fields) {
   fields.add(
       "plateau_s", [](const PlateauStiffness& found) { return Interval(found.from_s, found.to_s); },
       "the window, after the onset of the ramp [s]");
-  fields.add("window_rule", &PlateauStiffness::window_rule, "why that window, in words");
+  fields.add("window_rule", &PlateauStiffness::window_rule, "how the window was chosen");
   fields.add("baseline_s", &PlateauStiffness::baseline_s, "before the onset, subtracted [s]");
   fields.add("motion_share", &PlateauStiffness::motion_share,
-             "what inertia and damping add to K because the hand still moves, as a share of K");
-  fields.add("left_out", &PlateauStiffness::left_out, "ramps whose hold or rest before is too short");
+             "contribution of inertia and damping to K because the hand still moves, as a share of K");
+  fields.add("left_out", &PlateauStiffness::left_out,
+             "ramps omitted because their hold or the rest before them is too short");
   fields.add("plateaus", &PlateauStiffness::plateaus);
   fields.add("usable", &PlateauStiffness::usable);
 }
 
 void describe(Fields<ReachPredictor>& fields) {
   fields.type("ReachPredictor",
-              "Undisturbed reaches as they predict where a displaced hand would have been, and the stiffness relative "
+              "Prediction of the undisturbed hand position from undisturbed reaches, and the stiffness relative "
               "to that.");
   fields.add("components", &ReachPredictor::components,
-             "of a reach's own past that predict it; 0: the mean of the undisturbed reaches");
+             "number of components of a reach's own past used for prediction; 0: the mean of the undisturbed reaches");
   fields.add("prediction_error", &ReachPredictor::prediction_error,
-             "of left-out undisturbed reaches in the middle of the window, root mean square [m]");
-  fields.add("motion_share", &ReachPredictor::motion_share,
-             "what inertia and damping add to K because the hand moves relative to the prediction, as a share of K");
+             "cross-validated error of undisturbed reaches in the middle of the window, root mean square [m]");
+  fields.add(
+      "motion_share", &ReachPredictor::motion_share,
+      "contribution of inertia and damping to K because the hand moves relative to the prediction, as a share of K");
   fields.add("stiffness", &ReachPredictor::fit);
 }
 
 void describe(Fields<ReachStiffness>& fields) {
   fields.type("ReachStiffnessEstimate",
-              "Stiffness of a hand that is displaced while it reaches, relative to the predicted way.");
-  fields.add("trigger", &ReachStiffness::trigger, "event at which a hand is displaced, or would be");
+              "Stiffness of a hand displaced during a reach, relative to the predicted path.");
+  fields.add("trigger", &ReachStiffness::trigger, "event at which the hand is displaced, or would be");
   fields.add(
       "window_s", [](const ReachStiffness& found) { return Interval(found.from_s, found.to_s); },
       "on the plateau, after the trigger [s]");
-  fields.add("undisturbed", &ReachStiffness::undisturbed, "reaches that were predicted from");
-  fields.add("left_out", &ReachStiffness::left_out, "reaches that lack the past or the future of their trigger");
-  fields.add("own_past", &ReachStiffness::own_past, "what counts");
+  fields.add("undisturbed", &ReachStiffness::undisturbed, "undisturbed reaches used for the prediction");
+  fields.add("left_out", &ReachStiffness::left_out,
+             "reaches omitted because too little was recorded before or after their trigger");
+  fields.add("own_past", &ReachStiffness::own_past, "the result");
   fields.add("mean_reach", &ReachStiffness::mean_reach,
-             "the comparison: the mean of the undisturbed reaches is subtracted");
+             "for comparison: the mean of the undisturbed reaches is subtracted");
   fields.add("usable", &ReachStiffness::usable);
 }
 

@@ -22,7 +22,7 @@ void describe(Fields<ForcePrediction>& fields) {
 }
 
 void describe(Fields<Autocorrelation>& fields) {
-  fields.type("", "Of the residual.");
+  fields.type("", "Autocorrelation of the residual.");
   fields.add_rounded("lag_s", &Autocorrelation::lag, kTimeDigits, "[s]");
   fields.add_rounded("value", &Autocorrelation::value);
   fields.add_rounded("white95", &Autocorrelation::white95, kDigits, "white noise stays within ± this");
@@ -35,7 +35,7 @@ void describe(Fields<Spectra>& fields) {
   fields.add_rounded("force", &Spectra::force);
   fields.add_rounded("residual", &Spectra::residual);
   fields.add_rounded("coherence", &Spectra::coherence);
-  fields.add_rounded("coherence_significant", &Spectra::coherence_significant, kDigits, "chance stays below");
+  fields.add_rounded("coherence_significant", &Spectra::coherence_significant, kDigits, "significance limit (95 %)");
   fields.add("segments", &Spectra::segments);
 }
 
@@ -81,7 +81,7 @@ void describe(Fields<Diagnostics>& fields) {
 }
 
 void describe(Fields<ArmPosture>& fields) {
-  fields.type("Posture", "Where the joints are, seen from above.");
+  fields.type("Posture", "Positions of the joints, seen from above.");
   fields.add("of", &ArmPosture::of, "shoulder, elbow, hand; base, elbow, hand; or the hand alone");
   fields.add_form<std::vector<std::array<document::Number, 2>>>(
       "points_m",
@@ -91,7 +91,7 @@ void describe(Fields<ArmPosture>& fields) {
         return points;
       },
       "base frame [m]; the hand is the last");
-  fields.add_unless_empty("note", &ArmPosture::note, "why it is no more than that");
+  fields.add_unless_empty("note", &ArmPosture::note, "why not more is known");
 }
 
 namespace result {
@@ -103,7 +103,7 @@ void describe(Fields<RecordingFacts>& fields) {
 }
 
 void describe(Fields<ReportedResult>& fields) {
-  fields.type("ReportedTrial", "What is drawn beside one result.");
+  fields.type("ReportedTrial", "Data for the drawings of one result.");
   fields.add("recordings", &ReportedResult::recordings);
   fields.add_unless_empty("energy", through(&ReportedResult::measured, &Measurement::energies),
                           "one for each recording");
@@ -131,10 +131,10 @@ std::string with_plain_result(Json json) {
 
 void describe(Fields<Report>& fields) {
   fields.type("Report",
-              "What stands in the page that `mbk measure --report` writes. What is there to be looked at has six "
-              "digits, times nine; `result` has every digit.");
+              "Data of the page that `mbk measure --report` writes. Data for display have six digits, times nine; "
+              "`result` has every digit.");
   fields.header("mbk.report/1");
-  fields.add("command", &Report::command, "as it was typed");
+  fields.add("command", &Report::command, "command line");
   fields.add_unless_empty("note", &Report::note);
   fields.add("trials", &Report::results, "one for each result");
   fields.add("result", [](const Report& report) -> std::variant<const Measurement*, Results> {
@@ -145,9 +145,9 @@ void describe(Fields<Report>& fields) {
 
 void describe(Fields<ComparisonReport>& fields) {
   const auto of = [](auto member) { return through(&ComparisonReport::compared, member); };
-  fields.type("ComparisonReport", "What stands in the page that `mbk compare --report` writes.");
+  fields.type("ComparisonReport", "Data of the page that `mbk compare --report` writes.");
   fields.header("mbk.compare_report/1");
-  fields.add("command", of(&Report::command), "as it was typed");
+  fields.add("command", of(&Report::command), "command line");
   fields.add_unless_empty("note", of(&Report::note));
   fields.add("names", &ComparisonReport::names, "of the results");
   fields.add(
@@ -158,7 +158,7 @@ void describe(Fields<ComparisonReport>& fields) {
         for (const WidthFindings& widths : report.widths) all.push_back({sources(0), sources(all.size() + 1), widths});
         return all;
       },
-      "of each result but the first with the first");
+      "of each further result with the first");
   fields.add("trials", of(&Report::results), "one for each result");
   fields.add("result", of(together));
 }

@@ -31,20 +31,20 @@ Vector vector(const std::vector<double>& values) {
 void describe(Fields<ReproducedCell>& fields) {
   using From = const ReproducedCell&;
   fields.type("Cell");
-  fields.add_or_null("printed", or_null(&ReproducedCell::printed), "as it stands in print");
+  fields.add_or_null("printed", or_null(&ReproducedCell::printed), "as printed");
   fields.add_or_null("printed_value", &ReproducedCell::printed_value);
   fields.add("rounding", &ReproducedCell::rounding, "half a unit of the last printed digit");
   fields.add_as(
       "ours", {{"type", {"number", "string", "null"}}},
       [](From cell) { return cell.words.empty() ? document::written(cell.ours) : Json(cell.words); },
-      "a number, words where it is none, null where it cannot be had");
-  fields.add_or_null("difference", &ReproducedCell::difference, "ours less printed");
+      "a number, or text, or null if not available");
+  fields.add_or_null("difference", &ReproducedCell::difference, "ours minus printed");
   fields.add_or_null("spread", &ReproducedCell::spread);
-  fields.add_or_null("range", &ReproducedCell::range, "what the rounding of the inputs leaves ours");
+  fields.add_or_null("range", &ReproducedCell::range, "range of ours due to the rounding of the inputs");
   fields.add("agreement", &ReproducedCell::agreement, "round trip: ours was computed from the printed number itself");
   fields.add_unless_empty(
       "was", [](From cell) { return former_word_of(cell.agreement); },
-      "what schema 1 called this agreement, where it changed; for one version");
+      "name of this agreement in schema 1 if it changed; for one version");
 }
 
 void describe(Fields<ReproducedColumn>& fields) {
@@ -133,7 +133,7 @@ void describe(Fields<ExhibitChart>& fields) {
   fields.add("x", [](From one) { return ExhibitAxis{&one.chart->x}; });
   fields.add("y", [](From one) { return ExhibitAxis{&one.chart->y}; });
   fields.add("equal_scale", [](From one) { return one.chart->equal_scale || one.chart->identity; });
-  fields.add("identity", through(&ExhibitChart::chart, &Chart::identity), "a line where both axes agree");
+  fields.add("identity", through(&ExhibitChart::chart, &Chart::identity), "identity line");
   fields.add("horizontal", through(&ExhibitChart::chart, &Chart::horizontal));
   fields.add("vertical", through(&ExhibitChart::chart, &Chart::vertical));
   fields.add("notes", through(&ExhibitChart::chart, &Chart::notes));
@@ -146,7 +146,7 @@ struct TableDocument {
 };
 
 void describe(Fields<TableDocument>& fields) {
-  fields.type("ReproducedTable", "What `mbk reproduce --out` writes of each table.");
+  fields.type("ReproducedTable", "Output of `mbk reproduce --out` for each table.");
   fields.header("mbk.reproduced_table/2");
   fields.add(
       "exhibit", [](const TableDocument& one) { return one.exhibit.id; }, "its id");
@@ -170,7 +170,7 @@ void describe(Fields<Exhibit>& fields) {
   fields.add("title", &Exhibit::title);
   fields.add("provenance", &Exhibit::provenance);
   fields.add("text", &Exhibit::text, "paragraphs");
-  fields.add("commands", &Exhibit::commands, "that make ours");
+  fields.add("commands", &Exhibit::commands, "commands that compute our numbers");
   fields.add("related", &Exhibit::related, "ids of other exhibits");
   fields.add("tables", &Exhibit::tables);
   fields.add("charts", [](From one) { return result::each<result::ExhibitChart>(one.charts); });
@@ -201,7 +201,7 @@ void describe(Fields<Reproduction>& fields) {
         for (const auto& [agreement, word] : kWords<Agreement>) count(word, agreement);
         count("slip", Agreement::erratum, "erratum by its old name, for one version");
       },
-      "how many printed numbers stand so to ours; each is counted once");
+      "number of printed numbers by agreement with ours; each is counted once");
   fields.add("exhibits", &Reproduction::exhibits);
 }
 
@@ -214,7 +214,7 @@ struct Page {
 };
 
 void describe(Fields<Page>& fields) {
-  fields.type("ReproductionPage", "What stands in the page that `mbk reproduce --out` writes.");
+  fields.type("ReproductionPage", "Data of the page that `mbk reproduce --out` writes.");
   fields.add("reproduction", [](const Page& page) -> const Reproduction& { return page.reproduction; });
   fields.add(
       "drawings", [](const Page& page) -> const Drawings& { return page.drawings; },

@@ -13,7 +13,7 @@ void describe(Fields<Margin>& fields) {
 }
 
 void describe(Fields<ExplainedForce>& fields) {
-  fields.type("ExplainedForce", "How much of the force of one axis a prediction accounts for.");
+  fields.type("ExplainedForce", "Explained part of the force of one axis.");
   fields.add("VAF", &ExplainedForce::vaf, "[%]");
   fields.add("VAF_interval95", [](const ExplainedForce& one) {
     return std::pair(one.vaf - one.vaf_half_width, one.vaf + one.vaf_half_width);
@@ -32,7 +32,7 @@ void describe(Fields<FittedMatrix>& fields) {
   fields.type("FittedMatrix");
   fields.add("value", &FittedMatrix::value);
   fields.add("half_width95", &FittedMatrix::half_width, "of the 95 % intervals");
-  fields.add("identifiable", &FittedMatrix::identifiable, "the intervals of its diagonal are narrower than it");
+  fields.add("identifiable", &FittedMatrix::identifiable, "the intervals of the diagonal are narrower than its values");
 }
 
 /// A response and its lags.
@@ -71,19 +71,19 @@ void describe(Fields<ResponseModel>& fields) {
   using From = const ResponseModel&;
   const auto there = &ResponseModel::identifiable;
   fields.type("ResponseModel",
-              "M, B and K fitted to an impulse response, weighted by its covariance. Where the motion excites too "
-              "little for that, `identifiable` is false and nothing else is there.");
+              "M, B and K fitted to an impulse response, weighted by its covariance. If the motion does not excite "
+              "them enough, `identifiable` is false and nothing else is present.");
   fields.add("identifiable", there);
   fields.add_if(there, "M", [](From found) { return FittedMatrix{found.M, found.M_half_width, found.M_identifiable}; });
   fields.add_if(there, "B", [](From found) { return FittedMatrix{found.B, found.B_half_width, found.B_identifiable}; });
   fields.add_if(there, "K", [](From found) { return FittedMatrix{found.K, found.K_half_width, found.K_identifiable}; });
   const auto enough = [](Fields<ResponseModel>& part) {
     part.add("enough", &ResponseModel::enough, "p is not below 1e-5");
-    part.add("F", &ResponseModel::statistic, "largest over the axes");
+    part.add("F", &ResponseModel::statistic, "maximum over the axes");
     part.add("degrees_of_freedom", [](From found) { return std::vector{found.numerator, found.denominator}; });
     part.add("p", &ResponseModel::p_value);
   };
-  fields.group("enough", enough, "Whether the response is no more than M, B and K.").only_if(there);
+  fields.group("enough", enough, "Whether M, B and K are sufficient to describe the response.").only_if(there);
 }
 
 void describe(Fields<ImpulseResponseEstimate>& fields) {
@@ -92,18 +92,18 @@ void describe(Fields<ImpulseResponseEstimate>& fields) {
               "Two-sided impulse response from motion to force, −F(t) = Σ h(l) x(t − l) T + c. Of two axes the columns "
               "of `response` are xx, yx, xy, yy: force, then motion.");
   fields.add("sample_time_s", &Found::sample_time, "T, after decimation");
-  fields.add("memory_s", &Found::memory, "lags reach as far on both sides");
+  fields.add("memory_s", &Found::memory, "longest lag in both directions");
   fields.add("memory_rule", &Found::memory_rule);
-  fields.add("memory_at_limit", &Found::memory_at_limit, "the longest that was tried");
+  fields.add("memory_at_limit", &Found::memory_at_limit, "it is the longest that was tried");
   fields.add("rank", &Found::rank, "directions of the lagged motion that were kept");
-  fields.add("directions", &Found::directions, "that there are");
-  fields.add("instruments", &Found::instruments, "the reference stood for the motion");
+  fields.add("directions", &Found::directions, "all directions");
+  fields.add("instruments", &Found::instruments, "instrumental variables from the reference");
   result::add_validated_on(fields, &Found::held_out);
   fields.with([](const Found& found) { return PathResponse{found.lag, found.response, found.half_width}; });
   fields.add_columns("excited", &Found::excited,
                      "share of a unit response at that lag of that input that the motion excites");
   fields.add("explained", &Found::explained);
-  fields.add("explained_by_model", &Found::explained_by_model, "by M, B and K fitted to the same rows directly");
+  fields.add("explained_by_model", &Found::explained_by_model, "by M, B and K fitted directly to the same rows");
   fields.add("model", &Found::model);
 }
 
@@ -114,7 +114,7 @@ void describe(Fields<StretchCandidate>& fields) {
       [](const StretchCandidate& one) {
         return one.direction.size() > 0 ? std::optional(one.direction) : std::nullopt;
       },
-      "of stretch; null: both directions alike");
+      "direction of stretch; null: both directions");
   fields.add("VAF", &StretchCandidate::vaf, "cross-validated [%]");
   fields.add("standard_error_of_difference", &StretchCandidate::vaf_error);
 }
@@ -125,7 +125,7 @@ void describe(Fields<SecondOrderReflex>& fields) {
   fields.add("delay_s", &SecondOrderReflex::delay);
   fields.add("frequency_hz", &SecondOrderReflex::frequency);
   fields.add("damping", &SecondOrderReflex::damping);
-  fields.add("p", &SecondOrderReflex::p_value, "of the response being no more than that");
+  fields.add("p", &SecondOrderReflex::p_value, "p-value if this model is sufficient");
 }
 
 void describe(Fields<ParallelCascadeEstimate>& fields) {
@@ -135,14 +135,14 @@ void describe(Fields<ParallelCascadeEstimate>& fields) {
   const auto has_reflex = [](From found) { return found.found == DelayedResponse::reflex; };
   fields.type("ParallelCascadeEstimate",
               "Force as the sum of an intrinsic path, linear in motion, and a reflex path. `reflex` and "
-              "`intrinsic_model` are there where a reflex was found.");
+              "`intrinsic_model` are present if a reflex was found.");
   fields.add("delayed_response", &Found::found);
   fields.add("why", &Found::why);
   fields.add("sample_time_s", &Found::sample_time);
   fields.add("instruments", &Found::instruments);
   fields.add_if(decided, "p_both_directions_alike", &Found::p_value);
   fields.add_if(decided, "intrinsic_VAF", &Found::intrinsic_vaf, "cross-validated, without a delayed response [%]");
-  fields.add_if(decided, "candidates", &Found::candidates, "in falling order of VAF");
+  fields.add_if(decided, "candidates", &Found::candidates, "in descending order of VAF");
   fields.add_if(decided, "intrinsic", [](From found) {
     return PathResponse{found.intrinsic_lag, found.intrinsic, found.intrinsic_half_width};
   });
@@ -154,16 +154,16 @@ void describe(Fields<ParallelCascadeEstimate>& fields) {
         for (const PathShares& one : found.shares) all.push_back({&one, has_reflex(found)});
         return all;
       },
-      "axis by axis; the paths overlap and need not add up");
+      "for each axis; the paths overlap and need not add up");
   const auto reflex = [](Fields<Found>& part) {
-    part.type("ReflexPath", "Force that answers stretch in one direction, v⁺ = max(eᵀẋ, 0), after a delay.");
+    part.type("ReflexPath", "Force in response to stretch in one direction, v⁺ = max(eᵀẋ, 0), after a delay.");
     part.add("direction", &Found::direction, "e, of stretch");
-    part.add("delay_s", &Found::delay, "first lag at which a response shows");
+    part.add("delay_s", &Found::delay, "first lag with a response");
     part.add("delay_interval95_s", [](From found) { return std::pair(found.delay_low, found.delay_high); });
-    part.add("delay_at_limit", &Found::delay_at_limit, "the earliest that was tried: it may be less");
+    part.add("delay_at_limit", &Found::delay_at_limit, "it is the shortest that was tried and may be shorter");
     part.add("memory_s", &Found::memory, "last lag");
     part.add("rank", &Found::reflex_rank);
-    part.add("gain", &Found::gain, "force for a steady stretch, axis by axis [N·s/m]");
+    part.add("gain", &Found::gain, "force for a steady stretch velocity, for each axis [N·s/m]");
     part.add("gain_along", &Found::gain_along, "along e; positive resists the stretch");
     part.add("gain_identifiable", &Found::gain_identifiable, "its interval is narrower than it");
     part.add("nonlinearity", &Found::nonlinearity, "c of N(v) = Σ c_k (v/speed_scale)^k, k = 1 …");
@@ -185,10 +185,9 @@ struct Course {
 void describe(Fields<Course>& fields) {
   using From = const Course&;
   fields.type("MatrixCourse",
-              "M, B or K along a variable. `value`, `half_width95` and `change` are there where the verdict is that "
-              "something changes.");
+              "M, B or K along a variable. `value`, `half_width95` and `change` are present if a change was detected.");
   fields.add(
-      "constant", [](From course) { return course.of.mean; }, "of a fit in which nothing changes");
+      "constant", [](From course) { return course.of.mean; }, "from the constant model");
   fields.add("constant_half_width95", [](From course) { return course.of.mean_half_width; });
   fields
       .add_columns(
@@ -219,13 +218,13 @@ void describe(Fields<TimeCourseEstimate>& fields) {
   fields.add("repetitions", &Found::repetitions, "trials or events that were pooled");
   fields.add("rows", &Found::rows, "behind the low-pass");
   fields.add("rate_hz", &Found::rate_hz, "of the rows [Hz]");
-  fields.add("instruments", &Found::instruments, "the reference stood for the motion; otherwise least squares");
+  fields.add("instruments", &Found::instruments, "instrumental variables from the reference; otherwise least squares");
   fields.add("functions", &Found::functions, "splines of each entry that varies; 1: a constant");
   fields.add("degree", &Found::degree, "of the splines: 1 linear, 3 cubic; 0: constants");
   fields.add("varying", &Found::varying, "which of M, B and K vary; empty: none");
   fields.add("knots", &Found::knots, "interior ones");
-  fields.add("BIC_gain", &Found::bic_gain, "BIC of constant M, B and K less that of the chosen ones");
-  fields.add("p", &Found::p_value, "probability of so large a change where nothing changes");
+  fields.add("BIC_gain", &Found::bic_gain, "BIC of constant M, B and K minus that of the chosen model");
+  fields.add("p", &Found::p_value, "p-value for a constant limb");
   fields.add("at", &Found::at, "values of the variable");
   fields.add("M", [](From found) { return Course{found.M, found.changes}; });
   fields.add("B", [](From found) { return Course{found.B, found.changes}; });
@@ -236,7 +235,7 @@ void describe(Fields<MatrixEstimate>& fields) {
   fields.type("MatrixAfterOnset");
   fields.add("value", &MatrixEstimate::value);
   fields.add("half_width95", &MatrixEstimate::half_width);
-  fields.add("eigenvalues", &MatrixEstimate::eigenvalue, "of the symmetric part, rising");
+  fields.add("eigenvalues", &MatrixEstimate::eigenvalue, "of the symmetric part, ascending");
   fields.add("eigenvalues_half_width95", &MatrixEstimate::eigenvalue_half_width);
   fields.add("identifiable", &MatrixEstimate::identifiable,
              "the intervals of all eigenvalues reach less than half of the largest one to either side");
@@ -252,16 +251,16 @@ void describe(Fields<AfterOnsetEstimate>& fields) {
     };
   };
   fields.type("AfterOnsetEstimate",
-              "M, B and K from the moment after the reference steps, before the person can answer. There where it was "
-              "asked for.");
+              "M, B and K from the first milliseconds after a step of the reference, before a voluntary response. "
+              "Present if requested.");
   fields.add("window_s", &Found::window_s, "after each onset [s]");
   fields.add("baseline_s", &Found::baseline_s, "before each onset [s]");
   fields.add("onsets", &Found::onsets, "pooled");
   fields.add("omitted_onsets", &Found::omitted,
-             "before which the limb did not rest, or too near to an end of the recording");
+             "omitted because the limb did not rest before them, or too near an end of the recording");
   fields.add("displacement", &Found::displacement, "largest, mean over the onsets");
   fields.add("handle_mass", &Found::handle_mass, "subtracted from M [kg]");
-  fields.add("degrees_of_freedom", &Found::degrees_of_freedom, "of Student's t behind the intervals");
+  fields.add("degrees_of_freedom", &Found::degrees_of_freedom, "of Student's t for the intervals");
   fields.add("M", &Found::M);
   fields.add("B", &Found::B);
   fields.add("K", &Found::K);

@@ -17,7 +17,7 @@ inline constexpr const char* kResultSchema = "mbk.result/2";
 inline constexpr const char* kFirstResultSchema = "mbk.result/1";  ///< still read
 inline constexpr const char* kResultsSchema = "mbk.results/1";
 
-/// Several results, and what is said of them together.
+/// Several results, and findings about them together.
 struct Results {
   std::vector<const Measurement*> results;
   const SeveralTrials* together;

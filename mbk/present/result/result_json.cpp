@@ -23,7 +23,7 @@ struct ByForceSensor {
 
 void describe(Fields<ByForceSensor>& fields) {
   const auto sensed = &ByForceSensor::sensed;
-  fields.type("ByForceSensor", "What the force sensor gives, where the model is from a computed force.");
+  fields.type("ByForceSensor", "Result with the force sensor if the model is from a computed force.");
   fields.add("model", through(sensed, &Identification::model));
   fields.add("standard_error", through(sensed, &Identification::standard_error));
   fields.add("fit", through(sensed, &Identification::fit));
@@ -33,7 +33,7 @@ void describe(Fields<ByForceSensor>& fields) {
         const impedance::Model &a = by.computed->model, &b = by.sensed->model;
         return impedance::Model{a.M - b.M, a.B - b.B, a.K - b.K, a.x0 - b.x0};
       },
-      "by the computed force less by the sensor");
+      "with the computed force minus with the sensor");
 }
 
 result::Covariance covariance(const Identification& id) {
@@ -56,19 +56,19 @@ void describe(Fields<Antisymmetries>& fields) {
 }
 
 void describe(Fields<InstrumentCheck>& fields) {
-  fields.type("Instrument", "What stands behind instrumental variables.");
+  fields.type("Instrument", "Validity of instrumental variables.");
   fields.add("reference", &InstrumentCheck::from);
   fields.add("first_stage_F", &InstrumentCheck::strength,
-             "of acceleration, velocity and position, each along all axes");
+             "first-stage F of acceleration, velocity and position, each along all axes");
   fields.add("weakest_F", &InstrumentCheck::weakest);
   fields.add("strong", &InstrumentCheck::strong, fmt::format("the weakest is above {}", kStrongInstruments));
   fields.add("coherent_residual_fraction", &InstrumentCheck::coherent_residual,
-             "of what the model leaves that answers the perturbation");
+             "share of the residual that is coherent with the perturbation");
 }
 
 void describe(Fields<UnmodelledResponse>& fields) {
   fields.type("UnmodelledResponse",
-              "How much of the force follows the perturbation and is neither inertia nor damping nor stiffness.");
+              "Share of the force that follows the perturbation but is not inertia, damping or stiffness.");
   fields.add("coherent_share", &UnmodelledResponse::coherent,
              "of the force's variance: residual that is linear in the past of the reference");
   fields.add_if([](const UnmodelledResponse& response) { return response.induced.size() > 0; }, "induced_share",
@@ -78,15 +78,15 @@ void describe(Fields<UnmodelledResponse>& fields) {
 void describe(Fields<AssumptionTest>& fields) {
   fields.type("AssumptionTest", "One assumption of M, B and K, tested on this recording.");
   fields.add("assumption", &AssumptionTest::assumption);
-  fields.add("contradicted", &AssumptionTest::contradicted, "it does not hold, and that matters");
-  fields.add("p_value", &AssumptionTest::p_value, "chance of such data where the assumption holds");
+  fields.add("contradicted", &AssumptionTest::contradicted, "it is violated, with a relevant effect");
+  fields.add("p_value", &AssumptionTest::p_value, "p-value if the assumption is true");
   fields.add("size", &AssumptionTest::size,
              "force late by [s]; stiffness at the amplitude of the motion more than at none, as a share; dry friction, "
              "drift of the force over the recording, standard deviation of the tremor [N or N·m]; standard deviation "
              "of the stiffness or damping over time, as a share; force of a memory, or of what is even, as a share of "
              "that of the stiffness; residual at the lines beyond its scatter, as a share of the force");
   fields.add("shift", &AssumptionTest::shift,
-             "by how many half widths of their 95 % intervals M, B or K change when it is modelled too");
+             "change of M, B or K when the effect is modelled, in half widths of their 95 % intervals");
   fields.add_if([](const AssumptionTest& test) { return test.frequency_hz > 0.0; }, "frequency_hz",
                 &AssumptionTest::frequency_hz, "of a tremor");
 }
@@ -111,14 +111,14 @@ void describe(Fields<BootstrapFinding>& fields) {
   fields.add("unit", &BootstrapFinding::unit);
   fields.add("value", &BootstrapFinding::value);
   fields.add("interval95", &BootstrapFinding::interval95);
-  fields.add("delta_interval95", &BootstrapFinding::delta95, "as the covariance gives it");
+  fields.add("delta_interval95", &BootstrapFinding::delta95, "from the covariance");
 }
 
 void describe(Fields<BootstrapFindings>& fields) {
-  fields.type("Bootstrap", "The measurement repeated on resampled blocks of itself.");
+  fields.type("Bootstrap", "Estimation repeated on resampled blocks of the recording.");
   fields.add("replicates", &BootstrapFindings::replicates);
   fields.add_number("block_s", &BootstrapFindings::block_s, "[s]");
-  fields.add("blocks", &BootstrapFindings::blocks, "that the data hold beside each other");
+  fields.add("blocks", &BootstrapFindings::blocks, "number of blocks that the data contain");
   fields.add("seed", &BootstrapFindings::seed);
   fields.add("quantities", &BootstrapFindings::findings);
 }
@@ -131,14 +131,15 @@ void describe(Fields<Semidefiniteness>& fields) {
 }
 
 void describe(Fields<ConsistentFit>& fields) {
-  fields.type("ConsistentFit", "The best fit whose matrices a passive limb can have.");
+  fields.type("ConsistentFit", "The best fit with matrices that are possible for a passive limb.");
   fields.add("model", &ConsistentFit::model);
   fields.add("inertia", &ConsistentFit::inertia);
   fields.add("damping", &ConsistentFit::damping);
   fields.add("stiffness", &ConsistentFit::stiffness);
   fields.add("fit", &ConsistentFit::fit);
   fields.add("residual_power_increase_percent", &ConsistentFit::increase_percent, "[%]");
-  fields.add("force_change", &ConsistentFit::force_change, "rms of the change of force over rms of what is left");
+  fields.add("force_change", &ConsistentFit::force_change,
+             "rms of the change of force relative to rms of the residual");
   fields.group("largest_change", [](Fields<ConsistentFit>& part) {
     part.add("parameter", &ConsistentFit::largest_change);
     part.add("standard_errors", &ConsistentFit::largest_change_errors);
@@ -147,24 +148,26 @@ void describe(Fields<ConsistentFit>& fields) {
 }
 
 void describe(Fields<Disagreement>& fields) {
-  fields.type("Disagreement",
-              "Where the difference of the two methods exceeds the standard error of least squares most clearly.");
+  fields.type(
+      "Disagreement",
+      "The parameter whose difference between the methods most clearly exceeds the standard error of least squares.");
   fields.add("parameter", &Disagreement::parameter, "as in `covariance`");
-  fields.add("least_squares", &Disagreement::least_squares, "the parameter itself");
+  fields.add("least_squares", &Disagreement::least_squares, "value of the parameter");
   fields.add("iv_less_ls", &Disagreement::difference);
   fields.add("standard_error", &Disagreement::standard_error, "of that difference");
   fields.add("significant", &Disagreement::significant,
-             "least squares is off by more than its own standard error says, with 99 % confidence");
+             "the difference exceeds the standard error of least squares with 99 % confidence");
 }
 
 void describe(Fields<Excitation>& fields) {
-  fields.type("Excitation", "Whether the perturbation asked enough of the limb.");
+  fields.type("Excitation", "Excitation of the limb by the perturbation.");
   fields.add("rank", &Excitation::rank, "of the regressors");
-  fields.add("condition", &Excitation::condition, "of the centred regressors");
+  fields.add("condition", &Excitation::condition, "condition number of the centred regressors");
   fields.add("motion_ratio", &Excitation::motion_ratio,
-             "smallest over largest standard deviation of position over directions");
+             "smallest relative to largest standard deviation of position over directions");
   fields.add("motion", &Excitation::motion, "largest standard deviation of position [m or rad]");
-  fields.add("inertia_share", &Excitation::inertia_share, "of the force's variance: what only the inertia can explain");
+  fields.add("inertia_share", &Excitation::inertia_share,
+             "share of the variance of the force that only inertia can explain");
 }
 
 void describe(Fields<DecimationCheck>& fields) {
@@ -177,16 +180,16 @@ void describe(Fields<DecimationCheck>& fields) {
 void describe(Fields<Measurement>& fields) {
   using From = const Measurement&;
   const auto of = [](auto member) { return through(&Measurement::identification, member); };
-  /// A result that was read back says nothing of how it was made.
+  /// A result that was read from a file contains no preparation.
   const auto prepared = [](auto member) {
     return [member](From measured) {
       const auto& all = measured.identification.preparations;
       return all.empty() ? std::nullopt : std::optional(all.front().*member);
     };
   };
-  fields.type("Result",
-              "What `mbk measure --json` and `mbk identify --json` write of one recording, or of several that are "
-              "pooled.");
+  fields.type(
+      "Result",
+      "Output of `mbk measure --json` and `mbk identify --json` for one recording, or for several pooled ones.");
   fields.header(result::kResultSchema);
   fields.add("inputs", [](From measured) {
     const Identification& id = measured.identification;
@@ -194,20 +197,21 @@ void describe(Fields<Measurement>& fields) {
     for (std::size_t i = 0; i < id.sources.size(); ++i) inputs.push_back({id.sources[i], id.durations[i], id.rates[i]});
     return inputs;
   });
-  fields.add_unless_empty("notes", of(&Identification::notes), "what the reader said of the recordings");
+  fields.add_unless_empty("notes", of(&Identification::notes), "notes from reading the recordings");
   fields.add("mode", prepared(&Preparation::mode));
   fields.add("protocol", prepared(&Preparation::protocol));
   fields.add("method", of(&Identification::method));
-  fields.add_unless_empty("method_rule", of(&Identification::method_rule), "why that method, where none was asked for");
+  fields.add_unless_empty("method_rule", of(&Identification::method_rule),
+                          "how the method was chosen if none was requested");
   fields.add_as("axes", {{"enum", {1, 2}}}, of(&Identification::axes));
   fields.add("structure", of(&Identification::structure));
   fields.add(
       "units", [](From measured) { return result::known_units(measured.identification.motion); },
-      "absent where the file does not say what moves");
+      "absent if the file does not state the kind of motion");
   fields.add("model", of(&Identification::model));
   fields.add("standard_error", of(&Identification::standard_error), "of each parameter");
   fields.add("standard_error_of_robot", of(&Identification::standard_error_of_robot),
-             "the part of it that the robot's coefficients have");
+             "the part of it due to the coefficients of the robot");
   fields.add("fit", of(&Identification::fit));
   fields.add("ellipses", [](From measured) { return measured.findings ? &measured.findings->ellipses : nullptr; });
   fields.add("antisymmetry",
@@ -215,19 +219,16 @@ void describe(Fields<Measurement>& fields) {
   fields.add("joint_domain", &Measurement::joints);
   fields.add("instrument", of(&Identification::instrument));
   fields.add("unmodelled_response", of(&Identification::response));
-  fields
-      .add("assumptions", of(&Identification::assumptions),
-           "what the data say of that which the model takes for granted")
-      .always = false;
+  fields.add("assumptions", of(&Identification::assumptions), "tests of the assumptions of the model").always = false;
   const auto describe_sensitivity = [](Fields<Measurement>& part) {
     part.add(
         "x0_per_force", [](From measured) { return Matrix(numeric::inverse(measured.identification.model.K)); },
         "of x0, for each N of a constant error of −F: K⁻¹ [m/N]");
     part.add(
         "B_per_delay", [](From measured) { return Matrix(-measured.identification.model.K); },
-        "of B, for each second by which the force is late: −K [N/m]");
+        "of B, for each second of delay of the force: −K [N/m]");
   };
-  fields.group("sensitivity", describe_sensitivity, "What errors that one recording does not show do to the model.")
+  fields.group("sensitivity", describe_sensitivity, "Effect on the model of errors that one recording cannot show.")
       .always = false;
   fields.add(
       "alternatives",
@@ -235,7 +236,7 @@ void describe(Fields<Measurement>& fields) {
         const auto& other = measured.alternative;
         return other ? std::span(&*other, 1) : std::span<const Identification>();
       },
-      "the same by the other method");
+      "the same with the other method");
   fields.add_or_null("disagreement", &Measurement::disagreement);
   fields.add("force_comparison", &Measurement::force_comparison);
   fields.add("by_force_sensor", [](From measured) -> std::optional<ByForceSensor> {
@@ -258,13 +259,13 @@ void describe(Fields<Measurement>& fields) {
           const auto& from = measured.identification.parameters_from;
           return from ? word_of(*from) : "";
         },
-        "the data behind the parameters; empty: the file that the result was read from does not say");
+        "data used for the parameters; empty: not stated in the file from which the result was read");
     part.add("samples", of(&Identification::samples));
     part.add("duration_s", of(through(&Identification::excitation, &Excitation::duration)), "[s]");
     part.add("hac_lag_s", of(&Identification::hac_lag_s),
-             "reach of the residual's correlation in the standard errors [s]");
+             "noise correlation time allowed for in the standard errors [s]");
     part.add("handle_mass_kg", of(&Identification::handle_mass), "subtracted from the diagonal of M [kg]");
-    part.add("handle_mass_from", of(&Identification::handle_mass_from), "who said it");
+    part.add("handle_mass_from", of(&Identification::handle_mass_from), "source of the handle mass");
   });
   fields.add("excitation", of(&Identification::excitation));
   fields.add("decimate_check", of(&Identification::decimation));
@@ -279,7 +280,7 @@ void describe(Fields<OmittedTrial>& fields) {
 
 void describe(Fields<Summary>& fields) {
   fields.type("Summary", "Mean over the usable, different recordings, and its standard error between them.");
-  fields.add("trials", &Summary::trials, "behind the mean");
+  fields.add("trials", &Summary::trials, "number of trials in the mean");
   fields.add("omitted", &Summary::omitted);
   fields.add("method", &Summary::method);
   fields.add("model", &Summary::mean);
@@ -297,7 +298,7 @@ struct EllipseDocument {
 };
 
 void describe(Fields<EllipseDocument>& fields) {
-  fields.type("EllipseDocument", "What `mbk ellipse --json` writes of one result.");
+  fields.type("EllipseDocument", "Output of `mbk ellipse --json` for one result.");
   fields.header("mbk.ellipse/1");
   fields.add("inputs", through(&EllipseDocument::of, &Identification::sources));
   fields.add("ellipses", through(&EllipseDocument::findings, &Findings::ellipses));
@@ -305,14 +306,14 @@ void describe(Fields<EllipseDocument>& fields) {
 }
 
 void describe(Fields<List<EllipseDocument>>& fields) {
-  describe_list(fields, "EllipseDocuments", "mbk.ellipses/1", "What `mbk ellipse --json` writes of several results.");
+  describe_list(fields, "EllipseDocuments", "mbk.ellipses/1", "Output of `mbk ellipse --json` for several results.");
 }
 
 }  // namespace
 
 void describe(Fields<Results>& fields) {
   const auto of = [](auto member) { return through(&Results::together, member); };
-  fields.type("Results", "What `mbk measure --json` writes of several recordings.");
+  fields.type("Results", "Output of `mbk measure --json` for several recordings.");
   fields.header(kResultsSchema);
   fields.add("results", &Results::results);
   fields.add("summary", of(&SeveralTrials::summary));

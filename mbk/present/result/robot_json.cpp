@@ -28,13 +28,13 @@ void describe(Fields<DriveTerms>& fields) {
     }
     return terms;
   });
-  fields.add_number("smoothing", &DriveTerms::smoothing, "of the sign of the velocity [rad/s; m/s]");
+  fields.add_number("smoothing", &DriveTerms::smoothing, "smoothing of the sign of the velocity [rad/s; m/s]");
 }
 
 }  // namespace robot
 
 void describe(Fields<TorqueFit>& fields) {
-  fields.type("TorqueFit", "Of the torque of one joint.");
+  fields.type("TorqueFit", "Fit of the torque of one joint.");
   fields.add("VAF", &TorqueFit::vaf, "[%]");
   fields.add("RMSE", &TorqueFit::rmse, "[N·m; N]");
   fields.add("VAF_in_sample", &TorqueFit::vaf_in_sample, "[%]");
@@ -59,25 +59,25 @@ void describe(Fields<RobotCombination>& fields) {
   fields.add("value", &RobotCombination::value);
   fields.add("free_value", &RobotCombination::free, "of the free fit");
   fields.add("standard_error", &RobotCombination::standard_error, "of the free fit");
-  fields.add_unless_empty("together_with", &RobotCombination::together_with, "what the value holds besides");
+  fields.add_unless_empty("together_with", &RobotCombination::together_with,
+                          "other coefficients included in the value");
 }
 
 void describe(Fields<ConsistentRobot>& fields) {
-  fields.type("ConsistentRobot",
-              "Present where `--consistent` was asked for; `parameters` and `fit` are then those of this robot.");
+  fields.type("ConsistentRobot", "Present with `--consistent`; `parameters` and `fit` are then those of this robot.");
   fields.add("links", &ConsistentRobot::bodies,
-             "Bodies that can exist, in the frames of their links: one choice of many that move alike.");
-  fields.add("combinations", &ConsistentRobot::combinations, "What the data decide (base parameters).");
+             "Physically consistent bodies in the frames of their links; not unique: others give the same motion.");
+  fields.add("combinations", &ConsistentRobot::combinations, "Identifiable combinations (base parameters).");
   fields.add("free_fit", &ConsistentRobot::free_fit);
-  fields.add("VAF_lost", &ConsistentRobot::vaf_lost, "of each joint, free fit less this one [points]");
+  fields.add("VAF_lost", &ConsistentRobot::vaf_lost, "of each joint: free fit minus this fit [percentage points]");
   fields.add("VAF_lost_in_sample", &ConsistentRobot::vaf_lost_in_sample, "[points]");
-  fields.add("mean_VAF_lost", &ConsistentRobot::mean_vaf_lost, "over the joints [points]");
+  fields.add("mean_VAF_lost", &ConsistentRobot::mean_vaf_lost, "mean over the joints [percentage points]");
   fields.add("loss", &ConsistentRobot::loss,
-             "half the sum of squared residuals that the conditions add, in the residual's variance");
-  fields.add("loss_gap", &ConsistentRobot::gap,
-             "by how much the last tenfold step towards the least loss still lowered it");
+             "half the sum of squared residuals added by the constraints, relative to the variance of the residual");
+  fields.add("loss_gap", &ConsistentRobot::gap, "decrease of the loss in the last tenfold step towards its minimum");
   fields.add("newton_steps", &ConsistentRobot::newton_steps);
-  fields.add("pressing", &ConsistentRobot::pressing, "conditions that the data alone would break, strongest first");
+  fields.add("pressing", &ConsistentRobot::pressing,
+             "active constraints, which the free fit would violate, strongest first");
 }
 
 void describe(Fields<RobotCoefficient>& fields) {
@@ -88,10 +88,11 @@ void describe(Fields<RobotCoefficient>& fields) {
   fields.add("value", &RobotCoefficient::value);
   fields.add("standard_error", &RobotCoefficient::standard_error);
   fields.add("identified", &RobotCoefficient::identified,
-             "false: its share is in those that are; of a consistent fit: it does not stand by itself");
+             "false: it is included in identified ones; in a consistent fit: it is not identifiable alone");
   fields.add_as("fixed", {{"enum", {true}}}, &RobotCoefficient::fixed, "taken as known")
       .only_if(&RobotCoefficient::fixed);
-  fields.add_unless_empty("together_with", &RobotCoefficient::together_with, "what the value holds besides");
+  fields.add_unless_empty("together_with", &RobotCoefficient::together_with,
+                          "other coefficients included in the value");
 }
 
 void describe(Fields<StatedRatio>& fields) {
@@ -118,7 +119,7 @@ struct RobotPreparation {
 };
 
 void describe(Fields<RobotPreparation>& fields) {
-  fields.type("RobotPreparation", "How the signals were made.");
+  fields.type("RobotPreparation", "How the signals were prepared.");
   fields.with([](const RobotPreparation& one) -> const Preparation& { return *one.how; }, "protocol");
 }
 
@@ -129,9 +130,7 @@ void describe(Fields<RobotIdentification>& fields) {
   using From = const Found&;
   const auto model = &Found::model;
   const auto by_instruments = [](From found) { return found.method == RobotMethod::instrumental_variables; };
-  fields.type(
-      "Robot",
-      "What `mbk robot identify --json` writes: the dynamics of a robot, with all that is needed to use them again.");
+  fields.type("Robot", "Output of `mbk robot identify --json`: the dynamics of a robot, complete for later use.");
   fields.header(kRobotSchema);
   fields.add("inputs", [](From found) {
     std::vector<result::TimedInput> inputs;
@@ -149,7 +148,7 @@ void describe(Fields<RobotIdentification>& fields) {
   fields.add("parameters", &Found::coefficients);
   fields.add_number("motor_delay_s", through(model, &robot::DynamicModel::delay), "[s]");
   fields.add("motor_delay_standard_error_s", &Found::delay_standard_error,
-             "[s]; absent where the delay was not estimated");
+             "[s]; absent if the delay was not estimated");
   fields.group("drive", [](Fields<Found>& part) {
     const auto drive = through(&Found::model, &robot::DynamicModel::drive);
     part.with(drive);
@@ -173,13 +172,13 @@ void describe(Fields<RobotIdentification>& fields) {
     });
   });
   fields.add_unless_empty("stated", &Found::stated,
-                          "of each joint: its torque over what the URDF's masses and inertias take, friction left "
-                          "free; absent where no URDF states all masses");
+                          "for each joint: ratio of its torque to that for masses and inertias of the URDF, with free "
+                          "friction; absent if no URDF states all masses");
   const auto inertia = [](Fields<Found>& part) {
     part.add("smallest_eigenvalue", through(&Found::inertia, &InertiaCheck::smallest), "[kg·m²; kg]");
-    part.add("at", through(&Found::inertia, &InertiaCheck::where), "the joints there [rad; m]");
+    part.add("at", through(&Found::inertia, &InertiaCheck::where), "joint positions there [rad; m]");
   };
-  fields.group("inertia", inertia, "Whether the inertia matrix is one in every posture.");
+  fields.group("inertia", inertia, "Whether the inertia matrix is positive definite in every posture.");
   fields.add("consistent", &Found::consistent);
   fields.add("samples", &Found::samples);
   fields.add("hac_lag_s", &Found::hac_lag_s, "[s]");
@@ -197,15 +196,15 @@ void describe(Fields<RobotIdentification>& fields) {
 }
 
 void describe(Fields<ForceSummary>& fields) {
-  fields.type("Force", "What `mbk robot force --json` writes: a computed force in short.");
+  fields.type("Force", "Output of `mbk robot force --json`: summary of a computed force.");
   fields.header("mbk.force/1");
   fields.add("inputs", &ForceSummary::sources);
   fields.add("force_source", &ForceSummary::source);
   fields.add("lag_s", &ForceSummary::lag, "of the force [s]");
   fields.add_as("axes", {{"type", "array"}, {"items", {{"enum", {"x", "y", "z"}}}}}, &ForceSummary::axes,
-                "of the base, along which the force is");
+                "axes of the base frame along which the force is given");
   fields.add_as("unit", {{"enum", {"N", "N·m"}}}, &ForceSummary::unit,
-                "of the force, which is a torque where the hand turns");
+                "unit of the force, which is a torque if the hand turns");
   fields.add("RMS", &ForceSummary::rms, "[unit]");
   fields.add("peak", &ForceSummary::peak, "[unit]");
   fields.add_if([](const ForceSummary& force) { return force.standard_error.size() > 0; }, "standard_error_RMS",
@@ -245,7 +244,7 @@ void describe(Fields<DescribedCoefficient>& fields) {
   fields
       .add_form<std::map<std::string, double>>(
           "part_of", &DescribedCoefficient::part_of,
-          "coefficients that show it, with its factor; absent where it shows by itself")
+          "identifiable coefficients that include it, with its factor; absent if it is identifiable itself")
       .only_if([](const DescribedCoefficient& one) { return !one.part_of.is_null(); });
 }
 
@@ -292,8 +291,7 @@ std::vector<DescribedCoefficient> coefficients_of(const DescribedRobot& describe
 
 void describe(Fields<DescribedRobot>& fields) {
   using From = const DescribedRobot&;
-  fields.type("Robot description",
-              "What `mbk robot describe --json` writes: what was understood of a robot's description.");
+  fields.type("Robot description", "Output of `mbk robot describe --json`: the description of a robot as understood.");
   fields.header("mbk.robot_description/1");
   fields.add("file", [](From robot) { return robot.description.source; });
   fields.add("joints", joints_of);
@@ -316,7 +314,7 @@ void describe(Fields<DescribedRobot>& fields) {
   fields.add("coefficients", coefficients_of);
   fields.add(
       "impossible", [](From robot) { return robot.description.impossible; },
-      "what the files state and no robot can have");
+      "physically impossible values in the files");
 }
 
 robot::DriveTerms drive_from(const Json& json) {
@@ -328,7 +326,7 @@ robot::DriveTerms drive_from(const Json& json) {
       if (name != term.word) continue;
       drive.*term.requested = known = true;
     }
-    if (!known) throw Malformed{fmt::format("there is no term {}", name.dump())};
+    if (!known) throw Malformed{fmt::format("unknown term {}", name.dump())};
   }
   drive.smoothing = json.value("smoothing", drive.smoothing);
   drive.stribeck_velocity = json.value("stribeck_velocity", drive.stribeck_velocity);
@@ -362,7 +360,7 @@ StoredRobot stored_from(const Json& json) {
   }
   if (!stored.parameters.allFinite()) throw Malformed{"a parameter is not a number"};
   stored.covariance = matrix_from(json, "covariance", count, count);
-  if (!is_covariance(stored.covariance)) throw Malformed{"'covariance' is not that of any numbers"};
+  if (!is_covariance(stored.covariance)) throw Malformed{"'covariance' is not a covariance matrix"};
   stored.delay = number_from(json.at("motor_delay_s"));
   if (!(std::abs(stored.delay) < 1.0)) throw Malformed{"the motor delay is not a number of seconds below 1"};
   stored.usable = json.value("usable", true);

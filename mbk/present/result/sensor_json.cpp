@@ -18,7 +18,7 @@ constexpr const char* kSensorSchema = "mbk.sensor/1";
 using document::Fields;
 
 void describe(Fields<ForceOnVoltage>& fields) {
-  fields.type("ForceOnVoltage", "This axis by itself, the other way round.");
+  fields.type("ForceOnVoltage", "Regression of force on voltage for this axis alone.");
   fields.add("slope", &ForceOnVoltage::slope, "[N/V]");
   fields.add("slope_standard_error", &ForceOnVoltage::slope_error, "[N/V]");
   fields.add("intercept", &ForceOnVoltage::intercept, "[N]");
@@ -37,7 +37,7 @@ void describe(Fields<SensorAxis>& fields) {
   fields.add("RMSE", &SensorAxis::rmse, "[N]");
   fields.add("force_on_voltage", &SensorAxis::published);
   fields.add("full_scale", &SensorAxis::full_scale, "largest load [N]");
-  fields.add("loads", &SensorAxis::loads, "different ones");
+  fields.add("loads", &SensorAxis::loads, "number of different loads");
   fields.add("nonlinearity", &SensorAxis::nonlinearity, "[N]");
   fields.add("hysteresis", &SensorAxis::hysteresis, "[N]");
   fields.add("noise_voltage", &SensorAxis::noise, "[V]");
@@ -54,19 +54,19 @@ void describe(Fields<SensorWarning>& fields) {
 
 void describe(Fields<SensorCalibration>& fields) {
   fields.type("Sensor",
-              "What `mbk sensor calibrate --json` writes: F = S (V − V₀) of a force sensor. SI units, V for volts.");
+              "Output of `mbk sensor calibrate --json`: F = S (V − V₀) of a force sensor. SI units, V: volts.");
   fields.header(kSensorSchema);
   fields.constant("what", "calibrate");
   fields.add("inputs", &SensorCalibration::sources);
-  fields.add("continuous", &SensorCalibration::continuous, "from recordings over time; otherwise one row a load");
+  fields.add("continuous", &SensorCalibration::continuous, "from recordings over time; otherwise one row per load");
   fields.add("rows", &SensorCalibration::rows, "of tables, or samples");
   fields.add("lever_arm", &SensorCalibration::lever_arm, "from the gauges to the load [m]");
-  fields.add("delay", &SensorCalibration::delay, "of the voltage after the load [s]");
+  fields.add("delay", &SensorCalibration::delay, "lag of the voltage behind the load [s]");
   fields.add_if(&SensorCalibration::continuous, "hac_lag_s", &SensorCalibration::hac_lag_s, "[s]");
   fields.add("slope", &SensorCalibration::slope, "S [N/V]");
   fields.add("slope_standard_error", &SensorCalibration::slope_error, "[N/V]");
   const auto crosstalk = [](const SensorCalibration& calibration) { return calibration.crosstalk.size() > 0; };
-  fields.add_if(crosstalk, "crosstalk", &SensorCalibration::crosstalk, "what axis j feels of a load on i [N/N]");
+  fields.add_if(crosstalk, "crosstalk", &SensorCalibration::crosstalk, "response of axis j to a load on axis i [N/N]");
   fields.add_if(crosstalk, "crosstalk_standard_error", &SensorCalibration::crosstalk_error, "[N/N]");
   fields.add("axes", &SensorCalibration::axes);
   fields.add("zero_voltages", &SensorCalibration::zero_voltages, "V₀ of each run [V]");
@@ -77,19 +77,19 @@ void describe(Fields<SensorCalibration>& fields) {
 void describe(Fields<MeasuredDelay>& fields) {
   using From = const MeasuredDelay&;
   fields.type("SensorDelay",
-              "What `mbk sensor delay --json` writes: by how much a force sensor is late, from the motion of a known "
+              "Output of `mbk sensor delay --json`: delay of a force sensor, from the motion of a known "
               "mass. SI units.");
   fields.header("mbk.sensor_delay/1");
   fields.add("inputs", &MeasuredDelay::sources);
-  fields.add("delay_s", &MeasuredDelay::delay, "above 0: the force is read after the motion");
+  fields.add("delay_s", &MeasuredDelay::delay, "above 0: the force is recorded after the motion");
   fields.add("delay_interval95_s", [](From found) { return numeric::interval95(found.delay, found.delay_error); });
   fields.add("mass_kg", &MeasuredDelay::mass, "as found");
   fields.add("mass_interval95_kg", [](From found) { return numeric::interval95(found.mass, found.mass_error); });
   fields.add("stated_mass_kg", &MeasuredDelay::stated_mass);
-  fields.add("VAF", &MeasuredDelay::vaf, "of the force by the mass alone, of the axis with less of it [%]");
+  fields.add("VAF", &MeasuredDelay::vaf, "VAF of the force by the mass alone, minimum over the axes [%]");
   fields.add("duration_s", &MeasuredDelay::duration);
   fields.add("usable", &MeasuredDelay::usable);
-  fields.add("problems", &MeasuredDelay::problems, "why the delay is not to be used");
+  fields.add("problems", &MeasuredDelay::problems, "why the delay is not usable");
 }
 
 namespace result {
@@ -223,7 +223,7 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
   } catch (const Json::parse_error& error) {
     return bad_data(fmt::format("not JSON, at byte {}", error.byte), "give a file of 'mbk sensor calibrate --json'");
   } catch (const Json::exception&) {
-    return bad_data("a number is beyond what can be said", "give a file of 'mbk sensor calibrate --json'");
+    return bad_data("a number is out of range", "give a file of 'mbk sensor calibrate --json'");
   }
   if (!json.is_object() || text_or_empty(json, "schema") != kSensorSchema) {
     return bad_data(fmt::format("not a calibration of schema {}", kSensorSchema),
@@ -254,7 +254,7 @@ Result<SensorCalibration> sensor_calibration_from_json(std::string_view text) {
   calibration.hac_lag_s = Reader::maybe(json, "hac_lag_s").value_or(0.0);
   calibration.continuous = json.value("continuous", Json()) == Json(true);
   read_provenance(calibration, json);
-  if (!reader.problem.empty()) return bad_data(reader.problem, "calibrate again, or mend the file");
+  if (!reader.problem.empty()) return bad_data(reader.problem, "calibrate again, or correct the file");
   return calibration;
 }
 

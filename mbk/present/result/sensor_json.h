@@ -17,7 +17,7 @@ namespace mbk::result {
 
 /// Reads back what `to_json` wrote.
 /// @fails  not JSON (the byte is named); another schema; axes that are not x and y; a matrix of the wrong shape, or a
-///         slope or zero that is not finite (its name is said); slopes that cannot be inverted.
+///         slope or zero that is not finite (its name is reported); slopes that cannot be inverted.
 [[nodiscard]] Result<SensorCalibration> sensor_calibration_from_json(std::string_view text);
 
 }  // namespace mbk::result

@@ -14,7 +14,7 @@ void describe(Fields<SpringLine>& fields) {
   fields.type("SpringLine");
   fields.add("stiffness", &SpringLine::stiffness, "[N/m]");
   fields.add("stiffness_standard_error", &SpringLine::stiffness_error, "[N/m]");
-  fields.add("rest", &SpringLine::rest, "where the line meets zero [m]");
+  fields.add("rest", &SpringLine::rest, "length at which the line crosses zero force [m]");
   fields.add("rest_standard_error", &SpringLine::rest_error, "[m]");
   fields.add("r_squared", &SpringLine::r_squared);
   fields.add("RMSE", &SpringLine::rmse, "[N]");
@@ -24,7 +24,7 @@ void describe(Fields<SpringLine>& fields) {
 }
 
 void describe(Fields<HookFit>& fields) {
-  fields.type("HookFit", "Hooks that give at first.");
+  fields.type("HookFit", "Hooks that yield at small force.");
   fields.add("stiffness", &HookFit::stiffness, "[N/m]");
   fields.add("stiffness_standard_error", &HookFit::stiffness_error, "[N/m]");
   fields.add("rest", &HookFit::rest, "[m]");
@@ -37,27 +37,26 @@ void describe(Fields<HookFit>& fields) {
 void describe(Fields<SpringConstant>& fields) {
   fields.type("SpringConstant");
   fields.add("inputs", &SpringConstant::sources);
-  fields.add("straight", &SpringConstant::straight, "the answer: through the straight part");
-  fields.add("whole", &SpringConstant::whole, "through everything");
+  fields.add("straight", &SpringConstant::straight, "the result: line through the straight part");
+  fields.add("whole", &SpringConstant::whole, "line through all samples");
   fields.add("bias_of_whole", &SpringConstant::bias_of_whole, "relative");
   fields.add("rule", &SpringConstant::rule, "how the straight part was chosen");
-  fields.add("hac_lag_s", &SpringConstant::hac_lag_s,
-             "[m]: reach of the residual's correlation in the standard errors");
+  fields.add("hac_lag_s", &SpringConstant::hac_lag_s, "[m]: correlation time of the residual in the standard errors");
   fields.add("hooks", &SpringConstant::hooks);
   fields.add("notes", &SpringConstant::notes);
 }
 
 void describe(Fields<Linearisation>& fields) {
-  fields.type("Linearisation", "Within a circle about the equilibrium.");
+  fields.type("Linearisation", "Linearity within a circle around the equilibrium.");
   fields.add("radius", &Linearisation::radius, "[m]");
   fields.add("largest_error", &Linearisation::largest_error, "[N]");
   fields.add("largest_force", &Linearisation::largest_force, "[N]");
   fields.add("relative_error", &Linearisation::relative_error);
-  fields.add("smallest_extension", &Linearisation::smallest_extension, "[m]; below 0 a spring goes slack");
+  fields.add("smallest_extension", &Linearisation::smallest_extension, "[m]; below 0: a spring goes slack");
 }
 
 void describe(Fields<GridField>& fields) {
-  fields.type("GridField", "By differences of forces on a grid.");
+  fields.type("GridField", "Published procedure: differences of forces on a grid.");
   fields.add("step", &GridField::step, "[m]");
   fields.add("equilibrium", &GridField::equilibrium, "[m]");
   fields.add("residual_force", &GridField::residual, "[N]");
@@ -109,7 +108,7 @@ void describe(Fields<SpringInArray>& fields) {
   fields.with(&SpringInArray::spring);
   fields.add("length", &SpringInArray::length, "[m]");
   fields.add("tension", &SpringInArray::tension, "[N]");
-  fields.add("eye", &SpringInArray::eye, "screw eye that it hangs in, from 1; absent where the springs were given");
+  fields.add("eye", &SpringInArray::eye, "number of its screw eye, from 1; absent if the springs were given");
 }
 
 struct SpringArray {
@@ -192,7 +191,7 @@ std::string to_json(const std::vector<SpringConstant>& constants) {
 
 void add_springs_schema(document::Schemas& schemas) {
   schemas["springs"] = document::schema_of_one<FieldDocument, DesignDocument, ConstantsDocument>(
-      "Springs", "What `mbk springs field|find|calibrate --json` write; `what` says which of the three it is.");
+      "Springs", "Output of `mbk springs field|find|calibrate --json`; `what` names which of the three.");
 }
 
 }  // namespace result

@@ -21,8 +21,8 @@ void describe(Fields<ViolatedBand>& fields) {
   fields.add("from", through(&ViolatedBand::low, &RadPerSec::value), "[rad/s]");
   fields.add("to", through(&ViolatedBand::high, &RadPerSec::value), "[rad/s]");
   fields.add_if(is_band, "worst", through(&ViolatedBand::worst, &RadPerSec::value), "[rad/s]");
-  fields.add_if(is_band, "value", &ViolatedBand::value, "of the condition there");
-  fields.add_unless_empty("pole", &ViolatedBand::detail, "which entry has it");
+  fields.add_if(is_band, "value", &ViolatedBand::value, "value of the condition there");
+  fields.add_unless_empty("pole", &ViolatedBand::detail, "matrix entry with this pole");
 }
 
 void describe(Fields<StabilityOutcome>& fields) {
@@ -38,8 +38,7 @@ void describe(Fields<AbsoluteStability>& fields) {
   using From = const AbsoluteStability&;
   const auto is_marginal = [](From stability) { return stability.verdict == StabilityVerdict::marginal; };
   fields.type("Stability", "Frequencies in rad/s; null: infinite.");
-  fields.add_as("form", {{"enum", {"z", "y", "h", "g"}}}, &AbsoluteStability::form,
-                "of the immittance matrix that was judged");
+  fields.add_as("form", {{"enum", {"z", "y", "h", "g"}}}, &AbsoluteStability::form, "of the tested immittance matrix");
   fields.add("verdict", &AbsoluteStability::verdict);
   fields.add("absolutely_stable", &AbsoluteStability::holds);
   fields.add("conditions", &AbsoluteStability::conditions);
@@ -55,7 +54,7 @@ void describe(Fields<AbsoluteStability>& fields) {
 }
 
 void describe(Fields<FrequencyGrid>& fields) {
-  fields.type("Grid", "Frequencies, evenly spaced in the logarithm unless bounded.");
+  fields.type("Grid", "Logarithmically spaced frequencies, unless bounded.");
   fields.add_number("from", through(&FrequencyGrid::low, &RadPerSec::value), "[rad/s]");
   fields.add_number("to", through(&FrequencyGrid::high, &RadPerSec::value), "[rad/s]");
   fields.add("points", &FrequencyGrid::points);
@@ -66,7 +65,7 @@ void describe(Fields<FrequencyGrid>& fields) {
 void describe(Fields<AdmissibleEnd>& fields) {
   fields.type("AdmissibleEnd");
   fields.add("value", &AdmissibleEnd::value, "null: infinite");
-  fields.add_or_null("included", &AdmissibleEnd::included, "null: not decided");
+  fields.add_or_null("included", &AdmissibleEnd::included, "null: undecided");
   fields.add("end_of_range", &AdmissibleEnd::limit_of_search, "that was asked for");
 }
 
@@ -83,12 +82,12 @@ void describe(Fields<AdmissibleSet>& fields) {
       "range", [](const AdmissibleSet& set) { return std::pair(set.low, set.high); }, "that was asked for");
   fields.add("intervals", &AdmissibleSet::intervals);
   fields.add("undecided", &AdmissibleSet::undecided);
-  fields.add("critical", &AdmissibleSet::critical, "where the answer could have changed");
+  fields.add("critical", &AdmissibleSet::critical, "values at which the verdict could change");
 }
 
 void describe(Fields<LargestShortage>& fields) {
   using From = const LargestShortage&;
-  fields.type("LargestShortage", "The largest shortage of passivity at a port with which all is stable.");
+  fields.type("LargestShortage", "The largest shortage of passivity at a port with which the system is stable.");
   fields.add("port", &LargestShortage::port);
   fields.add_or_null(
       "a", [](From largest) { return largest.exists ? std::optional(largest.value()) : std::nullopt; },
@@ -153,10 +152,10 @@ void describe(Fields<ExcessStep>& fields) {
 }
 
 void describe(Fields<ExcessSweep>& fields) {
-  fields.type("ExcessSweep", "What an excess of passivity of the operator buys.");
+  fields.type("ExcessSweep", "Effect of an excess of passivity of the operator.");
   fields.add("parameter", &ExcessSweep::parameter);
   fields.add("unit", &ExcessSweep::unit);
-  fields.add("frequency", through(&ExcessSweep::frequency, &RadPerSec::value), "at which `felt` is taken [rad/s]");
+  fields.add("frequency", through(&ExcessSweep::frequency, &RadPerSec::value), "frequency of `felt` [rad/s]");
   fields.add("steps", &ExcessSweep::steps);
 }
 
@@ -187,7 +186,7 @@ void describe(Fields<TeleoperationFinding>& fields) {
   using Finding = TeleoperationFinding;
   using From = const Finding&;
   fields.type("Teleoperation",
-              "What `mbk teleop --json` writes: whether a design is absolutely stable. SI units, frequencies in rad/s; "
+              "Output of `mbk teleop --json`: whether a design is absolutely stable. SI units, frequencies in rad/s; "
               "null: infinite.");
   fields.header("mbk.teleop/1");
   fields.add("inputs", [](From finding) { return std::vector{DesignFile{finding.file}}; });
@@ -205,7 +204,7 @@ void describe(Fields<TeleoperationFinding>& fields) {
   const auto of_operator = [](Fields<Finding>& part) {
     part.add("port", &Finding::operator_port);
     part.add("a", through(&Finding::operator_shortage, &OperatorShortage::a), "shortage of passivity [N·s/m]");
-    part.add("rule", through(&Finding::operator_shortage, &OperatorShortage::rule), "where it comes from");
+    part.add("rule", through(&Finding::operator_shortage, &OperatorShortage::rule), "source of the shortage");
   };
   fields.group("operator", of_operator).only_if([](From finding) { return finding.with_operator.has_value(); });
   fields.add("modified_llewellyn", &Finding::with_operator);
@@ -256,7 +255,7 @@ std::string unfit(const Json& json) {
   if (warned || is("/passivity/models/0/fits", false) || is("/passivity/decided_by", "energy")) {
     return "its model explains too little of the force";
   }
-  if (is("/passivity/band_hz", nullptr)) return "at no two frequencies does it show how the arm answers in all axes";
+  if (is("/passivity/band_hz", nullptr)) return "it has no band in which all axes were excited coherently";
   return "";
 }
 
@@ -286,26 +285,26 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
   try {
     json = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    return bad_data(fmt::format("not JSON: byte {} cannot be there", error.byte), remedy);
+    return bad_data(fmt::format("it is not valid JSON, byte {}", error.byte), remedy);
   }
   if (has_schema(json, "mbk.results/1") || has_schema(json, "mbk.passivities/1")) {
     const auto results = json.find("results");
     if (results == json.end() || !results->is_array() || results->size() != 1) {
-      return bad_data("it holds several results or none", "give a file with the result of one operator");
+      return bad_data("it contains several results or none", "give a file with the result of one operator");
     }
     json = Json((*results)[0]);
   }
   const auto schemas = {"mbk.result/2", "mbk.passivity/2", "mbk.result/1", "mbk.passivity/1"};
   if (std::ranges::none_of(schemas, [&](const char* one) { return has_schema(json, one); })) {
-    return bad_data("no result of mbk: its schema is neither mbk.result/2 nor mbk.passivity/2", remedy);
+    return bad_data("it is not a result of mbk: its schema is neither mbk.result/2 nor mbk.passivity/2", remedy);
   }
   if (is_of_rotation(json)) {
-    return bad_data("it is of a joint that turns: its excess of passivity is in N·m·s/rad, and a design is in N·s/m",
+    return bad_data("it is of a rotating joint: its excess of passivity is in N·m·s/rad, but the design is in N·s/m",
                     "give the result of an arm that was moved along a line or in a plane");
   }
   if (const std::string why = unfit(json); !why.empty()) {
-    return tl::unexpected(Error{ErrorKind::not_usable, why + ", so that nothing follows from it for a design",
-                                "measure again; see what 'mbk measure' warns of, and its --report", ""});
+    return tl::unexpected(Error{ErrorKind::not_usable, why + ", so it cannot be used for a design",
+                                "measure again, following the warnings of 'mbk measure' and its --report", ""});
   }
   const auto low = lowest_at(json, "/passivity/models/0/index/lower95"),
              high = lowest_at(json, "/passivity/models/0/index/upper95"),
@@ -313,7 +312,7 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
   const Json::json_pointer band("/passivity/models/0/band_hz");
   if (!low || !high || !from || !json.contains(band) || !json[band].is_array() || json[band].size() != 2 ||
       !json[band][1].is_number()) {
-    return bad_data("it says nothing of how passive the operator is",
+    return bad_data("it contains no passivity index of the operator",
                     "measure with 'mbk measure --json', which writes the passivity index, or give shortage_N_s_per_m");
   }
   const bool extrapolated = json.value(Json::json_pointer("/passivity/models/0/extrapolated"), false);
@@ -322,8 +321,8 @@ Result<OperatorShortage> operator_shortage_from_json(std::string_view text) {
       fmt::format("minus the lower end of the 95 % interval of the smallest passivity index, {:.4g} to {:.4g} N·s/m, "
                   "from {:.3g} to {:.3g} Hz, antisymmetric part included; {} is an assumption",
                   *low, *high, *from, json[band][1].get<double>(),
-                  extrapolated ? "what lies beyond the data, in that band and outside it,"
-                               : "that it is no worse outside that band"),
+                  extrapolated ? "the behaviour beyond the data, in that band and outside it,"
+                               : "that the operator is no less passive outside that band"),
       std::pair{*low, *high}};
 }
 

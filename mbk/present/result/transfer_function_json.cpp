@@ -24,7 +24,7 @@ void describe(Fields<Root>& fields) {
   fields.add("frequency_standard_error_hz", &Root::frequency_standard_error, "[Hz]");
   fields.add("damping", &Root::damping);
   fields.add("damping_standard_error", &Root::damping_standard_error);
-  fields.add("outside_band", &Root::outside_band, "that was excited");
+  fields.add("outside_band", &Root::outside_band, "outside the excited band");
 }
 
 void describe(Fields<FrequencyResponse>& fields) {
@@ -33,7 +33,7 @@ void describe(Fields<FrequencyResponse>& fields) {
   const auto around = [](const Vector& value, const Vector& half_width) -> Ends {
     return {value - half_width, value + half_width};
   };
-  fields.type("FrequencyResponse", "Over frequency, with 95 % intervals.");
+  fields.type("FrequencyResponse", "Frequency response with 95 % intervals.");
   fields.add("frequency_hz", &FrequencyResponse::frequency, "[Hz]");
   fields.add("magnitude", [](From response) -> Vector { return response.value.cwiseAbs(); });
   fields.add(
@@ -58,9 +58,9 @@ void describe(Fields<FrequencyResponse>& fields) {
     part.add("shorter_half_axis", [](From response) -> Vector { return response.region95.col(1); });
     part.add(
         "angle_deg", [](From response) -> Vector { return kDegrees * response.region95.col(2); },
-        "of the longer one from the real axis [°]");
+        "angle of the major axis from the real axis [°]");
   };
-  fields.group("region95", region, "The ellipse that holds the value with 95 %.");
+  fields.group("region95", region, "Ellipse that contains the value with 95 % confidence.");
 }
 
 void describe(Fields<Estimate>& fields) {
@@ -71,7 +71,7 @@ void describe(Fields<Estimate>& fields) {
 
 void describe(Fields<InvertedAdmittance>& fields) {
   using From = const InvertedAdmittance&;
-  fields.type("InvertedAdmittance", "The impedance, where the input is a force and the output a motion.");
+  fields.type("InvertedAdmittance", "The impedance, if the input is a force and the output a motion.");
   fields.add("admittance_to", &InvertedAdmittance::output);
   fields.group("units", [](Fields<InvertedAdmittance>& part) {
     part.add("M", [](From inverse) { return units_of(inverse.motion).inertia; });
@@ -179,8 +179,8 @@ void describe(Fields<Document>& fields) {
   const auto model = of(&Found::model);
   const auto noise_there = [](const Vector& noise) { return noise.size() > 1; };
   fields.type("TransferFunction",
-              "What `mbk tf --json` writes. Numerator and denominator from the highest power of s to the constant; "
-              "discrete ones from q⁰ on.");
+              "Output of `mbk tf --json`. Numerator and denominator from the highest power of s to the constant; "
+              "discrete ones start with q⁰.");
   fields.header("mbk.tf/1");
   fields.add("inputs", of(&Found::sources));
   fields.add("method", of(&Found::method));
@@ -191,16 +191,16 @@ void describe(Fields<Document>& fields) {
   fields.add("denominator", [](From one) { return highest_first(*one.found, one.found->model.denominator); });
   fields.add_choice("variable", of(is_continuous), "s", "q^-1");
   fields.add_number("sample_time", through(model, &TransferFunction::sample_time),
-                    "of a discrete model [s]; 0: continuous");
+                    "sample time of a discrete model [s]; 0: continuous");
   fields.add_number("delay_s", through(model, &TransferFunction::delay), "[s]");
   fields.add("delay_found", of(&Found::delay_found), "below max_delay_s");
   fields.add_if([](From one) { return one.found->max_delay > 0.0; }, "max_delay_s", of(&Found::max_delay),
-                "[s] up to which a delay was looked for; absent where it was given");
+                "longest delay tried [s]; absent if the delay was given");
   fields.add("delay_standard_error_s", of(&Found::delay_standard_error),
-             "[s] of a delay that was found; absent where the standard errors take the delay as known");
+             "of an estimated delay [s]; absent if the standard errors treat the delay as known");
   fields.add("hold", of(&Found::hold), "of the input between samples; absent in discrete time");
   fields.add_if([](From one) { return one.found->hold.has_value(); }, "hold_found", of(&Found::hold_found),
-                "by the steps of the input");
+                "chosen from the steps of the input");
   fields.add("parameters", of(parameters_of));
   fields.add("covariance", of(&Found::covariance));
   fields.add_number("hac_lag_s", of(&Found::hac_lag_s), "[s]");
@@ -223,7 +223,7 @@ void describe(Fields<Document>& fields) {
     part.add("denominator", denominator).only_if(through(denominator, noise_there));
     part.add("numerator", numerator).only_if(through(numerator, noise_there));
   };
-  fields.group("noise", noise, "Its model, from q⁰ on.").only_if([=](From one) {
+  fields.group("noise", noise, "Noise model; coefficients start with q⁰.").only_if([=](From one) {
     return noise_there(denominator(one)) || noise_there(numerator(one));
   });
   fields.add("residuals", of(&Found::residuals));
@@ -237,8 +237,9 @@ void describe(Fields<Document>& fields) {
   fields.add("experiments", of(&Found::experiments), "segments");
   fields.add("even_clock", of(&Found::even));
   fields.add("sample_time_s", of(&Found::sample_time), "of the data [s]");
-  fields.add_number("recorded_rate_hz", of(&Found::recorded_rate_hz), "before it was decimated [Hz]")
-      .only_if([](From one) { return one.found->recorded_rate_hz > 0.0; });
+  fields.add_number("recorded_rate_hz", of(&Found::recorded_rate_hz), "before decimation [Hz]").only_if([](From one) {
+    return one.found->recorded_rate_hz > 0.0;
+  });
   fields.add("notes", of(&Found::notes));
   fields.add("warnings", of(&Found::warnings));
   fields.add("usable", of(&Found::usable));
@@ -254,10 +255,9 @@ struct ReportDocument {
 void describe(Fields<ReportDocument>& fields) {
   const auto drawn = &ReportDocument::drawn;
   fields.type("Transfer function report",
-              "What stands in the page that `mbk tf --report` writes. What is there to be looked at has six digits, "
-              "times nine.");
+              "Data of the page that `mbk tf --report` writes. Data for display have six digits, times nine.");
   fields.header("mbk.tf_report/1");
-  fields.add("command", &ReportDocument::command, "as it was typed");
+  fields.add("command", &ReportDocument::command, "command line");
   fields.add_unless_empty("note", &ReportDocument::note);
   fields.group("simulation", [drawn](Fields<ReportDocument>& part) {
     part.add(

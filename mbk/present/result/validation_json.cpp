@@ -29,7 +29,7 @@ void describe(Fields<Chart>& fields) {
   fields.add("series", &Chart::series);
   fields.add_unless_empty("horizontal", &Chart::horizontal);
   fields.add_unless_empty("vertical", &Chart::vertical);
-  fields.add_if(&Chart::identity, "identity", &Chart::identity, "a line where both axes agree");
+  fields.add_if(&Chart::identity, "identity", &Chart::identity, "identity line");
   fields.add_unless_empty("notes", &Chart::notes);
 }
 
@@ -38,33 +38,34 @@ void describe(Fields<ValidationRow>& fields) {
   fields.add("what", &ValidationRow::what);
   fields.add("value", &ValidationRow::value);
   fields.add_or_null("interval95", &ValidationRow::interval95,
-                     "of the value, two-sided, from the number of runs, an end null where it is infinite; null: the "
-                     "value is no estimate, and is judged as it stands");
+                     "two-sided interval of the value, from the number of runs; an infinite end is null; null: the "
+                     "value is not an estimate and is judged without interval");
   fields.add_or_null("expected", &ValidationRow::expected,
                      "accepted range, with its ends; null: the row is informative");
   fields.add("verdict", &ValidationRow::verdict,
              "met: interval95 lies inside expected; falls short: the value lies outside; not shown: the value lies "
-             "inside and interval95 does not, or no share of so few trials could lie inside");
+             "inside but interval95 does not, or the number of trials is too small for any share to lie inside");
   fields.add_or_null(
       "met", [](const ValidationRow& row) { return row.judged() ? std::optional(row.met()) : std::nullopt; },
       "whether the verdict is met; null: informative");
   fields.add("unit", &ValidationRow::unit);
   fields.add("spread", &ValidationRow::spread, "standard deviation over the runs");
-  fields.add("trials", &ValidationRow::trials, "the value is a share [%] of so many");
+  fields.add("trials", &ValidationRow::trials, "number of trials if the value is a share [%]");
 }
 
 void describe(Fields<ValidationTable>& fields) {
-  fields.type("Validation", "What `mbk validate --json` writes: a method against known truth.");
+  fields.type("Validation", "Output of `mbk validate --json`: a method tested against known truth.");
   fields.header("mbk.validation/2");
   fields.add("study", &ValidationTable::study);
   fields.add("question", &ValidationTable::question);
-  fields.add("unit", &ValidationTable::unit, "of the rows that name none");
+  fields.add("unit", &ValidationTable::unit, "of rows without their own unit");
   fields.add("runs", &ValidationTable::runs);
   fields.add("seed", &ValidationTable::seed);
   fields.add("rows", &ValidationTable::rows);
-  fields.add("verdict", &ValidationTable::verdict,
-             "falls short where a row does, else not shown where a row is or none is judged, else met");
-  fields.add("met", &ValidationTable::met, "every row that is judged, and one is");
+  fields.add(
+      "verdict", &ValidationTable::verdict,
+      "falls short if any row does; otherwise not shown if any row is not shown or none is judged; otherwise met");
+  fields.add("met", &ValidationTable::met, "every judged row is met, and at least one is judged");
   fields.add_unless_empty("notes", &ValidationTable::notes);
   fields.add_unless_empty("charts", &ValidationTable::charts);
 }

@@ -30,8 +30,8 @@ void describe(Fields<WidthFinding>& fields) {
   fields.type("Width");
   fields.add("distance", &WidthFinding::distance, "largest |ln ratio| over the directions");
   fields.add("interval95", &WidthFinding::distance95);
-  fields.add("distinguishable", &WidthFinding::distinguishable, "beyond chance");
-  fields.add("surely_positive", &WidthFinding::surely_positive, "both matrices, beyond chance");
+  fields.add("distinguishable", &WidthFinding::distinguishable, "the difference is significant (95 %)");
+  fields.add("surely_positive", &WidthFinding::surely_positive, "both matrices are significantly positive");
   fields.add("second_to_first", [](const WidthFinding& width) {
     std::vector<Ratio> ratios;
     for (const WidthRatio& ratio : width.ratios) ratios.push_back({ratio, width.ratios.size() > 1});
@@ -42,7 +42,7 @@ void describe(Fields<WidthFinding>& fields) {
 namespace result {
 
 void describe(Fields<Comparison>& fields) {
-  fields.type("Comparison", "What `mbk compare --json` writes of two results.");
+  fields.type("Comparison", "Output of `mbk compare --json` for two results.");
   fields.header("mbk.compare/1");
   fields.add("first", &Comparison::first);
   fields.add("second", &Comparison::second);
@@ -50,19 +50,19 @@ void describe(Fields<Comparison>& fields) {
   const auto describe_widths = [width](Fields<Comparison>& part) {
     for (std::size_t k = 0; k < kMatrixNames.size(); ++k) part.add_or_null(kMatrixNames[k], width(k));
   };
-  fields.group("width", describe_widths, "How far the matrices are apart; null where there is no width.");
+  fields.group("width", describe_widths, "Width between the matrices; null if there is none.");
   const auto describe_refused = [](Fields<Comparison>& part) {
     for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
       part.add_if([k](const Comparison& of) { return !of.widths.of[k]; }, kMatrixNames[k],
                   [k](const Comparison& of) { return of.widths.refused[k]; });
     }
   };
-  fields.group("refused", describe_refused, "Why there is none.");
+  fields.group("refused", describe_refused, "Why there is no width.");
 }
 
 void describe(Fields<document::List<Comparison>>& fields) {
   describe_list(fields, "Comparisons", "mbk.comparisons/1",
-                "What `mbk compare --json` writes of more than two results: each but the first against the first.");
+                "Output of `mbk compare --json` for more than two results: each further one compared with the first.");
 }
 
 std::string to_json(std::span<const Comparison> all) {

@@ -12,7 +12,7 @@ namespace robot {
 
 void describe(Fields<Margin>& fields) {
   using From = const Margin&;
-  fields.type("RobotMargin", "What is left before a limit of the joints.");
+  fields.type("RobotMargin", "Margin to a limit of the joints.");
   fields.add("quantity", &Margin::quantity);
   fields.add_number(
       "limit_deg", [](From margin) { return kDegrees * margin.limit; }, "[°]");
@@ -23,7 +23,7 @@ void describe(Fields<Margin>& fields) {
 
 void describe(Fields<Posture>& fields) {
   using From = const Posture&;
-  fields.type("RobotPosture", "The robot at one place.");
+  fields.type("RobotPosture", "The robot at one hand position.");
   fields.add("hand_m", &Posture::hand, "base frame [m]");
   fields.add(
       "theta_deg", [](From posture) -> Vector { return kDegrees * posture.theta; }, "[°]");
@@ -57,7 +57,7 @@ struct WorkspaceDocument {
 
 void describe(Fields<WorkspaceDocument>& fields) {
   using From = const WorkspaceDocument&;
-  fields.type("Workspace", "What `mbk robot workspace --json` writes: where the hand can be.");
+  fields.type("Workspace", "Output of `mbk robot workspace --json`: the workspace of the hand.");
   fields.header("mbk.workspace/1");
   fields.add(
       "links_m", [](From one) { return std::pair(one.workspace.geometry.d1, one.workspace.geometry.d2); }, "[m]");

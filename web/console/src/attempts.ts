@@ -39,7 +39,7 @@ export class AttemptsPanel {
     this.name();
   });
   private readonly list = h("ol", { class: "attempt-list" });
-  private readonly none = h("p", { class: "not-yet" }, "No trial was performed yet.");
+  private readonly none = h("p", { class: "not-yet" }, "No trial has been performed yet.");
   private readonly form = h("form", { class: "exclusion" });
   private readonly title = h("p", { class: "exclusion-title" });
   private readonly from = h("input", { type: "number", name: "from", min: 0, step: "any", inputmode: "decimal" });

@@ -4,9 +4,9 @@ import { h } from "@mbk/shared/dom";
 import { text } from "./words";
 
 const watching = {
-  elsewhere: "another page controls.",
-  kept: "control is kept for a few seconds for the page that was closed or is loading again.",
-  nobody: "no page controls.",
+  elsewhere: "another page has control.",
+  kept: "control is reserved for a few seconds for the page that was closed or is reloading.",
+  nobody: "no page has control.",
 };
 
 export class ControlLine {
@@ -31,12 +31,12 @@ export class ControlLine {
 
   private controls(state: State | undefined): string {
     const others = (state?.viewers ?? 1) - 1;
-    return `This page controls.${others > 0 ? ` ${others} other ${others === 1 ? "page is" : "pages are"} open.` : ""}`;
+    return `This page has control.${others > 0 ? ` ${others} other ${others === 1 ? "page is" : "pages are"} open.` : ""}`;
   }
 
   private watches({ control, may_control }: You): string {
     const why = control === "here" ? "" : watching[control];
-    const way = may_control ? "" : " To control, open the console's address that mbk run printed.";
-    return `This page watches: ${why} STOP and the space bar work here too.${way}`;
+    const way = may_control ? "" : " To take control, open the console address that mbk run printed.";
+    return `This page is for viewing only: ${why} STOP and the space bar also work here.${way}`;
   }
 }

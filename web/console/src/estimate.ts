@@ -63,7 +63,7 @@ export class EstimatePanel {
     const title = (words: string) => h("h2", { id: "estimate-title" }, "Impedance", h("small", {}, words));
     if (!result) {
       if (estimate.final === undefined) this.tightening.clear();
-      this.element.replaceChildren(title(""), h("p", { class: "not-yet" }, estimate.why ? `Not yet: ${estimate.why}.` : "M, B and K appear two seconds after the perturbation begins."));
+      this.element.replaceChildren(title(""), h("p", { class: "not-yet" }, estimate.why ? `Not yet available: ${estimate.why}.` : "M, B and K appear two seconds after the perturbation starts."));
       return;
     }
     const units = unitsOf(result);
@@ -71,7 +71,7 @@ export class EstimatePanel {
     // those of a few seconds are wider than those of all: they did not narrow
     const history = from > 0 ? [] : this.tightening.add(result.standard_error as unknown as Record<string, Value[][]>);
     const seconds = ((estimate.perturbed_s ?? 0) - from).toFixed(0);
-    const span = estimate.final ? ` of the whole perturbation, ${seconds} s` : from > 0 ? ` of the last ${seconds} s: the stiffness changed` : ` so far, from ${seconds} s`;
+    const span = estimate.final ? ` from the whole perturbation, ${seconds} s` : from > 0 ? ` from the last ${seconds} s, because the stiffness changed` : ` so far, from ${seconds} s`;
     const ellipses = result.usable ? ellipsePanels(result, undefined, bands) : undefined;
     this.element.replaceChildren(
       title(`${span}, by ${methodNames[result.method]}`),
@@ -93,7 +93,7 @@ export class EstimatePanel {
         { class: "tightening" },
         history.length > 1
           ? `95 % intervals narrowed by ${(100 * (1 - (history.at(-1) as number))).toFixed(0)} % since the first estimate. `
-          : "± is half of the 95 % interval. ",
+          : "± is half the width of the 95 % interval. ",
         `Model explains ${result.fit.VAF.map((value, k) => `${fixed(value, 1)} % in ${"xy"[k]}`).join(", ")}.`,
         result.usable ? "" : h("strong", { class: "care-text" }, estimate.final ? " ▲ Not usable." : " ▲ Not usable yet."),
       ),

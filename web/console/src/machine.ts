@@ -31,13 +31,13 @@ export class MachinePanel {
     const shown = [...this.problems.children].map((item) => item.textContent);
     const words = problems.map((problem) => `▲ ${problem}`);
     if (shown.join("\n") !== words.join("\n")) this.problems.replaceChildren(...words.map((one) => h("li", {}, one)));
-    text(this.summary, `Timing of the loop: ${state.ticks === 0 ? "nothing ran yet" : problems.length > 0 ? "see above" : "in order"}`);
+    text(this.summary, `Timing of the loop: ${state.ticks === 0 ? "no trial yet" : problems.length > 0 ? "see above" : "OK"}`);
     if (!this.details.open) return;
     text(this.facts, [
       `${state.ticks} ticks, ${state.dropped_ticks} dropped`,
       `${(state.disk_free_bytes / 1e9).toFixed(1)} GB free on the disk`,
       `${state.viewers} ${state.viewers === 1 ? "page" : "pages"} open`,
-      you.dropped_frames > 0 ? `${you.dropped_frames} pictures left out here` : "",
+      you.dropped_frames > 0 ? `${you.dropped_frames} frames dropped by this page` : "",
     ].filter(Boolean).join(" · "));
     this.draw(state);
   }
@@ -45,7 +45,7 @@ export class MachinePanel {
   private found({ dropped_ticks, times, disk_free_bytes, ticks }: State): string[] {
     return [
       dropped_ticks > 0 && `${dropped_ticks} ${dropped_ticks === 1 ? "tick was" : "ticks were"} dropped: the recording has ${dropped_ticks === 1 ? "a gap" : "gaps"}`,
-      ticks > 0 && times.lateness.p999_us > period && `One tick in a thousand comes more than ${time(times.lateness.p999_us)} late`,
+      ticks > 0 && times.lateness.p999_us > period && `One tick in a thousand is more than ${time(times.lateness.p999_us)} late`,
       disk_free_bytes > 0 && disk_free_bytes < littleSpace && `The disk is nearly full: ${(disk_free_bytes / 1e9).toFixed(2)} GB free`,
     ].filter((problem) => problem !== false);
   }

@@ -1,4 +1,4 @@
-// The operator's page: what happens, whether it is safe, and what to do next.
+// The operator's page: state, safety, and next actions.
 import type { ConsoleCommand, ListedTrial, RobotState, State, You } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
 import { AttemptsPanel, gradeSigns, verdict } from "./attempts";
@@ -15,15 +15,15 @@ const signs = { waiting: "○", running: "▶", done: "✓", stopped: "■" };
 const writes = (target: EventTarget | null): target is HTMLElement =>
   target instanceof HTMLTextAreaElement || (target instanceof HTMLInputElement && (target.type === "text" || target.type === "number"));
 
-/** What is known of the robot's motors, in one line: in a trial what is commanded, else what the robot says of itself. */
+/** State of the robot's motors in one line: during a trial the command, otherwise what the robot reports. */
 function robotWords({ running, ticks, safety, robot: { motors, confirmed_off, stop_button, link, fault, sentence } }: State): string {
   if (running && confirmed_off !== false) {
     if (safety.enabled) return "The motors are commanded on.";
-    return ticks === 0 ? "The trial begins." : "The motors are commanded off; the robot has not confirmed it yet.";
+    return ticks === 0 ? "The trial is starting." : "The motors are commanded off; the robot has not confirmed it yet.";
   }
   const reported = { off: "reports its motors off", on: "reports its motors on", unknown: "has not reported whether its motors are on" }[motors];
   return [
-    link ? `The robot ${reported}${confirmed_off ? ", confirmed after the stop" : ""}` : "No states come from the robot: what it does is not known",
+    link ? `The robot ${reported}${confirmed_off ? ", confirmed after the stop" : ""}` : "The robot sends no states; what it is doing is not known",
     stop_button && "its stop button is pressed",
     fault !== 0 && `its fault code is ${fault}`,
   ].filter(Boolean).join("; ") + (sentence && confirmed_off !== false ? `. ${sentence}` : ".");
@@ -92,7 +92,7 @@ class OperatorPage {
   constructor(root: HTMLElement) {
     this.banner.append(h("div", {}, this.bannerTitle, this.bannerWords, this.robot));
     const notes = h("form", { class: "note-form" },
-      h("label", { for: "note" }, "Note for the recording ", h("small", {}, "(here the space bar writes; Esc leaves)")), this.note, this.addNote);
+      h("label", { for: "note" }, "Note for the recording ", h("small", {}, "(the space bar types a space here; Esc leaves the field)")), this.note, this.addNote);
     notes.addEventListener("submit", (event) => {
       event.preventDefault();
       const words = this.note.value.trim();
@@ -180,7 +180,7 @@ class OperatorPage {
     this.stop.disabled = !this.connected || !state || state.over;
     this.stop.classList.toggle("in-effect", inEffect);
     text(this.stopWord, inEffect ? "STOPPED" : "STOP");
-    text(this.stopHint, inEffect ? "in effect until the reset" : this.controls ? "space bar" : "space bar, from this page too");
+    text(this.stopHint, inEffect ? "in effect until reset" : this.controls ? "space bar" : "space bar, also on this page");
   }
 
   private get controls(): boolean {
@@ -188,7 +188,7 @@ class OperatorPage {
   }
 
   private waitingFor(state: State): string {
-    return { "": "measuring what was recorded", begin: "ready", after: "what next?", reset: "stopped" }[state.question];
+    return { "": "analysing the recording", begin: "ready", after: "what next?", reset: "stopped" }[state.question];
   }
 
   private drawBanner(state: State | undefined): void {
@@ -210,7 +210,7 @@ class OperatorPage {
   private situation(state: State | undefined): [string, string, string] {
     if (!this.connected && state?.over) return ["rest", "○ The session is over", "mbk has ended. This page can be closed."];
     if (!this.connected) {
-      return ["lost", "✕ Connection lost", "What is shown is old, and this page cannot stop the robot: use the stop button that cuts the motors' power, or the terminal. Trying again …"];
+      return ["lost", "✕ Connection lost", "The values shown are old, and this page cannot stop the robot. Use the hardware stop button, which cuts the motors' power, or the terminal. Reconnecting …"];
     }
     if (!state) return ["rest", "Connecting …", ""];
     if (state.safety.tripped) {
@@ -222,14 +222,14 @@ class OperatorPage {
     if (!state.running) return this.atRest(state);
     if (state.robot.confirmed_off === false) return ["tripped", "■ The robot does not answer", state.robot.sentence];
     if (state.phase === "done") return ["care", "▲ The motors are commanded off", "The robot has not confirmed it yet."];
-    if (state.safety.cut) return ["care", "▲ Running, torque limited", "The controller asks for more than the gate lets pass."];
+    if (state.safety.cut) return ["care", "▲ Running, torque limited", "The controller requests more torque than the safety gate allows."];
     return ["running", "▶ Running", "Within all limits."];
   }
 
   private atRest(state: State): [string, string, string] {
-    if (state.robot.link && state.robot.stop_button) return ["care", "■ Stop button pressed", "Nothing moves before it is released."];
+    if (state.robot.link && state.robot.stop_button) return ["care", "■ Stop button pressed", "Nothing moves until it is released."];
     const [kind, title] = this.motorsAtRest(state.robot);
-    return [kind, title, state.question === "" ? "" : "Nothing moves before you say so."];
+    return [kind, title, state.question === "" ? "" : "Nothing moves until you start it."];
   }
 
   /** Off is what the robot reports, not what it was told. */
@@ -260,9 +260,9 @@ class OperatorPage {
     const link = (address: string, name: string) => h("a", { href: address, target: "_blank", rel: "noopener" }, name);
     this.links.replaceChildren(
       ...(this.you.may_control
-        ? [link(state.participant, "Participant's screen"), " · ", link(state.viewing, "A page that only watches"), " · "]
+        ? [link(state.participant, "Participant's screen"), " · ", link(state.viewing, "Viewing page (no control)"), " · "]
         : []),
-      `The gate is software: the button that cuts the motors' power stays necessary. ${state.software}`);
+      `The safety gate is software; a hardware stop button that cuts the motors' power remains necessary. ${state.software}`);
   }
 
   private listed(trial: ListedTrial, place: number, state: State): HTMLElement {
@@ -289,11 +289,11 @@ class OperatorPage {
     if (state.running) return [button("end", "End this trial early")];
     switch (state.question) {
       case "begin":
-        return [button("start", `Begin: ${name(state.current)}`, {}, "main"), button("abort", "No trial: end the session")];
+        return [button("start", `Start: ${name(state.current)}`, {}, "main"), button("abort", "End the session without a trial")];
       case "after": {
         const grade = this.attempts.last?.grade ?? "";
         const repeat = grade === "poor" || grade === "stopped" || grade === "tripped"; // is what is suggested
-        const next = button("next", last ? "Finish" : `Begin the next: ${name(state.current + 1)}`, {}, repeat ? "" : "main");
+        const next = button("next", last ? "Finish" : `Start the next: ${name(state.current + 1)}`, {}, repeat ? "" : "main");
         const again = button("repeat", "Repeat this trial", {}, repeat ? "main" : "");
         return [...(repeat ? [again, next] : [next, again]), ...(last ? [] : [button("abort", "End the session")])];
       }
@@ -302,7 +302,7 @@ class OperatorPage {
           const waits = button("reset", "Reset …");
           waits.disabled = true;
           waits.setAttribute("aria-describedby", "reset-waits");
-          return [waits, h("p", { id: "reset-waits", class: "waits" }, "Reset waits: the robot's stop button is pressed. Release it first."), button("abort", "End the session")];
+          return [waits, h("p", { id: "reset-waits", class: "waits" }, "Reset is not possible while the robot's stop button is pressed. Release it first."), button("abort", "End the session")];
         }
         return state.reset_code
           ? [button("reset", "Confirm: cause cleared, participant OK; reset", { code: state.reset_code }, "main"), button("abort", "End the session")]

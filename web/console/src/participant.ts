@@ -1,4 +1,4 @@
-// The participant's screen: what to do, where the handle is, and where it shall be. Nothing else moves.
+// The participant's screen: the instruction, the handle and its target. Nothing else moves.
 import type { ConsoleTexts, ListedTrial, PerformedTrial, State } from "@mbk/shared/documents";
 import { h } from "@mbk/shared/dom";
 import { column, type Frame, Stream } from "./stream";
@@ -54,7 +54,7 @@ const gradeTexts = { "": "wait", recorded: "thanks", good: "thanks", poor: "agai
 interface Picture {
   size: string; // of the canvas and of the view
   ring: string; // its colour
-  steady: boolean; // a mark to rest the eyes on, in place of the handle
+  steady: boolean; // a fixation mark instead of the handle
   at: [number, number] | undefined; // the handle [px from the middle]
 }
 
@@ -68,7 +68,7 @@ class ParticipantPage {
   private hand: [number, number] | undefined;
   private connected = false;
   private drawn: Picture | undefined;
-  private readonly canvas = h("canvas", { role: "img", "aria-label": "A large ring where the handle shall be, and a disc where it is" });
+  private readonly canvas = h("canvas", { role: "img", "aria-label": "A large ring at the target, and a disc at the handle" });
   private readonly paint = this.canvas.getContext("2d", { alpha: false }) as CanvasRenderingContext2D;
   private readonly words = h("p", { class: "instruction", role: "status" });
 

@@ -36,7 +36,7 @@ export interface BodeWords {
   unit: string;
   howToRead: string;
   band?: { from: number; to: number; name: string } | undefined;
-  /** Of the response itself; "model" where nothing else is said. */
+  /** Name of the response; default "model". */
   name?: string;
   /** Another response at the same frequencies, without bands. */
   beside?: { name: string; magnitude: Value[]; phase_deg: Value[] };

@@ -25,7 +25,7 @@ function row(name: string, matrix: string, comparison: Comparison, of: keyof Com
   const several = width.second_to_first.length > 1;
   return [name, matrix, between(width.distance, width.interval95, `width-${of}`),
     h("span", {}, ...times(width, 0, `least-${of}`)), several ? h("span", {}, ...times(width, width.second_to_first.length - 1, `most-${of}`)) : "",
-    h("span", {}, width.distinguishable ? h("strong", {}, "differs") : "no difference shown", width.surely_positive ? "" : "; the interval cannot be trusted, an eigenvalue may be zero")];
+    h("span", {}, width.distinguishable ? h("strong", {}, "differs") : "no detectable difference", width.surely_positive ? "" : "; the interval is unreliable: an eigenvalue may be zero")];
 }
 
 const shortened = (name: string): string => (name.length > 20 ? `${name.slice(0, 12)}…${name.slice(-7)}` : name);
@@ -43,10 +43,10 @@ function ratiosDrawing(report: Report, comparisons: Comparison[]): HTMLElement |
     }));
   }));
   if (rows.length === 0) return undefined;
-  const title = "How many times the first";
+  const title = "Ratio to the first result";
   return saveable(h("figure", { "aria-label": title },
-    forest(`${title}: ${rows.map(({ name, text }) => `${name} ${text}`).join("; ")}`, "times the first", rows, 1),
-    h("figcaption", {}, h("strong", {}, "How to read this. "), "At 1 nothing changed. Squares are the least and the most over all directions, lines their 95 % intervals.")), {
+    forest(`${title}: ${rows.map(({ name, text }) => `${name} ${text}`).join("; ")}`, "ratio to the first", rows, 1),
+    h("figcaption", {}, h("strong", {}, "How to read this. "), "A ratio of 1 means no change. Squares are the minimum and maximum over all directions, lines their 95 % intervals.")), {
     name: "ratios",
     title,
     csv: () => csvOf(["result", "matrix", "ratio", "low", "high", "direction [°]"], comparisons.flatMap((comparison, k) => matrices.flatMap(({ symbol, name }) =>
@@ -64,11 +64,11 @@ export function comparisonSection(report: Report, { comparisons }: ComparisonRep
   });
   const left = report.trials.filter(({ result }) => !result.usable);
   return h("section", { id: "comparison" },
-    heading(2, "How far apart"),
-    first ? h("p", {}, "Each is compared with the first: ", h("strong", {}, named(first)), ".") : "",
-    shown.length > 0 ? table("Width, and how many times the first; brackets are 95 % intervals", ["result", "", "width", "least", "most", ""], shown, "numbers widths") : "",
-    ...left.map((trial) => h("p", { "data-name": "not-compared" }, h("strong", {}, "Not compared: "), `${nameOf(trial, report.trials)} is not usable${trial === first ? ", so that nothing can be compared with it" : ""}.`)),
+    heading(2, "Differences"),
+    first ? h("p", {}, "Each result is compared with the first: ", h("strong", {}, named(first)), ".") : "",
+    shown.length > 0 ? table("Width and ratio to the first result; brackets are 95 % intervals", ["result", "", "width", "ratio, minimum", "ratio, maximum", ""], shown, "numbers widths") : "",
+    ...left.map((trial) => h("p", { "data-name": "not-compared" }, h("strong", {}, "Not compared: "), `${nameOf(trial, report.trials)} is not usable${trial === first ? ", so nothing can be compared with it" : ""}.`)),
     shown.length > 0 && left.length === 0 ? ratiosDrawing(report, comparisons) : "",
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
-      "The width √(Σ ln² λ) over the eigenvalues λ of Z₁⁻¹Z₂ is 0 where both are equal, and 2.75 where the second is seven times the first in every direction. Noise alone gives a width above 0: only where “differs” stands do the symmetric parts differ by more than chance (95 %)."));
+      "The width √(Σ ln² λ) over the eigenvalues λ of Z₁⁻¹Z₂ is 0 if both are equal, and 2.75 if the second is seven times the first in every direction. Noise alone gives a width above 0: the symmetric parts differ significantly (95 %) only if the last column shows “differs”."));
 }

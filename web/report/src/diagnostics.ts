@@ -1,4 +1,4 @@
-// The charts that show how good one measurement is.
+// Charts to judge the quality of one measurement.
 import type { Columns, Diagnostics, Value } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel } from "@mbk/shared/dom";
 import { listed, plain, significant } from "@mbk/shared/format";
@@ -18,7 +18,7 @@ function largest(values: Value[]): number {
   return values.reduce<number>((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 }
 
-/** Runs of `measured` and `predicted` that have no gap: what is said in words about them. */
+/** The same words for each axis. */
 const each = (axes: number, words: (axis: number) => string): string =>
   Array.from({ length: axes }, (_, axis) => `${axisPrefix(axes, axis)}${words(axis)}`).join("; ");
 
@@ -44,7 +44,7 @@ function predictionSection(d: Diagnostics, trial: Trial, id: string): Section {
   const { prediction: p } = d;
   const { axes, fit } = trial.result;
   const unit = unitsOf(trial.result).force;
-  const where = p.held_out ? "held-out data" : "the data that made the model";
+  const where = p.held_out ? "held-out (validation) data" : "the data used for fitting";
   const panels = columns(p.measured).map((measured, axis): Panel => ({
     title: axes === 1 ? "Force" : `Force along ${axisNames(axes)[axis]}`,
     unit,
@@ -58,7 +58,7 @@ function predictionSection(d: Diagnostics, trial: Trial, id: string): Section {
     charts: panels.length === 0 ? [] : [{
       id: `${id}-prediction`,
       title: `Measured and predicted force on ${where}`,
-      howToRead: "The closer the dashed line keeps to the solid one, the better the model; where they part for long, the limb did something that inertia, damping and stiffness do not explain.",
+      howToRead: "The closer the dashed line is to the solid one, the better the model. Where they differ for long, inertia, damping and stiffness do not explain the force.",
       description: each(axes, (axis) => `the model explains ${significant(fit.VAF[axis], 3)} per cent of the force`),
       x: { name: "time", unit: "s" },
       panels,
@@ -82,13 +82,13 @@ function residualSection(d: Diagnostics, trial: Trial, id: string): Section {
     y,
     style: axis === 0 ? styles.first : styles.second,
   }));
-  const memory = listed(a.time_constant_s.map((t, axis) => `${axisPrefix(axes, axis)}${t === null ? "longer than shown" : `${significant(t, 2)} s`}`));
+  const timeConstants = listed(a.time_constant_s.map((t, axis) => `${axisPrefix(axes, axis)}${t === null ? "longer than shown" : `${significant(t, 2)} s`}`));
   const charts: Chart[] = [];
   if (residual.length > 0) {
     charts.push({
       id: `${id}-residual`,
       title: "Residual force",
-      howToRead: "What the model leaves unexplained: it should look like noise of the same size throughout, without bursts, drift or a rhythm.",
+      howToRead: "Measured minus predicted force: it should look like noise of constant size, without bursts, drift or rhythm.",
       description: each(axes, (axis) => `largest residual ${significant(largest(p.residual[axis] ?? []))} ${unit}`),
       x: { name: "time", unit: "s" },
       panels: residual,
@@ -99,13 +99,13 @@ function residualSection(d: Diagnostics, trial: Trial, id: string): Section {
     charts.push({
       id: `${id}-autocorrelation`,
       title: "Autocorrelation of the residual",
-      howToRead: "Noise without memory stays within the grey band after lag 0; a slow decay means that fewer samples are independent than there are, which the ± intervals allow for.",
-      description: `It falls below 1/e after ${memory}. White noise would stay within ±${significant(white, 2)}.`,
+      howToRead: "White noise stays within the grey band after lag 0. A slow decay means that fewer samples are independent, which the ± intervals account for.",
+      description: `It falls below 1/e after ${timeConstants}. White noise would stay within ±${significant(white, 2)}.`,
       x: { name: "lag", unit: "s" },
       panels: [{ title: "Autocorrelation", unit: "", series, level: { from: -white, to: white, name: "white noise, 95 %" } }],
     });
   }
-  return { title: "Residual", charts };
+  return { title: "Fit and residual", charts };
 }
 
 function bandOf(trial: Trial): { from: number; to: number; name: string } | undefined {
@@ -113,7 +113,7 @@ function bandOf(trial: Trial): { from: number; to: number; name: string } | unde
   return from === null || to === null || !(from < to) ? undefined : { from, to, name: "excited band" };
 }
 
-/** Whole powers of ten around the values, eight of them at most: what lies deeper is of no interest. */
+/** Powers of ten around the values, at most eight. */
 function decades(series: (number | null)[][]): [number, number] {
   const powers = series.flat().filter((v): v is number => v !== null && v > 0).map(Math.log10);
   const top = Math.ceil(powers.reduce((a, b) => Math.max(a, b), -Infinity));
@@ -149,7 +149,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
     charts.push({
       id: `${id}-spectra`,
       title: "Power spectral densities",
-      howToRead: "Position and force as recorded, and the residual after the filters: within the shaded band the force should stand well above the residual.",
+      howToRead: "Position and force as recorded, and the residual after filtering: within the shaded band the force should be well above the residual.",
       description: words,
       x: { name: "frequency", unit: "Hz", log: true },
       panels: [panel("Position", units.x0, s.position), panel("Force", units.force, s.force), panel("Residual", units.force, s.residual)].filter((one) => one.series.length > 0),
@@ -161,8 +161,8 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
     charts.push({
       id: `${id}-coherence`,
       title: "Coherence of force and motion",
-      howToRead: "Near 1 in the shaded band, the force follows the motion linearly there; a dip is a frequency at which the limb, or noise, did something else. Within the grey band it is not significant (95 %).",
-      description: `${words} Coherence above ${significant(significantAt, 2)} is not chance.`,
+      howToRead: "Near 1 in the shaded band, the force follows the motion linearly there; a dip marks a frequency at which noise or other activity of the limb contributes. Within the grey band it is not significant (95 %).",
+      description: `${words} Coherence above ${significant(significantAt, 2)} is significant (95 %).`,
       x: { name: "frequency", unit: "Hz", log: true },
       panels: [{
         title: "Coherence",
@@ -179,7 +179,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
       }],
     });
   }
-  return { title: "Frequencies", charts };
+  return { title: "Spectra and coherence", charts };
 }
 
 function filterSection(d: Diagnostics, trial: Trial, id: string): Section {
@@ -192,11 +192,11 @@ function filterSection(d: Diagnostics, trial: Trial, id: string): Section {
   const gains = [...f.smoothing, ...f.first, ...f.second].filter((v): v is number => v !== null && v > 0);
   const top = 10 ** Math.ceil(Math.log10(Math.max(...gains, 1)));
   return {
-    title: "What the filters did",
+    title: "Filters",
     charts: [{
       id: `${id}-filters`,
       title: "Gain of the filters",
-      howToRead: "Up to the end of the shaded band the thick lines should lie on the thin dashed ones, which are ideal; above it they should fall, so that noise is not differentiated.",
+      howToRead: "Within the shaded band the thick lines should lie on the thin dashed ones, which are ideal; above it they should fall, so that noise is not amplified.",
       description: "Gain of smoothing, first and second derivative against frequency, with the ideal differentiators.",
       x: { name: "frequency", unit: "Hz", log: true },
       panels: [{
@@ -221,12 +221,12 @@ function filterSection(d: Diagnostics, trial: Trial, id: string): Section {
 function accelerationSection(a: NonNullable<Diagnostics["acceleration"]>, axes: number, unit: string, id: string): Section {
   const words = each(axes, (axis) => `the two differ by ${significant(a.rms_difference[axis], 2)} ${unit} rms, and the derivative explains ${significant(a.VAF[axis], 3)} per cent of the sensor's signal`);
   return {
-    title: "Derivative and accelerometer",
+    title: "Acceleration: derivative and sensor",
     note: `${words}.`,
     charts: [{
       id: `${id}-acceleration`,
       title: "Acceleration from the position and from the accelerometer",
-      howToRead: "Two independent ways to the same acceleration: where the lines agree, position, filters and sensor can all be trusted.",
+      howToRead: "Two independent estimates of the same acceleration: if the lines agree, position, filters and sensor are consistent.",
       description: words,
       x: { name: "time", unit: "s" },
       panels: columns(a.derivative).map((derivative, axis) => ({
@@ -258,7 +258,7 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
       style: axis === 0 ? styles.first : styles.second,
     })),
   });
-  // Each axis of a place has a scale of its own: the limb moves millimetres, decimetres from the origin.
+  // Each position axis has its own scale: the limb moves by millimetres, decimetres from the origin.
   const places = (title: string, unit: string, matrix: Columns): Panel[] => {
     const whole = panel(title, unit, matrix);
     return whole.series.map((one, axis) => ({
@@ -267,13 +267,13 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
       series: [one],
     }));
   };
-  // The reference may be a place or a force; the recording's own unit is not part of the values.
+  // The reference may be a position or a force; the values do not include its unit.
   return {
-    title: "The recording",
+    title: "Recording",
     charts: [{
       id: `${id}-recording`,
       title: "The recording from start to end",
-      howToRead: "Everything as it was recorded, before any filter; look for jumps, drifts, pauses and signals that rest at a limit.",
+      howToRead: "All signals as recorded, before filtering; look for jumps, drift, pauses and saturation.",
       description: "Position, force and reference over the whole recording.",
       x: { name: "time", unit: "s" },
       panels: [...places("Position", units.x0, r.position), panel("Force", units.force, r.force), ...places("Reference", "", r.reference)].filter((one) => one.series.length > 0),
@@ -286,7 +286,7 @@ export function diagnosticElements(trial: Trial, id: string, level: HeadingLevel
   if (!trial.diagnostics) {
     return [
       h("section", { id: `${id}-diagnostics` }, heading(level, "Plots"),
-        h("p", {}, "There are none: the signals behind this result were not kept for the report.")),
+        h("p", {}, "There are no plots: the signals of this result were not stored for the report.")),
     ];
   }
   return diagnosticSections(trial, id).map((section, k) =>

@@ -24,12 +24,12 @@ function overTime(all: Named[], id: string): Chart {
   const only = all.length === 1 ? all[0]?.energy : undefined;
   const words = all.map(({ name, energy }) => `${name}: ${significant(lastOf(energy))} J at the end`);
   const curl: Series[] = only?.curl
-    ? [{ name: "of it, by the antisymmetric stiffness", x: only.time_s, y: only.curl.over_time_J, style: styles.second }]
+    ? [{ name: "part due to the antisymmetric stiffness", x: only.time_s, y: only.curl.over_time_J, style: styles.second }]
     : [];
   return {
     id: `${id}-energy-over-time`,
     title: "Energy that the limb absorbed",
-    howToRead: "Where it rises the limb takes energy from the machine; where it falls the limb gives some. A spring only borrows, so small waves mean nothing: a sustained fall is energy that the limb delivered.",
+    howToRead: "A rise means that the limb absorbs energy from the machine, a fall that it delivers energy. A spring stores energy and returns it, so small waves are normal: a sustained fall is energy that the limb delivered.",
     description: `${words.join("; ")}.`,
     x: { name: "time", unit: "s" },
     panels: [{
@@ -61,12 +61,12 @@ function perPart(all: Named[], unit: string, id: string): Chart | undefined {
   const most = Math.max(...drawn.map(({ energy }) => energy.parts.length));
   const words = drawn.map(({ energy }) => {
     const absorbed = finite(energy.parts.map((part) => part.absorbed_J));
-    return `in ${absorbed.filter((value) => value < 0).length} of ${absorbed.length} the limb gave energy`;
+    return `the limb delivered energy in ${absorbed.filter((value) => value < 0).length} of ${absorbed.length}`;
   });
   return {
     id: `${id}-parts`,
     title: `Energy and displacement of each ${each}`,
-    howToRead: `A mark below zero is a ${each} in which the limb gave energy. Compare with the displacement below: the same push may meet a limb that gives way, or one that pushes back.`,
+    howToRead: `A mark below zero is a ${each} in which the limb delivered energy. Compare with the displacement below: the limb may yield to the same push or push back.`,
     description: `${words.join("; ")}.`,
     x: { name: each, unit: "number", range: [0, most + 1] },
     panels: [
@@ -77,7 +77,7 @@ function perPart(all: Named[], unit: string, id: string): Chart | undefined {
   };
 }
 
-/** An excess is a shortage of the other sign. */
+/** An excess is a shortage with the opposite sign. */
 function negated(value: Value, [low, high]: [Value, Value]): [Value, [Value, Value]] {
   const minus = (one: Value): Value => (one === null ? null : -one);
   return [minus(value), [minus(high), minus(low)]];
@@ -97,7 +97,7 @@ function accountTable(columns: { name: string; key: string; account: EnergyAccou
     row("mean power", "W", "power", (a) => [a.mean_power_W, a.mean_power_interval95]),
     row("excess of passivity at the end", unit, "excess-end", (a) => negated(a.shortage.at_end, a.shortage.at_end_interval95)),
     row("excess, worst case during the trial", unit, "excess-worst", (a) => negated(a.shortage.largest, a.shortage.largest_interval95)),
-    ["intervals rest on", ...columns.map(({ account }) => `${account.blocks} parts`)],
+    ["intervals based on", ...columns.map(({ account }) => `${account.blocks} parts`)],
   ], "numbers account");
 }
 
@@ -112,14 +112,14 @@ export function energySection(trial: Trial, id: string, level: HeadingLevel): HT
   const curl = recordings[0]?.energy.curl;
   return h("section", { id: `${id}-energy` },
     heading(level, "Energy"),
-    h("p", {}, "What the limb took from the machine, by force and motion alone: no model is needed."),
+    h("p", {}, "Energy that the limb absorbed from the machine, computed from force and motion without a model."),
     accountTable(rows, units.B),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "The excess of passivity is the damping that could be removed before the limb would have generated energy. A negative excess is a shortage: the damping that would have to be added."),
     ...(recordings.length ? [figure(overTime(recordings, id))] : []),
     parts ? figure(parts) : "",
     curl && recordings.length === 1 && trial.result.usable
       ? h("p", {}, "The antisymmetric stiffness of ", data(curl.k_a, significant(curl.k_a), "curl-k_a"), ` ${units.K} absorbed `, data(curl.absorbed_J, significant(curl.absorbed_J), "curl-absorbed"), " J of it",
-        curl.share === null ? "" : [" (", `${fixed(100 * curl.share, 0)} %`, ")"].join(""), ". No spring can: it is the work of the model's antisymmetric (rotational) stiffness along the path of the hand.")
+        curl.share === null ? "" : [" (", `${fixed(100 * curl.share, 0)} %`, ")"].join(""), ". A spring cannot do this: it is the work of the model's antisymmetric (rotational) stiffness along the path of the hand.")
       : "");
 }
 

@@ -46,18 +46,18 @@ const axisOf = (axes: number, k: number): string => (axes === 1 ? "" : ` ${"xy"[
 const pairsOf = (axes: number): string[] => (axes === 1 ? [""] : ["xx", "yx", "xy", "yy"]);
 
 export function explorationHead({ result, note }: ExplorationReport): HTMLElement {
-  const title = ofForce(result) ? "How force answers motion" : "How the output answers the input";
+  const title = ofForce(result) ? "Force response to motion" : "Output response to input";
   const response = result.frequency_response;
   document.title = `${result.inputs.map((input) => basename(input.file)).join(", ")} – explored`;
   return h("header", { class: "page-head" },
-    h("p", { class: "kicker" }, "What the recordings say before a model is chosen"),
+    h("p", { class: "kicker" }, "Exploration without a parametric model"),
     h("h1", {}, title),
     note ? h("p", { class: "note" }, note) : "",
     facts([
       [result.inputs.length === 1 ? "File" : "Files", result.inputs.map((input) => basename(input.file)).join(", ")],
       ["Analysed", listed([...new Set(result.inputs.map((one) => `${plain(one.from_s, 4)} to ${plain(one.to_s, 4)} s at ${plain(one.rate_hz, 5)} Hz`))])],
       ["Method", response ? `${methods[response.method]}: ${response.method_rule}` : undefined],
-      ["Loop", response ? (response.by_reference ? "projected on the reference: holds in closed loop" : "no reference: biased where the force moves the robot") : undefined],
+      ["Loop", response ? (response.by_reference ? "projected on the reference: valid in closed loop" : "no reference: biased if the force moves the robot") : undefined],
       ["Intervals", response ? `95 %, for ${response.intervals_assume}` : undefined],
     ]));
 }
@@ -66,28 +66,28 @@ const nonlinearity = (facts: PeriodicFacts): string | undefined => {
   if (!facts.total_over_noise) return undefined;
   const { ratio, p } = facts.total_over_noise;
   return p !== null && p < 0.01
-    ? `Its response changes with the phases of the perturbation ${significant(ratio, 3)} times as much as noise makes it: it is not linear.`
-    : `Its response changes with the phases of the perturbation no more than noise makes it (ratio ${significant(ratio, 3)}): no nonlinear distortion is detected.`;
+    ? `Its response varies with the phases of the perturbation ${significant(ratio, 3)} times as much as noise explains: it is not linear.`
+    : `Its response varies with the phases of the perturbation no more than noise explains (ratio ${significant(ratio, 3)}): no nonlinear distortion was detected.`;
 };
 
 function modelSentence(response: ImpulseResponseEstimate): string | undefined {
   const enough = response.model.enough;
   if (!enough) return undefined;
   return enough.enough
-    ? "M, B and K are enough to say how force answers motion, as far as these recordings tell."
-    : "The response holds more than M, B and K can say.";
+    ? "M, B and K are sufficient to describe the force response in these recordings."
+    : "M, B and K are not sufficient to describe the response.";
 }
 
 function reflexSentence(cascade: ParallelCascadeEstimate): string {
   switch (cascade.delayed_response) {
     case "reflex":
-      return `Part of the force answers stretch in one direction, from ${ms(cascade.reflex?.delay_s ?? null)} on: a reflex.`;
+      return `Part of the force responds to stretch in one direction after ${ms(cascade.reflex?.delay_s ?? null)}: a reflex.`;
     case "both-directions":
-      return "Part of the force answers motion later than the limb itself, in both directions alike; that is no sign of a reflex.";
+      return "Part of the force responds to motion after a delay, equally in both directions; this does not indicate a reflex.";
     case "none":
       return "No reflex was found.";
     default:
-      return "The recordings do not tell whether there is a reflex.";
+      return "The recordings do not show whether there is a reflex.";
   }
 }
 
@@ -99,9 +99,9 @@ function summary(report: ExplorationReport): HTMLElement {
     response?.periodic ? nonlinearity(response.periodic) : undefined,
     impulse ? modelSentence(impulse) : undefined,
     cascade ? reflexSentence(cascade) : undefined,
-    result.time_course?.verdict === "changes" ? "The limb changes during the recording; what is said of all of it is a mean." : undefined,
+    result.time_course?.verdict === "changes" ? "The limb changes during the recording; results for the whole recording are averages." : undefined,
   ].filter((one): one is string => one !== undefined);
-  return h("section", { id: "summary" }, heading(2, "In short"),
+  return h("section", { id: "summary" }, heading(2, "Summary"),
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
@@ -161,8 +161,8 @@ function responseFigures({ result, model_responses: models }: ExplorationReport,
         name: "measured",
         ...(model ? { beside: { name: "M, B, K fitted to the impulse response", magnitude: model.magnitude, phase_deg: near(model.phase_deg, measured.phase_deg) } } : {}),
         howToRead: ofForce(result)
-          ? "Force per displacement: level at low frequencies is stiffness, a rise is damping and then inertia. Where the band reaches the bottom, the data do not tell the response from none."
-          : "How much the output answers the input at each frequency, and by how much it lags. Where the band reaches the bottom, the data do not tell the response from none.",
+          ? "Force per displacement: a constant level at low frequencies is stiffness; a rise is damping, then inertia. Where the band reaches the bottom, the response is not significant."
+          : "Gain and phase lag of the output relative to the input at each frequency. Where the band reaches the bottom, the response is not significant.",
       })),
       nyquist({
         frequency_hz: at(found.frequency_hz),
@@ -194,7 +194,7 @@ function coherenceChart(found: FrequencyResponseEstimate): Chart | undefined {
   return {
     id: "coherence",
     title: "Coherence",
-    howToRead: "The share of the output that follows the inputs linearly, from 0, nothing, to 1, everything. High coherence beside a poor model: linear, but more than M, B and K.",
+    howToRead: "The share of the output that follows the inputs linearly, from 0 (none) to 1 (all). High coherence with a poor model means: linear, but not described by M, B and K.",
     description: `Of ${listed(found.outputs.map((one) => one.name))}, over frequency.`,
     x: { name: "frequency", unit: "Hz", log: true },
     panels,
@@ -226,7 +226,7 @@ function spreadChart(found: FrequencyResponseEstimate): Chart | undefined {
   return panels.length === 0 ? undefined : {
     id: "spread",
     title: "Noise and nonlinear distortion",
-    howToRead: "Where distortion stands above noise, another realisation of the perturbation gives another response however long one measures.",
+    howToRead: "Where distortion exceeds noise, the response differs between realisations of the perturbation, however long the recording.",
     description: "Standard errors of the responses over frequency.",
     x: { name: "frequency", unit: "Hz", log: true },
     panels,
@@ -240,15 +240,15 @@ const distortionCells = (name: string, one: Distortion): string[] => [
 
 function distortionTable({ even_distortion: even, odd_distortion: odd }: PeriodicFacts): HTMLElement | undefined {
   const rows = [...(even ? [distortionCells("even", even)] : []), ...(odd ? [distortionCells("odd", odd)] : [])];
-  return rows.length === 0 ? undefined : table("Output at lines that the perturbation leaves empty, as a share of that at excited lines",
-    ["distortion", "", "share", "noise", "lines", "by chance"], rows, "numbers");
+  return rows.length === 0 ? undefined : table("Output at lines that the perturbation does not excite, relative to that at excited lines",
+    ["distortion", "", "share", "noise", "lines", "significance"], rows, "numbers");
 }
 
 function skippedWords({ skipped_lines: skipped, weak_lines: weak }: PeriodicFacts): string {
   const lines = (n: number): string => `${n} line${n === 1 ? "" : "s"}`;
   const why = [...(skipped > weak ? [`${lines(skipped - weak)} at which the inputs are not excited in all directions`] : []),
-    ...(weak > 0 ? [`${lines(weak)} with too little of its power`] : [])];
-  return why.length ? ` Left out: ${why.join(", ")}.` : "";
+    ...(weak > 0 ? [`${lines(weak)} with too little of the power of the perturbation`] : [])];
+  return why.length ? ` Omitted: ${why.join(", ")}.` : "";
 }
 
 function responseSection(report: ExplorationReport): HTMLElement | undefined {
@@ -294,20 +294,20 @@ function modelTable(model: ResponseModel, units: { M: string; B: string; K: stri
 function impulseSection({ result }: ExplorationReport): HTMLElement | undefined {
   const found = result.impulse_response;
   if (!found) return undefined;
-  const judged = found.validated_on === "held-out" ? "held-out data" : "the data to which it was fitted";
+  const judged = found.validated_on === "held-out" ? "held-out (validation) data" : "the data used for fitting";
   const rows = found.explained.map((one, k) => [
     `force${axisOf(result.axes, k)}`, percent(one, `irf-VAF${k}`), found.explained_by_model[k] ? percent(found.explained_by_model[k] as ExplainedForce, `model-VAF${k}`) : "",
   ]);
   const enough = found.model.enough;
   return h("section", { id: "impulse-response" }, heading(2, "Impulse response"),
-    h("p", {}, `Force as a weighted sum of past and coming motion. Its memory is ${ms(found.memory_s)} to both sides (${found.memory_rule}${found.memory_at_limit ? "; the longest that was tried, it may be more" : ""}); ${found.rank} of ${found.directions} directions of the motion are kept.`),
+    h("p", {}, `Force as a weighted sum of past and future motion. Its memory is ${ms(found.memory_s)} in both directions (${found.memory_rule}${found.memory_at_limit ? "; this is the longest that was tried, so it may be longer" : ""}); ${found.rank} of ${found.directions} directions of the motion are kept.`),
     figure(lagChart("irf", "Impulse response from motion to force", found.lag_s, found.response, found.half_width95,
       pairsOf(result.axes).map((pair) => (pair ? `from ${pair[1]} to force ${pair[0]}` : "response")), unitsOf(result).response,
-      "What motion now does to the force later, to the right, and what it follows, to the left. Stiffness, damping and inertia stand all at lag 0; what lies apart from it is memory.")),
-    table(`How much of the force is explained, on ${judged}; brackets are 95 % intervals`, ["", "by the response", "by M, B and K"], rows, "numbers"),
-    modelTable(found.model, unitsOf(result), "M, B and K fitted to the response; ± is the 95 % interval", "irf") ?? h("p", {}, "M, B and K are not identifiable: the motion excites too little."),
+      "Positive lags: force that follows the motion; negative lags: force that precedes it. Stiffness, damping and inertia act at lag 0; values at other lags are memory.")),
+    table(`VAF of the force on ${judged}; brackets are 95 % intervals`, ["", "by the response", "by M, B and K"], rows, "numbers"),
+    modelTable(found.model, unitsOf(result), "M, B and K fitted to the response; ± is the 95 % interval", "irf") ?? h("p", {}, "M, B and K are not identifiable: the motion does not excite them enough."),
     enough
-      ? h("p", {}, h("strong", {}, enough.enough ? "M, B and K are enough" : "M, B and K are not enough"), `: F = ${significant(enough.F, 3)}, ${probability(enough.p)} that the response is no more than they.`)
+      ? h("p", {}, h("strong", {}, enough.enough ? "M, B and K are sufficient" : "M, B and K are not sufficient"), `: F = ${significant(enough.F, 3)}, ${probability(enough.p)} if M, B and K are sufficient.`)
       : "");
 }
 
@@ -332,11 +332,11 @@ function partsDrawing(parts: { name: string; value: number; low: number; high: n
           svg("text", { x: at(Math.max(part.high, part.value)) + 6, y: y + 12 }, `${fixed(part.value, 1)} %`),
         ];
       })),
-    h("figcaption", {}, h("strong", {}, "How to read this. "), "Bars are shares of the force's variance, lines their 95 % intervals. The two paths move together and overlap: their shares need not add up.")), { name: title.split(",")[0]?.toLowerCase().replaceAll(" ", "-") ?? "shares", title, csv: numbers });
+    h("figcaption", {}, h("strong", {}, "How to read this. "), "Bars are shares of the force's variance, lines their 95 % intervals. The two paths are correlated and overlap: their shares need not add up.")), { name: title.split(",")[0]?.toLowerCase().replaceAll(" ", "-") ?? "shares", title, csv: numbers });
 }
 
 const directionName = (direction: Value[] | null): string => {
-  if (direction === null) return "both directions alike";
+  if (direction === null) return "both directions equally";
   if (direction.length === 1) return (direction[0] ?? 0) > 0 ? "positive" : "negative";
   return `${fixed((180 / Math.PI) * Math.atan2(direction[1] ?? 0, direction[0] ?? 0), 0)}°`;
 };
@@ -346,7 +346,7 @@ function reflexSection({ result }: ExplorationReport): HTMLElement | undefined {
   if (!found) return undefined;
   const section = (...children: (Node | string | undefined)[]): HTMLElement => h("section", { id: "reflex" }, heading(2, "Intrinsic and reflex force"), ...children);
   if (found.delayed_response === "not-identifiable") return section(h("p", {}, `${reflexSentence(found)} ${found.why}.`));
-  const judged = found.validated_on === "held-out" ? "held-out data" : "the data to which it was fitted";
+  const judged = found.validated_on === "held-out" ? "held-out (validation) data" : "the data used for fitting";
   const { reflex, intrinsic } = found;
   const rows = (found.candidates ?? []).map((one) => [directionName(one.direction), data(one.VAF, `${fixed(one.VAF ?? NaN, 2)} %`)]);
   rows.push(["no delayed response", data(found.intrinsic_VAF ?? null, `${fixed(found.intrinsic_VAF ?? NaN, 2)} %`)]);
@@ -369,16 +369,16 @@ function reflexSection({ result }: ExplorationReport): HTMLElement | undefined {
           ["As a second-order response", reflex.second_order ? `delay ${ms(reflex.second_order.delay_s.value)}, ${significant(reflex.second_order.frequency_hz.value, 3)} Hz, damping ratio ${significant(reflex.second_order.damping.value, 2)}` : undefined],
         ]),
         figure(lagChart("reflex-response", "Response of the reflex path to stretch", reflex.lag_s, reflex.response, reflex.half_width95,
-          reflex.response.map((_, k) => `force${axisOf(result.axes, k)}`), unitsOf(result).K, "The force that follows a short stretch; nothing comes before the delay.")),
+          reflex.response.map((_, k) => `force${axisOf(result.axes, k)}`), unitsOf(result).K, "The force after a short stretch; it is zero before the delay.")),
       ]
     : [];
   return section(
     h("p", {}, reflexSentence(found), ` ${found.why.charAt(0).toUpperCase()}${found.why.slice(1)}.`),
-    table("How well stretch in each direction predicts the force, cross-validated", ["direction of stretch", "VAF"], rows, "numbers narrow"),
+    table("Cross-validated VAF of the force by direction of stretch", ["direction of stretch", "VAF"], rows, "numbers narrow"),
     ...drawings,
     intrinsic
       ? figure(lagChart("intrinsic", "Impulse response of the intrinsic path", intrinsic.lag_s, intrinsic.response, intrinsic.half_width95,
-          pairsOf(result.axes).map((pair) => (pair ? `from ${pair[1]} to force ${pair[0]}` : "response")), unitsOf(result).response, "What the limb itself does, too early to be a reflex."))
+          pairsOf(result.axes).map((pair) => (pair ? `from ${pair[1]} to force ${pair[0]}` : "response")), unitsOf(result).response, "The passive response of the limb, too early to be a reflex."))
       : undefined,
     ...delayed,
     found.intrinsic_model ? modelTable(found.intrinsic_model, unitsOf(result), "M, B and K of the intrinsic path; ± is the 95 % interval", "intrinsic") : undefined);
@@ -387,7 +387,7 @@ function reflexSection({ result }: ExplorationReport): HTMLElement | undefined {
 function provenance(result: Exploration): HTMLElement {
   return h("section", { id: "provenance" }, heading(2, "Provenance"),
     table("Files", ["file", "format", "SHA-256"], result.inputs.map((input) => [h("span", { class: "path" }, input.file), input.format, h("code", { class: "hash" }, input.sha256)]), "files"),
-    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
+    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "Notes")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
 }
 
 export function explorationSections(report: ExplorationReport): HTMLElement[] {

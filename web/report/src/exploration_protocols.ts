@@ -36,7 +36,7 @@ export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, 
         unit: units[symbol],
         series: [
           { name: "along it", x: found.at, y: value, style: styles.first, between: { low: end(-1), high: end(1), name: "95 % interval, pointwise" } },
-          { name: "if nothing changed", x: found.at, y: value.map(() => constant), style: styles.second },
+          { name: "constant model", x: found.at, y: value.map(() => constant), style: styles.second },
         ],
       };
     });
@@ -44,19 +44,19 @@ export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, 
   const rows = matrices.map(([name, symbol]) => [`${name} ${symbol}`, ...found[symbol].constant.flatMap((row, i) => row.map((value, j) => margin(value, found[symbol].constant_half_width95[i]?.[j] ?? null, `constant-${symbol}${i}${j}`))), units[symbol]]);
   return h("section", { id: "course" }, heading(2, "Change over time"),
     h("p", {}, h("strong", {}, found.verdict === "changes" ? "The limb changes. " : "No change is detected. "), `${found.why.charAt(0).toUpperCase()}${found.why.slice(1)}. `,
-      found.instruments ? "What the reference explains of the motion stood for it." : "Least squares, without a reference: biased where the force moves the robot."),
+      found.instruments ? "Instrumental variables: only the motion that the reference explains was used." : "Least squares, without a reference: biased if the force moves the robot."),
     panels.length > 0
       ? figure({
           id: "course-chart",
           title: `M, B and K over ${found.variable}`,
-          howToRead: "Where the dashed line leaves the band, the entry is not what a constant limb has. A spline rounds a sudden change.",
+          howToRead: "Where the dashed line leaves the band, the value differs from that of a constant limb. The spline smooths sudden changes.",
           description: `${found.varying} along ${found.variable}.`,
           x: { name: found.variable, unit: found.unit },
           panels,
           panelHeight: 120,
         })
       : undefined,
-    table("If nothing changed; ± is the 95 % interval", ["", ...entries(axes), "unit"], rows, "numbers"));
+    table("Constant model; ± is the 95 % interval", ["", ...entries(axes), "unit"], rows, "numbers"));
 }
 
 export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
@@ -64,10 +64,10 @@ export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, u
     const one = found[symbol];
     return [`${name} ${symbol}`, ...one.value.flatMap((row, i) => row.map((value, j) => margin(value, one.half_width95[i]?.[j] ?? null, `onset-${symbol}${i}${j}`))), units[symbol], one.identifiable ? "" : h("strong", {}, "not identifiable")];
   });
-  return h("section", { id: "onset" }, heading(2, "The first moment after onset"),
-    h("p", {}, `The first ${milliseconds(found.window_s)} after ${found.onsets} onsets of the reference, before anyone can answer; ${found.omitted_onsets} more were omitted, since the limb did not rest before them or the recording ends.`),
+  return h("section", { id: "onset" }, heading(2, "First milliseconds after onset"),
+    h("p", {}, `The first ${milliseconds(found.window_s)} after ${found.onsets} onsets of the reference, before a voluntary response; ${found.omitted_onsets} more were omitted because the limb did not rest before them or the recording is too short.`),
     table("M, B and K of the limb alone; ± is the 95 % interval", ["", ...entries(axes), "unit", ""], rows, "numbers"),
-    facts([["Explained", found.VAF.map((value) => `${fixed(value ?? NaN, 1)} %`).join(", ")]]));
+    facts([["VAF", found.VAF.map((value) => `${fixed(value ?? NaN, 1)} %`).join(", ")]]));
 }
 
 /// Each entry of K with its 95 % interval.
@@ -85,7 +85,7 @@ function ellipseWords({ ellipse }: StiffnessRegression): string | undefined {
   if (!ellipse) return undefined;
   const [shapeLow, shapeHigh] = ellipse.interval95.shape;
   const [turnLow, turnHigh] = ellipse.interval95.orientation_deg;
-  if (anyAngle(ellipse.interval95.orientation_deg)) return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation any: it may be round`;
+  if (anyAngle(ellipse.interval95.orientation_deg)) return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation any: may be a circle`;
   return `shape ${significant(ellipse.shape, 3)} [${significant(shapeLow ?? null, 3)}, ${significant(shapeHigh ?? null, 3)}], orientation ${fixed(ellipse.orientation_deg ?? NaN, 1)}° [${fixed(turnLow ?? NaN, 1)}, ${fixed(turnHigh ?? NaN, 1)}]`;
 }
 
@@ -95,11 +95,11 @@ export function plateauSection(found: PlateauStiffnessEstimate, { axes }: Explor
     h("p", {}, `The force while the hand is held, ${milliseconds(found.plateau_s[0] ?? null)} to ${milliseconds(found.plateau_s[1] ?? null)} after the onset (${found.window_rule}), over ${stiffness.displacements} displacements in ${stiffness.directions} directions.`),
     found.usable
       ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), [stiffnessRow("stiffness K", "plateau", stiffness, units.K)], "numbers")
-      : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable, and is not shown; the warnings say why."),
+      : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable and not shown; see the warnings."),
     facts([
       ["Ellipse", found.usable ? ellipseWords(stiffness) : undefined],
-      ["One stiffness for all directions", `${chance(stiffness.linear_p ?? null)} of such a lack of fit by chance`],
-      ["Reached", `${fixed(100 * (stiffness.reached ?? NaN), 0)} % of what was commanded`],
+      ["Test of one stiffness for all directions", chance(stiffness.linear_p ?? null)],
+      ["Displacement reached", `${fixed(100 * (stiffness.reached ?? NaN), 0)} % of the commanded displacement`],
     ]));
 }
 
@@ -107,15 +107,15 @@ export function reachSection(found: ReachStiffnessEstimate, { axes }: Exploratio
   const { own_past: own, mean_reach: mean } = found;
   const off = (by: ReachPredictor): string => `${fixed(1e3 * (by.prediction_error ?? NaN), 1)} mm`;
   return h("section", { id: "reaches" }, heading(2, "Stiffness while the hand reaches"),
-    h("p", {}, `The force ${milliseconds(found.window_s[0] ?? null)} to ${milliseconds(found.window_s[1] ?? null)} after the event “${found.trigger}”, over ${own.stiffness.displacements} displacements in ${own.stiffness.directions} directions, relative to where ${found.undisturbed} undisturbed reaches and each reach's own past say that the hand would have been.`),
+    h("p", {}, `The force ${milliseconds(found.window_s[0] ?? null)} to ${milliseconds(found.window_s[1] ?? null)} after the event “${found.trigger}”, over ${own.stiffness.displacements} displacements in ${own.stiffness.directions} directions, relative to the undisturbed hand position predicted from ${found.undisturbed} undisturbed reaches and the reach's own past.`),
     found.usable
       ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), [
           stiffnessRow("from each reach's own past", "reach", own.stiffness, units.K),
-          stiffnessRow("for comparison: less the mean reach", "mean-reach", mean.stiffness, units.K)], "numbers")
-      : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable, and is not shown; the warnings say why."),
+          stiffnessRow("for comparison: minus the mean reach", "mean-reach", mean.stiffness, units.K)], "numbers")
+      : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable and not shown; see the warnings."),
     facts([
       ["Ellipse", found.usable ? ellipseWords(own.stiffness) : undefined],
-      ["Left-out reaches are predicted within", `${off(own)}; by the mean reach within ${off(mean)}`],
-      ["Reached", `${fixed(100 * (own.stiffness.reached ?? NaN), 0)} % of what was commanded`],
+      ["Prediction error (cross-validated)", `${off(own)}; with the mean reach ${off(mean)}`],
+      ["Displacement reached", `${fixed(100 * (own.stiffness.reached ?? NaN), 0)} % of the commanded displacement`],
     ]));
 }

@@ -21,9 +21,9 @@ function partsOf(K: Square): { name: string; key: string; matrix: Square; meanin
   const mean = (K[0][1] + K[1][0]) / 2;
   const k_a = (K[0][1] - K[1][0]) / 2;
   return [
-    { name: "whole K", key: "whole", matrix: K, meaning: "the force as it is" },
-    { name: "symmetric part", key: "symmetric", matrix: [[K[0][0], mean], [mean, K[1][1]]], meaning: "what springs make: it returns what it takes" },
-    { name: "antisymmetric part", key: "antisymmetric", matrix: [[0, k_a], [-k_a, 0]], meaning: "what turns around the equilibrium: no spring makes it" },
+    { name: "whole K", key: "whole", matrix: K, meaning: "the whole force" },
+    { name: "symmetric part", key: "symmetric", matrix: [[K[0][0], mean], [mean, K[1][1]]], meaning: "elastic: it returns the energy that it stores" },
+    { name: "antisymmetric part", key: "antisymmetric", matrix: [[0, k_a], [-k_a, 0]], meaning: "rotates around the equilibrium: a spring cannot produce it" },
   ];
 }
 
@@ -85,6 +85,6 @@ export function forceFieldSection(trial: Trial, id: string, level: HeadingLevel)
         return h("div", { class: "panel" }, h("p", { class: "panel-title" }, name), drawing(name, matrix, longest / largest, words), h("p", { class: "panel-name" }, meaning));
       })),
       h("figcaption", {}, h("strong", {}, "How to read this. "),
-        `Each arrow is the force −K (x − x₀) of the limb where the arrow begins, on a grid that reaches ${distance} from the equilibrium in the middle. All three have one scale; the longest arrow is `, data(largest, significant(largest), "largest-force"), ` ${units.force}. Around a closed path the left and the right field can do work, the middle one cannot.`)), { name: `${id}-force-field`, title: "Force field of the stiffness", csv: () => fieldCsv(parts, units) }),
+        `Each arrow shows the force −K (x − x₀) of the limb at its tail, on a grid up to ${distance} from the equilibrium in the centre. All three panels have the same scale; the longest arrow is `, data(largest, significant(largest), "largest-force"), ` ${units.force}. Around a closed path the left and right fields can do work; the middle one cannot.`)), { name: `${id}-force-field`, title: "Force field of the stiffness", csv: () => fieldCsv(parts, units) }),
     table(`Force of the limb ${distance} from the equilibrium [${units.force}]`, ["", "along x: force x", "force y", "along y: force x", "force y"], rows, "numbers"));
 }

@@ -50,7 +50,7 @@ export function literatureTable(trial: Trial): HTMLElement | undefined {
     units[symbol],
   ]));
   return h("div", { class: "literature" },
-    table("Beside values from the literature: over all directions, from the smallest to the largest of the people", ["", "this recording", ...all.map(({ short, people }) => `${short}, ${people} people`), "unit"], rows, "numbers"),
+    table("Values from the literature: minimum and maximum over all directions, range over the participants", ["", "this recording", ...all.map(({ short, people }) => `${short}, ${people} people`), "unit"], rows, "numbers"),
     h("ul", { class: "reading" }, ...all.map(({ source, conditions }) => h("li", {}, h("strong", {}, `${source}. `), `Conditions: ${conditions}.`))),
-    h("p", { class: "reading" }, "Another task, posture or perturbation gives other values; gripping and tensing raise them. These are no norms."));
+    h("p", { class: "reading" }, "Another task, posture or perturbation gives different values; gripping and muscle tension raise them. These are not normative values."));
 }

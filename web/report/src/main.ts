@@ -9,7 +9,7 @@ import { facts, h, heading, type HeadingLevel } from "@mbk/shared/dom";
 import type { Trial } from "@mbk/shared/result";
 import { followPageAndPrinter } from "./charts";
 import { comparisonSection } from "./comparison";
-import { conditionOf, fileOf, participantOf, readComparison, readReport, type Report } from "./data";
+import { conditionOf, fileOf, metadataOf, participantOf, readComparison, readReport, type Report } from "./data";
 import { diagnosticElements } from "./diagnostics";
 import { energySection } from "./energy";
 import { explorationHead, explorationSections } from "./exploration";
@@ -18,7 +18,7 @@ import { methodsSection } from "./methods";
 import { inOrder, nameOf, overviewSection } from "./overview";
 import { participantHead, participantSections } from "./participant";
 import { passivityDetails, passivitySection } from "./passivity";
-import { ellipsesSection, identityFacts, modelSection, provenanceSection, simulatedNote } from "./sections";
+import { ellipsesSection, modelSection, provenanceSection, recordingSection, simulatedNote } from "./sections";
 import { studyGlossary, studyHead, studySections } from "./study";
 import { summarySection, verdict, warningsSection } from "./summary";
 import { transferFunctionHead, transferFunctionSections } from "./transfer_function";
@@ -29,6 +29,7 @@ function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLEleme
   const sections = [
     summarySection(trial, id, level),
     warningsSection(trial, id, level),
+    recordingSection(trial, id, level),
     passivitySection(trial, id, level),
     modelSection(trial, id, level),
     ellipsesSection(trial, id, level),
@@ -49,7 +50,6 @@ function recordingsSection(report: Report): HTMLElement {
       const said = verdict(trial);
       const details = h("details", { class: "trial", id, "data-print": true },
         h("summary", {}, h("h3", {}, nameOf(trial, report.trials)), h("span", { class: `badge ${said.kind}` }, `${said.sign} ${said.word}`)),
-        identityFacts(trial),
         ...trialSections(trial, id, 4));
       return details;
     }));
@@ -62,8 +62,8 @@ function contents(sections: HTMLElement[], trials: Trial[] = []): HTMLElement {
     if (!several || section.id !== "recordings") return [entry];
     return [entry, ...inOrder(trials).map(({ trial, id }) => ({ id, name: nameOf(trial, trials), inner: true }))];
   });
-  return h("nav", { "aria-label": "Contents" }, h("p", { class: "nav-title" }, "Contents"),
-    h("ul", {}, ...entries.map(({ id, name, inner }) => h("li", inner ? { class: "inner" } : {}, h("a", { href: `#${id}` }, name)))));
+  return h("nav", { "aria-label": "Contents" }, h("details", { open: matchMedia("(min-width: 78rem)").matches }, h("summary", { class: "nav-title" }, "Contents"),
+    h("ul", {}, ...entries.map(({ id, name, inner }) => h("li", inner ? { class: "inner" } : {}, h("a", { href: `#${id}` }, name))))));
 }
 
 /** A link to a recording opens it. */
@@ -80,15 +80,17 @@ function openTargets(): void {
 function head(report: Report, named?: string): HTMLElement {
   const first = report.trials[0] as Trial;
   const several = report.trials.length > 1;
-  const said = [participantOf(first), conditionOf(first)].filter(Boolean).join(" · ");
+  const participant = participantOf(first);
+  const said = [participant && `Participant ${participant}`, conditionOf(first)].filter(Boolean).join(", ");
   const title = named ?? (several ? `${report.trials.length} recordings` : said || fileOf(first));
+  const beside = several ? "" : [said && !named ? fileOf(first) : "", metadataOf(first, "date"), metadataOf(first, "posture")].filter(Boolean).join(", ");
   document.title = `${title} – mechanical impedance`;
   return h("header", { class: "page-head" },
     h("p", { class: "kicker" }, first.result.axes === 1 ? "Mechanical impedance of a limb" : "Mechanical impedance of the arm"),
     h("h1", {}, title),
+    beside ? h("p", { class: "note beside" }, beside) : "",
     report.note ? h("p", { class: "note" }, report.note) : "",
-    simulatedNote(report.trials),
-    several ? "" : identityFacts(first));
+    simulatedNote(report.trials));
 }
 
 function foot(): HTMLElement {
@@ -101,7 +103,7 @@ function foot(): HTMLElement {
 
 const reproduceSection = (command: string, software: string): HTMLElement =>
   h("section", { id: "reproduce" }, heading(2, "How to reproduce this"),
-    h("p", {}, "The same files, options and version give the same numbers, digit for digit, and this same page."),
+    h("p", {}, "The same files, options and version give exactly the same numbers and the same page."),
     h("pre", { class: "command" }, command),
     h("p", {}, "Made with ", h("strong", {}, software), "."));
 
@@ -166,5 +168,5 @@ try {
 } catch (error) {
   console.error(error);
   document.getElementById("report")?.replaceWith(
-    h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The numbers in this file cannot be read: ${String(error)}`)));
+    h("main", { id: "content", class: "page" }, h("h1", {}, "This report cannot be shown"), h("p", {}, `The data in this file cannot be read: ${String(error)}`)));
 }

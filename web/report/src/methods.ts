@@ -33,7 +33,7 @@ function comparison(trial: Trial): HTMLElement | undefined {
     units[symbol],
   ]);
   rows.push(["VAF", ...shown.map((method) => perAxis((method === other.method ? other.fit : fit).VAF, 1, "%", `${method}-VAF`)), ""]);
-  return table(shown.length === 2 ? "The same recording by two methods; ± is the 95 % interval" : `By ${methodNames[shown[0] as Method]} alone: the other method is not usable here; ± is the 95 % interval`, ["", ...shown.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
+  return table(shown.length === 2 ? "Results of both methods from the same recording; ± is the 95 % interval" : `Results of ${methodNames[shown[0] as Method]} only, since the other method is not usable here; ± is the 95 % interval`, ["", ...shown.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
 }
 
 function disagreement(trial: Trial): HTMLElement | undefined {
@@ -43,12 +43,12 @@ function disagreement(trial: Trial): HTMLElement | undefined {
   const instrument = trial.result.instrument ?? trial.result.alternatives.find((one) => one.instrument)?.instrument;
   const other = trial.result.alternatives[0];
   const holds = instrument?.strong && (trial.result.method === "iv" ? trial.result.usable : other?.usable);
-  if (!holds) return h("p", { "data-significant": "unknown" }, h("strong", {}, "Instrumental variables do not hold here, and cannot check least squares."));
-  const share = d.least_squares ? `, ${significant(Math.abs((100 * (d.iv_less_ls ?? 0)) / d.least_squares), 2)} % of what least squares finds` : "";
-  const numbers = [`They differ most in ${parameterName(d.parameter)}: by `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}${share}`];
-  if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "No difference between the two methods is significantly larger than the standard error of least squares. "), ...numbers, ".");
-  return h("p", { "data-significant": "true" }, h("strong", {}, "The two methods differ significantly. "), ...numbers,
-    `. Least squares takes what the ${axes === 1 ? "limb" : "arm"} does on its own account, voluntarily or by reflex, for mechanics. Instrumental variables look only at what follows the known perturbation, and what the limb does of itself does not follow it. Where the instruments are strong and the two disagree, the latter support the limb.`);
+  if (!holds) return h("p", { "data-significant": "unknown" }, h("strong", {}, "Instrumental variables are not valid here and cannot check least squares."));
+  const share = d.least_squares ? `, ${significant(Math.abs((100 * (d.iv_less_ls ?? 0)) / d.least_squares), 2)} % of the least-squares value` : "";
+  const numbers = [`The largest difference is in ${parameterName(d.parameter)}: `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}${share}`];
+  if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "The two methods do not differ significantly (99 %). "), ...numbers, ".");
+  return h("p", { "data-significant": "true" }, h("strong", {}, "The two methods differ significantly (99 %). "), ...numbers,
+    `. Least squares attributes voluntary or reflex activity of the ${axes === 1 ? "limb" : "arm"} to mechanics. Instrumental variables use only the part of the motion that follows the known perturbation, which spontaneous activity does not. If the instruments are strong and the methods differ, instrumental variables are more reliable.`);
 }
 
 function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
@@ -58,8 +58,8 @@ function instrumentTable(instrument: Instrument, trial: Trial): HTMLElement {
   return h("div", {},
     h("p", {}, h("strong", {}, instrument.strong ? "The instruments are strong. " : "The instruments are weak. "),
       "They are made from the commanded ", instrument.reference, "; the weakest first-stage F is ", data(instrument.weakest_F, significant(instrument.weakest_F), "weakest-F"),
-      instrument.strong ? `, above ${strongF}.` : `, not above ${strongF}: the intervals of instrumental variables do not hold.`,
-      " Of the force that instrumental variables leave unexplained, this share answers the perturbation all the same, by reflex or because the limb is more than inertia, damping and stiffness: ",
+      instrument.strong ? `, above ${strongF}.` : `, not above ${strongF}: the intervals of instrumental variables are not valid.`,
+      " Perturbation-coherent residual fraction (share of the residual of instrumental variables that still follows the perturbation, by reflex or because the limb has more dynamics than inertia, damping and stiffness): ",
       perAxis(instrument.coherent_residual_fraction.map((share) => (share === null ? null : 100 * share)), 0, "%", "answered"), "."),
     table("Strength of the instruments: first-stage F of each signal, given the others", ["", "F", ""], rows, "numbers narrow instruments"));
 }
@@ -86,8 +86,8 @@ function bootstrapTable(b: Bootstrap): HTMLElement {
     ];
   });
   return h("div", {},
-    table("95 % intervals by bootstrap beside those by linearisation (delta method)", ["", "value", "bootstrap", "delta method", "unit"], rows, "numbers bootstrap"),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `The measurement was repeated ${b.replicates} times on blocks of ${plain(b.block_s)} s drawn from the recording (seed ${b.seed}). Where the two intervals differ much, trust the bootstrap's: the delta method takes everything for straight, which angles and eigenvalues are not.`));
+    table("95 % intervals by bootstrap and by linearisation (delta method)", ["", "value", "bootstrap", "delta method", "unit"], rows, "numbers bootstrap"),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `The estimation was repeated ${b.replicates} times on blocks of ${plain(b.block_s)} s drawn from the recording (seed ${b.seed}). If the two intervals differ much, trust the bootstrap: the delta method linearises angles and eigenvalues.`));
 }
 
 /** What a second method and a second kind of interval say. */
@@ -96,5 +96,5 @@ export function methodsSection(trial: Trial, id: string, level: HeadingLevel): H
   const instrument = trial.result.instrument ?? alternatives?.find((one) => one.instrument)?.instrument;
   const parts = [disagreement(trial), comparison(trial), instrument && instrumentTable(instrument, trial), bootstrap && trial.result.usable ? bootstrapTable(bootstrap) : undefined].filter((part) => part !== undefined);
   if (parts.length === 0) return undefined;
-  return h("section", { id: `${id}-methods` }, heading(level, "Two methods, two kinds of interval"), ...parts);
+  return h("section", { id: `${id}-methods` }, heading(level, "Comparison of methods and intervals"), ...parts);
 }

@@ -21,7 +21,7 @@ export function nameOf(trial: Trial, all: Trial[]): string {
 
 const known = new WeakMap<Trial[], Map<Trial, string>>();
 
-/** The file of each, with as many of its folders as set it apart from the others. */
+/** File name of each, with as many parent folders as needed to distinguish it from the others. */
 function filesOf(all: Trial[]): Map<Trial, string> {
   const found = known.get(all);
   if (found) return found;
@@ -38,7 +38,7 @@ function filesOf(all: Trial[]): Map<Trial, string> {
   return names;
 }
 
-/** In the order of participant, then condition, then file; those of a comparison as they were given. */
+/** Sorted by participant, condition and file; results of a comparison in the order given. */
 export function inOrder(trials: Trial[]): { trial: Trial; id: string }[] {
   const key = (trial: Trial) => trial.name ? [] : [participantOf(trial) ?? "", conditionOf(trial) ?? "", fileOf(trial)];
   const compare = new Intl.Collator("en", { numeric: true }).compare;
@@ -115,16 +115,16 @@ export function overviewSection(report: Report): HTMLElement {
       ];
     }),
   ]);
-  const order = axisNames(first.result.axes).length === 2 ? " A matrix stands as xx, xy over yx, yy." : "";
+  const order = axisNames(first.result.axes).length === 2 ? " Each matrix is shown as xx, xy above yx, yy." : "";
   return h(
     "section",
     { id: "overview" },
-    heading(2, "Side by side"),
+    heading(2, "Comparison of recordings"),
     table("Model of each recording, by participant and condition", head, body, "numbers overview"),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval: of a recording, from within it; of the mean, from how the recordings differ.${order}`),
-    noSummary ? h("p", { "data-name": "no-summary" }, h("strong", {}, "There is no mean: "), `${noSummary}.`) : "",
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval: for a recording, from its own data; for the mean, from the differences between recordings.${order}`),
+    noSummary ? h("p", { "data-name": "no-summary" }, h("strong", {}, "No mean: "), `${noSummary}.`) : "",
     ...(summary?.omitted ?? []).map(({ file, why }) => h("p", { "data-name": "omitted" }, h("strong", {}, "Not in the mean: "), `${file}: ${why}.`)),
-    ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, first.name ? "Left out: " : "Not measured: "), `${file}: ${message}; ${what}.`)),
+    ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, first.name ? "Omitted: " : "Not measured: "), `${file}: ${message}; ${what}.`)),
     two ? table("Ellipses: area in the square of the matrix's unit, shape, orientation in degrees with its 95 % interval", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} area`, `${symbol} shape`, `${symbol} angle`])], ellipseRows, "numbers overview") : "",
     energySideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
     saveable(ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)), {

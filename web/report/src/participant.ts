@@ -57,7 +57,7 @@ function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: s
   if (!course || !change) {
     const session = course?.sessions[0];
     return h("div", { class: "statement", "data-verdict": "none" }, lead,
-      h("p", { class: "said" }, `There is one session${session ? ` (${session.session})` : ""} with a usable result: nothing can be compared yet.`),
+      h("p", { class: "said" }, `Only one session${session ? ` (${session.session})` : ""} has a usable result: nothing can be compared yet.`),
       session ? h("p", {}, `${name}: `, data(session.mean, withUnit(plainly(session.mean), one.unit), "only"), ".") : "");
   }
   const [first, last] = pair(change);
@@ -69,24 +69,24 @@ function statement(one: OutcomeCourses, courses: OutcomeCourses[], conditions: s
   const same = change.difference === 0;
   const mdc = withUnit(plainly(change.mdc95), one.unit);
   const [low, high] = change.mdc95_interval.map((value) => among(value, change.mdc95)) as [string, string];
-  const whose = change.by_others ? "; by all other people of the study" : "";
+  const whose = change.by_others ? "; from all other people of the study" : "";
   const verdicts: Record<SessionChange["verdict"], [string, string]> = {
     "beyond-error": [
       `In session ${change.last_session} the ${name} ${movement}: more than measurement error explains.`,
       `The minimal detectable change is ${mdc} (95 % interval ${low} to ${high}${whose}).`],
     uncertain: [
       `In session ${change.last_session} the ${name} ${movement}. It is not certain that this is more than measurement error.`,
-      `It is more than the minimal detectable change of ${mdc}, but that is itself only known to lie between ${low} and ${high} (95 %${whose}).`],
+      `It is more than the minimal detectable change of ${mdc}, but that value is only known to lie between ${low} and ${high} (95 %${whose}).`],
     "within-error": [
-      `Between session ${change.first_session} and session ${change.last_session} no change of the ${name} is shown.`,
-      `The difference is no more than the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. That is no proof that nothing changed.`],
+      `Between session ${change.first_session} and session ${change.last_session} there is no detectable change in the ${name}.`,
+      `The difference does not exceed the minimal detectable change of ${mdc} (95 % interval ${low} to ${high}), so it may be measurement error. This does not prove that nothing changed.`],
     unknown: [
-      same ? `In session ${change.last_session} the ${name} is what it was in session ${change.first_session}.`
+      same ? `In session ${change.last_session} the ${name} is the same as in session ${change.first_session}.`
         : `In session ${change.last_session} the ${name} ${movement}. Whether that is more than measurement error is not known.`,
       `The minimal detectable change is not known: ${one.why_unknown ?? "the difference is undefined"}.`],
   };
   const [said, why] = verdicts[change.verdict];
-  const tails = change.heavy_tails ? " Measurement errors in this study have heavier tails than normal ones (some sessions are far off), so the interval of the minimal detectable change does not hold and no change is certain by it." : "";
+  const tails = change.heavy_tails ? " Measurement errors in this study have heavier tails than a normal distribution (some sessions are outliers), so the interval of the minimal detectable change is not valid and no change is certain." : "";
   return h("div", { class: "statement", "data-verdict": change.verdict, "data-condition": one.condition }, lead,
     h("p", { class: "said" }, said),
     ...othersThatChanged(one, courses),
@@ -103,7 +103,7 @@ function courseFigures(primary: OutcomeCourses[], conditions: string[]): HTMLEle
       if (!course) return "";
       return h("div", {}, h("p", { class: "panel-title" }, [ofCondition(one.condition, conditions), one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome)].filter(Boolean).join(": ")),
         coursePanel(one, course, commonRange([course]), all, "large"));
-    }))), { name: "sessions_first_outcome", title: "What changed since the first session", csv: () => coursesCsv(primary) });
+    }))), { name: "sessions_first_outcome", title: "Change since the first session", csv: () => coursesCsv(primary) });
 }
 
 function changesTable(courses: OutcomeCourses[], condition: string, conditions: string[]): HTMLElement | undefined {
@@ -122,19 +122,19 @@ function changesTable(courses: OutcomeCourses[], condition: string, conditions: 
   if (rows.length === 0) return undefined;
   const change = courses.filter((one) => one.condition === condition).map(lastOf).find((one) => one !== undefined) as SessionChange;
   const name = ofCondition(condition, conditions);
-  return table(`${name ? `${name}: ` : ""}first and last session; MDC: minimal detectable change with its 95 % interval`, ["outcome", `session\u00a0${change.first_session}`, `session\u00a0${change.last_session}`, "change", "MDC", "what that means"], rows, "changes");
+  return table(`${name ? `${name}: ` : ""}first and last session; MDC: minimal detectable change with its 95 % interval`, ["outcome", `session\u00a0${change.first_session}`, `session\u00a0${change.last_session}`, "change", "MDC", "verdict"], rows, "changes");
 }
 
 function limits(report: ParticipantReport, shown: number): HTMLElement {
   const known = report.courses.filter(({ why_unknown }) => !why_unknown);
-  return h("section", { id: "limits" }, heading(2, "What this page does not say"),
+  return h("section", { id: "limits" }, heading(2, "Limitations"),
     h("ul", { class: "limits" },
-      h("li", {}, "Whether a change is good or bad, what caused it, and whether it matters to the person. It is no diagnosis, and mbk is no medical device."),
-      h("li", {}, "“No change shown” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
-      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page looks at ${shown}; a single one that stands out may be chance.`) : "",
+      h("li", {}, "This page does not show whether a change is good or bad, what caused it, or whether it matters to the person. It is not a diagnosis, and mbk is not a medical device."),
+      h("li", {}, "“No detectable change” does not mean that nothing changed: a change below the minimal detectable change cannot be seen."),
+      shown > 1 ? h("li", {}, `Of people who did not change at all, 5 % differ by more than the minimal detectable change in any one outcome. This page shows ${shown}; a single one that stands out is not significant.`) : "",
       known.length > 0
-        ? h("li", {}, `The minimal detectable change is that of this study: of ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more, in this apparatus and between its sessions. Whoever stands out is judged by all others. Where most people really changed, it is too large; for other people or another apparatus it says nothing.`)
-        : h("li", {}, "No minimal detectable change is known here, so that no difference on this page can be told from measurement error.")));
+        ? h("li", {}, `The minimal detectable change is from this study: from ${counted(Math.max(...known.map(({ repeated_participants }) => repeated_participants)), "person", "people")} with two sessions or more with this apparatus. An outlying participant is judged by the variances of all others. If most people really changed, it is too large; it does not apply to other people or another apparatus.`)
+        : h("li", {}, "The minimal detectable change is not known, so no difference on this page can be distinguished from measurement error.")));
 }
 
 export function participantSections(report: ParticipantReport): HTMLElement[] {
@@ -145,14 +145,14 @@ export function participantSections(report: ParticipantReport): HTMLElement[] {
   const usable = report.recordings.filter(({ state }) => state === "usable").length;
   const ellipses = ellipseFigure(report.matrices, "K", (_, condition) => ofCondition(condition, conditions) || "stiffness");
   return [
-    h("section", { id: "change" }, heading(2, "What changed since the first session"),
-      ...(primary.length > 0 ? primary.map((one) => statement(one, report.courses, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `There is no result of the ${outcomeName(report.primary)} of this participant.` : "There is no usable result of this participant: nothing can be said.")]),
+    h("section", { id: "change" }, heading(2, "Change since the first session"),
+      ...(primary.length > 0 ? primary.map((one) => statement(one, report.courses, conditions)) : [h("p", { class: "said" }, report.courses.length > 0 ? `This participant has no result for the ${outcomeName(report.primary)}.` : "This participant has no usable result.")]),
       primary.some(lastOf) ? courseFigures(primary.filter(lastOf), conditions) : ""),
     limits(report, shown),
     ...(tables.length > 0 ? [h("section", { id: "outcomes" }, heading(2, "All outcomes"), ...tables)] : []),
     ...(ellipses ? [h("section", { id: "ellipses" }, heading(2, "Stiffness in all directions"), ellipses,
       h("p", { class: "reading" }, "The longer the ellipse in a direction, the more force it takes to move the hand that way."))] : []),
-    h("section", { id: "recordings" }, heading(2, "What this rests on"),
+    h("section", { id: "recordings" }, heading(2, "Recordings and analysis"),
       facts([["Recordings", `${report.recordings.length}, of which ${usable} usable`], ["Sessions", [...new Set(report.recordings.map(({ session }) => session))].sort((a, b) => a - b).join(", ")],
         ["Study", counted(report.study_participants, "participant", "participants")], ["Measured by", analysisText(report.analysis)]]),
       leftOutTable(report.recordings, false),

@@ -1,4 +1,4 @@
-// What energy the limb absorbed, what its model predicts, and what both rest on. The statements are those of the document.
+// Energy that the limb absorbed, prediction of the model, and their basis. The statements are those of the document.
 import type { Condition, EnergyLine, Interval, ModelPassivity, Passivity, Prediction, Value, Verdict } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
 import { data, fixed, plain, significant, withInterval } from "@mbk/shared/format";
@@ -27,25 +27,25 @@ function statement(what: "trial" | "prediction", title: string, verdict: Predict
 }
 
 function trialStatement({ trial }: Passivity): HTMLElement {
-  if (!trial) return h("p", { "data-statement": "trial", "data-verdict": "none" }, "Nothing is said of what happened in the trial: force or motion is not plausible. See the warnings.");
+  if (!trial) return h("p", { "data-statement": "trial", "data-verdict": "none" }, "No statement on this trial: force or motion is not plausible. See the warnings.");
   return statement("trial", "What happened in this trial", trial.verdict, trial.statement, trial.reason ? h("p", {}, sentence(trial.reason)) : "");
 }
 
 const predictionStatement = ({ prediction }: Passivity): HTMLElement =>
   statement("prediction", "What the model predicts", prediction.verdict, prediction.statement);
 
-/** What each method's model says, beside how much it explains. */
+/** Verdicts on the model of each method, with its VAF. */
 function methods({ models = [] }: Passivity, unit: string): HTMLElement | undefined {
   if (models.length === 0) return undefined;
   const rows = models.map((model): (Node | string)[] => [
-    `model of ${methodNames[model.method]}${model.usable ? (model.fits ? "" : ", fits poorly") : ", not usable"}`,
+    `model by ${methodNames[model.method]}${model.usable ? (model.fits ? "" : ", fits poorly") : ", not usable"}`,
     h("span", { class: "number" }, ...model.VAF.flatMap((value, axis) => [axis ? ", " : "", data(value, fixed(value, 1), `${model.method}-vaf${axis}`)]), " %"),
     verdictBadge(model.symmetric),
     verdictBadge(model.antisymmetric),
     verdictBadge(model.published_rule),
     h("span", { class: "number" }, withInterval(model.min_index, model.min_index_interval95, `${model.method}-min-index`, threeDigits(model.min_index)), ` ${unit}, at ${plain(model.min_index_at_hz, 3)} Hz`),
   ]);
-  return table("Each method's model, with its smallest passivity index in the band and the 95 % interval", ["", "VAF", "straight motion", "circular motion", "published rule", "smallest index"], rows, "numbers ways");
+  return table("Models by method, with the smallest passivity index in the band and its 95 % interval", ["", "VAF", "straight motion", "circular motion", "published rule", "smallest index"], rows, "numbers ways");
 }
 
 function linesTable(lines: EnergyLine[] | undefined): HTMLElement | undefined {
@@ -65,15 +65,15 @@ export function passivitySection(trial: Trial, id: string, level: HeadingLevel):
     trialStatement(passivity),
     predictionStatement(passivity),
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
-      "Two statements, neither of which follows from the other. The first is about this trial and its motion only. The second is what the model says of other motions within the band in which the data show how the limb responds; beyond it, it is extrapolated. Straight motion shows the symmetric parts of the model only; the antisymmetric parts do work in motion that circles. Neither is a promise that a machine is stable with this person."),
+      "The two statements are independent. The first is about this trial and its motion only. The second is what the model predicts for other motions within the band in which the data show how the limb responds; beyond it, the model is extrapolated. In straight motion only the symmetric parts of the model do work; in circular motion the antisymmetric parts do, too. Neither statement guarantees that a robot coupled to this person is stable."),
     methods(passivity, unitsOf(trial.result).B),
     trial.result.disagreement?.significant
-      ? h("p", {}, "The two methods disagree beyond chance: the limb did something on its own account, which least squares takes for mechanics. ", h("a", { href: `#${id}-methods` }, "Both beside each other"), ".")
+      ? h("p", {}, "The two methods differ significantly: voluntary or reflex activity of the limb, or noise, acts back on the motion, which biases least squares. ", h("a", { href: `#${id}-methods` }, "Compare both methods"), ".")
       : "",
     linesTable(passivity.trial?.lines));
 }
 
-const outcome: Record<Verdict, string> = { passive: "✓ holds", active: "✕ fails", undecided: "? open" };
+const outcome: Record<Verdict, string> = { passive: "✓ met", active: "✕ not met", undecided: "? undecided" };
 
 function conditionsTable(model: ModelPassivity): HTMLElement {
   const row = (c: Condition, k: number): (Node | string)[] => {
@@ -89,16 +89,16 @@ function conditionsTable(model: ModelPassivity): HTMLElement {
       h("span", { class: "source" }, c.source),
     ];
   };
-  return table(`Conditions on the model of ${methodNames[model.method]}: each must be positive`,
-    ["condition", "value", "above, with 95 %", "below, with 95 % for all", "unit", "", "Dyck 2013"], model.conditions.map(row), "numbers conditions");
+  return table(`Conditions on the model by ${methodNames[model.method]}: each must be positive`,
+    ["condition", "value", "lower limit (97.5 %)", "upper limit (97.5 % for all)", "unit", "", "Dyck 2013"], model.conditions.map(row), "numbers conditions");
 }
 
 function excessTable(models: ModelPassivity[], unit: string): HTMLElement | undefined {
   const number = (value: Value, interval: Interval, name: string) => withInterval(value, interval, name, threeDigits(value));
   const rows = models.flatMap(({ eop, method }): (Node | string)[][] => eop
     ? [
-        [`${methodNames[method]}: corrected, the smallest eigenvalue of B`, number(eop.corrected, eop.interval95, `${method}-eop`), unit],
-        [`${methodNames[method]}: by the published formula, half the largest eigenvalue of B`, number(eop.published_formula, eop.published_formula_interval95, `${method}-eop-published`), unit],
+        [`${methodNames[method]}: corrected formula, smallest eigenvalue of B`, number(eop.corrected, eop.interval95, `${method}-eop`), unit],
+        [`${methodNames[method]}: published formula, half the largest eigenvalue of B`, number(eop.published_formula, eop.published_formula_interval95, `${method}-eop-published`), unit],
       ]
     : []);
   return rows.length ? table("Excess of passivity of the symmetric part (negative: a shortage); brackets are 95 % intervals", ["", "value", "unit"], rows, "numbers excess") : undefined;
@@ -121,7 +121,7 @@ function indexChart(models: ModelPassivity[], unit: string, id: string): Chart |
   return {
     id: `${id}-index`,
     title: "Passivity index over the band",
-    howToRead: "Above zero the model absorbs energy at that frequency, whatever the direction of the motion; below it, it can generate some. Where the shaded band crosses zero the data leave it open. Each panel has a scale of its own.",
+    howToRead: "Above zero, the model absorbs energy at that frequency in every direction of motion; below zero, it can generate energy. Where the shaded band includes zero, the data do not decide. Each panel has its own scale.",
     description: `Half the smallest eigenvalue of Z + Zᴴ; passive where it is positive. ${words.join("; ")}.`,
     x: { name: "frequency", unit: "Hz", log: true },
     panels: drawn.map(({ method, index }) => ({
@@ -160,7 +160,7 @@ function nyquistChart(trial: Trial, id: string): Chart | undefined {
   return {
     id: `${id}-nyquist`,
     title: "Impedance in the complex plane",
-    howToRead: "Z(jω) = (k − m ω²)/(jω) + b along the band. Its real part is the damping: where the curve lies left of zero, in the shaded half, the model generates energy. Low frequencies lie below, where stiffness rules; high ones above, where inertia does.",
+    howToRead: "Z(jω) = (k − m ω²)/(jω) + b along the band. Its real part is the damping: where the curve lies left of zero, in the shaded half, the model generates energy. Low frequencies lie below, where stiffness dominates; high ones above, where inertia dominates.",
     description: `The real part is ${significant(b)} ${unit} throughout; the imaginary part goes from ${significant(imaginary[0])} at ${plain(frequency[0], 3)} Hz to ${significant(imaginary.at(-1))} ${unit} at ${plain(frequency.at(-1), 3)} Hz.`,
     x: { name: "real part", unit, range },
     panels: [{
@@ -180,7 +180,7 @@ function nyquistChart(trial: Trial, id: string): Chart | undefined {
   };
 }
 
-/** Conditions, excess and index: what stands behind the verdict of a model. */
+/** Conditions, excess and index: the basis of the verdict on a model. */
 export function passivityDetails(trial: Trial, id: string, level: HeadingLevel): HTMLElement | undefined {
   const models = trial.result.passivity?.models ?? [];
   const first = models[0];
@@ -190,12 +190,12 @@ export function passivityDetails(trial: Trial, id: string, level: HeadingLevel):
   const circular = first.circular_hz;
   return h("section", { id: `${id}-conditions` },
     heading(level, "Passivity of the model"),
-    trial.result.usable ? "" : h("p", {}, "The result is not usable: these numbers show why, and predict nothing."),
+    trial.result.usable ? "" : h("p", {}, "The result is not usable: these numbers help to find out why; they are no prediction."),
     ...models.map(conditionsTable),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "A condition holds where it is above zero with 97.5 % confidence, and fails where it is below zero with 97.5 % confidence for all conditions at once. Between the two it is open. All must hold for “passive”; one that fails makes “active”."),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "A condition is met if its value is above zero with 97.5 % confidence, and not met if it is below zero with 97.5 % confidence for all conditions jointly; otherwise it is undecided. “Passive” needs all conditions met; one that is not met means “active”."),
     excessTable(models, unit),
-    first.antisymmetric !== "passive" && circular ? h("p", {}, "In circular motion the model of ", methodNames[first.method], ", as estimated, absorbs energy above ", data(circular[0], significant(circular[0], 2), "circular-low"), " Hz",
+    first.antisymmetric !== "passive" && circular ? h("p", {}, "In circular motion the point estimate of the model by ", methodNames[first.method], " absorbs energy above ", data(circular[0], significant(circular[0], 2), "circular-low"), " Hz",
       circular[1] !== null && circular[1] < 10 * first.band_hz[1] ? [" and below ", significant(circular[1], 2), " Hz"].join("") : "",
-      ". Beyond, its antisymmetric part outweighs its damping; what lies outside the band is extrapolated.") : "",
+      ". Outside this range its antisymmetric part outweighs its damping; beyond the band the model is extrapolated.") : "",
     ...charts.map(figure));
 }

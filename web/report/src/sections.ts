@@ -1,4 +1,4 @@
-// What was measured, the numbers, and where they come from.
+// Facts of the recording, the model, and methods and provenance.
 import type { Value } from "@mbk/shared/documents";
 import { facts, h, heading, type HeadingLevel, table } from "@mbk/shared/dom";
 import { anyAngle, ellipsesOf } from "@mbk/shared/ellipses";
@@ -13,8 +13,11 @@ import { methodNames } from "./words";
 const percent = (share: Value): Value => (share === null ? null : 100 * share);
 const onlyOne = (values: string[]): string => [...new Set(values)].join(", ");
 
-/** Numbers as they follow a name: window, filters, mode. */
-export function identityFacts(trial: Trial): HTMLElement {
+/** File, participant, window, filters, method, mode. */
+export const recordingSection = (trial: Trial, id: string, level: HeadingLevel): HTMLElement =>
+  h("section", { id: `${id}-recording` }, heading(level, "Recording and settings"), identityFacts(trial));
+
+function identityFacts(trial: Trial): HTMLElement {
   const { result } = trial;
   const how = result.preparation[0];
   const filters = how
@@ -37,8 +40,8 @@ export function identityFacts(trial: Trial): HTMLElement {
 export const simulatedNote = (trials: Trial[]): HTMLElement | undefined =>
   trials.some(isSimulated)
     ? h("p", { class: "simulated" }, h("strong", {}, "Simulated. "), trials.every(isSimulated)
-      ? "No person was measured: the metadata hold the truth behind a simulation."
-      : "Some of these recordings hold the truth behind a simulation in their metadata; those are of no person.")
+      ? "No person was measured; the metadata contain the true values."
+      : "Some of these recordings are simulated: their metadata contain the true parameters. They are not of a person.")
     : undefined;
 
 export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTMLElement {
@@ -58,29 +61,29 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
     h("span", {}, name ? `${name} ` : "", withHalfWidth(model.x0[j] ?? null, error.x0[j] ?? null, `x0${j}`, millimetres ? 1000 : 1)));
   rows.push(["equilibrium x₀", ...equilibrium, ...(axes === 1 ? [] : ["", ""]), millimetres ? "mm" : units.x0]);
   const fitRows: (Node | string)[][] = [
-    [`VAF on ${fit.validated_on === "held-out" ? "held-out data" : "the same data"}`, perAxis(fit.VAF, 2, "%", "VAF")],
+    [`VAF on ${fit.validated_on === "held-out" ? "held-out (validation) data" : "the fitted data"}`, perAxis(fit.VAF, 2, "%", "VAF")],
     ["VAF in sample", perAxis(fit.VAF_in_sample, 2, "%", "VAF_in_sample")],
-    [`RMSE on ${fit.validated_on === "held-out" ? "held-out data" : "the same data"}`, perAxis(fit.RMSE, 3, units.force, "RMSE")],
+    [`RMSE on ${fit.validated_on === "held-out" ? "held-out (validation) data" : "the fitted data"}`, perAxis(fit.RMSE, 3, units.force, "RMSE")],
   ];
   return h(
     "section",
     { id: `${id}-model` },
-    heading(level, "The model"),
+    heading(level, "Model"),
     h("p", { class: "equation" }, "M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."),
     result.usable
       ? table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval", head, rows, "numbers")
-      : h("p", { "data-name": "no-model" }, "The model is not usable, and none of its numbers is shown. The file that ", h("code", {}, "mbk measure --json"), " writes holds them."),
+      : h("p", { "data-name": "no-model" }, "The model is not usable, so its numbers are not shown. ", h("code", {}, "mbk measure --json"), " writes them."),
     axes === 2 && result.usable
-      ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x that comes from motion along y.")
+      ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x caused by motion along y.")
       : "",
-    table("How well the model explains the force", ["", "value"], fitRows, "numbers narrow"),
+    table("Fit", ["", "value"], fitRows, "numbers narrow"),
     literatureTable(trial),
   );
 }
 
 /** Half axes, orientation and intervals of the ellipses of each. */
 export function ellipsesCsv(all: { name: string; trial: Trial }[]): string {
-  return csvOf(["recording", "matrix", "unit", "smaller half axis", "larger half axis", "orientation [°]", "orientation, low", "orientation, high", "area", "area, low", "area, high", "shape", "shape, low", "shape, high"],
+  return csvOf(["recording", "matrix", "unit", "semi-minor axis", "semi-major axis", "orientation [°]", "orientation, low", "orientation, high", "area", "area, low", "area, high", "shape", "shape, low", "shape, high"],
     all.flatMap(({ name: recording, trial }) => matrices.flatMap(({ symbol, name }) => {
       const e = trial.result.ellipses?.[name];
       if (!e) return [];
@@ -103,7 +106,7 @@ export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): 
       e.area === null ? "none" : h("span", { class: "number" }, withInterval(e.area, e.interval95.area, `${name}-area`, areaDecimals), ` ${unit.includes("·") || unit.includes("/") ? `(${unit})` : unit}²`),
       e.shape === null ? "none" : withInterval(e.shape, e.interval95.shape, `${name}-shape`, 2),
       anyAngle(e.interval95.orientation_deg)
-        ? "any: it may be round"
+        ? "any: may be a circle"
         : h("span", { class: "number" }, withInterval(e.orientation_deg, e.interval95.orientation_deg, `${name}-orientation`, 1), e.orientation_deg === null ? "" : "°"),
       h("span", { class: "number" }, ...([["large", 1], ["small", 0]] as const).flatMap(([which, k]) => [
         data(e.eigenvalues[k], significant(e.eigenvalues[k]), `${name}-${which}`),
@@ -118,7 +121,7 @@ export function ellipsesSection(trial: Trial, id: string, level: HeadingLevel): 
     { id: `${id}-ellipses` },
     heading(level, "Ellipses"),
     saveable(ellipsesOf(trial), { name: `${id}-ellipses`, title: "Ellipses", csv: () => ellipsesCsv([{ name: fileOf(trial), trial }]) }),
-    table("Ellipses in numbers; brackets are 95 % intervals", ["", "area", "shape", "orientation", "half axes", "antisymmetry"], rows, "numbers"),
+    table("Ellipses; brackets are 95 % intervals", ["", "area", "shape", "orientation", "semi-axes", "antisymmetry"], rows, "numbers"),
   );
 }
 
@@ -129,7 +132,7 @@ function preparationFacts(trial: Trial): HTMLElement[] {
       facts([
         ["Protocol", `${how.protocol}: ${how.protocol_rule}`],
         ["Window", `${plain(how.from_s, 6)} s to ${plain(how.to_s, 6)} s: ${how.window_rule}`],
-        ["Held out from", how.split_s === undefined ? undefined : `${plain(how.split_s, 6)} s`],
+        ["Held-out (validation) data from", how.split_s === undefined ? undefined : `${plain(how.split_s, 6)} s`],
         ["Perturbations", how.perturbations === undefined ? undefined : String(how.perturbations)],
         ["Smoothing", `Savitzky–Golay, order ${how.savitzky_golay.order}, window ${how.savitzky_golay.window} samples`],
         ["Low-pass", how.cutoff_hz === null ? "none" : `zero-phase Butterworth of order 5, ${plain(how.cutoff_hz, 4)} Hz: ${how.cutoff_rule}`],
@@ -166,14 +169,14 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
     ...preparationFacts(trial),
     facts([
       ["Estimator", `${methodNames[result.method]}, structure ${result.structure}`],
-      ["Data behind the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
-      ["Reach of the noise's memory", `${plain(e.hac_lag_s, 3)} s in the standard errors`],
+      ["Data used for the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
+      ["Noise correlation time", `${plain(e.hac_lag_s, 3)} s, allowed for in the standard errors`],
       ["Handle mass subtracted", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "none"],
-      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes === 2 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it across the main direction` : ""}`],
-      ["Condition of the regressors", `${significant(x.condition, 2)}, rank ${x.rank}`],
-      ["Fitted again at a lower rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(percent(result.decimate_check.largest_relative_change), 2)} %` : undefined],
+      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes === 2 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it perpendicular to the main direction` : ""}`],
+      ["Condition number", `${significant(x.condition, 2)}, rank ${x.rank}`],
+      ["Refitted at a lower sample rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(percent(result.decimate_check.largest_relative_change), 2)} %` : undefined],
     ]),
-    result.notes?.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted when the file was read")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "",
+    result.notes?.length ? h("div", {}, h("p", {}, h("strong", {}, "Notes from reading the file")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "",
     metadata.length
       ? h("details", { class: "metadata", "data-print": true }, h("summary", {}, "Metadata of the recording"), facts(metadata))
       : "",

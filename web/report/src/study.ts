@@ -39,7 +39,7 @@ const sized = (value: Value, [low, high]: [Value, Value], name: string): HTMLEle
 const icc = (one: Reliability) => one.between_sessions.icc.find(({ form, averaged }) => form === "agreement" && averaged === 1);
 const error = (one: Reliability) => one.between_sessions.error.find(({ form }) => form === "agreement");
 
-/** Why nothing is said of it. */
+/** Why it is not reported. */
 function lack({ repeated_participants, between_sessions }: Reliability): string {
   if (between_sessions.support === "too few people") return `too few people: ${repeated_participants} with two sessions or more`;
   return between_sessions.support;
@@ -65,8 +65,8 @@ function summarySection(report: StudyReport, conditions: string[]): HTMLElement 
       h("p", {}, "Between sessions: ", agreement ? h("span", {}, "ICC(A,1) ", iccText(agreement.value, agreement.interval95 as [Value, Value])) : `no reliability stated, ${one ? lack(one) : "nothing was measured"}`, "."),
       h("p", {}, "Minimal detectable change: ", sem ? h("span", {}, data(sem.mdc95, withUnit(plainly(sem.mdc95), course.unit), "mdc"), share) : "not known", "."))];
   });
-  const nothing = summary.counts.recordings === 0 ? "The study has no recordings yet." : summary.counts.usable === 0 ? "No recording has a usable result that counts: there is nothing to sum up." : "";
-  return h("section", { id: "summary" }, heading(2, "In short"),
+  const nothing = summary.counts.recordings === 0 ? "The study has no recordings yet." : summary.counts.usable === 0 ? "No recording has a usable, included result: there is nothing to summarise." : "";
+  return h("section", { id: "summary" }, heading(2, "Summary"),
     nothing ? h("p", { class: "said" }, nothing) : h("div", { class: "cards" }, ...cards),
     ...(summary.notes ?? []).map((note) => h("p", { class: "note", "data-name": "note" }, sentence(note))));
 }
@@ -112,12 +112,12 @@ function reliabilitySection(report: StudyReport, conditions: string[]): HTMLElem
   if (tables.length === 0) return undefined;
   return h("section", { id: "reliability" }, heading(2, "Reliability"), ...tables,
     h("p", { class: "reading" }, h("strong", {}, "How to read this. "),
-      "ICC(A,1): share of the variance between single sessions that is between people, with what all people change by counted as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; less than that between two sessions may be error. In brackets 95 % intervals, those of ICC(A,1) by McGraw and Wong; an ICC below 0 means no more than 0. Intervals of SEM and MDC allow for errors with a kurtosis up to 6 (normal: 3); heavier tails are noted. These are computed from the means of sessions, of people who have all the sessions that are compared; the mixed model takes every trial, and is of single trials."),
+      "ICC(A,1): share of the variance between single sessions that is due to differences between people; a change common to all people counts as error; 1 is perfect. SEM: standard error of measurement, the standard deviation of one person’s sessions (agreement). MDC: minimal detectable change, 1.96 √2 SEM; a smaller difference between two sessions may be measurement error. Brackets are 95 % intervals, for ICC(A,1) after McGraw and Wong; an ICC below 0 counts as 0. Intervals of SEM and MDC allow for errors with a kurtosis up to 6 (normal: 3); heavier tails are noted. All these use session means of people with all compared sessions; the mixed model uses every trial and refers to single trials."),
     noteList(notes),
     others.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), ...others, noteList(more)) : "");
 }
 
-/** Decimals that tell people apart. */
+/** Enough decimals to distinguish people. */
 function spreadOf(courses: Course[]): Value {
   const means = courses.map(({ mean }) => mean).filter((v): v is number => v !== null);
   if (means.length < 2) return means[0] === undefined ? null : Math.abs(means[0]) / 10;
@@ -137,13 +137,13 @@ function peopleForest(one: OutcomeCourses, conditions: string[]): HTMLElement {
   const axis = one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome);
   return h("div", { class: "forest-block" }, name ? h("p", { class: "panel-title" }, name) : "",
     forest(`${axis}${name ? `, ${name}` : ""}: ${rows.map(({ name: who, text }) => `${who} ${text}`).join("; ")}`, axis, rows),
-    one.why_unknown ? h("p", { class: "reading" }, `People have no intervals: ${one.why_unknown}.`) : "");
+    one.why_unknown ? h("p", { class: "reading" }, `No intervals for single participants: ${one.why_unknown}.`) : "");
 }
 
 function participantsSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement {
   return h("section", { id: "participants" }, heading(2, "Participants"),
     saveable(h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, ...chosen.map((one) => peopleForest(one, conditions)))),
-      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval that the variances of the study give: between sessions and between trials, taken to be alike in all people. The diamond is the mean of all people with its 95 % interval.")), { name: "participants", title: "Participants", csv: () => meansCsv(courses) }));
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Each square is the mean of one person’s sessions. Its line is the 95 % interval from the variances of the study between sessions and between trials, assumed equal for all people. The diamond is the mean of all people with its 95 % interval.")), { name: "participants", title: "Participants", csv: () => meansCsv(courses) }));
 }
 
 function coursesSection({ courses, primary }: StudyReport, conditions: string[]): HTMLElement | undefined {
@@ -162,12 +162,12 @@ function coursesSection({ courses, primary }: StudyReport, conditions: string[])
           h("p", { class: "panel-name" }, `participant ${course.participant}`), coursePanel(one, course, range_, all, "small"),
           h("p", { class: "panel-note" }, change ? `${size} since session ${change.first_session}${change.verdict === "beyond-error" ? ": more than error" : change.verdict === "uncertain" ? ": uncertain" : ""}` : ""));
       })),
-      alone > 0 ? h("p", { class: "reading" }, `${counted(alone, "participant has", "participants have")} one session, and ${alone === 1 ? "is" : "are"} not drawn.`) : "",
-      one.why_unknown ? h("p", { class: "reading", "data-name": "mdc-unknown" }, `The minimal detectable change is not known: ${one.why_unknown}. No difference here can be told from measurement error.`) : "");
+      alone > 0 ? h("p", { class: "reading" }, `${counted(alone, "participant has", "participants have")} only one session and ${alone === 1 ? "is" : "are"} not drawn.`) : "",
+      one.why_unknown ? h("p", { class: "reading", "data-name": "mdc-unknown" }, `The minimal detectable change is not known: ${one.why_unknown}. No difference here can be distinguished from measurement error.`) : "");
   };
   return h("section", { id: "sessions" }, heading(2, "Each participant over the sessions"),
     saveable(h("figure", {}, chooser(courses, primary, (chosen) => h("div", {}, courseLegend(chosen), ...chosen.map(drawn))),
-      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontally the sessions, vertically the outcome, on one scale for all. The band is the minimal detectable change around the first session: what a person who did not change stays within (95 %), by the variances of the mixed model and this person’s own numbers of trials; of whoever stands out, by the variances of all others. Of so many people and sessions some leave the band by chance: 5 % of those who did not change, for each session. Where most people changed between sessions, the band holds that too, and is too wide.")), { name: "sessions", title: "Each participant over the sessions", csv: () => coursesCsv(courses) }));
+      h("figcaption", {}, h("strong", {}, "How to read this. "), "Horizontal: sessions; vertical: outcome, on the same scale for all. The band is the minimal detectable change around the first session: a person who did not change stays within it (95 %). It is computed from the variances of the mixed model and this person’s number of trials; for an outlying participant, from the variances of all others. For each session, 5 % of the people who did not change leave the band by chance. If most people changed between sessions, this change widens the band.")), { name: "sessions", title: "Each participant over the sessions", csv: () => coursesCsv(courses) }));
 }
 
 function ellipsesSection({ matrices }: StudyReport, conditions: string[]): HTMLElement | undefined {
@@ -176,13 +176,13 @@ function ellipsesSection({ matrices }: StudyReport, conditions: string[]): HTMLE
   if (!first) return undefined;
   return h("section", { id: "ellipses" }, heading(2, "Ellipses"), first,
     ...(more.length > 0 ? [h("details", { class: "data-table" }, h("summary", {}, "Damping and inertia"), ...more)] : []),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "Each ellipse is of the mean matrix of a session, all at one scale. The longer it is in a direction, the more force it takes to move the hand that way."));
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "Each ellipse is of the mean matrix of a session, all at the same scale. The longer it is in a direction, the more force it takes to move the hand that way."));
 }
 
-const differenceWords: Record<Comparison["verdict"], string> = { differs: "differs", "not shown": "no difference shown", "too few people": "too few people", "no variation": "no variation" };
+const differenceWords: Record<Comparison["verdict"], string> = { differs: "differs", "not shown": "no detectable difference", "too few people": "too few people", "no variation": "no variation" };
 
 function differencesTable(name: string, tests: number, all: Comparison[]): HTMLElement {
-  return table(`${name}; p by Student’s t, corrected for ${tests} tests (Holm)`, ["outcome", "people", "difference", "p", "p corrected", "p by permutation", "what that means"],
+  return table(`${name}; p by Student’s t, corrected for ${tests} tests (Holm)`, ["outcome", "people", "difference", "p", "p corrected", "p by permutation", "verdict"],
     all.map((one) => [one.unit ? `${outcomeName(one.outcome)} [${one.unit}]` : outcomeName(one.outcome),
       one.pairing === "paired" ? `${one.first_participants} paired` : `${one.first_participants}, ${one.second_participants}`,
       one.interval95 ? sized(one.difference, one.interval95 as [Value, Value], "difference") : plainly(one.difference),
@@ -213,17 +213,17 @@ function comparisonSection({ summary }: StudyReport): HTMLElement | undefined {
       differencesTable(name, comparison.tests, ordered.filter(({ outcome }) => isMain(outcome))),
       ordered.some(({ outcome }) => !isMain(outcome))
         ? h("details", { class: "data-table" }, h("summary", {}, "Other outcomes"), differencesTable(name, comparison.tests, ordered.filter(({ outcome }) => !isMain(outcome)))) : "");
-  }), h("p", { class: "reading" }, "“No difference shown” is no proof that there is none."));
+  }), h("p", { class: "reading" }, "“No detectable difference” does not prove that there is none."));
 }
 
 const shortName = (outcome: string): string => outcomeName(outcome).replace(" of the ellipse", "");
 
 function limitsSection(): HTMLElement {
-  return h("section", { id: "limits" }, heading(2, "What these numbers do not say"),
+  return h("section", { id: "limits" }, heading(2, "Limitations"),
     h("ul", { class: "limits" },
-      h("li", {}, "Reliability and minimal detectable change are those of these people, this apparatus and these sessions. They say nothing of others."),
-      h("li", {}, "A change beyond the error of measurement need not matter, and has no cause here."),
-      h("li", {}, "Results that are not usable and excluded recordings do not count; they are listed below with their reasons.")));
+      h("li", {}, "Reliability and minimal detectable change apply to these people, this apparatus and these sessions only."),
+      h("li", {}, "A change that exceeds measurement error need not matter clinically, and its cause is not known."),
+      h("li", {}, "Results that are not usable and excluded recordings are omitted; they are listed below with the reasons.")));
 }
 
 export function studySections(report: StudyReport): HTMLElement[] {
@@ -237,7 +237,7 @@ export function studySections(report: StudyReport): HTMLElement[] {
     drawn && coursesSection(report, conditions),
     ellipsesSection(report, conditions),
     limitsSection(),
-    h("section", { id: "left-out" }, heading(2, "Recordings that do not count"), report.recordings.length > 0 ? leftOutTable(report.recordings, true) : h("p", {}, "There are no recordings.")),
+    h("section", { id: "left-out" }, heading(2, "Omitted recordings"), report.recordings.length > 0 ? leftOutTable(report.recordings, true) : h("p", {}, "There are no recordings.")),
     h("section", { id: "data" }, heading(2, "Data"), downloads(report, "study"),
       report.recordings.length > 0 ? h("details", { class: "data-table" }, h("summary", {}, "Every recording"), recordingsTable(report.recordings)) : ""),
   ];
@@ -245,9 +245,9 @@ export function studySections(report: StudyReport): HTMLElement[] {
 }
 
 export const studyGlossary: [string, string][] = [
-  ["ICC", "intraclass correlation: the share of all variance that is between people. Near 1 one measurement distinguishes people; near 0 it does not"],
-  ["SEM", "standard error of measurement: what one person’s repeated measurements scatter by, one standard deviation"],
-  ["MDC", "minimal detectable change: the difference between two measurements of a person that 95 % of people who did not change stay below"],
-  ["Ellipse", "for each direction, how strongly the hand resists being moved that way. Area: how much altogether; shape: longest over shortest axis; orientation: of the long axis, counter-clockwise from x"],
-  ["Usable", "mbk found nothing that forbids using the result"],
+  ["ICC", "intraclass correlation: the share of the total variance that is due to differences between people. Near 1, one measurement distinguishes people; near 0, it does not"],
+  ["SEM", "standard error of measurement: the standard deviation of one person’s repeated measurements"],
+  ["MDC", "minimal detectable change: 95 % of people who did not change differ by less than this between two measurements"],
+  ["Ellipse", "for each direction, how strongly the hand resists being moved that way. Area: overall size; shape: major over minor axis; orientation: angle of the major axis, counter-clockwise from x"],
+  ["Usable", "mbk found no problem that rules out using the result"],
 ];

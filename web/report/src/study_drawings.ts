@@ -135,7 +135,7 @@ export function courseLegend(outcomes: OutcomeCourses[]): HTMLElement {
     h("li", {}, svg("svg", { width: 22, height: 14, "aria-hidden": "true", class: "course" }, drawing), text);
   return h("ul", { class: "legend" },
     withBand && entry(svg("rect", { x: 0.5, y: 1.5, width: 21, height: 11, class: "band" }), "first session ± minimal detectable change (95 %)"),
-    entry(mark(11, 7, "first"), withBand ? "mean of a session" : "mean of a session; how much of a difference is error is not known"),
+    entry(mark(11, 7, "first"), withBand ? "mean of a session" : "mean of a session; the measurement error is not known"),
     said.has("uncertain") && entry(mark(11, 7, "uncertain"), "beyond the band, which is itself uncertain"),
     said.has("beyond-error") && entry(mark(11, 7, "beyond-error"), "more than measurement error (95 %)"));
 }
@@ -170,7 +170,7 @@ export function ellipsePanel(name: string, sessions: SessionMatrix[], largest: n
   });
   const words = sessions.map((one) => {
     const axes = axesOf(triple(one));
-    return `session ${one.session}: ${axes ? `${significant(axes.long)} by ${significant(axes.short)} ${one.unit}, long axis at ${among(((axes.angle % 180) + 180) % 180, 10)}°` : "no ellipse"}`;
+    return `session ${one.session}: ${axes ? `${significant(axes.long)} by ${significant(axes.short)} ${one.unit}, major axis at ${among(((axes.angle % 180) + 180) % 180, 10)}°` : "no ellipse"}`;
   });
   return svg("svg", { viewBox: `${-end} ${-end} ${2 * end} ${2 * end}`, role: "img", "aria-label": `${name}. ${words.join("; ")}`, class: "person-ellipses" },
     svg("line", { x1: -end, y1: 0, x2: end, y2: 0, class: "axis" }),

@@ -20,7 +20,7 @@ export function analysisText(analysis: Analysis | null): string {
 export const verdictWords: Record<SessionChange["verdict"], { text: string; kind: string }> = {
   "beyond-error": { text: "more than measurement error", kind: "care-text" },
   uncertain: { text: "more than the MDC, which is uncertain", kind: "" },
-  "within-error": { text: "no change shown", kind: "" },
+  "within-error": { text: "no detectable change", kind: "" },
   unknown: { text: "not known", kind: "" },
 };
 
@@ -35,9 +35,9 @@ const stateWords: Record<ListedRecording["state"], string> = {
 /** Recordings of which no number counts, each with its reason. */
 export function leftOutTable(recordings: ListedRecording[], withParticipant: boolean): HTMLElement {
   const left = recordings.filter(({ state }) => state !== "usable");
-  if (left.length === 0) return h("p", {}, "Every recording has a usable result and counts.");
+  if (left.length === 0) return h("p", {}, "Every recording has a usable result and is included.");
   const participant = (one: ListedRecording) => (withParticipant ? [String(one.participant)] : []);
-  return table(`${counted(left.length, "recording does not count", "recordings do not count")}`,
+  return table(`${counted(left.length, "recording is omitted", "recordings are omitted")}`,
     ["recording", ...(withParticipant ? ["participant"] : []), "session", "condition", "trial", "state", "reason"],
     left.map((one) => [String(one.number), ...participant(one), String(one.session), one.condition || "–", String(one.trial), stateWords[one.state], one.reason || "–"]), "left-out");
 }
@@ -56,7 +56,7 @@ function field(value: string | number | null | undefined): string {
 }
 export const csvOf = (head: string[], rows: (string | number | null | undefined)[][]): string => `${[head, ...rows].map((row) => row.map(field).join(",")).join("\n")}\n`;
 
-/** One row for each number of each usable result, as `mbk study export` writes it. */
+/** One row per number of each usable result, as `mbk study export` writes it. */
 function resultsCsv({ recordings, outcomes = [], results = [] }: StudyReport | ParticipantReport): string {
   const by = new Map(recordings.map((one) => [one.number, one]));
   return csvOf(["participant", "session", "condition", "trial", "recording", "outcome", "value", "standard_error", "unit"],
@@ -89,7 +89,7 @@ export function downloads(report: StudyReport | ParticipantReport, name: string)
     report.results ? button("Save results (CSV)", () => download(`${name}_results.csv`, resultsCsv(report))) : "",
     button("Save sessions and changes (CSV)", () => download(`${name}_sessions.csv`, coursesCsv(report.courses))),
     button("Save everything (JSON)", () => download(`${name}.json`, `${JSON.stringify(report, null, 1)}\n`)),
-    report.results ? "" : h("span", { class: "reading" }, "The study has too many results for a page; mbk study export writes them."));
+    report.results ? "" : h("span", { class: "reading" }, "The study has too many results for this page; mbk study export writes them."));
 }
 
 export const conditionsOf = (courses: OutcomeCourses[]): string[] => [...new Set(courses.map(({ condition }) => condition))];
@@ -128,7 +128,7 @@ export function ellipseFigure(matrices: SessionMatrix[], matrix: keyof typeof ma
   }
   return saveable(h("figure", { class: "people-ellipses" },
     h("p", { class: "panel-title" }, matrixNames[matrix]),
-    ellipseLegend(Math.max(...[...panels.values()].map(({ length }) => length)), `the same everywhere, ${withUnit(plain(reference), first.unit)}`),
+    ellipseLegend(Math.max(...[...panels.values()].map(({ length }) => length)), `equal in all directions, ${withUnit(plain(reference), first.unit)}`),
     h("div", { class: "small-panels" }, ...[...panels.values()].map((sessions) => {
       const { participant, condition } = sessions[0] as SessionMatrix;
       const name = nameOf(participant, condition);

@@ -1,8 +1,8 @@
-// The measurement in plain words.
+// The measurement in plain language.
 import { angleBetween, direction } from "@mbk/shared/directions";
 import type { Method, Model, Value, Warning, WarningCode } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
-import { anyAngle } from "@mbk/shared/ellipses";
+import { anyAngle, ellipseOf } from "@mbk/shared/ellipses";
 import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
 import { type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
@@ -13,7 +13,7 @@ import { meanings, methodNames } from "./words";
 /** What was found, with warnings: a measurement or a transfer function. */
 export interface Judged {
   result: { usable: boolean; warnings: Warning[] };
-  /** Other words for warnings than those of a measurement. */
+  /** Texts of warnings, if they differ from those of a measurement. */
   plainly?: PlainWarnings;
 }
 
@@ -26,8 +26,8 @@ export function verdict(trial: Judged): { kind: "good" | "care" | "bad"; sign: s
   if (!usable) {
     return { kind: "bad", sign: "✕", word: "Not usable", reason: `Do not report these numbers: ${titles || "see the warnings"}.` };
   }
-  if (warnings.length > 0) return { kind: "care", sign: "!", word: "Usable with care", reason: `There is something to know first: ${titles}.` };
-  return { kind: "good", sign: "✓", word: "Usable", reason: "Nothing about the recording or the fit argues against it." };
+  if (warnings.length > 0) return { kind: "care", sign: "!", word: "Usable with care", reason: `Read these warnings first: ${titles}.` };
+  return { kind: "good", sign: "✓", word: "Usable", reason: "No problem was found in the recording or the fit." };
 }
 
 function fitSentence(trial: Trial): HTMLElement {
@@ -38,17 +38,17 @@ function fitSentence(trial: Trial): HTMLElement {
     if (axis > 0) parts.push(" and ");
     parts.push(data(value, value === null ? "an undefined share" : `${fixed(value, value > 99 ? 1 : 0)} %`), axes === 1 ? " of the force" : ` of the force along ${"xy"[axis]}`);
   });
-  parts.push(heldOut ? ", on held-out data" : ", on the data to which it was fitted, which is optimistic");
+  parts.push(heldOut ? ", on held-out (validation) data" : ", on the data used for fitting, which is optimistic");
   const worst = fit.VAF.reduce<number>((least, value) => Math.min(least, value ?? -Infinity), Infinity);
-  const judgement = worst >= 90 ? "That is a very good fit." : worst >= 80 ? "That is a good fit." : worst >= 70 ? "That is a fair fit." : "That is a poor fit.";
-  parts.push(`. ${trial.result.usable ? `${judgement} ` : ""}100 % would be everything.`);
+  const judgement = worst >= 90 ? "The fit is very good." : worst >= 80 ? "The fit is good." : worst >= 70 ? "The fit is fair." : "The fit is poor.";
+  parts.push(`. ${trial.result.usable ? `${judgement} ` : ""}100 % would be a perfect fit.`);
   return h("p", {}, ...parts);
 }
 
-/** What a stiffness of that size means to a hand. */
+/** What a value of that size means at the hand. */
 function everyday(symbol: "M" | "B" | "K", value: number, unit: string): string {
-  if (symbol === "K" && unit === "N/m") return `Held 1 cm from rest, it pushes back with ${significant(value / 100, 2)} N.`;
-  if (symbol === "K" && unit === "N·m/rad") return `Held 1° from rest, it pushes back with ${significant((value * Math.PI) / 180, 2)} N·m.`;
+  if (symbol === "K" && unit === "N/m") return `Held 1 cm from its equilibrium, it pushes back with ${significant(value / 100, 2)} N.`;
+  if (symbol === "K" && unit === "N·m/rad") return `Held 1° from its equilibrium, it pushes back with ${significant((value * Math.PI) / 180, 2)} N·m.`;
   if (symbol === "B" && unit === "N·s/m") return `Moved at 10 cm/s, it resists with ${significant(value / 10, 2)} N.`;
   if (symbol === "B" && unit === "N·m·s/rad") return `Turned at 1 rad/s, it resists with ${significant(value, 2)} N·m.`;
   if (symbol === "M" && unit === "kg") return `It feels like a mass of ${significant(value, 2)} kg.`;
@@ -71,7 +71,7 @@ interface Shown {
   usable: boolean;
 }
 
-/** Usable models: first the one on which the prediction of passivity rests, else that of the result. */
+/** Usable models; first the one that the passivity prediction uses, else that of the result. */
 function shownModels({ result }: Trial): Shown[] {
   const all: Shown[] = [result, ...(result.alternatives ?? [])].filter(({ usable }) => usable);
   const rests = result.passivity?.models?.[0]?.method;
@@ -87,7 +87,7 @@ function principalAxes(matrix: Value[][]): { small: number; large: number; angle
   return { small: middle - radius, large: middle + radius, angle: ((Math.atan2(s, half) * 90) / Math.PI + 180) % 180 };
 }
 
-/** In its directions: as the result says, with the interval, or of the other model. */
+/** Principal axes: from the result, with intervals, or of the other model, without. */
 function axesOf(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness"):
   { small: number; large: number; angle: number; intervals: { small: [Value, Value]; large: [Value, Value]; angle: [Value, Value] } } | undefined {
   if (shown.method !== trial.result.method) {
@@ -108,23 +108,27 @@ function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | 
   if (trial.result.axes === 1) {
     const value = shown.model[symbol][0]?.[0] ?? null;
     parts.push(h("p", { class: "headline" }, withHalfWidth(value, shown.standard_error[symbol][0]?.[0] ?? null, `card-${symbol}`), ` ${unit}`));
-    if (value !== null) parts.push(h("p", {}, everyday(symbol, value, unit)));
+    if (value !== null) parts.push(h("p", { class: "everyday" }, everyday(symbol, value, unit)));
   } else if (axes) {
     const { small, large, angle, intervals } = axes;
     const [low, high] = intervals.angle;
     const between = ([from, to]: [Value, Value]) =>
       h("span", { class: "half" }, from !== null && to !== null ? ` [${significant(from, 3)}, ${significant(to, 3)}]` : "");
     parts.push(
-      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), between(intervals.large), ` ${unit}`, h("span", { class: "half" }, " maximum (major axis)")),
-      anyAngle(intervals.angle) ? h("p", {}, "in any direction: it may be round") : h("p", {}, arrow(angle), data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
+      h("p", { class: "headline" }, data(large, significant(large, 3), `card-${symbol}-large`), ` ${unit}`, between(intervals.large)),
+      anyAngle(intervals.angle) ? h("p", {}, "maximum; any direction: the ellipse may be a circle") : h("p", {}, arrow(angle), "maximum at ", data(angle, `${fixed(angle, 0)}°`, `card-${symbol}-angle`),
         h("span", { class: "half" }, low !== null && high !== null ? ` [${fixed(low, 0)}°, ${fixed(high, 0)}°]` : ""), ` from x, ${direction(angle)}`),
-      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), between(intervals.small), ` ${unit} perpendicular (minor axis)`),
+      h("p", {}, data(small, significant(small, 3), `card-${symbol}-small`), between(intervals.small), ` ${unit} perpendicular`),
     );
-    if (small > 0) parts.push(h("p", {}, everyday(symbol, large, unit)));
+    if (small > 0) parts.push(h("p", { class: "everyday" }, everyday(symbol, large, unit)));
   } else {
     parts.push(h("p", { class: "headline" }, "undefined"));
   }
-  return h("div", { class: "card" }, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts, literatureLine(trial, symbol));
+  const drawn = shown.method === trial.result.method ? ellipseOf(trial, matrices.findIndex((one) => one.symbol === symbol)) : undefined;
+  return h("div", { class: "card" },
+    h("div", {}, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts),
+    drawn,
+    literatureLine(trial, symbol));
 }
 
 /** "K 224 N/m, B 17.3 N·s/m, M 2.31 kg": along the major axis where there are two axes. */
@@ -135,21 +139,22 @@ function inOneLine(trial: Trial, shown: Shown): string {
   }).join(", ");
 }
 
-/** The cards of the model on which the verdict rests, whose it is, and what the other method found. */
+/** Cards of the model that the verdict uses, its method, and the values of the other method. */
 function cards(trial: Trial): (Node | string)[] {
   if (!trial.result.usable) return [];
   const [first, ...others] = shownModels(trial);
   if (!first) return [];
   const rests = trial.result.passivity?.models?.[0]?.method === first.method;
-  const other = first.method !== trial.result.method ? ` The tables and ellipses below are of ${methodNames[trial.result.method]}, the method of this result.` : "";
+  const other = first.method !== trial.result.method ? ` The tables and ellipses below are from the ${methodNames[trial.result.method]} model, the method of this result.` : "";
   return [
-    h("p", { class: "model-of", "data-method": first.method }, "The model by ", h("strong", {}, methodNames[first.method]), rests ? `, on which the prediction of passivity rests.${other}` : `.${other}`),
     h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, first, symbol, name, title))),
-    ...others.map((one) => h("p", { class: "reading", "data-other": one.method }, `By ${methodNames[one.method]}${trial.result.axes === 1 ? "" : ", maximum"}: ${inOneLine(trial, one)}.`)),
+    h("p", { class: "model-of", "data-method": first.method }, "Values are from the ", h("strong", {}, methodNames[first.method]), rests ? ` model, which the passivity prediction also uses.${other}` : ` model.${other}`, " Brackets are 95 % intervals."),
+    trial.result.axes === 1 ? "" : h("p", { class: "reading" }, "Angles are counter-clockwise from x. Check how x and y of your robot point."),
+    ...others.map((one) => h("p", { class: "reading", "data-other": one.method }, `With ${methodNames[one.method]}${trial.result.axes === 1 ? "" : " (maximum)"}: ${inOneLine(trial, one)}.`)),
   ];
 }
 
-/** Where the stiffest direction points, as seen from the shoulder. */
+/** Angle between the stiffest direction and the line from shoulder to hand. */
 function towardsShoulder(trial: Trial): string {
   const posture = trial.recordings[0]?.posture;
   const ellipse = trial.result.ellipses?.stiffness;
@@ -164,19 +169,19 @@ export function summarySection(trial: Trial, id: string, level: HeadingLevel): H
   const { result } = trial;
   const duration = result.inputs.reduce((sum, input) => sum + (input.duration_s ?? 0), 0);
   const said = verdict(trial);
-  const how = result.axes === 1
-    ? "From force and position while the machine perturbed the limb, three properties of the limb were estimated."
-    : "From force and position while the robot perturbed the hand, three properties of the arm were estimated, as they are felt at the hand.";
+  const how = !result.usable ? "" : result.axes === 1
+    ? "A machine perturbed the limb; force and position were recorded. From these, three properties of the limb were estimated."
+    : "A robot perturbed the hand; force and position were recorded. From these, three properties of the arm at the hand were estimated.";
   return h(
     "section",
     { id: `${id}-summary` },
-    heading(level, "In short"),
+    heading(level, "Summary"),
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
-    h("p", {}, `${fileOf(trial)} holds ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
     ...cards(trial),
-    fitSentence(trial),
+    result.usable ? fitSentence(trial) : "",
+    h("p", {}, `${fileOf(trial)} contains ${significant(duration, 3)} s. ${how}${towardsShoulder(trial)}`),
   );
 }
 
@@ -186,7 +191,7 @@ export function warningsSection(trial: Judged, id: string, level: HeadingLevel):
     "section",
     { id: `${id}-warnings` },
     heading(level, "Warnings"),
-    warnings.length === 0 ? h("p", {}, "There are none.") : "",
+    warnings.length === 0 ? h("p", {}, "None.") : "",
     h("ul", { class: "warnings" },
       ...warnings.map((warning) => {
         const plainly = (trial.plainly ?? plainWarnings)[warning.code];

@@ -75,8 +75,8 @@ function summary(report: TransferFunctionReport): HTMLElement {
   const { result } = report;
   const said = verdict({ result, plainly: transferFunctionWarnings });
   const explained = result.fit.R2_held_out ?? result.fit.R2_in_sample;
-  const where = result.fit.R2_held_out === undefined ? "of the data to which it was fitted, which is optimistic" : "of held-out data";
-  return h("section", { id: "summary" }, heading(2, "In short"),
+  const where = result.fit.R2_held_out === undefined ? "of the data used for fitting, which is optimistic" : "of held-out (validation) data";
+  return h("section", { id: "summary" }, heading(2, "Summary"),
     h("div", { class: `verdict ${said.kind}`, "data-usable": String(result.usable) },
       h("span", { class: "sign", "aria-hidden": "true" }, said.sign),
       h("p", {}, h("strong", {}, `${said.word}. `), said.reason)),
@@ -87,13 +87,13 @@ function summary(report: TransferFunctionReport): HTMLElement {
 }
 
 function delayWords({ delay_s: delay, delay_found: found, delay_standard_error_s: error }: TransferFunction): (Node | string)[] {
-  if (found && error !== undefined) return [", a delay of ", withHalfWidth(delay, error, "delay"), " s, which was found"]; // 0 ± 3 ms is an answer too
+  if (found && error !== undefined) return [", a delay of ", withHalfWidth(delay, error, "delay"), " s, which was estimated"]; // 0 ± 3 ms is an answer too
   if (!(delay > 0)) return [];
-  return [`, a delay of ${plain(delay)} s${found ? ", which was found and counts as known in the intervals" : ""}`];
+  return [`, a delay of ${plain(delay)} s${found ? ", which was estimated and counts as known in the intervals" : ""}`];
 }
 
 function holdWords(hold: "zero" | "first", found: boolean): string {
-  const [what, because] = hold === "zero" ? ["keeps its value (zero-order hold)", "as its steps show"] : ["follows straight lines (first-order hold)", "as it shows no steps"];
+  const [what, because] = hold === "zero" ? ["keeps its value (zero-order hold)", "as its steps show"] : ["is interpolated linearly (first-order hold)", "as it shows no steps"];
   return `Between samples the input ${what}${found ? `, ${because}` : ", as asked"}.`;
 }
 
@@ -104,7 +104,7 @@ function coefficientsSection(result: TransferFunction): HTMLElement {
     h("span", {}, name.slice(0, 1), h("sub", {}, name.slice(1))),
     withHalfWidth(value, standard_error, name),
   ]);
-  const power = result.variable === "s" ? "of the powers of s: b above, a below the line" : "of the powers of q⁻¹: b above, f below the line";
+  const power = result.variable === "s" ? "of the powers of s: b numerator, a denominator" : "of the powers of q⁻¹: b numerator, f denominator";
   return h("section", { id: "coefficients" }, heading(2, "Coefficients"),
     table(`Coefficients ${power}, in seconds and SI units; ± is the 95 % interval, for ${result.hac_lag_s > 0 ? `noise correlated over up to ${plain(result.hac_lag_s)} s` : "white noise"}`,
       ["", "value ± 95 %"], rows, "numbers"));
@@ -133,9 +133,9 @@ function impedanceSection(result: TransferFunction): HTMLElement | undefined {
     return one ? [[name, withHalfWidth(one.value, one.standard_error, `impedance-${symbol}`), impedance.units[symbol]]] : [];
   });
   return h("section", { id: "impedance" }, heading(2, "Impedance"),
-    h("p", {}, `The model is an admittance, from a force to the ${impedance.admittance_to} that it causes. Its inverse says what force a motion takes.`),
+    h("p", {}, `The model is an admittance, from a force to the ${impedance.admittance_to} that it causes. Its inverse gives the force for a motion.`),
     impedance.unstable
-      ? h("p", { class: "care-text" }, "This impedance is unstable, since the admittance has zeros on the right half plane. No limb is like that.")
+      ? h("p", { class: "care-text" }, "This impedance is unstable because the admittance has zeros in the right half-plane. This is impossible for a limb.")
       : "",
     rows.length ? table("Inertia, damping and stiffness; ± is the 95 % interval", ["", "value ± 95 %", "unit"], rows, "numbers") : "",
     figure(bode(impedance.force_per_velocity, {
@@ -157,19 +157,19 @@ function responseSection(result: TransferFunction): HTMLElement {
       title: "Bode plot",
       unit,
       band: bandOf(result),
-      howToRead: "How much the output answers to the input at each frequency, and by how much it lags. Within the shaded band the data speak; beyond it the form of the model does.",
+      howToRead: "Gain and phase lag of the output relative to the input at each frequency. Within the shaded band the data determine the response; beyond it the model extrapolates.",
     })),
     nyquist(result.frequency_response, bandOf(result), "nyquist", "Nyquist plot", unit));
 }
 
 function simulationSection({ simulation: s, result }: TransferFunctionReport): HTMLElement | undefined {
   if (s.time_s.length === 0) return undefined;
-  const where = s.held_out ? "held-out data" : "the data that made the model";
+  const where = s.held_out ? "held-out (validation) data" : "the data used for fitting";
   return h("section", { id: "simulation" }, heading(2, `Measured and simulated output, on ${where}`),
     figure({
       id: "simulated",
       title: `Measured and simulated output on ${where}`,
-      howToRead: "The model had the input alone, and the state at the start. The closer the dashed line keeps to the solid one, the better the model.",
+      howToRead: "The simulation uses only the input and the initial state. The closer the dashed line is to the solid one, the better the model.",
       description: `The model explains ${significant(100 * (result.fit.R2_held_out ?? result.fit.R2_in_sample ?? 0), 4)} per cent of the output.`,
       x: { name: "time", unit: "s" },
       panels: [{
@@ -190,21 +190,21 @@ function ordersSection(result: TransferFunction): HTMLElement | undefined {
     ...(one.usable ? [fixed(one.R2, 6), fixed(one.YIC, 2), fixed(one.AIC, 1), fixed(one.BIC, 1)] : ["no stable model", "", "", ""]),
     one.chosen ? h("strong", {}, "chosen") : "",
   ]);
-  return h("section", { id: "orders" }, heading(2, "Which order"),
+  return h("section", { id: "orders" }, heading(2, "Model order"),
     table("Models that were tried", ["", "R²", "YIC", "AIC", "BIC", ""], rows, "numbers orders"),
-    h("p", { class: "reading" }, "Of the models that leave at most 2 % more than the one that leaves least, the one of least YIC is chosen."));
+    h("p", { class: "reading" }, "Among the models whose 1 − R² is within 2 % of the minimum, the one with the lowest YIC is chosen."));
 }
 
 function residualSection(result: TransferFunction): HTMLElement {
   const { residuals: r, fit } = result;
   const share = (value: Value): string => (value === null ? "undefined" : `${fixed(100 * value, 0)} % of ${r.lags} lags`);
   const rows = [
-    ["Is it noise without memory?", r.white ? "nothing argues against it" : "no: it is coloured", `p = ${significant(r.whiteness_p, 2)}`, share(r.autocorrelation_outside)],
-    ["Does the input still explain something of it?", r.independent_of_input ? "nothing supports it" : "yes: the model misses a part", `p = ${significant(r.cross_p, 2)}`, share(r.cross_correlation_outside)],
+    ["Is the residual white noise?", r.white ? "no evidence against it" : "no: it is coloured", `p = ${significant(r.whiteness_p, 2)}`, share(r.autocorrelation_outside)],
+    ["Does the input still explain part of the residual?", r.independent_of_input ? "no evidence for it" : "yes: the model misses a part", `p = ${significant(r.cross_p, 2)}`, share(r.cross_correlation_outside)],
   ];
   const unit = result.output.unit ? ` ${shownUnit(result.output.unit)}` : "";
   return h("section", { id: "residuals" }, heading(2, "Residual"),
-    table("Tests of the residual", ["", "answer", "probability by chance", "beyond the 99 % limit"], rows, "tests"),
+    table("Tests of the residual", ["", "answer", "p-value", "beyond the 99 % limit"], rows, "tests"),
     facts([
       ["Held out", fit.R2_held_out === undefined ? undefined : `R² ${fixed(fit.R2_held_out, 5)}, RMSE ${significant(fit.RMSE_held_out, 4)}${unit}`],
       ["In sample", `R² ${fixed(fit.R2_in_sample, 5)}, noise ${significant(fit.noise_standard_deviation, 4)}${unit}`],
@@ -216,7 +216,7 @@ function residualSection(result: TransferFunction): HTMLElement {
 function provenance(result: TransferFunction): HTMLElement {
   return h("section", { id: "provenance" }, heading(2, "Methods and provenance"),
     table("Files", ["file", "format", "SHA-256"], result.inputs.map((input) => [h("span", { class: "path" }, input.file), input.format, h("code", { class: "hash" }, input.sha256)]), "files"),
-    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "What was noted")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
+    result.notes.length ? h("div", {}, h("p", {}, h("strong", {}, "Notes")), h("ul", {}, ...result.notes.map((note) => h("li", {}, note)))) : "");
 }
 
 export function transferFunctionSections(report: TransferFunctionReport): HTMLElement[] {

@@ -24,7 +24,7 @@ export function described(chart: Chart): string {
     return `${name} (${x.length} point${x.length === 1 ? "" : "s"}, ${between(up)} over ${between(along)})`;
   });
   const lines = [...chart.horizontal, ...chart.vertical].map(({ name, value }) => `${name} at ${plain(value, 4)}`);
-  if (chart.identity) lines.push("where both axes agree");
+  if (chart.identity) lines.push("identity line");
   return [
     chart.title,
     `${withUnit(chart.y)} over ${withUnit(chart.x)}`,

@@ -48,7 +48,7 @@ export function exhibitArticle(exhibit: Exhibit, drawings: string[], known: Set<
     h("p", { class: "exhibit-name" }, h("a", { href: `#${exhibit.id}`, title: "Link to this" }, shortName(exhibit.id)), chip(exhibit.provenance), tally(exhibit)),
     h("h3", { id: `${exhibit.id}-heading` }, ...scripted(exhibit.title)),
     h("div", { class: reason ? "text reason" : "text" }, ...exhibit.text.map((paragraph) => h("p", {}, ...scripted(paragraph)))),
-    empty ? h("p", { class: "none" }, "Nothing is shown for this one.") : "",
+    empty ? h("p", { class: "none" }, "No numbers for this exhibit.") : "",
     exhibit.charts.length > 0 ? chartsBlock(exhibit, drawings) : "",
     ...exhibit.tables.map((_, k) => tableBlock(exhibit, k, known)),
     exhibit.commands.length > 0

@@ -49,11 +49,11 @@ function draw({ reproduction, drawings }: ReproductionPage): void {
     head(reproduction),
     tallySection(reproduction, (agreement) => found.showAgreement(agreement)),
     legendSection(reproduction),
-    h("p", { id: "nothing", hidden: true }, exhibits.length > 0 ? "Nothing fits the filter." : "There is no exhibit on this page."),
+    h("p", { id: "nothing", hidden: true }, exhibits.length > 0 ? "No exhibit matches the filter." : "This page has no exhibits."),
     ...groups.map((group) => groupSection(group, articles)),
     h("footer", {},
-      h("p", {}, "All numbers in one file beside this page: ", h("a", { href: "reproduction.json" }, "reproduction.json"), ", of schema mbk.reproduction/2."),
-      h("p", {}, "Made with ", h("strong", {}, reproduction.software), ". The same version and seed give the same numbers, digit for digit.")));
+      h("p", {}, "All numbers in one file in this folder: ", h("a", { href: "reproduction.json" }, "reproduction.json"), ", of schema mbk.reproduction/2."),
+      h("p", {}, "Made with ", h("strong", {}, reproduction.software), ". The same version and seed give exactly the same numbers.")));
   document.getElementById("page")?.replaceWith(h("div", { class: "page" }, place, main));
   const found = contents(groups, articles);
   place.replaceWith(found.element);

@@ -9,7 +9,7 @@ export function head(reproduction: Reproduction): HTMLElement {
     h("p", { class: "kicker" }, "Reproduction"),
     h("h1", {}, "Reproduction of the thesis"),
     h("p", { class: "source" }, reproduction.source),
-    h("p", {}, "mbk grew out of this thesis. This page reproduces its tables and figures one by one beside the printed numbers, and adds its errata, its research questions and its future work."));
+    h("p", {}, "mbk grew out of this thesis. This page reproduces its tables and figures next to the printed numbers, and adds its errata, research questions and future work."));
 }
 
 /** @param show  asked with the agreement whose exhibits are to be shown */
@@ -21,7 +21,7 @@ export function tallySection(reproduction: Reproduction, show: (agreement: strin
     .reduce((sum, { rows }) => sum + rows.flatMap(({ cells }) => cells).filter(({ printed }) => printed !== null).length, 0);
   return h("section", { id: "tally", "aria-labelledby": "tally-heading" },
     h("h2", { id: "tally-heading" }, "Agreement with the printed numbers"),
-    h("p", {}, all > 0 ? `Of ${all} printed numbers and words that stand beside ours:` : "Nothing printed stands beside ours on this page."),
+    h("p", {}, all > 0 ? `Of ${all} printed numbers and words that are compared with ours:` : "This page compares nothing with printed numbers."),
     h("ul", { class: "tally" },
       ...entries.map(([agreement, { sign, name, word, meaning }]) => {
         const cells = reproduction.agreement[agreement];
@@ -36,7 +36,7 @@ export function tallySection(reproduction: Reproduction, show: (agreement: strin
       h("li", { class: "not-compared" },
         h("p", { class: "headline" }, h("data", { value: aside, "data-name": "tally-not-compared" }, String(aside))),
         h("p", { class: "tally-word" }, "are not compared"),
-        h("p", { class: "tally-meaning" }, `${simulated} stand beside simulated numbers, which need not be equal; ${aside - simulated} are words, or ours is.`))));
+        h("p", { class: "tally-meaning" }, `${simulated} are next to simulated numbers, which need not be equal; for ${aside - simulated}, the printed value or ours is text.`))));
 }
 
 export function legendSection(reproduction: Reproduction): HTMLElement {
@@ -53,6 +53,6 @@ export function legendSection(reproduction: Reproduction): HTMLElement {
         h("span", { class: "ours" }, "5.69", h("span", { class: "half" }, " ± 0.03"), h("span", { class: "mark within-rounding" }, "✓")),
         h("span", { class: "range" }, "[5.62, 5.75]"),
         h("span", { class: "printed" }, "5.7"))))),
-      h("p", {}, "In a table our number comes first, with ± its spread, if any, and the mark of its agreement. The brackets give its range from the rounding of the printed inputs. ",
-        h("span", { class: "printed inline" }, "The printed number"), " stands below it, as printed. Select a cell, or use the arrow keys in a table, for all digits and the difference.")));
+      h("p", {}, "In a table our number comes first, with ± its spread, if any, and a mark for the agreement. Brackets give its range due to the rounding of the printed inputs. ",
+        h("span", { class: "printed inline" }, "The printed number"), " is below it. Select a cell, or use the arrow keys in a table, for all digits and the difference.")));
 }

@@ -39,7 +39,7 @@ function mark(cell: Cell, erratum: string | undefined): HTMLElement | undefined 
 
 function oursOf(cell: Cell, column: Column, name: string): (Node | string)[] {
   if (typeof cell.ours === "string") return [h("span", { class: cell.ours.length > 30 ? "words sentence" : "words" }, ...scripted(cell.ours))];
-  if (cell.ours === null) return [h("span", { class: "none" }, h("span", { "aria-hidden": "true" }, "–"), hidden("no number of ours"))];
+  if (cell.ours === null) return [h("span", { class: "none" }, h("span", { "aria-hidden": "true" }, "–"), hidden("ours: none"))];
   const decimals = decimalsOf(cell, column);
   const number = [data(cell.ours, fixed(cell.ours, decimals), name)];
   if (cell.spread !== null) number.push(h("span", { class: "half" }, " ± ", data(cell.spread, spreadText(cell.spread, decimals), `${name}-spread`)));
@@ -50,7 +50,7 @@ function oursOf(cell: Cell, column: Column, name: string): (Node | string)[] {
 export function factsOf(table: Table, row: string, column: Column, cell: Cell): string {
   const unit = column.unit ? ` ${column.unit}` : "";
   const every = (value: Value): string => minus(String(value));
-  const parts = [typeof cell.ours === "string" ? `ours: ${cell.ours}` : cell.ours === null ? "no number of ours" : `ours ${every(cell.ours)}${unit}`];
+  const parts = [typeof cell.ours === "string" ? `ours: ${cell.ours}` : cell.ours === null ? "ours: none" : `ours ${every(cell.ours)}${unit}`];
   if (cell.spread !== null) parts.push(`± ${every(cell.spread)}${table.spread_is ? ` (${table.spread_is})` : ""}`);
   if (cell.range) parts.push(`range from rounding ${every(cell.range[0])} to ${every(cell.range[1])}`);
   parts.push(cell.printed === null ? "nothing printed" : `printed ${minus(cell.printed)}`);
@@ -163,7 +163,7 @@ export function tableBlock(exhibit: Exhibit, k: number, known: Set<string>): HTM
     h("div", { class: "tools", role: "group", "aria-label": `Tools: ${table.title}` },
       cells.some((cell) => cell.difference !== null) ? differences : "",
       save,
-      h("span", { class: "files" }, "Files beside this page: ", h("a", { href: `tables/${file}.csv` }, "CSV"), " ", h("a", { href: `tables/${file}.json` }, "JSON"))));
+      h("span", { class: "files" }, "Files: ", h("a", { href: `tables/${file}.csv` }, "CSV"), " ", h("a", { href: `tables/${file}.json` }, "JSON"))));
   differences.addEventListener("click", () => showDifferences(block, !block.classList.contains("with-differences")));
   return block;
 }

@@ -7,23 +7,23 @@ export const provenances: Record<Provenance, { sign: string; name: string; word:
     sign: "=",
     name: "recomputed",
     word: "Recomputed from printed numbers",
-    meaning: "It follows from other numbers that the source prints. Ours must equal the printed number within rounding.",
+    meaning: "Computed from other numbers printed in the source. Ours must equal the printed number within rounding.",
   },
   simulated: {
     sign: "≈",
     name: "simulated",
     word: "Simulated by mechanism",
-    meaning: "The recordings were never published. Simulated participants, robots or rigs replace them: expect the same form and the same findings, not the same values.",
+    meaning: "The recordings were never published; simulated participants, robots or rigs replace them. Expect the same form and findings, not the same values.",
   },
   "not recoverable": {
     sign: "∅",
     name: "not-recoverable",
     word: "Not recoverable",
-    meaning: "The data behind it were never published and nothing can replace them. The reason is given; no number is invented.",
+    meaning: "The underlying data were never published and cannot be replaced. The reason is given; no number is invented.",
   },
 };
 
-/** `several` says it of several cells, `which` in "numbers that …", `word` behind a count of all. */
+/** `several`: for several cells; `which`: in "numbers that …"; `word`: after a count of all. */
 export const agreements: Record<Exclude<Agreement, "not compared">, { sign: string; name: string; several: string; which: string; word: string; meaning: string }> = {
   "within rounding": {
     sign: "✓",
@@ -31,7 +31,7 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     several: "within rounding",
     which: "within rounding",
     word: "agree within rounding",
-    meaning: "They follow from other printed numbers, and the rounding of those covers any difference.",
+    meaning: "Computed from other printed numbers; their rounding explains any difference.",
   },
   erratum: {
     sign: "!",
@@ -39,7 +39,7 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     several: "errata",
     which: "that are errata",
     word: "are errata of the source",
-    meaning: "They follow from other printed numbers, rounding does not explain the difference, and the source is at fault: the mark links to the erratum.",
+    meaning: "Computed from other printed numbers; rounding does not explain the difference, and the source is wrong: the mark links to the erratum.",
   },
   differs: {
     sign: "≠",
@@ -47,7 +47,7 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     several: "differ",
     which: "that differ",
     word: "differ",
-    meaning: "They follow from other printed numbers, and nothing explains the difference.",
+    meaning: "Computed from other printed numbers; the difference is not explained.",
   },
   "round trip": {
     sign: "↺",
@@ -55,7 +55,7 @@ export const agreements: Record<Exclude<Agreement, "not compared">, { sign: stri
     several: "round trips",
     which: "that make a round trip",
     word: "make a round trip",
-    meaning: "Ours was computed from the printed number itself and returns to it. This checks the formulas, not the source.",
+    meaning: "Computed from the printed number and back to it. This checks the formulas, not the source.",
   },
 };
 

@@ -1,6 +1,6 @@
-// Directions of axes that have no arrow, in degrees.
+// Directions of undirected axes, in degrees.
 
-/** The direction of an axis that has no arrow, from its angle against x. */
+/** The direction of an undirected axis, from its angle to x. The axes of the robot are not declared: no left or right. */
 export function direction(degrees: number): string {
   const angle = ((degrees % 180) + 180) % 180;
   if (angle < 22.5 || angle >= 157.5) return "nearly along x";
@@ -9,7 +9,7 @@ export function direction(degrees: number): string {
   return "between −x and +y";
 }
 
-/** Smallest angle between two axes without arrows [°]. */
+/** Smallest angle between two undirected axes [°]. */
 export function angleBetween(first: number, second: number): number {
   const difference = (((first - second) % 180) + 180) % 180;
   return Math.min(difference, 180 - difference);

@@ -133,9 +133,9 @@ function drawing(
   const r = reference * scale;
   const angle = ellipse.orientation_deg;
   const shapes: SVGElement[] = [];
-  let words = `no ellipse can be drawn: the eigenvalues are ${significant(small)} and ${significant(large)} ${unit}`;
+  let words = `no ellipse exists: the eigenvalues are ${significant(small)} and ${significant(large)} ${unit}`;
   if (small !== null && large !== null && small > 0 && angle !== null) {
-    words = `long half axis ${significant(large)} ${unit} at ${fixed(angle, 0)}° from x, short half axis ${significant(small)} ${unit}`;
+    words = `semi-major axis ${significant(large)} ${unit} at ${fixed(angle, 0)}° from x, semi-minor axis ${significant(small)} ${unit}`;
     const [dx, dy] = [Math.cos((angle * Math.PI) / 180), -Math.sin((angle * Math.PI) / 180)];
     const [a, b] = [large * scale, small * scale];
     if (band) shapes.push(bandPath(band, scale));
@@ -182,12 +182,12 @@ const roomFor = (ellipses: (Ellipse | undefined)[], bands: (Band | undefined)[])
 const bandLegend = (): HTMLElement =>
   h("ul", { class: "legend" }, h("li", {},
     svg("svg", { width: 22, height: 12, "aria-hidden": "true" }, svg("rect", { x: 0.5, y: 0.5, width: 21, height: 11, class: "ellipse-band" })),
-    "where 95 % of 1000 ellipses drawn from the covariance end, direction by direction"));
+    "95 % of 1000 ellipses drawn from the covariance, in each direction"));
 
 const postureWords = {
-  arm: "The person's arm is drawn from the recording's metadata, seen from above, on a scale of its own.",
-  robot: "The robot's links are drawn from its joint angles, seen from above, on a scale of their own; the recording says nothing of the arm.",
-  hand: "The recording says nothing of the arm's lengths, so only the hand is drawn, at the centre.",
+  arm: "The participant's arm is drawn from the recording's metadata, seen from above, at its own scale.",
+  robot: "The robot's links are drawn from its joint angles, seen from above, at their own scale; the recording does not describe the arm.",
+  hand: "The recording does not give the lengths of the arm, so only the hand is drawn, at the centre.",
 };
 
 /** The three ellipses of a result beside each other; `bands` by default are those of its covariance. */
@@ -210,6 +210,15 @@ export function ellipsePanels(result: Result, posture?: Posture, bands = bandsOf
   );
 }
 
+/** One of the three, over the arm. */
+export function ellipseOf(trial: Trial, k: number): SVGSVGElement | undefined {
+  const matrix = matrices[k];
+  const ellipse = matrix && trial.result.ellipses?.[matrix.name];
+  if (!ellipse) return undefined;
+  const band = ellipseBand(matrix.symbol, trial.result);
+  return drawing(ellipse, matrix.title, unitsOf(trial.result)[matrix.symbol], roomFor([ellipse], [band]), niceBelow(0.8 * largestOf([ellipse])), trial.recordings[0]?.posture, band);
+}
+
 const bandsOf = (result: Result): (Band | undefined)[] => matrices.map(({ symbol }) => ellipseBand(symbol, result));
 
 /** The three ellipses of one trial. */
@@ -228,7 +237,7 @@ export function ellipsesOf(trial: Trial): HTMLElement | undefined {
       "figcaption",
       {},
       h("strong", {}, "How to read this. "),
-      "The longer the ellipse in a direction, the more force it takes to move the hand that way. The dashed circle is something equally stiff, damped or heavy all around, of the value written on it. The arcs at the ends of the long axis span the 95 % interval of its direction. ",
+      "The longer the ellipse in a direction, the more force it takes to move the hand that way. The dashed circle shows equal stiffness, damping or inertia in all directions, with the value written on it. The arcs at the ends of the major axis span the 95 % interval of its direction. ",
       words,
     ),
   );
@@ -271,7 +280,7 @@ export function ellipsesSideBySide(trials: Trial[], nameOf: (trial: Trial) => st
       "figcaption",
       {},
       h("strong", {}, "How to read this. "),
-      "Within a row everything has the same scale, and the dashed circle the same value, so sizes can be compared at a glance.",
+      "Within a row all ellipses have the same scale and all dashed circles the same value, so sizes can be compared directly.",
     ),
   );
 }
