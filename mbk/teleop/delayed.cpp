@@ -305,7 +305,8 @@ class Decision {
       pending.pop_back();
       const State state = state_of(cell);
       if (state == State::holds) continue;
-      if (state == State::violated || cell.high - cell.low < kFinest * cell.high || evaluations_ >= kMost) return false;
+      if (state == State::violated || cell.high - cell.low < kFinest * cell.high) return false;
+      if (evaluations_ >= kMostOfSearch) return false;
       const double middle = 0.5 * (cell.low + cell.high);
       pending.push_back({middle, cell.high});
       pending.push_back({cell.low, middle});
@@ -329,8 +330,8 @@ class Decision {
   }
 
  private:
-  static constexpr double kFinest = 1e-12, kNarrow = 1e-6;  // relative widths
-  static constexpr int kMost = 2'000'000;
+  static constexpr double kFinest = 1e-12, kNarrow = 1e-6;          // relative widths
+  static constexpr int kMost = 1'000'000, kMostOfSearch = 200'000;  // evaluations
 
   State state_of(Bounds omega) {
     ++evaluations_;
@@ -529,12 +530,12 @@ Result<LargestShortage> largest_shortage_with_delay(const Teleoperator& teleoper
     return exact && holds_everywhere(Network(teleoperator, port, *exact));
   };
   constexpr double kFinest = 1e-6;
-  constexpr int kDoublings = 40, kHalvings = 12;
+  constexpr int kSteps = 20, kHalvings = 8;
   double step = kFinest * std::max(1.0, std::abs(most)), low = most - step, above = most;
   for (int k = 0; !holds(low); ++k) {
-    if (k == kDoublings) return result;
+    if (k == kSteps) return result;
     above = low;
-    step *= 2.0;
+    step *= 4.0;
     low = most - step;
   }
   for (int k = 0; k < kHalvings && above < most; ++k) {

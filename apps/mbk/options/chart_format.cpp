@@ -27,6 +27,7 @@ constexpr auto kPrograms = std::to_array<Program>({{"rsvg-convert", Converter::r
                                                    {"inkscape", Converter::inkscape},
                                                    {"chromium", Converter::browser},
                                                    {"chromium-browser", Converter::browser},
+                                                   {"chromium-headless-shell", Converter::browser},
                                                    {"google-chrome", Converter::browser}});
 
 /// The first that is in PATH.

@@ -25,7 +25,7 @@ def figure(rows: int, columns: int = 1, *, into: Any = None, width: float = 7.0,
     if into is not None:
         given = list(np.atleast_1d(np.asarray(into, dtype=object)).flat)
         if len(given) != rows * columns:
-            raise _errors.usage(f"this plot has {rows * columns} panels, not {len(given)}",
+            raise _errors.usage(f"this plot needs {rows * columns} axes, not {len(given)}",
                                 f"give axes of plt.subplots({rows}, {columns})")
         axes = np.empty((rows, columns), dtype=object)
         axes.flat[:] = given

@@ -365,13 +365,22 @@ struct Frame {
   [[nodiscard]] double y(double value) const { return top + (ranges.y.high - value) / ranges.y.size() * height; }
 };
 
+/// At least three, so that a small drawing has a scale.
+std::vector<Tick> svg_ticks(const Range& range, double expected, const ChartAxis& axis) {
+  constexpr int kMost = 12;
+  int n = std::max(2, static_cast<int>(expected));
+  std::vector<Tick> ticks = ticks_of(range, n, axis);
+  while (ticks.size() < 3 && n < kMost) ticks = ticks_of(range, ++n, axis);
+  return ticks;
+}
+
 /// @param page  the width of the drawing
 Frame frame_of(const Chart& chart, double page, bool with_y_label) {
   constexpr double kProportion = 0.64, kGap = 9.0, kEvery = 45.0;
   Frame frame{ranges_of(chart)};
   const bool equal = chart.equal_scale || chart.identity;
   frame.height = kProportion * page * (equal ? 1.0 : 0.8);
-  frame.up = ticks_of(frame.ranges.y, std::max(2, static_cast<int>(frame.height / kEvery)), chart.y);
+  frame.up = svg_ticks(frame.ranges.y, frame.height / kEvery, chart.y);
   double widest = 0.0;
   for (const Tick& tick : frame.up) widest = std::max(widest, width_of(tick.label));
   if (with_y_label) frame.y_label = lines_of(with_unit(chart.y), frame.height);
@@ -434,7 +443,7 @@ std::string svg_numbers_along(const Chart& chart, const Frame& frame, std::strin
   const double bottom = frame.top + frame.height;
   double free_from = -std::numeric_limits<double>::infinity();
   std::string numbers;
-  for (const Tick& tick : ticks_of(frame.ranges.x, std::max(2, static_cast<int>(frame.width / kEvery)), chart.x)) {
+  for (const Tick& tick : svg_ticks(frame.ranges.x, frame.width / kEvery, chart.x)) {
     const double x = frame.x(tick.value), half = 0.5 * width_of(tick.label);
     grid += fmt::format("M{:.2f} {:.2f}V{:.2f}", x, frame.top, bottom + 5.0);
     if (x - half < free_from) continue;
