@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/chart_format.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/option_checks.h"

@@ -634,11 +634,13 @@ std::string svg_column(const Chart& given, double page, bool with_y_label, bool 
 std::string charts_svg(const std::string& title, std::span<const Chart> charts, double width_mm) {
   const double unit_mm = kText_pt * kMillimetres / kText, page = width_mm / unit_mm;
   const double column = page / static_cast<double>(std::max<std::size_t>(1, charts.size()));
+  constexpr double kNarrow = 200.0;  // the name of the y axis would be longer than the axis
+  const bool named = charts.size() == 1 || column > kNarrow;
   std::string body, words;
   double height = 0.0;
   for (std::size_t k = 0; k < charts.size(); ++k) {
     double bottom = 0.0;
-    const std::string drawn = svg_column(charts[k], column, k == 0, charts.size() == 1, bottom);
+    const std::string drawn = svg_column(charts[k], column, k == 0 && named, charts.size() == 1, bottom);
     body += k == 0 ? drawn
                    : fmt::format(R"svg(<g transform="translate({:.2f} 0)">{}</g>)svg", column * static_cast<double>(k),
                                  drawn);

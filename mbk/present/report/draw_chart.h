@@ -18,7 +18,7 @@ inline constexpr double kOneColumn_mm = 85.0, kTwoColumns_mm = 180.0;  ///< of a
 /// file's <title>. Colours are those of Okabe & Ito (2008), and each series has a mark or dash of its own besides.
 [[nodiscard]] std::string chart_svg(const Chart& chart, double width_mm = kTwoColumns_mm);
 
-/// Several charts side by side, without their notes. The y axis is named at the first.
+/// Several charts side by side, without their notes. The y axis is named at the first, if there is room.
 [[nodiscard]] std::string charts_svg(const std::string& title, std::span<const Chart> charts,
                                      double width_mm = kTwoColumns_mm);
 
