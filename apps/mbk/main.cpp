@@ -93,14 +93,6 @@ int run(int argc, char** argv) {
   const mbk::app::Command app = parser.command();
   app.add_text_flag(
       "--version", [] { return fmt::format("mbk {}", mbk::version()); }, "Print the version and exit");
-  app.footer(
-      "Examples:\n"
-      "  mbk measure log.mat\n"
-      "      M, B, K and x0 from a recording, with confidence intervals and ellipses\n"
-      "  mbk info log.mat\n"
-      "      the channels, duration and problems of a recording\n"
-      "  mbk measure --help\n"
-      "      the options of a command, with examples");
   app.require_subcommand();
   mbk::app::add_help(app);
 
@@ -123,7 +115,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   mbk::app::prepare_process();
   try {
-    return run(argc, argv);
+    return mbk::app::ended(run(argc, argv));
   } catch (const std::bad_alloc&) {
     say_plainly(kNoMemory);
   } catch (const std::exception& error) {

@@ -42,7 +42,7 @@ struct KnownOption {
 enum class CommandKind { callable, group, shell };
 
 struct Known {
-  std::map<std::string, KnownOption> options;   ///< by "--name"
+  std::map<std::string, KnownOption> options;   ///< by name, with its dashes
   std::map<std::string, CommandKind> commands;  ///< by "robot identify"
 };
 

@@ -117,7 +117,7 @@ class Exams(Case):
         path, _ = self.exam("f.kinarm", seed=6, trials=1)
         out = self.folder / "f.h5"
         said = self.mbk("convert", path, out, "--side", "right").err
-        self.assertIn("person", said)
+        self.assertIn("participant", said)
         written = out.read_bytes()
         for text in make_exam.PERSONAL:
             self.assertNotIn(text.encode(), written)

@@ -235,7 +235,7 @@ class Measure(Case):
 
     def test_text_says_so(self):
         text = self.fine("measure", rig(), "--force-source", "virtual", "--robot", robot()).out
-        for words in ("force", "robot's dynamics"):
+        for words in ("force", "robot model"):
             self.assertIn(words, text)
 
     def test_a_robot_without_a_computed_force_is_refused(self):

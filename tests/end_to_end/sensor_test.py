@@ -86,7 +86,7 @@ class Calibrate(Case):
                                      ("Fx=1,Fy=1,Vx=3,Vy=4", NOT_USABLE, "line"),
                                      ("Fx=1,Fy=2", BAD_DATA, "voltage_x"),
                                      ("Vx=3", BAD_DATA, "force"),
-                                     ("Fx=1:V,Vx=3", BAD_DATA, "in V"),
+                                     ("Fx=1:V,Vx=3", BAD_DATA, "unit V"),
                                      ("Fx=1*0,Vx=3", WRONG_USAGE, "gain")):
             with self.subTest(channels):
                 self.refused(code, "sensor", "calibrate", table, "--channels", channels, says=says)

@@ -4,7 +4,10 @@
 import csv
 import io
 import pathlib
+import shutil
 import statistics
+import subprocess
+import unittest
 
 import command
 from command import BAD_DATA, FINE, WRONG_USAGE, run
@@ -57,6 +60,50 @@ class StatisticsOfAStudy(command.Case):
         self.assertNotIn("ICC(A,1)", text)
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
         self.assertNotIn("comparison", summary)
+
+    def table(self, ending, *options):
+        out = self.folder / f"table.{ending}"
+        self.do("summary", *options, "--out", out)
+        return out.read_text(encoding="utf-8")
+
+    def test_tables_for_papers_have_the_numbers_of_the_summary(self):
+        summary = self.do("summary", "--json").json
+        outcomes = {(one["condition"], one["outcome"]): one for one in summary["outcomes"]}
+        rows = list(csv.DictReader(io.StringIO(self.table("csv"))))
+        self.assertEqual([(row["condition"], row["outcome"]) for row in rows], list(outcomes))
+        for row in rows:
+            one = outcomes[row["condition"], row["outcome"]]
+            self.assertEqual((float(row["mean"]), float(row["sd"])), (one["mean"], one["standard_deviation"]))
+            self.assertEqual((int(row["participants"]), int(row["trials"]), int(row["excluded"])),
+                             (one["participants"], one["results"], PEOPLE // 2 * SESSIONS - one["results"]))
+            self.assertEqual((row["icc"], row["mdc95"]), ("", ""), "three people have no reliability")
+        self.assertEqual(self.table("csv", "--overwrite"), self.do("summary", "--format", "csv").out)
+        self.do("summary", "--format", "latex", "--compare", "condition", code=WRONG_USAGE)
+        self.do("summary", "--format", "latex", "--json", code=WRONG_USAGE)
+
+    def test_latex_and_markdown_have_as_many_cells_in_each_row(self):
+        latex = self.table("tex", "--outcome", "K_xx", "stiffness_lambda_max")
+        self.assertEqual(latex.count("{"), latex.count("}"))
+        rows = [line for line in latex.splitlines() if line.endswith(r"\\") and "multicolumn" not in line]
+        self.assertEqual([line.count("&") for line in rows], [4] * 5, latex)  # no reliability of three people
+        for words in (r"$K_{xx}$ & N/m", r"$K_{\max}$ & N/m", r"\caption{", r"\textit{Note.}"):
+            self.assertIn(words, latex)
+        markdown = self.table("md", "--outcome", "K_xx")
+        self.assertEqual({line.count("|") for line in markdown.splitlines() if line.startswith("|")}, {6})
+
+    @unittest.skipUnless(shutil.which("pdflatex"), "no pdflatex")
+    def test_latex_compiles_within_the_text(self):
+        packages = "".join(rf"\usepackage{{{name}}}" for name in ("booktabs", "graphicx", "rotating", "amsmath"))
+        recordings = [command.folder_of_logs() / f"1_{session}.h5" for session in (1, 2)]
+        for name, files in (("one", recordings[:1]), ("two", recordings)):
+            self.mbk("measure", "--quiet", *files, "--summary", self.folder / f"{name}.tex")
+        tables = [self.table("tex")] + [(self.folder / f"{name}.tex").read_text(encoding="utf-8") for name in ("one", "two")]
+        document = rf"\documentclass{{article}}{packages}\begin{{document}}" + "\n".join(tables) + r"\end{document}"
+        (self.folder / "paper.tex").write_text(document, encoding="utf-8")
+        ran = subprocess.run(["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "paper.tex"], cwd=self.folder,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120, check=False)
+        self.assertEqual(ran.returncode, 0, ran.stdout[-2000:])
+        self.assertNotIn(b"Overfull \\hbox", ran.stdout)
 
     def test_groups_are_compared_by_the_means_of_their_people(self):
         groups = ("--group", "even=2,4,6", "--group", "odd=1,3,5")

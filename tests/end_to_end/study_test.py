@@ -173,6 +173,11 @@ class AStudy(StudyCase):
         ran = self.do("measure", "--channels", "x=hand_x_m,y=hand_y_m,Fx=-force_x_N,Fy=-force_y_N", code=command.NOT_USABLE)
         self.assertIn("0 usable, 2 not usable", ran.out)
         listed = self.listed()["recordings"]
+        lines = ran.out.splitlines()[1:]
+        self.assertEqual(len(lines), 2)
+        for line, one in zip(lines, listed):
+            self.assertIn(f"recording {one['number']}: participant 1", line)
+            self.assertTrue(line.endswith(": " + one["reason"].split(",")[0]), line)
         self.assertEqual({one["state"] for one in listed}, {"not-usable"})
         self.assertTrue(all(one["reason"] for one in listed))
         summary = self.do("summary", "--json").json
@@ -187,6 +192,9 @@ class AStudy(StudyCase):
         self.assertEqual(self.do("summary", "--json").json["counts"]["excluded"], 1)
         self.do("exclude", 1, "--undo", "--why", "it was trial 2")
         self.assertEqual(self.do("summary", "--json").json["counts"]["usable"], 2)
+        self.do("exclude", 1, "--why", "hand slipped")
+        self.do("exclude", 1, "--undo")
+        self.assertEqual(self.do("summary", "--json").json["counts"]["excluded"], 0)
         self.assertEqual(self.checked("--quick")["problems"], [])
 
     def test_exports(self):
@@ -204,6 +212,13 @@ class AStudy(StudyCase):
         latex = self.do("export", "--format", "latex").out
         self.assertIn(r"stiff\_100\%", latex)
         self.assertEqual(latex.count("{"), latex.count("}"))
+        self.assertEqual(latex, self.do("summary", "--format", "latex").out)
+        out = self.folder / "outcomes.csv"
+        self.assertIn(str(out), self.do("export", "--out", out).err)
+        self.assertEqual(self.do("export", "--out", self.folder / "quiet.csv", "--quiet").err, "")
+        self.do("export", "--bids", self.folder / "bids")
+        description = json.loads((self.folder / "bids" / "dataset_description.json").read_text(encoding="utf-8"))
+        self.assertEqual(description["Name"], "A study")
 
     def test_forgets_a_participant(self):
         self.do("add", *self.trials[:2], "--participant", 7, "--condition", "seldom-word")

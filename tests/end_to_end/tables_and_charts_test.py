@@ -118,6 +118,27 @@ class Summary(Case):
         first = next(line for line in rows if "seed_1" in line.replace("\\", ""))
         self.assertEqual(len(re.findall(r"\$-?[\d.]+ \\pm [\d.]+\$", first)), 12, first)
 
+    def test_latex_of_one_trial_has_its_matrices(self):
+        out = self.folder / "trial.tex"
+        ran = self.mbk("measure", "--json", logs(1)[0], "--summary", out)
+        self.assertIn(str(out), ran.err)
+        text = out.read_text(encoding="utf-8")
+        self.assertEqual(text.count(r"\begin{bmatrix}"), 4)
+        self.assertNotIn("tabular", text)
+        matrices = re.findall(r"\\mathbf\{([MBK])\} &= \\begin\{bmatrix\} (.*?) \\end", text)
+        self.assertEqual([letter for letter, _ in matrices], ["M", "B", "K"])
+        for letter, elements in matrices:
+            printed = [row.split(" & ") for row in elements.split(r" \\ ")]
+            for i in range(2):
+                for j in range(2):
+                    value, half = map(float, printed[i][j].split(r" \pm "))
+                    error = ran.json["standard_error"][letter][i][j]
+                    self.assertAlmostEqual(value, ran.json["model"][letter][i][j], delta=0.1 * NORMAL95 * error)
+                    self.assertAlmostEqual(half, NORMAL95 * error, delta=0.06 * NORMAL95 * error)
+        bad = flipped(self.folder, logs(2)[0])
+        self.mbk("measure", "--quiet", bad, "--summary", out, "--overwrite", code=NOT_USABLE)
+        self.assertNotIn("bmatrix", out.read_text(encoding="utf-8"))
+
     def test_wrong_names_are_refused_before_the_work(self):
         log = logs(1)[0]
         self.refused(WRONG_USAGE, "measure", log, "--summary", "table.xlsx", says=["--summary", ".csv", ".tex"])

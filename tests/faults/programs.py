@@ -453,7 +453,7 @@ class Study(Measured):
         ran = run(["study", "check", "--study", "s", "--json", "--quick"], folder)
         problems = json.loads(ran.out)["problems"] if ran.out else []
         # A clock that fails gives a line of the log another time, and the check reports that, as it should.
-        clock_alone = problems and all(re.match(r"line \d+ of the log is of ", one) for one in problems)
+        clock_alone = problems and all(re.match(r"line \d+ of the log is dated ", one) for one in problems)
         if ran.code != FINE and not clock_alone:
             return [], f"check: exit {ran.code}: {' '.join((ran.out + ran.err).split())[-300:]}"
         left = [path for path in (folder / "s").rglob("*.part*")]

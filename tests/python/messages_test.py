@@ -41,7 +41,7 @@ ERRORS = (  # a call, and what its error must contain
     (lambda: mbk.simulate("relaxed_sinusoidal", out="log.mat"), ("overwrite=True",)),
     (lambda: mbk.simulate("no_such_scenario"), ("mbk.simulate(list=True)",)),
     (lambda: mbk.study.list(study="nowhere"), ("mbk.study.init(FOLDER)",)),
-    (lambda: mbk.robot.workspace(at=(1, 2, 3)), ("at: ", 'at="300,50"')),
+    (lambda: mbk.robot.workspace(at=(1, 2, 3)), ('at="1,2,3"', 'at="300,50"')),
 )
 TEXTS = (  # a message for the command line, and for Python
     ("pass --rate HZ, or --rate 1000 if it is right", "pass rate=HZ, or rate=1000 if it is right"),

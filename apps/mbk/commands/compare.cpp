@@ -172,7 +172,7 @@ int run(const CompareArguments& arguments, const std::string& typed) {
       report.names.push_back(std::move(one.name));
       report.compared.results.push_back(std::move(one.found));
     }
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, result::to_json(report), {plain, {}},
+    if (auto ok = write_page(arguments.report, arguments.output, result::to_json(report), {plain, {}},
                              arguments.reading.files);
         !ok)
       return report_error(ok.error());

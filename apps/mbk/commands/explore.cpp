@@ -102,7 +102,9 @@ Result<void> write_charts(const ExploreArguments& arguments, const Exploration& 
   if (!arguments.beside.charts) return {};
   auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.beside.chart_format,
                                       arguments.to.to.overwrite, arguments.reading.files));
-  return files.write(found.recordings.front().source, report::exploration_charts(found));
+  MBK_TRY(files.write(found.recordings.front().source, report::exploration_charts(found)));
+  files.say_written(arguments.to.quiet);
+  return {};
 }
 
 int run_explore(ExploreArguments arguments, const std::string& typed) {
@@ -116,8 +118,8 @@ int run_explore(ExploreArguments arguments, const std::string& typed) {
   if (!found) return report_error(found.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report,
-                             {report::exploration_text(*found), {}}, arguments.reading.files);
+    if (auto ok = write_page(arguments.report, arguments.to, report, {report::exploration_text(*found), {}},
+                             arguments.reading.files);
         !ok) {
       return report_error(ok.error());
     }

@@ -131,6 +131,7 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
     const std::string table = file->extension() == ".tex" ? report::trials_latex(found.measured, found.together)
                                                           : report::trials_csv(found.measured, found.together);
     MBK_TRY(recording::write_derived(*file, overwrite, table, arguments.reading.files));
+    say_written(file->string(), arguments.output.quiet);
   }
   if (!arguments.beside.charts) return {};
   auto files = MBK_TRY(
@@ -139,6 +140,7 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
     const auto charts = report::measurement_charts(found.measured[k], found.diagnostics[k]);
     MBK_TRY(files.write(found.measured[k].identification.sources.front(), charts));
   }
+  files.say_written(arguments.output.quiet);
   return {};
 }
 
@@ -184,8 +186,7 @@ int run(const MeasureCommandArguments& given, const std::string& typed, bool wit
   if (arguments.report.file) {
     const std::string document = report_json(typed, arguments.report.note, found->facts, found->measured,
                                              found->diagnostics, found->several ? &found->together : nullptr);
-    if (auto ok = write_page(arguments.report, arguments.output.to.overwrite, document, plain, arguments.reading.files);
-        !ok)
+    if (auto ok = write_page(arguments.report, arguments.output, document, plain, arguments.reading.files); !ok)
       return report_error(ok.error());
   }
   if (auto ok = write_beside(arguments, *found); !ok) return report_error(ok.error());

@@ -96,6 +96,10 @@ int run_log(const CheckArguments& arguments) {
 }
 
 int run_exclude(const CheckArguments& arguments) {
+  if (!arguments.undo && arguments.why.empty()) {
+    return report_error(
+        {ErrorKind::usage, "--why is missing", "give the reason; it stays in the log, so name nobody", ""});
+  }
   auto study = open_study(arguments.study);
   if (!study) return report_error(study.error());
   const auto done = arguments.undo ? study->include(arguments.number, arguments.why, arguments.study.role)
@@ -143,10 +147,9 @@ int run_backup(const CheckArguments& arguments) {
   return kFine;
 }
 
-void add_why_option(Command command, std::string& why) {
-  command.add_option("--why", why, "reason, recorded in the log; do not name a person")
+Option add_why_option(Command command, std::string& why) {
+  return command.add_option("--why", why, "reason, recorded in the log; do not name a person")
       .type_name("TEXT")
-      .required()
       .check(not_empty());
 }
 
@@ -158,12 +161,13 @@ Action add_study_exclude(Command group) {
   command.footer(
       "Examples:\n"
       "  mbk study exclude 12 --why \"hand slipped off the handle\"\n"
-      "  mbk study exclude 12 --undo --why \"it was trial 13\"\n\n"
+      "  mbk study exclude 12 --undo\n\n"
       "Nothing is erased. The recording remains in lists and exports, with the reason.");
   command.add_option("N", arguments->number, "number of the recording, as shown by 'mbk study list'")
       .required()
       .check(whole_number(1, 999999999));
-  add_why_option(command, arguments->why);
+  add_why_option(command, arguments->why)
+      .description("reason, recorded in the log; do not name a person (optional with --undo)");
   command.add_flag("--undo", arguments->undo, "include the recording again");
   add_study_and_role(command, arguments->study);
   return [arguments] { return run_exclude(*arguments); };
@@ -182,7 +186,7 @@ Action add_study_forget(Command group) {
       .type_name("N")
       .required()
       .check(whole_number(1, 999999999));
-  add_why_option(command, arguments->why);
+  add_why_option(command, arguments->why).required();
   add_study_and_role(command, arguments->study);
   return [arguments] { return run_forget(*arguments); };
 }

@@ -13,13 +13,13 @@
 #include "apps/mbk/terminal/messages.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/present/report/text.h"
+#include "mbk/study/statistics/study_statistics_text.h"
 #include "mbk/study/workflow/export_bids.h"
 
 namespace mbk::app {
 namespace {
 
 using store::ListedRecording;
-using store::OutcomeSummary;
 using store::RecordingState;
 using store::StudyList;
 
@@ -116,10 +116,15 @@ int write(const ListArguments& arguments, const store::Store& study, const std::
   return kFine;
 }
 
-Result<std::vector<OutcomeSummary>> summarised(const store::Store& study, const StudyList& list) {
-  if (!list.analysis) return std::vector<OutcomeSummary>();
-  const auto columns = MBK_TRY(study.columns(list.analysis->number));
-  return store::summarise_outcomes(columns);
+/// The table of 'mbk study summary --format latex'.
+Result<std::string> export_latex(const store::Store& study, const StudyList& list) {
+  store::OutcomeColumns columns;
+  if (list.analysis) {
+    columns = MBK_TRY(study.columns(list.analysis->number));
+  }
+  statistics::add_matrix_numbers(columns);
+  const auto found = MBK_TRY(statistics::study_statistics(columns));
+  return statistics::summary_latex(list, store::summarise_outcomes(columns), found);
 }
 
 int run_list(const ListArguments& arguments) {
@@ -170,16 +175,14 @@ int run_export(const ListArguments& arguments) {
   const auto list = listed_study(arguments, study);
   if (!list) return report_error(list.error());
   if (arguments.bids) return export_bids(*study, *list, *arguments.bids);
-  Result<std::string> text = std::string();
-  if (arguments.format == ExportFormat::latex) {
-    const auto outcomes = summarised(*study, *list);
-    if (!outcomes) return report_error(outcomes.error());
-    text = store::export_latex(*list, *outcomes);
-  } else {
-    text = arguments.format == ExportFormat::csv ? store::export_csv(*study, *list) : store::export_json(*study, *list);
-  }
+  const auto text = arguments.format == ExportFormat::latex ? export_latex(*study, *list)
+                    : arguments.format == ExportFormat::csv ? store::export_csv(*study, *list)
+                                                            : store::export_json(*study, *list);
   if (!text) return report_error(text.error());
-  return write(arguments, *study, *text);
+  const int code = write(arguments, *study, *text);
+  if (code == kFine && arguments.output.to.file)
+    say_written(arguments.output.to.file->string(), arguments.output.quiet);
+  return code;
 }
 
 }  // namespace
@@ -249,7 +252,7 @@ Action add_study_export(Command group) {
       "      one row for each number: participant, session, condition, trial, outcome, value, standard_error\n"
       "  mbk study export --format json --out study.json\n"
       "  mbk study export --format latex\n"
-      "      a table of means and standard deviations by condition\n"
+      "      the table of 'mbk study summary --format latex'\n"
       "  mbk study export --bids data_set\n"
       "      the recordings as a BIDS data set (Motion), without excluded ones; condition is the task, trial the "
       "run\n\n"
@@ -259,8 +262,9 @@ Action add_study_export(Command group) {
   add_analysis_option(command, *arguments);
   const Option format =
       add_choice(command, "--format", arguments->format,
-                 "csv: a tidy table; json: schema mbk.study_export/1; latex: a table of means (default: csv)");
+                 "csv: a tidy table; json: schema mbk.study_export/1; latex: a table for a paper (default: csv)");
   arguments->output.to.add_options(command);
+  command.add_flag("--quiet", arguments->output.quiet, "do not name the file written on standard error");
   command
       .add_option("--bids", arguments->bids,
                   "export the recordings instead of numbers, to a new folder in BIDS Motion format; forces are "

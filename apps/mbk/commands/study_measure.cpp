@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -27,18 +28,41 @@ struct StudyMeasureArguments {
 
 using workflow::Tally;
 
-workflow::MeasureListener listener_of(const StudyMeasureArguments& arguments, Progress& progress) {
-  return {arguments.study.role, [&](int done, int of) { progress.count(done, of); },
-          [](const std::string& file, const std::string& why) { say("mbk: {}: {}\n", file, why); },
-          [](const Error& error) { std::ignore = report_error(error); }};
+/// Results that are not usable: by recording, the first of their warnings.
+using NotUsable = std::map<store::Unit, std::string>;
+
+workflow::MeasureListener listener_of(const StudyMeasureArguments& arguments, Progress& progress,
+                                      NotUsable& not_usable) {
+  return {
+      arguments.study.role, [&](int done, int of) { progress.count(done, of); },
+      [](const std::string& file, const std::string& why) { say("mbk: {}: {}\n", file, why); },
+      [&](const store::Unit& unit, const std::string& codes) { not_usable[unit] = codes.substr(0, codes.find(',')); },
+      [](const Error& error) { std::ignore = report_error(error); }};
 }
 
-int said_of(const Tally& tally, std::optional<int> code = {}) {
+/// A line for each recording that is not usable.
+Result<std::string> lines_of(const store::Store& study, const NotUsable& not_usable) {
+  std::string text;
+  if (not_usable.empty()) return text;
+  const auto recordings = MBK_TRY(study.recordings());
+  for (const store::StoredRecording& r : recordings) {
+    const auto found = not_usable.find({r.sha256, r.part, ""});
+    if (found == not_usable.end()) continue;
+    text +=
+        fmt::format("  recording {}: participant {}, session {}, {}trial {}: not usable: {}\n", r.number, r.participant,
+                    r.session, r.condition.empty() ? "" : r.condition + ", ", r.trial, found->second);
+  }
+  return text;
+}
+
+int said_of(const store::Store& study, const Tally& tally, const NotUsable& not_usable, std::optional<int> code = {}) {
   const int count = tally.count();
   const std::string text = count == 0 ? "nothing new to measure\n"
                                       : fmt::format("{} measured: {} usable, {} not usable, {} could not be measured\n",
                                                     count, tally.usable, tally.not_usable, tally.failed + tally.unread);
-  if (auto ok = print_text(text); !ok) return report_error(ok.error());
+  const auto lines = lines_of(study, not_usable);
+  if (!lines) return report_error(lines.error());
+  if (auto ok = print_text(text + *lines); !ok) return report_error(ok.error());
   if (code) return *code;
   if (tally.unread + tally.failed > 0) return kBadData;
   return tally.not_usable > 0 && tally.usable == 0 ? kNotUsable : kFine;
@@ -49,7 +73,8 @@ int measure_as_job(store::Store& study, const std::string& key, const OptionText
                    const std::shared_ptr<const workflow::Measuring>& measuring,
                    const StudyMeasureArguments& arguments) {
   Progress progress(arguments.quiet);
-  const auto listener = listener_of(arguments, progress);
+  NotUsable not_usable;
+  const auto listener = listener_of(arguments, progress, not_usable);
   Tally tally;
   while (true) {
     const auto units = study.pending(key, std::string(version()), arguments.again_failed && tally.count() == 0);
@@ -57,17 +82,17 @@ int measure_as_job(store::Store& study, const std::string& key, const OptionText
     const auto request = workflow::measure_request(study, options, measuring, *units);
     if (!request) return report_error(request.error());
     const std::filesystem::path job_folder = arguments.engine.folder.value_or(request->folder);
-    if (units->empty() && !batch::JobFolder::is_there(job_folder)) return said_of(tally);
+    if (units->empty() && !batch::JobFolder::is_there(job_folder)) return said_of(study, tally, not_usable);
     const auto carried = carry_out(arguments.engine, *request, arguments.quiet);
     if (!carried) return report_error(carried.error());
     if (!carried->folder) return *carried->code;
     const auto collected = workflow::collect_job(study, key, *carried->folder, listener);
     if (!collected) return report_error(collected.error());
     tally += *collected;
-    if (carried->code) return said_of(tally, carried->code);
+    if (carried->code) return said_of(study, tally, not_usable, carried->code);
     if (auto ok = batch::remove_job(*carried->folder, arguments.engine); !ok) return report_error(ok.error());
     // Recordings that could not be read are not retried immediately.
-    if (arguments.engine.keep || tally.unread > 0) return said_of(tally);
+    if (arguments.engine.keep || tally.unread > 0) return said_of(study, tally, not_usable);
   }
 }
 
@@ -85,9 +110,10 @@ int run(Command command, const StudyMeasureArguments& arguments) {
   const auto units = study->pending(*key, std::string(version()), arguments.again_failed);
   if (!units) return report_error(units.error());
   Progress progress(arguments.quiet);
+  NotUsable not_usable;
   const auto tally = workflow::measure_units_here(*study, *key, **measuring, *units, arguments.threads,
-                                                  listener_of(arguments, progress));
-  return tally ? said_of(*tally) : report_error(tally.error());
+                                                  listener_of(arguments, progress, not_usable));
+  return tally ? said_of(*study, *tally, not_usable) : report_error(tally.error());
 }
 
 }  // namespace

@@ -67,6 +67,7 @@ int run_report(const StudyReportArguments& arguments) {
   if (!page) return report_error(page.error());
   if (auto ok = recording::write_file(*to.file, to.overwrite, *page, Readers::owner); !ok)
     return report_error(ok.error());
+  say_written(to.file->string(), arguments.output.quiet);
   return kFine;
 }
 

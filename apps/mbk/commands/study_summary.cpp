@@ -11,6 +11,7 @@
 #include "apps/mbk/commands/study_commands.h"
 #include "apps/mbk/commands/study_listing.h"
 #include "apps/mbk/options/engine_options.h"
+#include "apps/mbk/options/word_options.h"
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/study/statistics/study_statistics.h"
@@ -20,7 +21,15 @@
 namespace mbk::app {
 namespace {
 
+enum class SummaryFormat { text, latex, csv, markdown };
+
+constexpr auto word_table(SummaryFormat) {
+  using enum SummaryFormat;
+  return std::to_array<Word<SummaryFormat>>({{text, "text"}, {latex, "latex"}, {csv, "csv"}, {markdown, "markdown"}});
+}
+
 struct SummaryArguments : AnalysisArguments {
+  std::optional<SummaryFormat> format;
   std::vector<std::string> outcomes;
   ComparingArguments comparing;
   std::optional<int> draws;
@@ -130,6 +139,42 @@ Result<std::optional<int>> resample(const SummaryArguments& arguments, const sto
   return std::nullopt;
 }
 
+/// As --format says, or else the ending of --out.
+SummaryFormat format_of(const SummaryArguments& arguments) {
+  using enum SummaryFormat;
+  if (arguments.format) return *arguments.format;
+  if (arguments.output.json || !arguments.output.to.file) return text;
+  const auto ending = arguments.output.to.file->extension();
+  return ending == ".tex" ? latex : ending == ".csv" ? csv : ending == ".md" ? markdown : text;
+}
+
+Result<void> check_format(const SummaryArguments& arguments) {
+  if (arguments.output.json && arguments.format) {
+    return bad_usage("--json and --format exclude each other", "omit one of them");
+  }
+  if (format_of(arguments) == SummaryFormat::text) return {};
+  if (arguments.comparing.compare.empty() && arguments.comparing.groups.empty() && !arguments.draws) return {};
+  return bad_usage("a table contains neither comparisons nor bootstrap intervals",
+                   "omit --compare, --group and --bootstrap, or pass --format text or --json");
+}
+
+/// The summary in the format that was chosen.
+std::string written(const SummaryArguments& arguments, const store::StudyList& list,
+                    const std::vector<store::OutcomeSummary>& outcomes, const statistics::StudyStatistics& found) {
+  switch (format_of(arguments)) {
+    case SummaryFormat::latex:
+      return statistics::summary_latex(list, outcomes, found);
+    case SummaryFormat::csv:
+      return statistics::summary_csv(list, outcomes, found);
+    case SummaryFormat::markdown:
+      return statistics::summary_markdown(list, outcomes, found);
+    case SummaryFormat::text:
+      break;
+  }
+  return arguments.output.json ? statistics::to_json(list, outcomes, found)
+                               : summary_text(list, outcomes, found, !arguments.outcomes.empty());
+}
+
 Result<void> check_bootstrap(const SummaryArguments& arguments) {
   if (arguments.engine.kind && !arguments.draws) {
     return bad_usage("--engine is valid only with --bootstrap", "add --bootstrap 2000, or omit --engine");
@@ -139,6 +184,7 @@ Result<void> check_bootstrap(const SummaryArguments& arguments) {
 
 int run_summary(const SummaryArguments& arguments) {
   if (auto ok = check_bootstrap(arguments); !ok) return report_error(ok.error());
+  if (auto ok = check_format(arguments); !ok) return report_error(ok.error());
   auto options = statistics_options(arguments.comparing);
   if (!options) return report_error(options.error());
   options->outcomes = arguments.outcomes;
@@ -165,10 +211,10 @@ int run_summary(const SummaryArguments& arguments) {
     });
   }
   const auto outcomes = store::summarise_outcomes(columns);
-  const std::string text = arguments.output.json ? statistics::to_json(*list, outcomes, *found)
-                                                 : summary_text(*list, outcomes, *found, !options->outcomes.empty());
-  if (auto ok = arguments.output.write(text, {study->folder()}); !ok) return report_error(ok.error());
-  return kFine;
+  const std::string text = written(arguments, *list, outcomes, *found);
+  const auto ok = format_of(arguments) == SummaryFormat::text ? arguments.output.write(text, {study->folder()})
+                                                              : arguments.output.to.write(text, {study->folder()});
+  return ok ? kFine : report_error(ok.error());
 }
 
 }  // namespace
@@ -190,7 +236,9 @@ Action add_study_summary(Command group) {
       "      bootstrap intervals, which assume no distribution, from 2000 resamples of the people\n"
       "  mbk study summary --bootstrap 100000 --engine slurm\n"
       "      on the cluster; the intervals are the same to the last bit\n"
-      "  mbk study summary --json --out summary.json\n\n"
+      "  mbk study summary --json --out summary.json\n"
+      "  mbk study summary --outcome K_xx K_yy --out table_1.tex\n"
+      "      a table for a paper: n, mean ± SD, ICC(A,1), SEM, MDC; or --format latex, csv, markdown\n\n"
       "The summary includes only usable results of recordings that are not excluded; the number of others\n"
       "is reported.");
   add_study_option(command, arguments->study);
@@ -208,6 +256,9 @@ Action add_study_summary(Command group) {
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<long>::max()))
       .needs(bootstrap);
+  add_choice(command, "--format", arguments->format,
+             "text; latex (booktabs) or markdown: a table for a paper; csv: the same numbers with all digits (default: "
+             "by the ending of --out: .tex, .md, .csv; otherwise text)");
   add_output_options(command, arguments->output, "mbk.study_summary/1");
   add_engine_options(command, arguments->engine);
   return [arguments] { return run_summary(*arguments); };

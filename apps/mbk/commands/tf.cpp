@@ -79,6 +79,7 @@ Result<void> write_charts(const TfArguments& arguments, const std::vector<Chart>
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
     MBK_TRY(arguments.chart_format.write(chart_file(arguments, k), {kChartNames[k], charts[k]},
                                          arguments.to.to.overwrite, files_of(arguments)));
+    say_written(chart_file(arguments, k).string(), arguments.to.quiet);
   }
   return {};
 }
@@ -101,8 +102,8 @@ int run(const TfArguments& given, const std::string& typed) {
   if (!findings) return report_error(findings.error());
   if (arguments.report.file) {
     const std::string report = result::report_json(*found, *findings, typed, arguments.report.note);
-    if (auto ok = write_page(arguments.report, arguments.to.to.overwrite, report,
-                             {report::transfer_function_text(*found), {}}, files_of(arguments));
+    if (auto ok = write_page(arguments.report, arguments.to, report, {report::transfer_function_text(*found), {}},
+                             files_of(arguments));
         !ok)
       return report_error(ok.error());
   }

@@ -96,14 +96,15 @@ std::string runs_lines() {
 
 /// "FOLDER/coverage-1.svg", "FOLDER/coverage-2.svg", …
 Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, const ChartFormat& format,
-                          bool overwrite) {
+                          bool overwrite, bool quiet) {
   if (table.charts.empty()) {
     return bad_usage(fmt::format("the study '{}' has no chart", table.study), "omit --charts");
   }
-  const auto files = MBK_TRY(ChartFiles::in(folder, format, overwrite, {}));
+  auto files = MBK_TRY(ChartFiles::in(folder, format, overwrite, {}));
   for (std::size_t k = 0; k < table.charts.size(); ++k) {
     MBK_TRY(files.write({fmt::format("{}-{}", table.study, k + 1), table.charts[k]}));
   }
+  files.say_written(quiet);
   return {};
 }
 
@@ -218,7 +219,8 @@ int run_one(const ValidateArguments& arguments) {
       arguments.json ? print_text(result::to_json(*table)) : Output().show(report::validation_text(*table), {});
   if (!written) return report_error(written.error());
   if (arguments.charts && !(arguments.all && table->charts.empty())) {
-    if (auto ok = write_charts(*table, *arguments.charts, arguments.chart_format, arguments.overwrite); !ok)
+    if (auto ok = write_charts(*table, *arguments.charts, arguments.chart_format, arguments.overwrite, arguments.quiet);
+        !ok)
       return report_error(ok.error());
   }
   return exit_code(table->verdict());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/mbk/options/output.h"
+#include "mbk/base/core/counted.h"
 
 namespace mbk::app {
 namespace chart_files {
@@ -64,8 +65,14 @@ Result<void> ChartFiles::write(const SourceFile& source, const std::vector<repor
   return {};
 }
 
-Result<void> ChartFiles::write(const report::NamedChart& chart) const {
-  return format_.write(folder_ / format_.file(chart.name), chart, overwrite_, sources_);
+Result<void> ChartFiles::write(const report::NamedChart& chart) {
+  MBK_TRY(format_.write(folder_ / format_.file(chart.name), chart, overwrite_, sources_));
+  ++written_;
+  return {};
+}
+
+void ChartFiles::say_written(bool quiet) const {
+  app::say_written(fmt::format("{} to {}", counted(written_, "chart", "charts"), folder_.string()), quiet);
 }
 
 }  // namespace mbk::app

@@ -33,7 +33,10 @@ class ChartFiles {
   [[nodiscard]] Result<void> write(const SourceFile& source, const std::vector<report::NamedChart>& charts);
 
   /// @fails  as ChartFormat::write
-  [[nodiscard]] Result<void> write(const report::NamedChart& chart) const;
+  [[nodiscard]] Result<void> write(const report::NamedChart& chart);
+
+  /// As app::say_written: how many, and the folder.
+  void say_written(bool quiet) const;
 
  private:
   std::filesystem::path folder_;
@@ -41,6 +44,7 @@ class ChartFiles {
   std::vector<std::filesystem::path> sources_;
   bool overwrite_ = false;
   std::vector<std::string> begun_;
+  int written_ = 0;
 };
 
 }  // namespace mbk::app

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
@@ -62,17 +64,34 @@ Result<void> check_new_file(const std::filesystem::path& file, const char* optio
 
 namespace {
 
+std::atomic<bool> reader_has_ended = false;
+
+/// What nobody reads any more is no error.
 Result<void> write_to_stdout(const std::string& text) {
+  if (reader_has_ended) return {};
   flush_messages();  // so that both are in order at a terminal
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return {};
   const int error = errno;
+  if (error == EPIPE) {
+    reader_has_ended = true;
+    return {};
+  }
   return bad_data(fmt::format("standard output could not be written: {}", std::strerror(error)),
-                  error == ENOSPC  ? "free space on the disk"
-                  : error == EPIPE ? "the reader of the pipe ended before it had read everything"
-                                   : "check where it is redirected to");
+                  error == ENOSPC ? "free space on the disk" : "check where it is redirected to");
 }
 
 }  // namespace
+
+void say_written(const std::string& what, bool quiet) {
+  if (!quiet && Caller::current() == nullptr) say("mbk: wrote {}\n", what);
+}
+
+int ended(int code) noexcept {
+  if (code != kFine || !reader_has_ended) return code;
+  std::signal(SIGPIPE, SIG_DFL);
+  std::raise(SIGPIPE);
+  return code;
+}
 
 Result<void> Output::check(const std::vector<std::filesystem::path>& inputs) const {
   return file ? check_new_file(*file, "--out", overwrite, inputs) : Result<void>{};

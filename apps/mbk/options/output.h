@@ -40,6 +40,14 @@ struct Output {
 /// To standard output.
 [[nodiscard]] Result<void> print_text(const std::string& text);
 
+/// "mbk: wrote FILE" on standard error, unless `quiet`; a caller within the process is told nothing.
+void say_written(const std::string& what, bool quiet);
+
+/// To be called at the end of main. If the reader of standard output ended early (`mbk … | head`) and nothing else is
+/// wrong, the program ends by SIGPIPE, as filters do; during a command, which may move a robot, it does not.
+/// @returns  `code`
+[[nodiscard]] int ended(int code) noexcept;
+
 /// Checks a file that an option names, before the work begins.
 /// @fails  usage: the file exists and may not be overwritten, or is one of `inputs`.
 [[nodiscard]] Result<void> check_new_file(const std::filesystem::path& file, const char* option, bool overwrite,

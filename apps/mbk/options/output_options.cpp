@@ -29,7 +29,7 @@ void add_output_options(Command command, OutputArguments& arguments, const std::
   command.add_flag("--json", arguments.json, fmt::format("print JSON: schema {}, SI units, full precision", schema));
   arguments.to.add_options(command);
   update_overwrite(command);
-  command.add_flag("--quiet", arguments.quiet, "no progress on standard error");
+  command.add_flag("--quiet", arguments.quiet, "neither progress nor names of written files on standard error");
 }
 
 void add_report_options(Command command, ReportArguments& arguments) {

@@ -43,10 +43,12 @@ std::string report_json(const std::string& typed, const std::string& note,
   return result::to_json(report);
 }
 
-Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
+Result<void> write_page(const ReportArguments& arguments, const OutputArguments& output, std::string_view report_json,
                         const report::StaticReport& plain, const std::vector<std::filesystem::path>& sources) {
   const auto page = MBK_TRY(report::page(report_json, plain));
-  return recording::write_derived(*arguments.file, overwrite, page, sources);
+  MBK_TRY(recording::write_derived(*arguments.file, output.to.overwrite, page, sources));
+  say_written(arguments.file->string(), output.quiet);
+  return {};
 }
 
 }  // namespace mbk::app

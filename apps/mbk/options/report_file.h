@@ -36,10 +36,10 @@ namespace mbk::app {
                                       const std::vector<std::optional<Diagnostics>>& diagnostics,
                                       const SeveralTrials* together);
 
-/// Writes --report: the page with that document.    @param plain  for readers without JavaScript
-/// @param sources  as Output::write
-[[nodiscard]] Result<void> write_page(const ReportArguments& arguments, bool overwrite, std::string_view report_json,
-                                      const report::StaticReport& plain,
+/// Writes --report: the page with that document, and says so.    @param plain  for readers without JavaScript
+/// @param output  for --overwrite and --quiet    @param sources  as Output::write
+[[nodiscard]] Result<void> write_page(const ReportArguments& arguments, const OutputArguments& output,
+                                      std::string_view report_json, const report::StaticReport& plain,
                                       const std::vector<std::filesystem::path>& sources);
 
 }  // namespace mbk::app

@@ -43,6 +43,14 @@ Commands all_commands(const std::string& typed) {
 }  // namespace
 
 Actions add_commands(std::string_view first, Command app, const std::string& typed) {
+  app.footer(
+      "Examples:\n"
+      "  mbk measure log.mat\n"
+      "      M, B, K and x0 from a recording, with confidence intervals and ellipses\n"
+      "  mbk info log.mat\n"
+      "      the channels, duration and problems of a recording\n"
+      "  mbk measure --help\n"
+      "      the options of a command, with examples");
   const Commands all = all_commands(typed);
   const bool one = first != "completion" && first != "manual" &&
                    std::ranges::any_of(all, [&](const auto& command) { return command.first == first; });

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace mbk {
 namespace {
 
@@ -31,6 +33,32 @@ TEST(LatexText, EscapesCommandsAndSetsUnits) {
   EXPECT_EQ(latex_text("stiff_100%"), "stiff\\_100\\%");
   EXPECT_EQ(latex_text("\\{~}"), "\\textbackslash{}\\{\\~{}\\}");
   EXPECT_EQ(latex_text("N·s/m, kg·m², °"), "N$\\cdot$s/m, kg$\\cdot$m$^2$, $^\\circ$");
+}
+
+PaperTable small_table() {
+  using enum PaperCell::Kind;
+  return {.caption = "A_1, 95 %",
+          .note = "n: people",
+          .alignment = "lrr",
+          .header = {{{{""}, {"K_{xx}", symbol}, {"n"}}}, {{{""}, {"[N/m]"}}}},
+          .rows = {{{{"far|50%"}, {"-1.2 ± 0.3", number}, {"4"}}}, {{{"near"}, {"not usable"}}, true}}};
+}
+
+TEST(PaperTable, InLatexIsEscapedAndNotWiderThanTheText) {
+  const std::string text = latex_table(small_table());
+  for (const char* part :
+       {"\\caption{A\\_1, 95\\,\\%}", " & $K_{xx}$ & n \\\\\n", "far|50\\% & $-1.2 \\pm 0.3$ & 4 \\\\\n",
+        "\\midrule\nnear & \\multicolumn{2}{l}{not usable} \\\\\n\\bottomrule",
+        "\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{@{}lrr@{}}"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+  EXPECT_EQ(std::ranges::count(text, '{'), std::ranges::count(text, '}'));
+}
+
+TEST(PaperTable, InMarkdownHasAsManyCellsInEachRow) {
+  EXPECT_EQ(markdown_table(small_table()),
+            "A\\_1, 95 %\n\n|  | $K_{xx}$ [N/m] | n |\n| :-- | --: | --: |\n| far\\|50% | −1.2 ± 0.3 | 4 |\n"
+            "| near | not usable |  |\n\n*Note.* n: people\n");
 }
 
 }  // namespace

@@ -44,6 +44,16 @@ std::map<std::string, std::string> encoded(const Recording& one, const std::map<
   return texts;
 }
 
+TEST(EncodeBids, NamesTheDataSetByItsTitleAndRoundsOnsets) {
+  const auto none = [](const std::string&) -> std::optional<std::string> { return std::nullopt; };
+  const auto files = encode_bids(recording(), parse_bids_name("sub-1_task-a").value(), none, "Arms at rest").value();
+  const auto text = [&](std::string_view end) {
+    return std::ranges::find_if(files, [&](const BidsFile& file) { return file.path.ends_with(end); })->text;
+  };
+  EXPECT_THAT(text("dataset_description.json"), HasSubstr("\"Name\": \"Arms at rest\""));
+  EXPECT_THAT(text("_events.tsv"), HasSubstr("\n0.1\t"));
+}
+
 TEST(ParseBidsName, PutsEntitiesInOrder) {
   const BidsName name = parse_bids_name("run-01_task-reach_sub-07_ses-2").value();
   EXPECT_EQ(name.text(), "sub-07_ses-2_task-reach_tracksys-robot_run-01");
@@ -143,7 +153,7 @@ TEST(DecodeBids, RefusesColumnsThatNobodyDescribes) {
   EXPECT_EQ(error("1\n", channels, json), "none");
   EXPECT_THAT(error("1\t2\n", channels, json), AllOf(HasSubstr("2 columns"), HasSubstr("channels.tsv")));
   EXPECT_THAT(error("one\n", channels, json), HasSubstr("'one'"));
-  EXPECT_THAT(error("", channels, json), HasSubstr("numbers"));
+  EXPECT_THAT(error("", channels, json), HasSubstr("no samples"));
   EXPECT_THAT(error("1\n", "name\ttype\n", json), HasSubstr("'units'"));
   EXPECT_THAT(error("1\n", channels, "{"), HasSubstr("JSON"));
   EXPECT_THAT(error("1\n", channels, R"({"SamplingFrequency": "n/a"})"), HasSubstr("SamplingFrequency"));

@@ -71,6 +71,11 @@ void append(std::string& text, double value) {
   text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
 }
 
+/// Without the rounding error of a difference, which would have 17 digits.
+double to_nanoseconds(double seconds) {
+  return std::round(seconds * 1e9) / 1e9;
+}
+
 /// The description of a channel in channels.tsv.
 struct Description {
   std::string type, component, point, units, description;
@@ -138,8 +143,8 @@ double nominal_rate(const Recording& recording) {
 class Encoder {
  public:
   Encoder(const Recording& recording, const BidsName& name,
-          const std::function<std::optional<std::string>(const std::string&)>& existing)
-      : recording_(recording), name_(name), existing_(existing), rate_(exact_rate(recording)) {}
+          const std::function<std::optional<std::string>(const std::string&)>& existing, std::string_view title)
+      : recording_(recording), name_(name), existing_(existing), title_(title), rate_(exact_rate(recording)) {}
 
   Result<std::vector<BidsFile>> run() {
     add_data_set();
@@ -172,7 +177,7 @@ class Encoder {
   void add_data_set() {
     if (!existing_("dataset_description.json")) {
       add_json("dataset_description.json",
-               {{"Name", "Mechanical impedance of the human arm"},
+               {{"Name", title_.empty() ? "Mechanical impedance of the human arm" : title_},
                 {"BIDSVersion", "1.11.0"},
                 {"DatasetType", "raw"},
                 {"GeneratedBy", OrderedJson::array({{{"Name", "mbk"}, {"Version", std::string(version())}}})}},
@@ -249,7 +254,7 @@ class Encoder {
     if (recording_.events.empty()) return;
     std::string text = fmt::format("onset\tduration\ttrial_type\tvalue\t{}\n", kRecordedTime);
     for (const Event& event : recording_.events) {
-      append(text, event.time - recording_.time[0]);
+      append(text, to_nanoseconds(event.time - recording_.time[0]));
       text += fmt::format("\t{}\t{}\t", kNotAvailable, event.name.empty() ? std::string(kNotAvailable) : event.name);
       append(text, event.value);
       text += '\t';
@@ -343,6 +348,7 @@ class Encoder {
   const Recording& recording_;
   const BidsName& name_;
   const std::function<std::optional<std::string>(const std::string&)>& existing_;
+  std::string title_;
   std::optional<double> rate_;  ///< [Hz] that defines the time; nothing if it is a channel
   std::vector<BidsFile> files_;
   std::map<std::string, int> types_;    ///< channels of each
@@ -365,8 +371,8 @@ std::vector<std::string> withheld_from_bids(const Recording& recording) {
 
 Result<std::vector<BidsFile>> encode_bids(
     const Recording& recording, const BidsName& name,
-    const std::function<std::optional<std::string>(const std::string& path)>& existing) {
-  return Encoder(recording, name, existing).run();
+    const std::function<std::optional<std::string>(const std::string& path)>& existing, std::string_view title) {
+  return Encoder(recording, name, existing, title).run();
 }
 
 }  // namespace mbk::recording

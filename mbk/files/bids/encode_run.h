@@ -26,10 +26,11 @@ struct BidsFile {
 /// A recording as files of a BIDS data set (Motion, 1.11), in writing order: the file with the numbers is last.
 /// Numbers, time, events and metadata are restored exactly. Time is a channel of type LATENCY, unless the file had
 /// none. Angles stay in rad. Items that may identify the participant are omitted; an age of 89 and above is "89+".
-/// @param existing  returns the text of an existing file, or nothing
+/// @param title  of the data set; empty: a general one    @param existing  returns the text of an existing file, or
+/// nothing
 /// @fails  data: an existing table is malformed.
 [[nodiscard]] Result<std::vector<BidsFile>> encode_bids(
     const Recording& recording, const BidsName& name,
-    const std::function<std::optional<std::string>(const std::string& path)>& existing);
+    const std::function<std::optional<std::string>(const std::string& path)>& existing, std::string_view title = {});
 
 }  // namespace mbk::recording

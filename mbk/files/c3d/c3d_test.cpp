@@ -473,7 +473,7 @@ TEST(DecodeC3d, TheSizeOfTheFileDecidesBetweenHeaderAndParameters) {
     return bytes.replace(at, number.size(), number);
   };
   same(in_header(2, n.word(3)), "3 points");
-  same(in_header(4, n.word(3)), "3 analog numbers");
+  same(in_header(4, n.word(3)), "3 analog values");
   same(in_header(18, n.word(1)), "analog samples");
   same(in_header(12, n.real(0.5)), "-0.5");
   C3d wrong = right;

@@ -144,7 +144,7 @@ TEST(PutOnClock, RefusesStampsThatDoNotRise) {
   Vector values = Vector::Zero(4);
   for (const auto& [stamps, says] : {std::pair{(Vector(4) << 0, 2, 1, 3).finished(), "sample 3"},
                                      {(Vector(4) << 0, 1, 1, 3).finished(), "sample 3"},
-                                     {(Vector(4) << 0, 1, kNaN, 3).finished(), "number"},
+                                     {(Vector(4) << 0, 1, kNaN, 3).finished(), "NaN"},
                                      {(Vector(4) << 0, 1, 2, HUGE_VAL).finished(), "number"}}) {
     const Clock bad{"bad", stamps};
     EXPECT_THAT(refused(good, std::vector<ClockedSignal>{{"x", &bad, &values}}),

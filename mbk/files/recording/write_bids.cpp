@@ -16,7 +16,7 @@ namespace mbk::recording {
 namespace fs = std::filesystem;
 
 Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, std::string_view name, bool overwrite,
-                            Readers readers) {
+                            Readers readers, std::string_view title) {
   const auto run = MBK_TRY(parse_bids_name(name));
   if (auto ok = check_writable(recording); !ok) return tl::unexpected(ok.error().in(folder.string()));
   std::error_code code;
@@ -35,7 +35,7 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
     if (!stream) return std::nullopt;
     return std::string{std::istreambuf_iterator<char>(stream), {}};
   };
-  const auto files = encode_bids(recording, run, existing);
+  const auto files = encode_bids(recording, run, existing, title);
   if (!files) return tl::unexpected(files.error().in(folder.string()));
   const fs::path motion = folder / files->back().path;
   if (!overwrite && fs::exists(motion, code)) {

@@ -118,7 +118,7 @@ TEST(Symmetry, OfAForceThatIsTurnedByLessTheAngleIsNamedWithWhatTurnsItBack) {
     ASSERT_TRUE(found) << degrees;
     EXPECT_EQ(found->code, WarningCode::inertia_not_symmetric);
     EXPECT_NE(found->message.find(fmt::format("{:.1f}°", degrees)), std::string::npos) << found->message;
-    EXPECT_NE(found->remedy.find(fmt::format("--force-rotation-deg {:.1f} ", -degrees)), std::string::npos)
+    EXPECT_NE(found->remedy.find(fmt::format("--force-rotation-deg {:.1f};", -degrees)), std::string::npos)
         << found->remedy;
   }
 }

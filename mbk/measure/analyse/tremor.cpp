@@ -178,7 +178,7 @@ void warn_of_tremor(const AssumptionTest& tremor, Identification& identification
        fmt::format("the force contains a rhythm at {:.3g} Hz, {:.2g} {} (standard deviation), that the perturbation "
                    "did not cause: tremor, which biases M, B and K from least squares",
                    tremor.frequency_hz, tremor.size, units_of(identification.motion).force),
-       "use --method iv, which treats tremor as noise"});
+       "use --method iv: it treats tremor as noise"});
 }
 
 }  // namespace mbk::analyse

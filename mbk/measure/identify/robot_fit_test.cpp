@@ -404,7 +404,7 @@ TEST(RobotFit, RefusesWhatHoldsNothing) {
   broken.torque(7, 1) = std::nan("");
   EXPECT_FALSE(fit_robot({broken}, {}, model, {}));
   expect_refused({trial(model)}, model, "coefficient", {.fixed = {40}});
-  expect_refused({trial(model)}, model, "autocovariance", {.hac_lag_s = -1.0});
+  expect_refused({trial(model)}, model, "correlation time", {.hac_lag_s = -1.0});
 }
 
 }  // namespace robot_fit_test

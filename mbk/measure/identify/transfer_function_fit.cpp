@@ -371,8 +371,7 @@ tl::unexpected<Error> Identifier::nothing_settled(const std::vector<SearchStart>
       "no stable model with {} was found: of {} starts, {} converged to an unstable model and {} did not converge",
       model, starts.size(), unstable, std::ssize(starts) - unstable);
   const char* const otherwise =
-      "exchange input and output if cause and effect are swapped, use fewer poles, or give a start near the slowest "
-      "pole with --start-pole";
+      "swap input and output, use fewer poles, or give a start near the slowest pole with --start-pole";
   if (2 * unstable < std::ssize(starts)) return fail(ErrorKind::not_usable, text, otherwise);
   constexpr double kAgree = 1.5;
   if (!growth.empty() && std::ranges::max(growth) <= kAgree * std::ranges::min(growth)) {
@@ -560,11 +559,11 @@ void Identifier::warn() {
     warnings.push_back(
         {WarningCode::held_out_fit_poor,
          fmt::format("only {:.1f} % of the held-out output is explained", 100.0 * *found_.held_out_fit),
-         fmt::format("try more poles (--orders), {}, or check whether the system changes{}", delay, loop)});
+         fmt::format("use more poles (--orders), {}, or check whether the system changes{}", delay, loop)});
   } else if (found_.fit < kPoor) {
     warnings.push_back({WarningCode::fit_poor,
                         fmt::format("only {:.1f} % of the output is explained", 100.0 * found_.fit),
-                        fmt::format("try more poles (--orders) and {}; the remainder may be noise{}", delay, loop)});
+                        fmt::format("use more poles (--orders) and {}; the remainder may be noise{}", delay, loop)});
   }
   if (held_out_.empty()) {
     warnings.push_back({WarningCode::no_held_out_data, "no data were held out, so the fit is in sample",
@@ -578,7 +577,7 @@ void Identifier::warn() {
   if (!found_.residuals.independent()) {
     warnings.push_back({WarningCode::input_explains_residual,
                         "the input still explains part of the residual, so the model is incomplete",
-                        fmt::format("try more poles or zeros (--orders), {}{}{}", delay, hold,
+                        fmt::format("use more poles or zeros (--orders), {}{}{}", delay, hold,
                                     in_loop ? "" : "; in a closed loop, --method clsrivc")});
   }
   if (options_.find_delay && !found_.delay_found) {

@@ -72,7 +72,7 @@ TEST(LeaveOut, CutsAWindowOutOfASustainedPerturbationAndSaysSo) {
   ASSERT_EQ(plan->cuts[1].keep.size(), 2U);
   EXPECT_EQ(plan->cuts[1].keep[1].begin, 1600);
   EXPECT_EQ(plan->cuts[1].keep[1].purpose, Purpose::validation);
-  EXPECT_EQ(plan->rule, "0 s to 20 s; left out: 5 s to 7 s, excluded: coughed");
+  EXPECT_EQ(plan->rule, "0 s to 20 s; omitted: 5 s to 7 s, excluded: coughed");
 }
 
 TEST(LeaveOut, CountsWindowsOnTheClockOfTheRecording) {

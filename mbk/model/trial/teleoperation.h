@@ -38,7 +38,7 @@ enum class StabilityCondition {
     case StabilityCondition::right_poles:
       return "no pole with Re s > 0";
     case StabilityCondition::axis_poles:
-      return "poles on the imaginary axis: simple, residues of a spring or mass";
+      return "poles at Re s = 0: simple, residues of a spring or mass";
     case StabilityCondition::resistance_1:
       return "r11 ≥ 0";
     case StabilityCondition::resistance_2:

@@ -80,7 +80,7 @@ std::string energy_text(const EnergyAccount& account, const char* unit) {
                 {"excess of passivity at the end", excess(account.shortage_at_end),
                  between(negated(account.shortage_at_end95)), "eq. (4.3)"},
                 {"excess, worst case during the trial", excess(account.shortage_largest),
-                 between(negated(account.shortage_largest95)), "negative: damping that is lacking"}});
+                 between(negated(account.shortage_largest95)), "negative: damping is lacking"}});
 }
 
 std::string lines_text(const std::vector<EnergyLine>& lines) {

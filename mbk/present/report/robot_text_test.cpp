@@ -117,7 +117,7 @@ TEST(RobotText, OfAConsistentFitShowsLinksAndWhatTheDataDecide) {
   EXPECT_THAT(text, HasSubstr("pseudo-inertia"));
   EXPECT_THAT(text, ::testing::ContainsRegex("forearm.mass_z +0.31 +0.300 ± 0.020 +kg·m +\\+ 0.25·hand.mass\n"));
   EXPECT_THAT(text, ::testing::ContainsRegex("viscous_1 +203.5 +given +N·s/m"));
-  EXPECT_THAT(text, ::testing::ContainsRegex("joint 1 against the free fit +-0.1[23] +–\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("joint 1 relative to the free fit +-0.1[23] +–\n"));
   EXPECT_THAT(text, HasSubstr("forearm, viscous_1"));
   EXPECT_THAT(text, HasSubstr("a ball stands in"));
 }

@@ -306,9 +306,8 @@ std::string alternative_text(const Identification& id, const Identification& alt
                   100.0 * std::abs(disagreement.difference / disagreement.least_squares),
                   disagreement.difference > 0.0 ? "more" : "less");
   if (!disagreement.significant) {
-    return paragraph("  ", fmt::format("the two methods do not differ significantly (99 %): no difference clearly "
-                                       "exceeds the standard error of least squares; largest difference, {}",
-                                       largest));
+    return paragraph(
+        "  ", fmt::format("the two methods do not differ significantly (99 %); largest difference, {}", largest));
   }
   return paragraph("  ", fmt::format("least squares and instrumental variables DIFFER significantly (99 %); largest "
                                      "difference, {}. The limb or noise acts back on the motion, which biases least "

@@ -133,28 +133,23 @@ std::string short_label(const Identification& id) {
     const std::string label = source.label();
     labels.push_back(label.substr(std::min(source.path.find_last_of('/') + 1, label.size())));
   }
-  return latex_text(fmt::format("{}", fmt::join(labels, "; ")));
+  return fmt::format("{}", fmt::join(labels, "; "));
 }
 
-std::string latex_number(double value, double half) {
-  if (!std::isfinite(value)) return "--";
-  std::string text = with_interval(value, half);
-  const std::string sign = "±";
-  if (const std::size_t at = text.find(sign); at != std::string::npos) text.replace(at, sign.size(), "\\pm");
-  return "$" + text + "$";
+PaperCell number_cell(double value, double half) {
+  if (!std::isfinite(value)) return {"–"};
+  return {with_interval(value, half), PaperCell::Kind::number};
 }
 
-std::string latex_cells(const impedance::Model& model, const impedance::Model& half, int axes) {
+void add_cells(PaperRow& row, const impedance::Model& model, const impedance::Model& half, int axes) {
   const Vector values = impedance::stacked(model), halves = impedance::stacked(half);
-  std::string cells;
-  for (Index k = 0; k < 3 * axes * axes; ++k) cells += " & " + latex_number(values[k], halves[k]);
-  return cells;
+  for (Index k = 0; k < 3 * axes * axes; ++k) row.cells.push_back(number_cell(values[k], halves[k]));
 }
 
-/// m_xy → $M_{xy}$, as it stands above the unit of its column.
+/// m_xy → M_{xy}, as it stands above the unit of its column.
 std::string symbol(const std::string& name) {
   const std::string letter(1, static_cast<char>(name.front() - 'a' + 'A'));
-  return name.size() == 1 ? "$" + letter + "$" : "$" + letter + "_{" + name.substr(2) + "}$";
+  return name.size() == 1 ? letter : letter + "_{" + name.substr(2) + "}";
 }
 
 /// The result whose axes and units the table has: the first.
@@ -164,32 +159,88 @@ struct Shape {
   [[nodiscard]] bool fits(const Identification& id) const { return id.axes == axes && id.motion == motion; }
 };
 
-std::string latex_row(const Measurement& measured, const Shape& shape, int columns) {
-  const Identification& id = measured.identification;
-  const auto instead = [&](const std::string& why) {
-    return fmt::format("{} & \\multicolumn{{{}}}{{l}}{{{}}}", short_label(id), columns, latex_text(why));
-  };
-  if (!shape.fits(id)) return instead("axes or units differ from those of the first trial");
-  if (!id.usable) return instead("not usable");
+impedance::Model half_width95(const Identification& id) {
   impedance::Model half = id.standard_error;
   for (Matrix* const matrix : {&half.M, &half.B, &half.K}) *matrix *= numeric::kNormal95;
-  std::string row = short_label(id) + latex_cells(id.model, half, id.axes);
-  for (const double vaf : id.fit.vaf) row += std::isfinite(vaf) ? fmt::format(" & {:.1f}", vaf) : " & --";
+  half.x0 *= numeric::kNormal95;
+  return half;
+}
+
+PaperRow trial_row(const Measurement& measured, const Shape& shape) {
+  const Identification& id = measured.identification;
+  PaperRow row{{{short_label(id)}}};
+  if (!shape.fits(id) || !id.usable) {
+    row.cells.push_back({shape.fits(id) ? "not usable" : "axes or units differ from those of the first trial"});
+    return row;
+  }
+  add_cells(row, id.model, half_width95(id), id.axes);
+  for (const double vaf : id.fit.vaf) row.cells.push_back({std::isfinite(vaf) ? fmt::format("{:.1f}", vaf) : "–"});
   return row;
 }
 
-std::string latex_header(const Shape& shape) {
+std::vector<PaperRow> header_rows(const Shape& shape) {
   const auto names = parameters_of(shape.axes, shape.motion);
-  std::string symbols = "Trial", units;
+  PaperRow symbols{{{"Trial"}}}, units{{{""}}};
   for (std::size_t k = 0; k + static_cast<std::size_t>(shape.axes) < names.size(); ++k) {
-    symbols += " & " + symbol(names[k].first);
-    units += fmt::format(" & [{}]", latex_text(names[k].second));
+    symbols.cells.push_back({symbol(names[k].first), PaperCell::Kind::symbol});
+    units.cells.push_back({fmt::format("[{}]", names[k].second)});
   }
-  for (int i = 0; i < shape.axes; ++i) {
-    symbols += shape.axes == 1 ? " & VAF" : fmt::format(" & VAF$_{}$", kAxes[static_cast<std::size_t>(i)]);
-    units += " & [\\%]";
+  for (std::size_t i = 0; i < static_cast<std::size_t>(shape.axes); ++i) {
+    symbols.cells.push_back(
+        {shape.axes == 1 ? "\\mathrm{VAF}" : fmt::format("\\mathrm{{VAF}}_{}", kAxes[i]), PaperCell::Kind::symbol});
+    units.cells.push_back({"[%]"});
   }
-  return symbols + " \\\\\n" + units + " \\\\\n";
+  return {symbols, units};
+}
+
+const char* fit_data(const Identification& id) {
+  return id.fit.held_out ? "held-out data" : "the data that were fitted";
+}
+
+/// "1.20 \pm 0.03 & … \\ …" row by row.
+std::string latex_elements(const Matrix& values, const Matrix& halves) {
+  std::string text;
+  for (Index i = 0; i < values.rows(); ++i) {
+    for (Index j = 0; j < values.cols(); ++j) {
+      const std::string cell = latex_cell(number_cell(values(i, j), halves(i, j)));
+      text += (j > 0 ? " & " : i > 0 ? " \\\\ " : "") + (cell == "--" ? "\\text{--}" : cell.substr(1, cell.size() - 2));
+    }
+  }
+  return text;
+}
+
+/// M, B, K and x₀ of one trial as equations, then the fit in a sentence.
+std::string trial_latex(const Identification& id) {
+  const std::string label = latex_text(short_label(id));
+  if (!id.usable) {
+    std::vector<std::string_view> codes;
+    for (const Warning& warning : id.warnings) codes.push_back(word_of(warning.code));
+    return fmt::format("\\noindent {}: not usable ({}).\n", label,
+                       latex_text(fmt::format("{}", fmt::join(codes, ", "))));
+  }
+  const Units units = units_of(id.motion);
+  const impedance::Model half = half_width95(id);
+  std::string text = "% Needs \\usepackage{amsmath}.\n\\begin{align*}\n";
+  const auto add = [&](const char* matrix, const char* scalar, const Matrix& values, const Matrix& halves,
+                       const std::string& unit, const char* end) {
+    const std::string elements = latex_elements(values, halves);
+    text += id.axes == 1 ? fmt::format("{} &= ({})", scalar, elements)
+                         : fmt::format("{} &= \\begin{{bmatrix}} {} \\end{{bmatrix}}", matrix, elements);
+    text += fmt::format("\\ \\text{{{}}}{}\n", latex_text(unit), end);
+  };
+  add("\\mathbf{M}", "M", id.model.M, half.M, units.inertia, " \\\\");
+  add("\\mathbf{B}", "B", id.model.B, half.B, units.damping, " \\\\");
+  add("\\mathbf{K}", "K", id.model.K, half.K, units.stiffness, " \\\\");
+  add("\\mathbf{x}_0", "x_0", id.model.x0, half.x0, units.position, "");
+  std::vector<std::string> fits;
+  for (Index i = 0; i < id.fit.vaf.size(); ++i) {
+    const std::string axis = id.axes == 1 ? "" : fmt::format(" along ${}$", kAxes[static_cast<std::size_t>(i)]);
+    fits.push_back(fmt::format("{:.1f}\\,\\%{}", id.fit.vaf[i], axis));
+  }
+  return text + fmt::format(
+                    "\\end{{align*}}\n\\noindent {}, $\\pm$ the half width of the 95\\,\\% interval. VAF on {}: {}. "
+                    "mbk {}.\n",
+                    label, fit_data(id), fmt::join(fits, ", "), version());
 }
 
 }  // namespace trials_table
@@ -218,31 +269,27 @@ std::string trials_csv(std::span<const Measurement> measured, const SeveralTrial
 
 std::string trials_latex(std::span<const Measurement> measured, const SeveralTrials& together) {
   using namespace trials_table;
+  if (measured.size() == 1 && together.failed.empty()) return trial_latex(measured.front().identification);
   const Shape shape{measured.empty() ? 2 : measured.front().identification.axes,
                     measured.empty() ? Motion::translation : measured.front().identification.motion};
-  const int columns = 3 * shape.axes * shape.axes + shape.axes;
-  const bool wide = shape.axes > 1;
-  const char* const float_name = wide ? "sidewaystable" : "table";
-  std::string text = fmt::format(
-      "% Needs \\usepackage{{booktabs}}{}.\n\\begin{{{}}}\n\\centering\n"
-      "\\caption{{Impedance of each trial, $\\pm$ the half width of its 95\\,\\% interval; VAF on {} data. mbk {}.}}\n",
-      wide ? ", \\usepackage{graphicx} and \\usepackage{rotating}" : "", float_name,
-      measured.empty() || measured.front().identification.fit.held_out ? "held-out" : "the same", version());
-  if (wide) text += "\\resizebox{\\linewidth}{!}{%\n";
-  text += "\\begin{tabular}{l" + std::string(static_cast<std::size_t>(columns), 'r') + "}\n\\toprule\n" +
-          latex_header(shape) + "\\midrule\n";
-  for (const Measurement& one : measured) text += latex_row(one, shape, columns) + " \\\\\n";
+  PaperTable table;
+  table.sideways = shape.axes > 1;
+  table.alignment = "l" + std::string(static_cast<std::size_t>(3 * shape.axes * shape.axes + shape.axes), 'r');
+  table.caption = "Impedance of each trial, ± the half width of its 95 % interval";
+  if (!measured.empty()) table.caption += fmt::format("; VAF on {}", fit_data(measured.front().identification));
+  table.caption += fmt::format(". mbk {}.", version());
+  table.header = header_rows(shape);
+  for (const Measurement& one : measured) table.rows.push_back(trial_row(one, shape));
   for (const Error& error : together.failed) {
-    text += fmt::format("{} & \\multicolumn{{{}}}{{l}}{{could not be measured}} \\\\\n",
-                        latex_text(error.where.substr(error.where.find_last_of('/') + 1)), columns);
+    table.rows.push_back({{{error.where.substr(error.where.find_last_of('/') + 1)}, {"could not be measured"}}});
   }
   if (together.summary && together.summary->mean.axes() == shape.axes && together.summary->motion == shape.motion) {
-    text += fmt::format("\\midrule\nMean of {}{}{} \\\\\n", together.summary->trials,
-                        latex_cells(together.summary->mean, together.summary->half_width95, shape.axes),
-                        std::string(" & ") + (shape.axes > 1 ? " & " : ""));
+    PaperRow mean{{{fmt::format("Mean of {}", together.summary->trials)}}, true};
+    add_cells(mean, together.summary->mean, together.summary->half_width95, shape.axes);
+    for (int i = 0; i < shape.axes; ++i) mean.cells.push_back({""});
+    table.rows.push_back(std::move(mean));
   }
-  text += "\\bottomrule\n\\end{tabular}";
-  return text + (wide ? "}\n" : "\n") + fmt::format("\\end{{{}}}\n", float_name);
+  return latex_table(table);
 }
 
 }  // namespace mbk::report

@@ -14,8 +14,9 @@ namespace mbk::report {
 /// could not be measured a row that says why.
 [[nodiscard]] std::string trials_csv(std::span<const Measurement> measured, const SeveralTrials& together);
 
-/// A table of LaTeX (booktabs): one row a result with M, B and K ± the half width of the 95 % interval, and VAF, units
-/// in the header; below a rule the mean of the trials where there is one. Two axes stand sideways on the page.
+/// For LaTeX. Of several results a table (booktabs): one row a result with M, B and K ± the half width of the 95 %
+/// interval, and VAF, units in the header; below a rule the mean of the trials where there is one. Two axes stand
+/// sideways on the page. Of one result equations (amsmath): M, B, K and x₀ as matrices ± the same, then VAF.
 [[nodiscard]] std::string trials_latex(std::span<const Measurement> measured, const SeveralTrials& together);
 
 }  // namespace mbk::report

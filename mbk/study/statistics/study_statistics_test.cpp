@@ -107,6 +107,20 @@ TEST(Reliability, OfShroutAndFleissIsThePublishedOne) {
   EXPECT_EQ(found.reliability[0].within_session.support, Support::too_few_sessions) << "one trial a session";
 }
 
+TEST(SummaryTable, WritesTheNumbersOfShroutAndFleissInApaStyle) {
+  const Results results = shrout_and_fleiss();
+  store::StudyList list;
+  list.recordings.resize(25);
+  for (store::ListedRecording& one : list.recordings) one.recording.condition = "relaxed";
+  const auto outcomes = store::summarise_outcomes(results.columns());
+  const StudyStatistics found = statistics_of(results);
+  EXPECT_THAT(summary_latex(list, outcomes, found),
+              HasSubstr("$K$ & N/m & 6 (24) & $5.3 \\pm 1.7$ & $.29$ & $[.02, .76]$ & $2.5$ & $6.9$ & 1 \\\\\n"));
+  EXPECT_THAT(summary_markdown(list, outcomes, found),
+              HasSubstr("| $K$ | N/m | 6 (24) | 5.3 ± 1.7 | .29 | [.02, .76] | 2.5 | 6.9 | 1 |"));
+  EXPECT_THAT(summary_csv(list, outcomes, found), HasSubstr("\nrelaxed,K,N/m,6,24,1,5.29"));
+}
+
 TEST(Reliability, HasOneIntervalOfTheIccEverywhere) {
   Results mirrored({"K"});  // who is high in one session is low in the other: an ICC below 0
   const double first[6] = {3.0, -2.0, 1.0, -1.5, 2.5, -3.1};

@@ -21,6 +21,21 @@ namespace mbk::statistics {
 /// How people were resampled, where they were.
 [[nodiscard]] std::string bootstrap_text(const StudyStatistics& statistics);
 
+/// For a paper, in LaTeX or Markdown: each outcome by condition with the number of people and trials, mean ± standard
+/// deviation, ICC(A,1) between sessions with its 95 % interval, SEM and MDC (agreement), and how many recordings are
+/// excluded. Where no outcome has reliability, its columns are omitted and a note says so. A table that would be longer
+/// than a page becomes one for each condition.
+[[nodiscard]] std::string summary_latex(const store::StudyList& list,
+                                        const std::vector<store::OutcomeSummary>& outcomes,
+                                        const StudyStatistics& statistics);
+[[nodiscard]] std::string summary_markdown(const store::StudyList& list,
+                                           const std::vector<store::OutcomeSummary>& outcomes,
+                                           const StudyStatistics& statistics);
+
+/// The same numbers with all digits, one column each, and the notes of each outcome.
+[[nodiscard]] std::string summary_csv(const store::StudyList& list, const std::vector<store::OutcomeSummary>& outcomes,
+                                      const StudyStatistics& statistics);
+
 /// What must be known of the study as a whole.
 [[nodiscard]] std::string notes_text(const std::vector<std::string>& notes);
 

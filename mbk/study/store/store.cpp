@@ -335,7 +335,9 @@ Result<void> Store::exclude(std::int64_t number, const std::string& why, Role ro
 }
 
 Result<void> Store::include(std::int64_t number, const std::string& why, Role role) {
-  MBK_TRY(check_why(why));
+  if (!why.empty()) {
+    MBK_TRY(check_why(why));
+  }
   return guarded(folder(), [&]() -> Result<void> {
     SQLite::Database& connection = database_->connection;
     WriteTransaction transaction(connection);

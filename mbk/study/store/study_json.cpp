@@ -1,11 +1,9 @@
-// A study as JSON, CSV and LaTeX.
+// A study as JSON and CSV.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "mbk/base/core/table_text.h"
-#include "mbk/base/core/version.h"
 #include "mbk/study/store/study_documents.h"
 
 namespace mbk::store {
@@ -185,26 +183,6 @@ void describe(Fields<StudyExport>& fields) {
   fields.add("recordings", &StudyExport::recordings);
 }
 
-/// Three digits of the standard deviation decide how many the mean has.
-std::string mean_and_deviation(const OutcomeSummary& one) {
-  if (!std::isfinite(one.standard_deviation)) return fmt::format("${:.4g}$", one.mean);
-  const double size = one.standard_deviation;
-  const int digits = size > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(size))), 0, 9) : 3;
-  return fmt::format("${:.{}f} \\pm {:.{}f}$", one.mean, digits, size, digits);
-}
-
-/// What a table says of itself, so that nobody has to guess.
-std::string caption(const StudyList& list) {
-  std::string text = list.facts.title.empty() ? "" : list.facts.title + ". ";
-  text += fmt::format(
-      "Mean ± standard deviation over participants, each with the mean of their usable results. {} of {} "
-      "recordings usable, {} not usable, {} could not be measured, {} not measured, {} excluded; mbk {}",
-      list.count(RecordingState::usable), list.recordings.size(), list.count(RecordingState::not_usable),
-      list.count(RecordingState::failed), list.count(RecordingState::not_measured),
-      list.count(RecordingState::excluded), list.analysis ? list.analysis->version : std::string(version()));
-  return text + ".";
-}
-
 }  // namespace
 
 void add_schemas(document::Schemas& schemas) {
@@ -257,34 +235,6 @@ Result<std::string> export_json(const Store& study, const StudyList& list) {
   for (const ListedRecording& one : list.recordings)
     all.recordings.push_back({one, MBK_TRY(study.outcomes(one.result))});
   return document::document(all);
-}
-
-std::string export_latex(const StudyList& list, const std::vector<OutcomeSummary>& outcomes) {
-  std::vector<std::string> conditions;
-  for (const OutcomeSummary& one : outcomes) {
-    if (std::ranges::find(conditions, one.condition) == conditions.end()) conditions.push_back(one.condition);
-  }
-  std::string text = "% Needs \\usepackage{booktabs}.\n\\begin{table}\n\\caption{" + latex_text(caption(list)) + "}\n";
-  text += "\\begin{tabular}{ll" + std::string(conditions.size(), 'r') + "}\n\\toprule\nOutcome & Unit";
-  for (const std::string& condition : conditions) text += " & " + latex_text(condition.empty() ? "all" : condition);
-  text += " \\\\\n\\midrule\n";
-  std::vector<std::string> names;
-  for (const OutcomeSummary& one : outcomes) {
-    if (std::ranges::find(names, one.outcome) == names.end()) names.push_back(one.outcome);
-  }
-  for (const std::string& name : names) {
-    std::string row = latex_text(name), unit;
-    for (const std::string& condition : conditions) {
-      const auto found = std::ranges::find_if(
-          outcomes, [&](const OutcomeSummary& one) { return one.outcome == name && one.condition == condition; });
-      row += " & " +
-             (found == outcomes.end() ? "--" : mean_and_deviation(*found) + fmt::format(" ({})", found->participants));
-      if (found != outcomes.end()) unit = found->unit;
-    }
-    row.insert(latex_text(name).size(), " & " + latex_text(unit));
-    text += row + " \\\\\n";
-  }
-  return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
 }
 
 }  // namespace mbk::store

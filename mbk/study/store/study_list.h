@@ -75,7 +75,5 @@ struct ShownRecording {
 [[nodiscard]] Result<std::string> export_csv(const Store& study, const StudyList& list);
 /// Schema "mbk.study_export/1": the same, with the recordings' hashes and the options.
 [[nodiscard]] Result<std::string> export_json(const Store& study, const StudyList& list);
-/// A table of mean ± standard deviation by condition (booktabs), with what it says in its caption.
-[[nodiscard]] std::string export_latex(const StudyList& list, const std::vector<OutcomeSummary>& outcomes);
 
 }  // namespace mbk::store

@@ -125,7 +125,7 @@ Result<ExportedBids> export_bids(const store::Store& study, const store::StudyLi
     tell(*recording, r);
     const std::string name =
         fmt::format("sub-{:02}_ses-{}_task-{}_run-{}", r.participant, r.session, labels.at(r.condition), r.trial);
-    MBK_TRY(recording::write_bids(*recording, made.path(), name, false));
+    MBK_TRY(recording::write_bids(*recording, made.path(), name, false, Readers::owner, list.facts.title));
     for (std::string& what : recording::lost_in_bids(*recording)) exported.lost.insert(std::move(what));
     ++exported.written;
   }

@@ -93,7 +93,11 @@ class ResultQueue {
       ++tally.unread;
       return;
     }
-    if (result->document.empty()) listener_.failed(unit.file, result->reason);
+    if (result->document.empty()) {
+      listener_.failed(unit.file, result->reason);
+    } else if (!result->usable) {
+      listener_.not_usable(unit, result->reason);
+    }
     ++(result->usable ? tally.usable : result->document.empty() ? tally.failed : tally.not_usable);
     waiting_units_.push_back(std::move(unit));
     waiting_results_.push_back(std::move(*result));
