@@ -108,11 +108,12 @@ Even conjugate(const Even& a) {
 /// k + d s + m s², an impedance times s.
 struct Impedance {
   Rational k, d, m;
+  Bounds rounded_k = rounded(k), rounded_d = rounded(d), rounded_m = rounded(m);
 
   [[nodiscard]] static Impedance minus(const Polynomial& p) {
     return {-p.coefficient(0), -p.coefficient(1), -p.coefficient(2)};
   }
-  [[nodiscard]] Even at(Bounds X) const { return {rounded(k) - rounded(m) * X, rounded(d)}; }
+  [[nodiscard]] Even at(Bounds X) const { return {rounded_k - rounded_m * X, rounded_d}; }
   /// sup of |k + d jω − m ω²|/ω for all frequencies from `omega`.
   [[nodiscard]] double largest_from(double omega) const {
     return m.is_zero() ? std::hypot(lti::to_double(d), lti::to_double(k) / omega) : kInfinite;

@@ -16,7 +16,6 @@
 #include "mbk/measure/analyse/describe_transfer_function.h"
 #include "mbk/measure/measurement/identify_transfer_function.h"
 #include "mbk/measure/preprocess/resample.h"
-#include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/transfer_function_text.h"
 #include "mbk/present/request/transfer_function_request.h"
 #include "mbk/present/result/transfer_function_json.h"
