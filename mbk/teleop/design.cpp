@@ -92,12 +92,19 @@ TwoPort read_two_port(const Section& section) {
   return result;
 }
 
-std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& teleoperator) {
+/// The grid, if the file gives one.
+std::optional<FrequencyGrid> read_delay(const Section& section, Teleoperator& teleoperator, bool& pade) {
   constexpr int kHighestOrder = 4, kMin = 10, kMax = 1'000'000;
-  if (!section.flag("exact", false)) {
+  pade = section.has("pade");
+  const bool exact = section.flag("exact", !pade);
+  if (pade && exact) section.reject("exact", "there is also pade", "keep one of the two");
+  pade = !exact;
+  if (pade) {
     teleoperator.pade_order = section.integer("pade", teleoperator.pade_order, 1, kHighestOrder);
     return std::nullopt;
   }
+  const auto given = [&](const char* key) { return section.has(key); };
+  if (!given("grid_from_rad_per_s") && !given("grid_to_rad_per_s") && !given("grid_points")) return std::nullopt;
   FrequencyGrid grid;
   grid.low = RadPerSec(section.required_number("grid_from_rad_per_s", config::above(0.0)));
   grid.high = RadPerSec(section.required_number("grid_to_rad_per_s", config::above(0.0)));
@@ -155,7 +162,7 @@ Result<Design> design_of(const Document& document, std::string_view file) {
     design.network = read_two_port(two_port);
   } else {
     Teleoperator teleoperator = read_teleoperator(document);
-    design.exact_delay = read_delay(root.section("delay"), teleoperator);
+    design.exact_delay = read_delay(root.section("delay"), teleoperator, design.pade);
     design.network = std::move(teleoperator);
   }
   const Section terminated = root.section("operator");
@@ -176,6 +183,10 @@ Result<Rational> bounded(double value, Sizes sizes) {
   return bad_usage(fmt::format("{:g} is {} {:g} {}", value, size < sizes.smallest ? "closer to zero than" : "beyond",
                                size < sizes.smallest ? sizes.smallest : sizes.largest, sizes.unit),
                    size < sizes.smallest ? "write 0 if there is none" : "check its unit");
+}
+
+bool Design::has_true_delay() const {
+  return is_architecture() && !pade && (exact_delay || std::get<Teleoperator>(network).has_delay());
 }
 
 PortEquations Design::equations(std::string_view parameter) const {

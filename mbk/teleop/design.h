@@ -59,12 +59,15 @@ struct SimulationPlan {
 struct Design {
   std::string file, name;
   std::variant<Teleoperator, TwoPort> network;
-  std::optional<FrequencyGrid> exact_delay;  ///< exact delays, on this grid; none: Padé delays, decided exactly
+  bool pade = false;                         ///< delays are Padé approximations, by the file's choice
+  std::optional<FrequencyGrid> exact_delay;  ///< true delays, on this grid only
   Port operator_port = Port::one;
   std::optional<Rational> shortage;  ///< a of the termination at that port [N·s/m]
   SimulationPlan simulation;
 
   [[nodiscard]] bool is_architecture() const { return std::holds_alternative<Teleoperator>(network); }
+  /// Whether true delays are evaluated at frequencies; otherwise the network is rational and decided exactly.
+  [[nodiscard]] bool has_true_delay() const;
 
   /// @param parameter  of a teleoperator, to remain a variable; empty: none
   [[nodiscard]] PortEquations equations(std::string_view parameter = {}) const;

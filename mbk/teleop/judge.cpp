@@ -13,6 +13,7 @@
 #include "mbk/base/lti/half_planes.h"
 #include "mbk/base/lti/on_axis.h"
 #include "mbk/teleop/admissible.h"
+#include "mbk/teleop/delayed.h"
 #include "mbk/teleop/largest_shortage.h"
 #include "mbk/teleop/llewellyn.h"
 #include "mbk/teleop/sampled.h"
@@ -22,8 +23,10 @@ namespace {
 
 using Immittance = std::function<Eigen::MatrixXcd(RadPerSec)>;
 
-/// A range around everything that happens: poles and zeros of the entries, and the ends of violated bands.
-FrequencyGrid range_of_charts(const TwoPort& two_port, const AbsoluteStability& stability) {
+/// A decade beyond the corner frequencies of the entries, the delays and the places where something begins or is worst.
+/// @param two_port  without delay, so that roots of a Padé approximation are not among its corners
+FrequencyGrid range_of_charts(const TwoPort& two_port, const std::vector<double>& delays,
+                              const AbsoluteStability& stability, std::optional<RadPerSec> limit) {
   constexpr double kBeside = 10.0;
   constexpr int kPoints = 600;
   std::vector<double> places;
@@ -35,15 +38,19 @@ FrequencyGrid range_of_charts(const TwoPort& two_port, const AbsoluteStability& 
       const lti::RationalFunction& entry = two_port.matrix(i, j);
       if (entry.is_zero()) continue;
       for (const Polynomial* p : {&entry.numerator(), &entry.denominator()}) {
-        for (const std::complex<double> root : lti::complex_roots(*p)) add(std::abs(root));
+        Polynomial rest = *p;  // without roots at 0, which are no corners and not found as exactly 0
+        while (rest.degree() > 0 && rest.coefficient(0).is_zero()) rest = lti::divide(rest, Polynomial{0, 1}).quotient;
+        for (const std::complex<double> root : lti::complex_roots(rest)) add(std::abs(root));
       }
     }
   }
+  for (const double T : delays) add(1.0 / T);
   for (const StabilityOutcome& outcome : stability.conditions) {
-    for (const ViolatedBand& band : outcome.violated) {
-      add(band.low.value);
-      add(band.high.value);
-    }
+    if (outcome.violated.empty()) continue;
+    const ViolatedBand& first = outcome.violated.front();  // a true delay repeats them
+    if (limit && first.low > *limit) continue;
+    const bool closed = first.low.value > 0.0 && std::isfinite(first.high.value);
+    for (const RadPerSec omega : {first.low, closed ? first.worst : first.low, first.high}) add(omega.value);
   }
   if (places.empty()) places.push_back(1.0);
   const auto [low, high] = std::ranges::minmax(places);
@@ -94,22 +101,59 @@ std::vector<Chart> charts(const Immittance& immittance, const std::vector<RadPer
                 {"divided by 2 |r11 r22| + |Re p| + |p|", ""}, std::move(third))};
 }
 
-/// How a design is judged, exactly or on a grid, with a shortage at a port.
+/// How a design is judged, exactly or with true delays, with a shortage at a port.
 struct Judged {
   AbsoluteStability stability;
-  TwoPort two_port;  // that was judged; with an exact delay, the one without it
+  std::optional<FrequencyGrid> grid;  ///< with true delays
 };
 
 Result<Judged> judge_with(const Design& design, Port port, const Rational& a) {
-  const auto two_port = MBK_TRY(design.equations().with_shortage(port, Polynomial{a}).at(0));
-  if (!design.exact_delay) return Judged{llewellyn(two_port), two_port};
-  auto stability = MBK_TRY(llewellyn_on_grid(std::get<Teleoperator>(design.network), *design.exact_delay, port, a));
-  return Judged{std::move(stability), two_port};
+  if (!design.has_true_delay()) {
+    const auto two_port = MBK_TRY(design.equations().with_shortage(port, Polynomial{a}).at(0));
+    return Judged{llewellyn(two_port), std::nullopt};
+  }
+  const auto& teleoperator = std::get<Teleoperator>(design.network);
+  if (design.exact_delay) {
+    auto stability = MBK_TRY(llewellyn_on_grid(teleoperator, *design.exact_delay, port, a));
+    return Judged{std::move(stability), design.exact_delay};
+  }
+  auto delayed = MBK_TRY(llewellyn_with_delay(teleoperator, port, a));
+  return Judged{std::move(delayed.stability), delayed.grid};
 }
 
 Result<LargestShortage> largest_shortage_of(const Design& design, Port port) {
-  if (!design.exact_delay) return largest_shortage(design.equations(), port);
-  return largest_shortage_on_grid(std::get<Teleoperator>(design.network), *design.exact_delay, port);
+  if (!design.has_true_delay()) return largest_shortage(design.equations(), port);
+  const auto& teleoperator = std::get<Teleoperator>(design.network);
+  if (design.exact_delay) return largest_shortage_on_grid(teleoperator, *design.exact_delay, port);
+  return largest_shortage_with_delay(teleoperator, port);
+}
+
+/// Delays other than 0 [s].
+std::vector<double> delays_of(const Design& design) {
+  std::vector<double> delays;
+  if (!design.is_architecture()) return delays;
+  for (const auto& [name, value] : std::get<Teleoperator>(design.network).values) {
+    if (name.starts_with("delay.") && !value.is_zero()) delays.push_back(lti::to_double(value));
+  }
+  return delays;
+}
+
+/// The frequency at which the phase of the Padé approximation of the longest delay differs by 0.1 rad.
+RadPerSec pade_limit(int order, double T) {
+  constexpr double kError = 0.1, kStep = 1e-3;
+  double x = 0.0;  // ωT
+  const auto error = [&] {
+    std::complex<double> q = 0.0, power = 1.0;  // Q(jx), whose phase counts twice
+    double c = 1.0;
+    for (int j = 0; j <= order; ++j) {
+      q += c * power;
+      power *= std::complex<double>(0.0, x);
+      c *= double(order - j) / ((2.0 * order - j) * (j + 1.0));
+    }
+    return std::abs(std::arg(std::conj(q) / q * std::polar(1.0, x)));
+  };
+  while (error() < kError) x += kStep;
+  return RadPerSec(x / T);
 }
 
 void describe(const Design& design, TeleoperationFinding& finding) {
@@ -129,16 +173,41 @@ void describe(const Design& design, TeleoperationFinding& finding) {
     finding.parameters.push_back({std::string(parameter.name), std::string(parameter.unit),
                                   std::string(parameter.meaning), lti::to_double(found->second)});
   }
-  if (design.exact_delay) {
-    finding.grid = design.exact_delay;
+}
+
+/// What the answer is worth where there is a delay.
+void add_notes_on_delay(const Design& design, const Question& question, TeleoperationFinding& finding) {
+  const std::vector<double> delays = delays_of(design);
+  const bool varied = question.sweep && question.sweep->parameter.starts_with("delay.");
+  if (!design.is_architecture()) return;
+  const int order = std::get<Teleoperator>(design.network).pade_order;
+  if (finding.grid && finding.grid->bounded) {
+    const FrequencyGrid& grid = *finding.grid;
+    finding.notes.push_back(fmt::format(
+        "true delay, evaluated in double precision at {} to {} rad/s; between the points the conditions are bounded, "
+        "so "
+        "that no violation deeper than {:g} of the sum of the terms is missed",
+        grid.low.value > 0.0 ? fmt::format("{:.3g}", grid.low.value) : "0",
+        std::isinf(grid.high.value) ? "infinity" : fmt::format("{:.4g}", grid.high.value), kDelayTolerance));
+    if (std::isfinite(grid.high.value) && !finding.stability.holds()) {
+      finding.notes.push_back("violations above that frequency are not listed");
+    } else if (std::isfinite(grid.high.value)) {
+      finding.notes.push_back(
+          "above that frequency the conditions depend on the phase of the delay; a search of single "
+          "frequencies found no violation");
+    }
+  } else if (finding.grid) {
     finding.notes.push_back(
-        "the delay is exact, so the verdict applies to the grid frequencies only: a violation between grid points is "
-        "not detected; use pade instead of exact to decide every frequency");
-  } else if (teleoperator.has_delay()) {
+        "true delay, and the verdict applies to the grid frequencies only: a violation between grid points is "
+        "not detected; omit grid_from_rad_per_s, grid_to_rad_per_s and grid_points to cover what lies between them");
+  } else if (!delays.empty() || varied) {
     finding.notes.push_back(
-        fmt::format("each delay is a Padé approximation of order {}: the verdict is exact for this approximation; the "
-                    "phase of a true delay differs above about {}/T rad/s",
-                    teleoperator.pade_order, 2 * teleoperator.pade_order));
+        fmt::format("each delay is a Padé approximation of order {}: the verdict is exact for this approximation",
+                    order) +
+        (finding.pade_limit ? fmt::format(", whose phase differs from that of the delay by more than 0.1 rad above "
+                                          "{:.4g} rad/s; omit pade to use the true delay",
+                                          finding.pade_limit->value)
+                            : ""));
   }
 }
 
@@ -160,8 +229,9 @@ Result<std::string> unit_of(const Design& design, const std::string& name) {
 Result<AdmissibleSet> sweep(const Design& design, const Question::Sweep& asked, const Rational& a,
                             const std::function<void(double)>& progress = {}) {
   auto unit = MBK_TRY(unit_of(design, asked.parameter));
-  if (design.exact_delay) {
-    return bad_usage("--parameter: an exact delay has no polynomial form", "use pade in [delay]");
+  if (design.has_true_delay()) {
+    return bad_usage("--parameter: a true delay has no polynomial form",
+                     "write pade = 1 or pade = 2 in [delay] to sweep with a Padé approximation");
   }
   const PortEquations equations = design.equations(asked.parameter).with_shortage(design.operator_port, Polynomial{a});
   auto set = admissible_set(equations, asked.low, asked.high, progress);
@@ -285,6 +355,11 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
   describe(design, finding);
   auto passive = judge_with(design, design.operator_port, 0);
   if (!passive) return tl::unexpected(passive.error().in(design.file));
+  finding.grid = passive->grid;
+  const std::vector<double> delays = delays_of(design);
+  if (design.pade && !delays.empty()) {
+    finding.pade_limit = pade_limit(std::get<Teleoperator>(design.network).pade_order, std::ranges::max(delays));
+  }
 
   finding.operator_shortage = question.operator_shortage;
   if (design.shortage) {
@@ -319,16 +394,21 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
     finding.excess = std::move(swept);
   }
 
-  Immittance immittance = [&](RadPerSec omega) -> Eigen::MatrixXcd { return passive->two_port.matrix(omega); };
-  if (design.exact_delay) {
+  const auto* const teleoperator = std::get_if<Teleoperator>(&design.network);
+  const TwoPort two_port = MBK_TRY(design.equations().at(0));
+  const TwoPort at_once = teleoperator != nullptr ? MBK_TRY(teleoperator->without_delay().at(0)) : two_port;
+  Immittance immittance = [&](RadPerSec omega) -> Eigen::MatrixXcd { return two_port.matrix(omega); };
+  if (design.has_true_delay()) {
     immittance = [&](RadPerSec omega) -> Eigen::MatrixXcd {
-      return teleop::immittance(std::get<Teleoperator>(design.network).with_exact_delay(omega), Form::z);
+      return teleop::immittance(teleoperator->with_exact_delay(omega), Form::z);
     };
   }
-  const FrequencyGrid range =
-      design.exact_delay ? *design.exact_delay : range_of_charts(passive->two_port, passive->stability);
+  const FrequencyGrid range = design.exact_delay
+                                  ? *design.exact_delay
+                                  : range_of_charts(at_once, delays, passive->stability, finding.pade_limit);
   finding.charts = charts(immittance, chart_frequencies(range, passive->stability), passive->stability.form);
   finding.stability = std::move(passive->stability);
+  add_notes_on_delay(design, question, finding);
   return finding;
 }
 

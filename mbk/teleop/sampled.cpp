@@ -14,16 +14,6 @@ Rational value(const Teleoperator& teleoperator, std::string_view name) {
   return found == teleoperator.values.end() ? Rational(0) : found->second;
 }
 
-Result<void> check_poles(const Teleoperator& teleoperator) {
-  const Rational sent =
-      value(teleoperator, "channels.force_to_master") * value(teleoperator, "channels.force_to_slave");
-  const Rational local =
-      (1 + value(teleoperator, "master.local_force_gain")) * (1 + value(teleoperator, "slave.local_force_gain"));
-  if (abs(sent) < abs(local)) return {};
-  return fail(ErrorKind::not_usable, "with |C2 C3| ≥ |(1 + C5)(1 + C6)| an exact delay adds infinitely many poles",
-              "give a Padé order instead, pade = 2 without exact");
-}
-
 StabilityOutcome on_grid(StabilityCondition condition, const std::vector<RadPerSec>& omega,
                          const std::vector<double>& values, const std::vector<double>& shown) {
   StabilityOutcome outcome{condition, {}};
@@ -45,6 +35,16 @@ StabilityOutcome on_grid(StabilityCondition condition, const std::vector<RadPerS
 }
 
 }  // namespace
+
+Result<void> check_poles(const Teleoperator& teleoperator) {
+  const Rational sent =
+      value(teleoperator, "channels.force_to_master") * value(teleoperator, "channels.force_to_slave");
+  const Rational local =
+      (1 + value(teleoperator, "master.local_force_gain")) * (1 + value(teleoperator, "slave.local_force_gain"));
+  if (abs(sent) < abs(local)) return {};
+  return fail(ErrorKind::not_usable, "with |C2 C3| ≥ |(1 + C5)(1 + C6)| a true delay adds infinitely many poles",
+              "reduce a force gain, or write pade = 2 in [delay] to decide the Padé approximation");
+}
 
 std::vector<RadPerSec> frequencies(const FrequencyGrid& grid) {
   std::vector<RadPerSec> omega;

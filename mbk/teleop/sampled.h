@@ -22,6 +22,9 @@ namespace mbk::teleop {
 [[nodiscard]] Result<LargestShortage> largest_shortage_on_grid(const Teleoperator& teleoperator,
                                                                const FrequencyGrid& grid, Port port);
 
+/// @fails  not usable: |C₂ C₃| ≥ |(1 + C₅)(1 + C₆)|, with which true delays add poles.
+[[nodiscard]] Result<void> check_poles(const Teleoperator& teleoperator);
+
 /// The grid's frequencies, evenly spaced in the logarithm.
 [[nodiscard]] std::vector<RadPerSec> frequencies(const FrequencyGrid& grid);
 

@@ -180,7 +180,7 @@ class Effects(Case):
         elsewhere = {"--help", "--channels", "--variable", "--parts", "--trial", "--clock",
                      "--json", "--out", "--overwrite", "--quiet",
                      "--pool", "--decimate-check", "--report", "--report-note",
-                     "--summary", "--charts",  # tables_and_charts_test.py
+                     "--summary", "--charts", "--chart-width", "--chart-format",  # tables_and_charts_test.py
                      "--sensor", "--lever-arm-mm", "--sensor-zero", "--sensor-frame", "--sensor-delay",  # sensor_test.py
                      "--robot",  # robot_force_test.py
                      "--ranges", "--ignore-range",  # mistakes_test.py

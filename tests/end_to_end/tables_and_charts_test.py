@@ -3,6 +3,8 @@
 
 import csv
 import re
+import shutil
+import unittest
 import xml.dom.minidom
 
 from command import BAD_DATA, NOT_USABLE, WRONG_USAGE, Case, copy, main, make_log, run
@@ -158,7 +160,7 @@ class Charts(Case):
 
     def test_measure_draws_what_shows_how_good_a_result_is(self):
         log = copy(logs(1)[0], self.folder / "my trial.mat")
-        names = ["coherence", "damping-ellipse", "force-spectrum", "force-x", "force-y", "inertia-ellipse", "residual",
+        names = ["coherence", "damping-ellipse", "ellipses", "force-spectrum", "force-x", "force-y", "inertia-ellipse", "residual",
                  "stiffness-ellipse"]
         self.assertEqual(self.drawn("measure", log), [f"my_trial-{name}.svg" for name in names])
         text = (self.folder / "charts" / "my_trial-force-x.svg").read_text(encoding="utf-8")
@@ -186,6 +188,44 @@ class Charts(Case):
         self.assertLessEqual({"t-response-magnitude.svg", "t-response-phase.svg", "t-impulse-response.svg"}, set(names))
         text = (self.folder / "charts" / "t-response-magnitude.svg").read_text(encoding="utf-8")
         self.assertIn("[N/m]", text)
+
+    def test_they_are_as_wide_as_a_column_with_text_that_can_be_read(self):
+        log = copy(logs(1)[0], self.folder / "t.mat")
+        for words, width in (((), 85), (("--chart-width", "180"), 180)):
+            self.drawn("measure", log, "--overwrite", *words)
+            for file in (self.folder / "charts").iterdir():
+                svg = xml.dom.minidom.parse(str(file)).documentElement
+                wide, high = (float(svg.getAttribute(name).removesuffix("mm")) for name in ("width", "height"))
+                left, top, units, units_high = map(float, svg.getAttribute("viewBox").split())
+                self.assertEqual((left, top, wide), (0, 0, width))
+                self.assertAlmostEqual(high / wide, units_high / units, places=3)
+                sizes = [float(size) for size in re.findall(r'font-size="([\d.]+)"', file.read_text(encoding="utf-8"))]
+                self.assertGreaterEqual(min(sizes) * wide / units, 7 * 25.4 / 72, file)  # 7 pt
+                title = svg.getElementsByTagName("title")[0].firstChild.data
+                self.assertFalse(any(title == text.firstChild.data for text in svg.getElementsByTagName("text")), file)
+        three = (self.folder / "charts" / "t-ellipses.svg").read_text(encoding="utf-8")
+        for unit in ("[kg]", "[N·s/m]", "[N/m]"):
+            self.assertIn(unit, three)
+        for wrong in ("0", "1000", "wide"):
+            self.refused(WRONG_USAGE, "measure", log, "--charts", "c", "--chart-width", wrong, says="--chart-width")
+        self.refused(WRONG_USAGE, "measure", log, "--chart-width", "85", says="--charts")
+
+    @unittest.skipUnless(any(map(shutil.which, ("rsvg-convert", "inkscape", "chromium"))), "nothing makes a PDF")
+    def test_pdf_has_the_size_of_the_drawing(self):
+        log = copy(logs(1)[0], self.folder / "t.mat")
+        folder = self.folder / "pdf"
+        self.mbk("explore", "--quiet", "--only", "impulse-response", log, "--charts", folder, "--chart-format", "pdf")
+        (file,) = folder.iterdir()
+        self.assertEqual(file.name, "t-impulse-response.pdf")
+        pdf = file.read_bytes()
+        self.assertTrue(pdf.startswith(b"%PDF"))
+        box = re.search(rb"/MediaBox\s*\[\s*0 0 ([\d.]+) ([\d.]+)", pdf)
+        if box:  # not in a compressed part
+            self.assertAlmostEqual(float(box.group(1)), 85 / 25.4 * 72, delta=1.0)
+
+    def test_without_a_program_that_makes_a_pdf_it_says_what_to_install(self):
+        self.refused(WRONG_USAGE, "measure", logs(1)[0], "--charts", self.folder / "c", "--chart-format", "pdf",
+                     says=["rsvg-convert", "librsvg2-bin"], environment={"PATH": str(self.folder)})
 
     def test_they_are_not_overwritten_unless_asked(self):
         log = logs(1)[0]

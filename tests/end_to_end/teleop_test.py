@@ -163,6 +163,43 @@ class Teleop(Case):
         self.assertEqual(self.fine("teleop", self.design(delay), "--json").json["decided"], "on the grid")
         self.refused(WRONG_USAGE, "teleop", self.design(delay), "--parameter", "slave.k=0:1", says="pade")
 
+    def test_a_delay_is_the_true_one_unless_a_pade_order_is_given(self):
+        delay = "[delay]\nto_slave_ms = 50\nto_master_ms = 50\n"
+        true, pade, exact = (self.fine("teleop", self.design(delay + more), "--json").json
+                             for more in ("", "pade = 2\n", "exact = true\n"))
+        self.assertEqual((true["decided"], true["grid"]["bounded"]), ("on the grid", True))
+        self.assertIsNone(true["grid"]["to"])  # all frequencies
+        self.assertEqual((pade["decided"], "grid" in pade), ("exactly", False))
+        self.assertEqual(true["llewellyn"], exact["llewellyn"])
+        self.assertNotEqual(true["largest_a"], pade["largest_a"])
+        for one in true["largest_a"]:
+            self.assertLess(one["at_most"] - one["at_least"], 1e-4)
+        self.refused(BAD_DATA, "teleop", self.design(delay + "pade = 2\nexact = true\n"), says="delay.exact")
+        self.refused(WRONG_USAGE, "teleop", self.design(delay), "--parameter", "slave.k=0:1", says="pade")
+
+    def test_true_delays_without_mass_are_worst_where_the_phase_is_a_turn(self):
+        # r11 r22 = (b_m + d_m)(b_s + d_s), and p = d_m d_s e^(−jωT) at high frequencies: a at port 1 is b_m
+        design = self.design("[delay]\nto_slave_ms = 20\nto_master_ms = 30\n", b_m=2, b_s=0, k_m=0, k_s=0)
+        one = self.fine("teleop", design, "--json").json["largest_a"][0]
+        self.assertAlmostEqual(one["at_most"], 2.0, delta=1e-5)
+        self.assertAlmostEqual(one["at_least"], 2.0, delta=0.05)  # touches at all low frequencies: an early end
+
+    def test_what_a_pade_approximation_invents_is_no_place_to_look(self):
+        force = (EXAMPLES / "position_force.toml").read_text(encoding="utf-8")
+        delay = "\n[delay]\nto_slave_ms = 50\nto_master_ms = 50\n"
+        limit = 2.56 / 0.05  # where the phase of order 2 is off by 0.1 rad
+        text = self.fine("teleop", self.file("pade.toml", force + delay + "pade = 2\n")).out
+        worst = [float(number) for number in re.findall(r"worst\s+near\s+([\d.e+]+)\s+rad/s", text)]
+        self.assertTrue(worst)
+        self.assertLess(max(worst), limit * 1.01)
+
+    def test_curves_span_the_corners_of_the_design(self):
+        for more in ("", "[delay]\nto_slave_ms = 50\n", "[delay]\nto_slave_ms = 50\npade = 3\n"):
+            curve = self.fine("teleop", self.design(more, b_m=1, b_s=1), "--json").json["curves"][0]
+            # corners k/(b + d) of 100/11 and 200/21 rad/s, k/d = 10 rad/s; 20 rad/s
+            self.assertGreater(curve["frequency"][0], 0.5)
+            self.assertLess(curve["frequency"][-1], 500)
+
     def test_an_operator_of_a_joint_that_turns_is_refused(self):
         turning = json.loads(result([1.0, 2.0]))
         turning["units"] = {"B": "N·m·s/rad"}

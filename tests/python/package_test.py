@@ -438,6 +438,16 @@ class Package(unittest.TestCase):
                 plt.close("all")
         with self.assertRaises(NotImplementedError):
             mbk.info(self.log).plot()
+        given, panels = plt.subplots(2, 3)
+        self.assertIs(self.result.plot(axes=panels[1]), given)
+        self.assertTrue(all(panel.lines and not panel.get_title() for panel in panels[1]))
+        self.assertFalse(any(panel.lines for panel in panels[0]), "only into the given axes")
+        with self.assertRaises(mbk.UsageError):
+            self.result.plot(axes=panels)
+        self.assertIs(figures["springs"](ax=panels[0, 0]), given)
+        self.assertEqual((panels[0, 0].get_title(), panels[0, 0].get_xlabel()), ("", "x [mm]"))
+        figures["tf"](axes=panels[:, 2])
+        self.assertEqual([panel.get_title() for panel in panels.flat], [""] * 6)
         identified = mbk.identify(self.log, structure="symmetric")
         self.assertEqual(len(identified.plot().axes[0].get_xticks()), 4, "every entry of a matrix")
         self.assertEqual(len(identified.plot_fit().axes), 4)

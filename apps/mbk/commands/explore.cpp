@@ -94,13 +94,14 @@ int run_each(Command command, const ExploreArguments& arguments) {
 /// Checks that need no computation.
 Result<void> check(const ExploreArguments& a) {
   if (auto ok = check_files(a.reading.files, a.to.to, a.report); !ok || !a.beside.charts) return ok;
-  return ChartFiles::check(*a.beside.charts, a.to.to.overwrite, {a.reading.files.front()},
+  return ChartFiles::check(*a.beside.charts, a.beside.chart_format, a.to.to.overwrite, {a.reading.files.front()},
                            {"response-magnitude", "impulse-response"});
 }
 
 Result<void> write_charts(const ExploreArguments& arguments, const Exploration& found) {
   if (!arguments.beside.charts) return {};
-  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.to.to.overwrite, arguments.reading.files));
+  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, arguments.beside.chart_format,
+                                      arguments.to.to.overwrite, arguments.reading.files));
   MBK_TRY(files.write(found.recordings.front().source, report::exploration_charts(found)));
   files.say_written(arguments.to.quiet);
   return {};

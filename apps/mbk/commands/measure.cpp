@@ -134,7 +134,8 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
     say_written(file->string(), arguments.output.quiet);
   }
   if (!arguments.beside.charts) return {};
-  auto files = MBK_TRY(ChartFiles::in(*arguments.beside.charts, overwrite, arguments.reading.files));
+  auto files = MBK_TRY(
+      ChartFiles::in(*arguments.beside.charts, arguments.beside.chart_format, overwrite, arguments.reading.files));
   for (std::size_t k = 0; k < found.measured.size(); ++k) {
     const auto charts = report::measurement_charts(found.measured[k], found.diagnostics[k]);
     MBK_TRY(files.write(found.measured[k].identification.sources.front(), charts));
@@ -147,8 +148,8 @@ Result<void> write_beside(const MeasureCommandArguments& arguments, const Measur
 Result<void> check(const MeasureCommandArguments& arguments) {
   MBK_TRY(check_files(arguments.reading.files, arguments.output.to, arguments.report, arguments.beside));
   if (!arguments.beside.charts) return {};
-  return ChartFiles::check(*arguments.beside.charts, arguments.output.to.overwrite, arguments.reading.files,
-                           {"force", "force-x"});
+  return ChartFiles::check(*arguments.beside.charts, arguments.beside.chart_format, arguments.output.to.overwrite,
+                           arguments.reading.files, {"force", "force-x"});
 }
 
 /// Runs `measure`, or `identify`, which computes no ellipses and no passivity.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/chart_format.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/progress.h"
 #include "mbk/base/core/option_checks.h"
@@ -25,6 +26,7 @@ struct TeleopArguments {
   std::filesystem::path operator_result;
   std::string parameter, excess;
   std::filesystem::path charts;
+  ChartFormat chart_format;
   bool json = false, simulate = false, quiet = false;
   Output output;
 };
@@ -40,7 +42,7 @@ std::vector<std::string> chart_names(const TeleopArguments& arguments) {
 }
 
 std::filesystem::path chart_file(const TeleopArguments& arguments, const std::string& name) {
-  return arguments.charts.string() + "_" + name + ".svg";
+  return arguments.chart_format.file(arguments.charts.string() + "_" + name);
 }
 
 /// In the order of their names; the last ones may be missing.
@@ -66,6 +68,7 @@ Result<void> check(const TeleopArguments& arguments) {
   }
   MBK_TRY(arguments.output.check(inputs));
   if (arguments.charts.empty()) return {};
+  MBK_TRY(arguments.chart_format.check());
   for (const std::string& name : chart_names(arguments)) {
     MBK_TRY(check_new_file(chart_file(arguments, name), "--charts", arguments.output.overwrite, inputs));
   }
@@ -113,8 +116,9 @@ int run(const TeleopArguments& arguments) {
   }
   const std::vector<std::string> names = chart_names(arguments);
   for (std::size_t i = 0; i < charts.size() && !arguments.charts.empty(); ++i) {
-    const Output file{chart_file(arguments, names[i]), arguments.output.overwrite};
-    if (auto ok = file.write(report::chart_svg(charts[i]), inputs_of(arguments)); !ok) return report_error(ok.error());
+    const auto ok = arguments.chart_format.write(chart_file(arguments, names[i]), {names[i], charts[i]},
+                                                 arguments.output.overwrite, inputs_of(arguments));
+    if (!ok) return report_error(ok.error());
   }
   const auto written = arguments.json ? arguments.output.write(shown, inputs_of(arguments))
                                       : arguments.output.show(shown, inputs_of(arguments));
@@ -125,8 +129,7 @@ int run(const TeleopArguments& arguments) {
 
 Action add_teleop(Command app) {
   auto arguments = std::make_shared<TeleopArguments>();
-  const Command command =
-      app.add_command("teleop", "decide the absolute stability of a teleoperator exactly (Llewellyn)");
+  const Command command = app.add_command("teleop", "decide the absolute stability of a teleoperator (Llewellyn)");
   command.footer(
       "Examples:\n"
       "  mbk teleop design.toml\n"
@@ -164,6 +167,7 @@ Action add_teleop(Command app) {
                   "also write the charts: PREFIX_r11.svg, _r22.svg, _third.svg, _excess.svg, _simulated-1.svg, …")
       .type_name("PREFIX")
       .check(not_empty());
+  add_chart_format(command, arguments->chart_format);
   command.add_flag("--json", arguments->json, "print JSON: schema mbk.teleop/1");
   command.add_flag("--quiet", arguments->quiet, "no progress on standard error");
   arguments->output.add_options(command);

@@ -16,7 +16,6 @@
 #include "mbk/measure/analyse/describe_transfer_function.h"
 #include "mbk/measure/measurement/identify_transfer_function.h"
 #include "mbk/measure/preprocess/resample.h"
-#include "mbk/present/report/draw_chart.h"
 #include "mbk/present/report/transfer_function_text.h"
 #include "mbk/present/request/transfer_function_request.h"
 #include "mbk/present/result/transfer_function_json.h"
@@ -28,6 +27,7 @@ struct TfArguments : request::TransferFunctionRequest {
   OutputArguments to;
   ReportArguments report;
   std::filesystem::path charts;
+  ChartFormat chart_format;
 };
 
 Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<std::filesystem::path>& files) {
@@ -46,7 +46,7 @@ Result<std::vector<Recording>> read_all(const TfArguments& a, const std::vector<
 constexpr std::array kChartNames = {"magnitude", "phase", "nyquist"};
 
 std::filesystem::path chart_file(const TfArguments& arguments, std::size_t chart) {
-  return arguments.charts.string() + "_" + kChartNames[chart] + ".svg";
+  return arguments.chart_format.file(arguments.charts.string() + "_" + kChartNames[chart]);
 }
 
 /// Every recording that a result is computed from.
@@ -63,6 +63,7 @@ Result<void> check_written(const TfArguments& arguments) {
   if (charts_alone) output.overwrite = false;
   if (auto ok = check_files(arguments.reading.files, output, arguments.report); !ok || arguments.charts.empty())
     return ok;
+  MBK_TRY(arguments.chart_format.check());
   for (std::size_t k = 0; k < kChartNames.size(); ++k) {
     if (auto ok =
             check_new_file(chart_file(arguments, k), "--charts", arguments.to.to.overwrite, arguments.reading.files);
@@ -75,9 +76,9 @@ Result<void> check_written(const TfArguments& arguments) {
 
 Result<void> write_charts(const TfArguments& arguments, const std::vector<Chart>& charts) {
   for (std::size_t k = 0; k < charts.size() && !arguments.charts.empty(); ++k) {
-    const Output file{chart_file(arguments, k), arguments.to.to.overwrite};
-    MBK_TRY(file.write(report::chart_svg(charts[k]), files_of(arguments)));
-    say_written(file.file->string(), arguments.to.quiet);
+    MBK_TRY(arguments.chart_format.write(chart_file(arguments, k), {kChartNames[k], charts[k]},
+                                         arguments.to.to.overwrite, files_of(arguments)));
+    say_written(chart_file(arguments, k).string(), arguments.to.quiet);
   }
   return {};
 }
@@ -159,6 +160,7 @@ Action add_tf(Command app, const std::string& typed) {
   command.add_option("--charts", arguments->charts, "also write charts: PREFIX_magnitude.svg, _phase.svg, _nyquist.svg")
       .type_name("PREFIX")
       .check(not_empty());
+  add_chart_format(command, arguments->chart_format);
   command.get_option("--overwrite").description("replace existing files of --out, --report and --charts");
   return [arguments, typed] { return run(*arguments, typed); };
 }

@@ -49,6 +49,7 @@ struct ValidateArguments {
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::optional<std::filesystem::path> charts;
+  ChartFormat chart_format;
   Link link = Link::function;
   std::vector<std::string> faults, conditions;
   EngineArguments engine;
@@ -94,14 +95,14 @@ std::string runs_lines() {
 }
 
 /// "FOLDER/coverage-1.svg", "FOLDER/coverage-2.svg", …
-Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, bool overwrite,
-                          bool quiet) {
+Result<void> write_charts(const ValidationTable& table, const std::filesystem::path& folder, const ChartFormat& format,
+                          bool overwrite, bool quiet) {
   if (table.charts.empty()) {
     return bad_usage(fmt::format("the study '{}' has no chart", table.study), "omit --charts");
   }
-  auto files = MBK_TRY(ChartFiles::in(folder, overwrite, {}));
+  auto files = MBK_TRY(ChartFiles::in(folder, format, overwrite, {}));
   for (std::size_t k = 0; k < table.charts.size(); ++k) {
-    MBK_TRY(files.write(fmt::format("{}-{}", table.study, k + 1), table.charts[k]));
+    MBK_TRY(files.write({fmt::format("{}-{}", table.study, k + 1), table.charts[k]}));
   }
   files.say_written(quiet);
   return {};
@@ -218,7 +219,8 @@ int run_one(const ValidateArguments& arguments) {
       arguments.json ? print_text(result::to_json(*table)) : Output().show(report::validation_text(*table), {});
   if (!written) return report_error(written.error());
   if (arguments.charts && !(arguments.all && table->charts.empty())) {
-    if (auto ok = write_charts(*table, *arguments.charts, arguments.overwrite, arguments.quiet); !ok)
+    if (auto ok = write_charts(*table, *arguments.charts, arguments.chart_format, arguments.overwrite, arguments.quiet);
+        !ok)
       return report_error(ok.error());
   }
   return exit_code(table->verdict());
@@ -353,11 +355,12 @@ Action add_validate(Command app) {
   command.add_flag("--page", arguments->page,
                    "with 'faults': print docs/guide/safety.md, from the tables of both links");
   command.add_flag("--json", arguments->json, "print JSON: schema mbk.validation/2");
-  const Option charts =
-      command
-          .add_option("--charts", arguments->charts, "also write the charts of the study to this folder as SVG files")
-          .type_name("FOLDER")
-          .check(not_empty());
+  const Option charts = command
+                            .add_option("--charts", arguments->charts,
+                                        "also write the charts of the study to this folder, as files for a paper")
+                            .type_name("FOLDER")
+                            .check(not_empty());
+  add_chart_format(command, arguments->chart_format);
   command.add_flag("--overwrite", arguments->overwrite, "replace existing charts").needs(charts);
   command.add_flag("--quiet", arguments->quiet, "print no progress on standard error");
   add_engine_options(command, arguments->engine);

@@ -6,8 +6,6 @@
 
 #include "apps/mbk/options/output.h"
 #include "mbk/base/core/counted.h"
-#include "mbk/files/recording/write_file.h"
-#include "mbk/present/report/draw_chart.h"
 
 namespace mbk::app {
 namespace chart_files {
@@ -24,9 +22,10 @@ std::string name_of(const SourceFile& source) {
 
 }  // namespace chart_files
 
-Result<void> ChartFiles::check(const std::filesystem::path& folder, bool overwrite,
+Result<void> ChartFiles::check(const std::filesystem::path& folder, const ChartFormat& format, bool overwrite,
                                const std::vector<std::filesystem::path>& inputs,
                                std::initializer_list<const char*> names) {
+  MBK_TRY(format.check());
   std::error_code ignored;
   if (!std::filesystem::exists(folder, ignored)) return {};
   if (!std::filesystem::is_directory(folder, ignored)) {
@@ -35,20 +34,21 @@ Result<void> ChartFiles::check(const std::filesystem::path& folder, bool overwri
   }
   for (const std::filesystem::path& input : inputs) {
     for (const char* const name : names) {
-      const std::string file = fmt::format("{}-{}.svg", chart_files::name_of({input.string(), "", ""}), name);
+      const std::string file = format.file(fmt::format("{}-{}", chart_files::name_of({input.string(), "", ""}), name));
       MBK_TRY(check_new_file(folder / file, "--charts", overwrite, {}));
     }
   }
   return {};
 }
 
-Result<ChartFiles> ChartFiles::in(const std::filesystem::path& folder, bool overwrite,
+Result<ChartFiles> ChartFiles::in(const std::filesystem::path& folder, const ChartFormat& format, bool overwrite,
                                   std::vector<std::filesystem::path> sources) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail(ErrorKind::usage, error.message(), "name a folder that can be created", folder.string());
   ChartFiles files;
   files.folder_ = folder;
+  files.format_ = format;
   files.sources_ = std::move(sources);
   files.overwrite_ = overwrite;
   return files;
@@ -60,13 +60,13 @@ Result<void> ChartFiles::write(const SourceFile& source, const std::vector<repor
   for (int k = 2; std::ranges::find(begun_, unique) != begun_.end(); ++k) unique = fmt::format("{}-{}", name, k);
   begun_.push_back(unique);
   for (const report::NamedChart& one : charts) {
-    MBK_TRY(write(fmt::format("{}-{}", unique, one.name), one.chart));
+    MBK_TRY(write({fmt::format("{}-{}", unique, one.name), one.chart, one.beside}));
   }
   return {};
 }
 
-Result<void> ChartFiles::write(const std::string& name, const Chart& chart) {
-  MBK_TRY(recording::write_derived(folder_ / (name + ".svg"), overwrite_, report::chart_svg(chart), sources_));
+Result<void> ChartFiles::write(const report::NamedChart& chart) {
+  MBK_TRY(format_.write(folder_ / format_.file(chart.name), chart, overwrite_, sources_));
   ++written_;
   return {};
 }

@@ -65,9 +65,10 @@ void add_summary_option(Command command, FilesBeside& beside) {
 }
 
 void add_charts_option(Command command, FilesBeside& beside) {
-  command.add_option("--charts", beside.charts, "also write the charts to this folder as SVG files")
+  command.add_option("--charts", beside.charts, "also write the charts to this folder, as files for a paper")
       .type_name("FOLDER")
       .check(not_empty());
+  add_chart_format(command, beside.chart_format);
   update_overwrite(command);
 }
 

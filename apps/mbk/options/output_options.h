@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/mbk/options/chart_format.h"
 #include "apps/mbk/options/output.h"
 #include "apps/mbk/terminal/command.h"
 
@@ -31,6 +32,7 @@ struct ReportArguments {
 /// A table and drawings beside it.
 struct FilesBeside {
   std::optional<std::filesystem::path> summary, charts;  ///< a file; a folder
+  ChartFormat chart_format;
 };
 
 /// Adds --json, --out, --overwrite, --quiet.
@@ -42,7 +44,7 @@ void add_report_options(Command command, ReportArguments& arguments);
 /// Adds --summary; --overwrite then applies to it too.
 void add_summary_option(Command command, FilesBeside& beside);
 
-/// Adds --charts; --overwrite then applies to them too.
+/// Adds --charts, --chart-width and --chart-format; --overwrite then applies to them too.
 void add_charts_option(Command command, FilesBeside& beside);
 
 /// Checks --out, --report, --summary and --overwrite before the work begins; for --charts see ChartFiles.

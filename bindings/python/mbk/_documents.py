@@ -8,7 +8,7 @@ import json
 import os
 import pathlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from mbk import _errors, _mbk, _tables
 
 if TYPE_CHECKING:
+    import matplotlib.axes
     import matplotlib.figure
     import pandas
 
@@ -250,7 +251,7 @@ class Document(Part):
 
         return pandas.DataFrame(_tables.flat(self._values))
 
-    def plot(self) -> matplotlib.figure.Figure:
+    def plot(self, *args: Any, **kwargs: Any) -> matplotlib.figure.Figure:
         """A figure, if this kind of document has one."""
         raise NotImplementedError(f"{self._values.get('schema', 'this document')} has no plot")
 
@@ -298,12 +299,12 @@ def load(file: str | os.PathLike[str]) -> Any:
 class _Measured(Document):
     """Base of one result and of several results."""
 
-    def plot(self) -> matplotlib.figure.Figure:
+    def plot(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
         """Ellipses of inertia, damping and stiffness at the hand with the 95 % interval of their orientation; for one
-        axis, the parameters with their 95 % intervals."""
+        axis, the parameters with their 95 % intervals. Draws into `axes`, row by row and without titles, if given."""
         from mbk import _plots
 
-        return _plots.ellipses(self)
+        return _plots.ellipses(self, axes)
 
 
 class Result(_Measured):
@@ -326,14 +327,14 @@ class Result(_Measured):
 
         return pandas.DataFrame(_tables.parameters(self._values)).set_index("parameter")
 
-    def plot_energy(self) -> matplotlib.figure.Figure:
+    def plot_energy(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
         """Passivity index (minimum damping in any direction) over frequency with its 95 % band; for results of
-        `mbk.measure`."""
+        `mbk.measure`. Draws into `axes`, row by row and without titles, if given."""
         if "passivity" not in self._values:
             raise _errors.usage("this result has no passivity index", "measure the recording with mbk.measure()")
         from mbk import _plots
 
-        return _plots.passivity(self)
+        return _plots.passivity(self, axes)
 
     def report(self) -> dict[str, Any]:
         """The data of the HTML report (schema mbk.report). Measures the recording again.
@@ -348,11 +349,12 @@ class Result(_Measured):
         found: dict[str, Any] = self._again()
         return found
 
-    def plot_fit(self) -> matplotlib.figure.Figure:
-        """Measured force, predicted force and residual, on held-out data if there are any, as in the report."""
+    def plot_fit(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
+        """Measured force, predicted force and residual, on held-out data if there are any, as in the report. Draws into
+        `axes`, row by row and without titles, if given."""
         from mbk import _plots
 
-        return _plots.fit(self.report(), self._units.get("force", "N"))
+        return _plots.fit(self.report(), self._units.get("force", "N"), axes)
 
 
 class Results(_Measured):
@@ -404,11 +406,12 @@ class Passivity(Document):
 
         return pandas.DataFrame(_tables.passivity_rows(self._values))
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """Absorbed energy over the trial, and passivity index over frequency with its 95 % band."""
+    def plot(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
+        """Absorbed energy over the trial, and passivity index over frequency with its 95 % band. Draws into `axes`,
+        row by row and without titles, if given."""
         from mbk import _plots
 
-        return _plots.passivity(self)
+        return _plots.passivity(self, axes)
 
 
 class Exploration(Document):
@@ -420,11 +423,12 @@ class Exploration(Document):
 
         return pandas.DataFrame(_tables.frequency_rows(self._values))
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """Bode plot with 95 % intervals, and coherence."""
+    def plot(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
+        """Bode plot with 95 % intervals, and coherence. Draws into `axes`, row by row and without titles,
+        if given."""
         from mbk import _plots
 
-        return _plots.exploration(self)
+        return _plots.exploration(self, axes)
 
 
 class TransferFunction(Document):
@@ -436,11 +440,12 @@ class TransferFunction(Document):
 
         return pandas.DataFrame(_tables.coefficients(self._values)).set_index("parameter")
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """Bode plot with 95 % intervals."""
+    def plot(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
+        """Bode plot with 95 % intervals. Draws into `axes`, row by row and without titles,
+        if given."""
         from mbk import _plots
 
-        return _plots.transfer_function(self)
+        return _plots.transfer_function(self, axes)
 
 
 class Teleoperation(Document):
@@ -454,11 +459,12 @@ class Teleoperation(Document):
             {"curve": curve["name"], "frequency_rad_s": frequency, "value": value}
             for curve in self._values["curves"] for frequency, value in zip(curve["frequency"], curve["value"])])
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """The conditions of absolute stability over frequency."""
+    def plot(self, axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
+        """The conditions of absolute stability over frequency. Draws into `axes`, row by row and without titles,
+        if given."""
         from mbk import _plots
 
-        return _plots.teleoperation(self)
+        return _plots.teleoperation(self, axes)
 
 
 class Comparison(Document):
@@ -490,11 +496,11 @@ class Validation(Document):
 
         return pandas.DataFrame(_tables.validation_rows(self._values))
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """The judged rows with their intervals and the expected ranges."""
+    def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.figure.Figure:
+        """The judged rows with their intervals and the expected ranges. Draws into `ax`, without a title, if given."""
         from mbk import _plots
 
-        return _plots.validation(self)
+        return _plots.validation(self, ax)
 
 
 class Information(Document):
@@ -528,11 +534,12 @@ class Springs(Document):
         rows = self._values.get("springs", self._values.get("constants", []))
         return pandas.DataFrame([dict(_tables.leaves(one)) for one in rows])
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """The stiffness ellipse at the equilibrium and the springs on their anchors."""
+    def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.figure.Figure:
+        """The stiffness ellipse at the equilibrium and the springs on their anchors. Draws into `ax`, without a
+        title, if given."""
         from mbk import _plots
 
-        return _plots.springs(self)
+        return _plots.springs(self, ax)
 
 
 class RobotDynamics(Document):
@@ -576,11 +583,12 @@ class StudySummary(Document):
 
         return pandas.DataFrame(_tables.reliability_rows(self._values))
 
-    def plot(self) -> matplotlib.figure.Figure:
-        """ICC(A,1) between sessions of each outcome with its 95 % interval."""
+    def plot(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.figure.Figure:
+        """ICC(A,1) between sessions of each outcome with its 95 % interval. Draws into `ax`, without a title,
+        if given."""
         from mbk import _plots
 
-        return _plots.reliability(self)
+        return _plots.reliability(self, ax)
 
 
 CLASSES: dict[str, Callable[[str, int], Document]] = {

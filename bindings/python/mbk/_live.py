@@ -12,7 +12,7 @@ import struct
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +21,7 @@ import numpy.typing as npt
 from mbk import _documents, _errors
 
 if TYPE_CHECKING:
+    import matplotlib.axes
     import matplotlib.figure
 
 COLUMNS = ("time", "hand_x", "hand_y", "force_x", "force_y", "reference_x", "reference_y", "acceleration_x",
@@ -262,11 +263,12 @@ class Live:
                 seen = self._count
             yield self
 
-    def plot(self, last_s: float = 8.0) -> matplotlib.figure.Figure:
+    def plot(self, last_s: float = 8.0,
+             axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
         """Position and force of the last seconds, with the reference dashed."""
         from mbk import _plots
 
-        return _plots.live(self.samples(last_s), self._reference_unit())
+        return _plots.live(self.samples(last_s), self._reference_unit(), axes)
 
     def _reference_unit(self) -> str:
         trials = self.state.get("trials", [])

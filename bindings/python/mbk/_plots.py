@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbk import _tables
+from mbk import _errors, _tables
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -19,7 +19,17 @@ COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
 MATRIX_COLOURS = {"inertia": PURPLE, "damping": GREEN, "stiffness": BLUE}
 
 
-def figure(rows: int, columns: int = 1, *, width: float = 7.0, height: float = 2.4, **more: Any) -> Any:
+def figure(rows: int, columns: int = 1, *, into: Any = None, width: float = 7.0, height: float = 2.4,
+           **more: Any) -> Any:
+    """A new figure and its axes, or the given axes, row by row, and the figure that they are in."""
+    if into is not None:
+        given = list(np.atleast_1d(np.asarray(into, dtype=object)).flat)
+        if len(given) != rows * columns:
+            raise _errors.usage(f"this plot needs {rows * columns} axes, not {len(given)}",
+                                f"give axes of plt.subplots({rows}, {columns})")
+        axes = np.empty((rows, columns), dtype=object)
+        axes.flat[:] = given
+        return given[0].figure, axes
     import matplotlib.pyplot as plt
 
     made, axes = plt.subplots(rows, columns, figsize=(width, height * rows), squeeze=False, layout="constrained", **more)
@@ -30,6 +40,12 @@ def figure(rows: int, columns: int = 1, *, width: float = 7.0, height: float = 2
 
 def shaded(axes: matplotlib.axes.Axes, x: Any, low: Any, high: Any, colour: str, label: str | None = None) -> None:
     axes.fill_between(x, numbers(low), numbers(high), color=colour, alpha=0.2, linewidth=0, label=label)
+
+
+def title(panel: matplotlib.axes.Axes, text: str, into: Any, **more: Any) -> None:
+    """Axes that the caller made have captions of the caller's."""
+    if into is None:
+        panel.set_title(text, **more)
 
 
 def numbers(values: Any) -> Any:
@@ -69,12 +85,12 @@ def panel_of(name: str, unit: str, units: dict[str, str]) -> tuple[str, str]:
     return kind, unit
 
 
-def recording(what: Any, channels: list[str]) -> matplotlib.figure.Figure:
+def recording(what: Any, channels: list[str], into: Any = None) -> matplotlib.figure.Figure:
     units = what.units
     groups: dict[tuple[str, str], list[str]] = {}
     for name in sorted(channels, key=lambda one: one.startswith("reference")):  # behind what they are drawn upon
         groups.setdefault(panel_of(name, units.get(name, ""), units), []).append(name)
-    made, axes = figure(len(groups), height=1.9, sharex=True)
+    made, axes = figure(len(groups), height=1.9, sharex=True, into=into)
     time = what.time
     for panel, ((kind, unit), names) in zip(axes[:, 0], sorted(groups.items())):
         for name, colour in zip(names, COLOURS * 4):
@@ -99,14 +115,14 @@ def outline(ellipse: dict[str, Any]) -> tuple[Any, Any] | None:
     return along * math.cos(turn) - across * math.sin(turn), along * math.sin(turn) + across * math.cos(turn)
 
 
-def ellipses(document: Any) -> matplotlib.figure.Figure:
+def ellipses(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     values = document._values
     results = [one for one in values.get("results", [values]) if one.get("usable", True)]
     with_ellipses = [one for one in results if "ellipses" in one]
     if not with_ellipses:
-        return parameters(results or values.get("results", [values]))
+        return parameters(results or values.get("results", [values]), into)
     units = with_ellipses[0].get("units", _tables.UNITS)
-    made, axes = figure(1, 3, width=9.0, height=3.4)
+    made, axes = figure(1, 3, width=9.0, height=3.4, into=into)
     for panel, (symbol, name) in zip(axes[0], _tables.MATRICES):
         colour = MATRIX_COLOURS[name]
         largest = 0.0
@@ -133,7 +149,7 @@ def ellipses(document: Any) -> matplotlib.figure.Figure:
         else:
             panel.text(0.5, 0.5, "no ellipse:\nnot positive definite", ha="center", va="center", transform=panel.transAxes)
         panel.set_aspect("equal")
-        panel.set_title(f"{name} {symbol}")
+        title(panel, f"{name} {symbol}", into)
         panel.set_xlabel(f"along x{unit_text(units[symbol])}")
         panel.set_ylabel(f"along y{unit_text(units[symbol])}")
         panel.axhline(0.0, color=GREY, linewidth=0.5)
@@ -141,13 +157,13 @@ def ellipses(document: Any) -> matplotlib.figure.Figure:
     return made
 
 
-def parameters(results: list[dict[str, Any]]) -> matplotlib.figure.Figure:
+def parameters(results: list[dict[str, Any]], into: Any = None) -> matplotlib.figure.Figure:
     """M, B and K of each recording, entry by entry, with their 95 % intervals."""
     units = results[0].get("units", _tables.UNITS)
     entries = [(result, i, k) for result in results for i in range(result["axes"]) for k in range(result["axes"])]
     names = ["".join(_tables.axis_names(result["axes"])[one] for one in (i, k)) for result, i, k in entries]
     places = np.arange(1, len(entries) + 1)
-    made, axes = figure(1, 3, width=8.0, height=2.6)
+    made, axes = figure(1, 3, width=8.0, height=2.6, into=into)
     for panel, (symbol, name) in zip(axes[0], _tables.MATRICES):
         values = numbers([result["model"][symbol][i][k] for result, i, k in entries])
         halves = _tables.NORMAL95 * numbers([result["standard_error"][symbol][i][k] for result, i, k in entries])
@@ -158,14 +174,17 @@ def parameters(results: list[dict[str, Any]]) -> matplotlib.figure.Figure:
         panel.set_ylabel(f"{name} {symbol}{unit_text(units[symbol])}")
         panel.ticklabel_format(axis="y", useOffset=False)
     usable = all(result.get("usable", True) for result in results)
-    made.suptitle("95 % intervals" if usable else "not usable: do not report these numbers", fontsize="medium")
+    if into is None:
+        made.suptitle("95 % intervals" if usable else "not usable: do not report these numbers", fontsize="medium")
+    elif not usable:
+        axes[0, 0].text(0.02, 0.98, "not usable", va="top", transform=axes[0, 0].transAxes)
     return made
 
 
-def fit(report: dict[str, Any], unit: str) -> matplotlib.figure.Figure:
+def fit(report: dict[str, Any], unit: str, into: Any = None) -> matplotlib.figure.Figure:
     found = report["trials"][0]["diagnostics"]["prediction"]
     count = len(found["measured"])
-    made, axes = figure(2 * count, height=1.7, sharex=True)
+    made, axes = figure(2 * count, height=1.7, sharex=True, into=into)
     time = numbers(found["time_s"])
     for k in range(count):
         name = " xy"[k + 1] if count > 1 else ""
@@ -178,13 +197,13 @@ def fit(report: dict[str, Any], unit: str) -> matplotlib.figure.Figure:
         below.set_ylabel(f"residual {name}{unit_text(unit)}".replace("  ", " "))
         if k == 0:
             above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), frameon=False, ncols=2, borderaxespad=0.0)
-            above.set_title("held-out data" if found["held_out"] else "the data to which the model was fitted",
-                            fontsize="medium", loc="left")
+            title(above, "held-out data" if found["held_out"] else "the data to which the model was fitted", into,
+                  fontsize="medium", loc="left")
     axes[-1, 0].set_xlabel("time [s]")
     return made
 
 
-def passivity(document: Any) -> matplotlib.figure.Figure:
+def passivity(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     results = document._values.get("results", [document._values])
     models = [(one, result) for result in results for one in result["passivity"].get("models", []) if "index" in one]
     if len(results) == 1:
@@ -194,7 +213,7 @@ def passivity(document: Any) -> matplotlib.figure.Figure:
         curves = [(first[id(result)]["index"], _tables.names_of(result)) for result in results if id(result) in first]
     recordings = [(one, _tables.names_of(result)) for result in results for one in result.get("recordings", [])]
     units = results[0].get("units", {})
-    made, axes = figure(1 + (1 if recordings else 0), height=2.7)
+    made, axes = figure(1 + (1 if recordings else 0), height=2.7, into=into)
     panel = axes[-1, 0]
     for (index, label), colour in zip(curves, itertools.cycle(COLOURS)):
         frequency = numbers(index["frequency_hz"])
@@ -205,7 +224,7 @@ def passivity(document: Any) -> matplotlib.figure.Figure:
     logarithmic(panel.xaxis)
     panel.set_xlabel("frequency [Hz]")
     panel.set_ylabel(f"passivity index{unit_text(units.get('B', 'N·s/m'))}")
-    panel.set_title("below zero the model can generate energy; bands are 95 % intervals", fontsize="medium")
+    title(panel, "below zero the model can generate energy; bands are 95 % intervals", into, fontsize="medium")
     if curves:
         panel.legend(loc="best", frameon=False)
     if recordings:
@@ -228,10 +247,11 @@ def decibels(values: Any) -> Any:
         return 20.0 * np.log10(numbers(values))
 
 
-def bode(pairs: list[tuple[str, str, dict[str, Any]]], frequency: Any, *, coherence: bool) -> matplotlib.figure.Figure:
-    """Magnitude, phase and, if known, coherence: one column per response."""
-    made, axes = figure(3 if coherence else 2, len(pairs), width=max(6.0, 3.6 * len(pairs)), height=2.1, sharex=True)
-    for column, (title, unit, one) in enumerate(pairs):
+def bode(pairs: list[tuple[str, str, dict[str, Any]]], frequency: Any, *, coherence: bool, into: Any = None) -> Any:
+    """Magnitude, phase and, if known, coherence: one column per response. Returns figure and axes."""
+    made, axes = figure(3 if coherence else 2, len(pairs), width=max(6.0, 3.6 * len(pairs)), height=2.1, sharex=True,
+                        into=into)
+    for column, (name, unit, one) in enumerate(pairs):
         magnitude, phase = axes[0, column], axes[1, column]
         shaded(magnitude, frequency, one["magnitude_interval95"][0], one["magnitude_interval95"][1], BLUE, "95 %")
         magnitude.plot(frequency, numbers(one["magnitude"]), color=BLUE)
@@ -241,7 +261,7 @@ def bode(pairs: list[tuple[str, str, dict[str, Any]]], frequency: Any, *, cohere
             magnitude.set_yscale("log")
             lowest, highest = np.nanmin(positive), np.nanmax(positive)
             magnitude.set_ylim(lowest / 3.0, highest * 3.0)
-        magnitude.set_title(title, fontsize="medium")
+        title(magnitude, name, into, fontsize="medium")
         if "phase_interval95_deg" in one:
             shaded(phase, frequency, one["phase_interval95_deg"][0], one["phase_interval95_deg"][1], BLUE)
         phase.plot(frequency, numbers(one["phase_deg"]), color=BLUE)
@@ -255,10 +275,10 @@ def bode(pairs: list[tuple[str, str, dict[str, Any]]], frequency: Any, *, cohere
             below.set_ylabel("partial coherence")
         axes[-1, column].set_xlabel("frequency [Hz]")
         logarithmic(axes[-1, column].xaxis)
-    return made
+    return made, axes
 
 
-def exploration(document: Any) -> matplotlib.figure.Figure:
+def exploration(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     values = document._values
     response = values.get("frequency_response")
     if not response:
@@ -266,20 +286,21 @@ def exploration(document: Any) -> matplotlib.figure.Figure:
     units = {one["name"]: one["unit"] for one in [*response["inputs"], *response["outputs"]]}
     pairs = [(f"{one['input']} → {one['output']}", f"{units[one['output']]}/{units[one['input']]}", one)
              for one in response["responses"]]
-    return bode(pairs, numbers(response["frequency_hz"]), coherence=True)
+    made, _ = bode(pairs, numbers(response["frequency_hz"]), coherence=True, into=into)
+    return made
 
 
-def transfer_function(document: Any) -> matplotlib.figure.Figure:
+def transfer_function(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     values = document._values
     response = values["frequency_response"]
     unit = f"{values['output']['unit']}/{values['input']['unit']}" if values["input"]["unit"] else ""
-    title = f"{values['input']['name']} → {values['output']['name']}"
-    made = bode([(title, unit, response)], numbers(response["frequency_hz"]), coherence=False)
+    name = f"{values['input']['name']} → {values['output']['name']}"
+    made, axes = bode([(name, unit, response)], numbers(response["frequency_hz"]), coherence=False, into=into)
     low, high = values["excited_band_hz"]
     if low is not None and high is not None:
-        for panel in made.axes:
+        for panel in axes.flat:
             panel.axvspan(low, high, color=GREY, alpha=0.12, linewidth=0)
-        made.axes[0].set_title(f"{title}; grey: excited band", fontsize="medium")
+        title(axes[0, 0], f"{name}; grey: excited band", into, fontsize="medium")
     return made
 
 
@@ -289,9 +310,9 @@ def transfer_function(document: Any) -> matplotlib.figure.Figure:
 CURVES = {"r11": "Re z₁₁ [N·s/m]", "r22": "Re z₂₂ [N·s/m]", "third": "third condition, normalised"}
 
 
-def teleoperation(document: Any) -> matplotlib.figure.Figure:
+def teleoperation(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     curves = document._values["curves"]
-    made, axes = figure(len(curves), height=2.0, sharex=True)
+    made, axes = figure(len(curves), height=2.0, sharex=True, into=into)
     for panel, curve in zip(axes[:, 0], curves):
         panel.plot(numbers(curve["frequency"]), numbers(curve["value"]), color=BLUE)
         panel.axhline(0.0, color=ORANGE, linewidth=1.0, linestyle="--")
@@ -299,15 +320,15 @@ def teleoperation(document: Any) -> matplotlib.figure.Figure:
         panel.set_ylabel(CURVES.get(curve["name"], curve["name"]))
         low, high = panel.get_ylim()
         panel.set_ylim(min(low, -0.05 * high), high)
-    axes[0, 0].set_title("Llewellyn's conditions: none may be negative", fontsize="medium")
+    title(axes[0, 0], "Llewellyn's conditions: none may be negative", into, fontsize="medium")
     axes[-1, 0].set_xlabel("frequency [rad/s]")
     logarithmic(axes[-1, 0].xaxis)
     return made
 
 
-def validation(document: Any) -> matplotlib.figure.Figure:
+def validation(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     rows = [one for one in _tables.validation_rows(document._values) if not math.isnan(one["value"])]
-    made, axes = figure(1, width=8.0, height=max(2.0, 0.32 * len(rows) + 0.8))
+    made, axes = figure(1, width=8.0, height=max(2.0, 0.32 * len(rows) + 0.8), into=into)
     panel = axes[0, 0]
     for k, one in enumerate(rows):
         for low, high, colour, width in ((one["expected_low"], one["expected_high"], "#CCCCCC", 8.0),):
@@ -323,11 +344,11 @@ def validation(document: Any) -> matplotlib.figure.Figure:
     return made
 
 
-def springs(document: Any) -> matplotlib.figure.Figure:
+def springs(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     values = document._values
     if "K" not in values:
         raise NotImplementedError("spring constants have no plot")
-    made, axes = figure(1, width=5.0, height=4.6)
+    made, axes = figure(1, width=5.0, height=4.6, into=into)
     panel = axes[0, 0]
     centre = numbers(values["equilibrium"])
     for one in values["springs"]:
@@ -343,8 +364,8 @@ def springs(document: Any) -> matplotlib.figure.Figure:
         angle = np.linspace(0, 2 * np.pi, 181)
         points = vectors @ (eigenvalues[:, None] * np.array([np.cos(angle), np.sin(angle)])) * size
         panel.plot(centre[0] * 1000.0 + points[0], centre[1] * 1000.0 + points[1], color=BLUE)
-        panel.set_title(f"stiffness {_tables.significant(eigenvalues[1])} and {_tables.significant(eigenvalues[0])} N/m",
-                        fontsize="medium")
+        title(panel, f"stiffness {_tables.significant(eigenvalues[1])} and {_tables.significant(eigenvalues[0])} N/m",
+              into, fontsize="medium")
     panel.plot(*(centre * 1000.0), "+", color=ORANGE, markersize=10)
     panel.set_aspect("equal", adjustable="datalim")
     panel.set_xlabel("x [mm]")
@@ -352,8 +373,8 @@ def springs(document: Any) -> matplotlib.figure.Figure:
     return made
 
 
-def live(samples: dict[str, Any], reference_unit: str) -> matplotlib.figure.Figure:
-    made, axes = figure(2, height=2.2, sharex=True)
+def live(samples: dict[str, Any], reference_unit: str, into: Any = None) -> matplotlib.figure.Figure:
+    made, axes = figure(2, height=2.2, sharex=True, into=into)
     position, force = axes[0, 0], axes[1, 0]
     references = position if reference_unit == "m" else force
     for axis, colour in zip("xy", COLOURS):
@@ -367,11 +388,11 @@ def live(samples: dict[str, Any], reference_unit: str) -> matplotlib.figure.Figu
     return made
 
 
-def reliability(document: Any) -> matplotlib.figure.Figure:
+def reliability(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     rows = [one for one in _tables.reliability_rows(document._values) if math.isfinite(one["ICC"])]
     if not rows:
         raise NotImplementedError("no outcome of this study was repeated often enough to have an ICC")
-    made, axes = figure(1, width=6.5, height=max(2.0, 0.3 * len(rows) + 0.9))
+    made, axes = figure(1, width=6.5, height=max(2.0, 0.3 * len(rows) + 0.9), into=into)
     panel = axes[0, 0]
     several = len({one["condition"] for one in rows}) > 1
     for k, one in enumerate(rows):

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from mbk import _errors, _mbk, _tables
 
 if TYPE_CHECKING:
+    import matplotlib.axes
     import matplotlib.figure
     import pandas
     import xarray
@@ -296,13 +297,16 @@ class Recording:
         found: Information = mbk.info(self)
         return found
 
-    def plot(self, channels: Iterable[str] | None = None) -> matplotlib.figure.Figure:
+    def plot(self, channels: Iterable[str] | None = None,
+             axes: Sequence[matplotlib.axes.Axes] | None = None) -> matplotlib.figure.Figure:
         """Plots each kind of channel over time, with its unit.
 
         Parameters
         ----------
         channels : iterable of str, optional
             Channels to plot (default: all).
+        axes : sequence of matplotlib.axes.Axes, optional
+            One for each panel, to draw into.
 
         Returns
         -------
@@ -310,7 +314,7 @@ class Recording:
         """
         from mbk import _plots
 
-        return _plots.recording(self, list(channels) if channels is not None else self.channels)
+        return _plots.recording(self, list(channels) if channels is not None else self.channels, axes)
 
     def __repr__(self) -> str:
         try:

@@ -121,10 +121,11 @@ struct OperatorShortage {
   std::optional<std::pair<double, double>> excess95;  ///< the measured excess, low and high [N·s/m]
 };
 
-/// Where the conditions were looked at on a grid, because a delay was taken as it is.
+/// Where the conditions were evaluated, because a delay was taken as it is.
 struct FrequencyGrid {
-  RadPerSec low, high;
-  int points = 0;  ///< evenly spaced in the logarithm
+  RadPerSec low, high;   ///< high may be infinite if bounded
+  int points = 0;        ///< evenly spaced in the logarithm; if bounded, the number of evaluations
+  bool bounded = false;  ///< the conditions are bounded between the points too, see teleop/delayed.h
 };
 
 /// What an excess of passivity of the operator buys: the admissible values of a parameter against it.
@@ -207,7 +208,8 @@ struct TeleoperationFinding {
   std::vector<std::string> matrix;  ///< what the architecture's matrix is, one line each
   std::vector<DesignParameter> parameters;
   AbsoluteStability stability;        ///< Llewellyn
-  std::optional<FrequencyGrid> grid;  ///< where it was judged on a grid only
+  std::optional<FrequencyGrid> grid;  ///< where it was evaluated, with true delays
+  std::optional<RadPerSec> pade_limit;  ///< above it the phase of the chosen Padé approximation is wrong
   int operator_port = 1;
   std::optional<OperatorShortage> operator_shortage;
   std::optional<AbsoluteStability> with_operator;  ///< modified Llewellyn, with that a

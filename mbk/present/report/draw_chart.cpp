@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -335,21 +336,63 @@ std::string mark(std::size_t k, double x, double y) {
   }
 }
 
+constexpr double kText = 13.0, kSmallText = 12.0, kLine = 15.0, kCharacter = 7.4;  // of text in SVG's units
+constexpr double kText_pt = 8.0, kMillimetres = 25.4 / 72.0;                       // of kText; of a point
+
+/// About the width of a text in SVG's units.
+double width_of(const std::string& text, double size = kText) {
+  return kCharacter * size / kText * static_cast<double>(columns(text));
+}
+
+std::vector<std::string> lines_of(const std::string& text, double width, double size = kText) {
+  const std::string all = wrapped(text, static_cast<std::size_t>(std::max(8.0, width * kText / (kCharacter * size))));
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin <= all.size();) {
+    const std::size_t end = std::min(all.find('\n', begin), all.size());
+    lines.push_back(all.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
 /// Where the plot stands in the drawing, in SVG's units.
 struct Frame {
   Ranges ranges;
-  double left = 78, top = 44, width = 660, height = 420;
+  double left = 0, top = 12, width = 0, height = 0;
+  std::vector<std::string> x_label, y_label;
+  std::vector<Tick> up;
   [[nodiscard]] double x(double value) const { return left + (value - ranges.x.low) / ranges.x.size() * width; }
   [[nodiscard]] double y(double value) const { return top + (ranges.y.high - value) / ranges.y.size() * height; }
 };
 
-Frame frame_of(const Chart& chart) {
+/// At least three, so that a small drawing has a scale.
+std::vector<Tick> svg_ticks(const Range& range, double expected, const ChartAxis& axis) {
+  constexpr int kMost = 12;
+  int n = std::max(2, static_cast<int>(expected));
+  std::vector<Tick> ticks = ticks_of(range, n, axis);
+  while (ticks.size() < 3 && n < kMost) ticks = ticks_of(range, ++n, axis);
+  return ticks;
+}
+
+/// @param page  the width of the drawing
+Frame frame_of(const Chart& chart, double page, bool with_y_label) {
+  constexpr double kProportion = 0.64, kGap = 9.0, kEvery = 45.0;
   Frame frame{ranges_of(chart)};
-  if (!chart.equal_scale && !chart.identity) return frame;
-  constexpr double kHighest = 560.0;
-  const double scale = std::min(frame.width / frame.ranges.x.size(), kHighest / frame.ranges.y.size());
-  frame.width = scale * frame.ranges.x.size();
-  frame.height = scale * frame.ranges.y.size();
+  const bool equal = chart.equal_scale || chart.identity;
+  frame.height = kProportion * page * (equal ? 1.0 : 0.8);
+  frame.up = svg_ticks(frame.ranges.y, frame.height / kEvery, chart.y);
+  double widest = 0.0;
+  for (const Tick& tick : frame.up) widest = std::max(widest, width_of(tick.label));
+  if (with_y_label) frame.y_label = lines_of(with_unit(chart.y), frame.height);
+  frame.left = kLine * static_cast<double>(frame.y_label.size()) + 6.0 + widest + kGap;
+  frame.width = page - frame.left - 12.0;
+  if (equal) {
+    const double highest = 0.85 * page;
+    const double scale = std::min(frame.width / frame.ranges.x.size(), highest / frame.ranges.y.size());
+    frame.width = scale * frame.ranges.x.size();
+    frame.height = scale * frame.ranges.y.size();
+  }
+  frame.x_label = lines_of(with_unit(chart.x), frame.width);
   return frame;
 }
 
@@ -394,56 +437,102 @@ std::string svg_series(const Chart& chart, std::size_t k, const Frame& frame) {
   return text + marks + "\n";
 }
 
+/// Under the plot, without those that would touch the one before.
+std::string svg_numbers_along(const Chart& chart, const Frame& frame, std::string& grid) {
+  constexpr double kEvery = 70.0, kGap = 6.0;
+  const double bottom = frame.top + frame.height;
+  double free_from = -std::numeric_limits<double>::infinity();
+  std::string numbers;
+  for (const Tick& tick : svg_ticks(frame.ranges.x, frame.width / kEvery, chart.x)) {
+    const double x = frame.x(tick.value), half = 0.5 * width_of(tick.label);
+    grid += fmt::format("M{:.2f} {:.2f}V{:.2f}", x, frame.top, bottom + 5.0);
+    if (x - half < free_from) continue;
+    free_from = x + half + kGap;
+    numbers +=
+        fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>)", x, bottom + 20.0, tick.label);
+  }
+  return numbers;
+}
+
 std::string svg_axes(const Chart& chart, const Frame& frame) {
   const double right = frame.left + frame.width, bottom = frame.top + frame.height;
-  std::string grid, numbers;
-  for (const Tick& tick : ticks_of(frame.ranges.x, std::max(2, static_cast<int>(frame.width / 90.0)), chart.x)) {
-    grid += fmt::format("M{:.2f} {:.2f}V{:.2f}", frame.x(tick.value), frame.top, bottom + 5.0);
-    numbers += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>)", frame.x(tick.value),
-                           bottom + 20.0, tick.label);
-  }
-  for (const Tick& tick : ticks_of(frame.ranges.y, std::max(2, static_cast<int>(frame.height / 60.0)), chart.y)) {
-    grid += fmt::format("M{:.2f} {:.2f}H{:.2f}", frame.left - 5.0, frame.y(tick.value), right);
-    numbers += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="end">{}</text>)", frame.left - 9.0,
-                           frame.y(tick.value) + 4.5, tick.label);
+  std::string grid, numbers = svg_numbers_along(chart, frame, grid);
+  double last = std::numeric_limits<double>::infinity();
+  for (const Tick& tick : frame.up) {
+    const double y = frame.y(tick.value);
+    grid += fmt::format("M{:.2f} {:.2f}H{:.2f}", frame.left - 5.0, y, right);
+    if (last - y < kText) continue;
+    last = y;
+    numbers += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="end">{}</text>)", frame.left - 9.0, y + 4.5,
+                           tick.label);
   }
   std::string text = fmt::format(R"(<path d="{}" fill="none" stroke="#dcdcdc"/>)", grid) + "\n";
   text += fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="none" stroke="#444"/>)",
                       frame.left, frame.top, frame.width, frame.height);
   text += numbers + "\n";
-  text += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>)", 0.5 * (frame.left + right),
-                      bottom + 42.0, escaped(with_unit(chart.x)));
-  text += fmt::format(R"svg(<text transform="translate(18 {:.2f}) rotate(-90)" text-anchor="middle">{}</text>)svg",
-                      0.5 * (frame.top + bottom), escaped(with_unit(chart.y)));
+  double y = bottom + 38.0, x = kLine;
+  for (const std::string& line : frame.x_label) {
+    text += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>)", 0.5 * (frame.left + right), y,
+                        escaped(line));
+    y += kLine;
+  }
+  for (const std::string& line : frame.y_label) {
+    text +=
+        fmt::format(R"svg(<text transform="translate({:.2f} {:.2f}) rotate(-90)" text-anchor="middle">{}</text>)svg", x,
+                    0.5 * (frame.top + bottom), escaped(line));
+    x += kLine;
+  }
   return text + "\n";
 }
 
+/// Whether a name beside its line at `place` would cover one that was written; otherwise it is noted.
+bool is_taken(double place, std::vector<double>& taken) {
+  if (std::ranges::any_of(taken, [&](double other) { return std::abs(place - other) < kText; })) return true;
+  taken.push_back(place);
+  return false;
+}
+
+/// Lines with their names, each on the first side of its line that is free; a name that has none is in <desc> only.
 std::string svg_references(const Chart& chart, const Frame& frame) {
   const double right = frame.left + frame.width, bottom = frame.top + frame.height;
   std::string path, names;
+  std::vector<double> taken;
+  const auto side = [&](double line, double before, double after) -> std::optional<double> {
+    for (const double place : {line + before, line + after}) {
+      if (!is_taken(place, taken)) return place;
+    }
+    return std::nullopt;
+  };
   for (const ChartReference& at : shown(chart.horizontal)) {
     path += fmt::format("M{:.2f} {:.2f}H{:.2f}", frame.left, frame.y(at.value), right);
-    names += fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="end">{}</text>)", right - 6.0,
-                         frame.y(at.value) - 5.0, escaped(at.name));
+    if (at.name.empty()) continue;
+    if (const auto y = side(frame.y(at.value), -5.0, 13.0)) {
+      names +=
+          fmt::format(R"(<text x="{:.2f}" y="{:.2f}" text-anchor="end">{}</text>)", right - 6.0, *y, escaped(at.name));
+    }
   }
+  taken.clear();
   for (const ChartReference& at : shown(chart.vertical)) {
     path += fmt::format("M{:.2f} {:.2f}V{:.2f}", frame.x(at.value), frame.top, bottom);
-    names += fmt::format(R"svg(<text transform="translate({:.2f} {:.2f}) rotate(-90)">{}</text>)svg",
-                         frame.x(at.value) - 5.0, bottom - 6.0, escaped(at.name));
+    if (at.name.empty()) continue;
+    if (const auto x = side(frame.x(at.value), -5.0, 13.0)) {
+      names += fmt::format(R"svg(<text transform="translate({:.2f} {:.2f}) rotate(-90)">{}</text>)svg", *x,
+                           bottom - 6.0, escaped(at.name));
+    }
   }
   if (chart.identity) path += fmt::format("M{:.2f} {:.2f}L{:.2f} {:.2f}", frame.left, bottom, right, frame.top);
   if (path.empty()) return "";
   return fmt::format(R"(<path d="{}" fill="none" stroke="#555" stroke-width="1.2" stroke-dasharray="5 4"/>)", path) +
-         fmt::format(R"(<g fill="#444" font-size="12">{}</g>)", names) + "\n";
+         fmt::format(R"(<g fill="#444" font-size="{:.0f}">{}</g>)", kSmallText, names) + "\n";
 }
 
 /// Entries side by side as far as they fit; `y` moves down by what they take.
 std::string svg_legend(const Chart& chart, double left, double right, double& y) {
-  constexpr double kRow = 22.0, kSample = 34.0, kCharacter = 7.4;
+  constexpr double kRow = 20.0, kSample = 34.0;
   std::string text;
   double x = left;
   const auto entry = [&](const std::string& sample, const std::string& name) {
-    const double width = kSample + kCharacter * static_cast<double>(columns(name)) + 22.0;
+    const double width = kSample + width_of(name) + 14.0;
     if (x > left && x + width > right) {
       x = left;
       y += kRow;
@@ -519,36 +608,57 @@ std::string chart_text(const Chart& given) {
   return text + text_legend(given);
 }
 
-std::string chart_svg(const Chart& given) {
+namespace {
+
+/// One chart in a column of the drawing; `bottom` becomes what it takes.
+std::string svg_column(const Chart& given, double page, bool with_y_label, bool with_notes, double& bottom) {
   const Chart chart = on_even_axes(given);
-  const Frame frame = frame_of(chart);
-  const double right = frame.left + frame.width, bottom = frame.top + frame.height;
-  const double page = std::max(right + 24.0, 640.0);
-  double y = bottom + 70.0;
-  std::string below = svg_legend(chart, 24.0, page - 12.0, y);
-  constexpr double kNoteCharacter = 6.4, kNoteRow = 17.0;
-  for (const std::string& note : chart.notes) {
-    const std::string lines = wrapped(note, static_cast<std::size_t>((page - 48.0) / kNoteCharacter));
-    for (std::size_t begin = 0; begin <= lines.size();) {
-      const std::size_t end = std::min(lines.find('\n', begin), lines.size());
-      below += fmt::format(R"(<text x="24" y="{:.2f}" font-size="12" fill="#444">{}</text>)", y,
-                           escaped(lines.substr(begin, end - begin)));
-      y += kNoteRow;
-      begin = end + 1;
+  const Frame frame = frame_of(chart, page, with_y_label);
+  std::string text = svg_axes(chart, frame) + svg_references(chart, frame);
+  for (std::size_t k = 0; k < chart.series.size(); ++k) text += svg_series(chart, k, frame);
+  double y = frame.top + frame.height + 42.0 + kLine * static_cast<double>(frame.x_label.size());
+  text += svg_legend(chart, 8.0, page - 4.0, y);
+  for (const std::string& note : with_notes ? chart.notes : std::vector<std::string>()) {
+    for (const std::string& line : lines_of(note, page - 16.0, kSmallText)) {
+      text += fmt::format(R"(<text x="8" y="{:.2f}" font-size="{:.0f}" fill="#444">{}</text>)", y, kSmallText,
+                          escaped(line));
+      y += kLine;
     }
   }
+  bottom = y - 4.0;
+  return text;
+}
+
+}  // namespace
+
+std::string charts_svg(const std::string& title, std::span<const Chart> charts, double width_mm) {
+  const double unit_mm = kText_pt * kMillimetres / kText, page = width_mm / unit_mm;
+  const double column = page / static_cast<double>(std::max<std::size_t>(1, charts.size()));
+  constexpr double kNarrow = 200.0;  // the name of the y axis would be longer than the axis
+  const bool named = charts.size() == 1 || column > kNarrow;
+  std::string body, words;
+  double height = 0.0;
+  for (std::size_t k = 0; k < charts.size(); ++k) {
+    double bottom = 0.0;
+    const std::string drawn = svg_column(charts[k], column, k == 0 && named, charts.size() == 1, bottom);
+    body += k == 0 ? drawn
+                   : fmt::format(R"svg(<g transform="translate({:.2f} 0)">{}</g>)svg", column * static_cast<double>(k),
+                                 drawn);
+    height = std::max(height, bottom);
+    words += (k == 0 ? "" : " ") + description(charts[k]);
+  }
   std::string text = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}" )"
-      R"(role="img" aria-labelledby="title description" font-family="Helvetica, Arial, sans-serif" font-size="13">)"
+      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {:.2f} {:.2f}" width="{:.2f}mm" height="{:.2f}mm" )"
+      R"(role="img" aria-labelledby="title description" font-family="Helvetica, Arial, sans-serif" font-size="{:.0f}">)"
       "\n",
-      page, y + 4.0);
-  text += fmt::format("<title id=\"title\">{}</title>\n<desc id=\"description\">{}</desc>\n", escaped(chart.title),
-                      escaped(description(given)));
-  text += R"(<rect width="100%" height="100%" fill="#fff"/>)";
-  text += fmt::format(R"(<text x="24" y="26" font-size="16" font-weight="bold">{}</text>)", escaped(chart.title));
-  text += "\n" + svg_axes(chart, frame) + svg_references(chart, frame);
-  for (std::size_t k = 0; k < chart.series.size(); ++k) text += svg_series(chart, k, frame);
-  return text + below + "</svg>\n";
+      page, height, width_mm, unit_mm * height, kText);
+  text += fmt::format("<title id=\"title\">{}</title>\n<desc id=\"description\">{}</desc>\n", escaped(title),
+                      escaped(words));
+  return text + R"(<rect width="100%" height="100%" fill="#fff"/>)" + "\n" + body + "</svg>\n";
+}
+
+std::string chart_svg(const Chart& chart, double width_mm) {
+  return charts_svg(chart.title, std::span(&chart, 1), width_mm);
 }
 
 }  // namespace mbk::report

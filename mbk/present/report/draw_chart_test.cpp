@@ -230,6 +230,84 @@ TEST(ChartSvg, NamesAreTextAndNeverMarkup) {
   EXPECT_EQ(svg.find("</svg>"), svg.rfind("</svg>"));
 }
 
+/// Of every font-size, the smallest in mm.
+double smallest_text_mm(const std::string& svg) {
+  const std::regex size(R"re(viewBox="0 0 ([\d.]+) [\d.]+" width="([\d.]+)mm")re"), font(R"re(font-size="([\d.]+)")re");
+  std::smatch found;
+  if (!std::regex_search(svg, found, size)) return 0.0;
+  const double unit = std::stod(found[2]) / std::stod(found[1]);
+  double smallest = 1e9;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), font), end; it != end; ++it) {
+    smallest = std::min(smallest, unit * std::stod((*it)[1]));
+  }
+  return smallest;
+}
+
+TEST(ChartSvg, IsAsWideAsAskedWithTextOfAtLeast7Points) {
+  constexpr double kPoint_mm = 25.4 / 72.0, kSmallest_pt = 7.0;
+  Chart c = chart();
+  c.horizontal.push_back({200.0, "expected"});
+  c.notes.emplace_back(std::string("a note that is longer than one column of a page is wide, so that it is wrapped"));
+  for (const double width : {kOneColumn_mm, kTwoColumns_mm, 60.0}) {
+    const std::string svg = chart_svg(c, width);
+    EXPECT_THAT(svg, HasSubstr("width=\"" + std::to_string(static_cast<int>(width)) + ".00mm\""));
+    EXPECT_GE(smallest_text_mm(svg), kSmallest_pt * kPoint_mm) << width;
+    const std::vector<Chart> three(3, c);
+    EXPECT_GE(smallest_text_mm(charts_svg("three", three, width)), kSmallest_pt * kPoint_mm) << width;
+  }
+}
+
+TEST(ChartSvg, HasItsTitleForReadersOfTheFileOnly) {
+  const std::string svg = chart_svg(chart());
+  EXPECT_EQ(svg.find("Stiffness"), svg.rfind("Stiffness"));
+  EXPECT_THAT(svg, HasSubstr("<title id=\"title\">Stiffness</title>"));
+}
+
+TEST(ChartSvg, NumbersUnderTheAxisDoNotTouch) {
+  Chart c = chart();
+  c.x = {"frequency", "rad/s", true};
+  c.series[0].x = {1e-18, 1.0, 1e4};
+  const std::string svg = chart_svg(c, 60.0);
+  const std::regex number(R"re(<text x="([\d.]+)" y="[\d.]+" text-anchor="middle">([^<]+)</text>)re");
+  double free_from = 0.0;
+  int count = 0;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), number), end; it != end; ++it, ++count) {
+    if ((*it)[2].str().find("frequency") != std::string::npos) continue;
+    constexpr double kCharacter = 7.4;  // of 13 units high, about
+    const double half = 0.5 * kCharacter * static_cast<double>((*it)[2].length());
+    EXPECT_GE(std::stod((*it)[1]) - half, free_from) << (*it)[2];
+    free_from = std::stod((*it)[1]) + half;
+  }
+  EXPECT_GE(count, 3);
+}
+
+TEST(ChartSvg, NamesOfLinesThatAreCloseDoNotCoverEachOther) {
+  Chart c = chart();
+  c.vertical = {{200.0, "measured, low"}, {201.0, "measured, high"}, {300.0, "far"}};
+  const std::string svg = chart_svg(c, kOneColumn_mm);
+  const std::regex name(R"re(translate\(([\d.]+) [\d.]+\) rotate\(-90\)">(measured|far))re");
+  std::vector<double> places;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), name), end; it != end; ++it) {
+    places.push_back(std::stod((*it)[1]));
+  }
+  ASSERT_EQ(places.size(), 3u);
+  EXPECT_GE(std::abs(places[0] - places[1]), 12.0);
+}
+
+TEST(ChartSvg, SeveralStandSideBySide) {
+  const std::vector<Chart> three(3, chart());
+  const std::string svg = charts_svg("all three", three, kTwoColumns_mm);
+  EXPECT_THAT(svg, HasSubstr("<title id=\"title\">all three</title>"));
+  EXPECT_EQ(svg.find("</svg>"), svg.rfind("</svg>"));
+  const std::regex column(R"re(<g transform="translate\(([\d.]+) 0\)">)re");
+  std::vector<double> left;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), column), end; it != end; ++it) {
+    left.push_back(std::stod((*it)[1]));
+  }
+  ASSERT_EQ(left.size(), 2u);
+  EXPECT_NEAR(left[1], 2.0 * left[0], 0.02);
+}
+
 TEST(ChartSvg, SaysInWordsWhatItShows) {
   Chart c = chart();
   c.horizontal.push_back({200.0, "expected"});

@@ -62,11 +62,17 @@ Chart ellipse_chart(const EllipseFinding& finding, const char* name, const std::
 void add_ellipses(const Measurement& measured, std::vector<NamedChart>& charts) {
   const Units units = units_of(Motion::translation);
   const std::array<const char*, 3> unit = {units.inertia, units.damping, units.stiffness};
+  std::vector<Chart> all;
   for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
     const EllipseFinding& finding = measured.findings->ellipses[k];
     if (!(finding.ellipse.lambda_min > 0.0)) continue;
-    charts.push_back({fmt::format("{}-ellipse", kMatrixNames[k]), ellipse_chart(finding, kMatrixNames[k], unit[k])});
+    all.push_back(ellipse_chart(finding, kMatrixNames[k], unit[k]));
+    charts.push_back({fmt::format("{}-ellipse", kMatrixNames[k]), all.back()});
   }
+  if (all.size() < 2) return;
+  NamedChart figure{"ellipses", all.front(), {all.begin() + 1, all.end()}};
+  figure.chart.title = "Ellipses side by side";
+  charts.push_back(std::move(figure));
 }
 
 void add_prediction(const ForcePrediction& prediction, const Units& units, std::vector<NamedChart>& charts) {

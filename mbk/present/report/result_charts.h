@@ -15,10 +15,12 @@ namespace mbk::report {
 struct NamedChart {
   std::string name;
   Chart chart;
+  std::vector<Chart> beside = {};  ///< in the same figure, to its right
 };
 
-/// What a measurement can be drawn as: the ellipses where the result is usable and has findings; from the diagnostics
-/// measured and predicted force, the residual's autocorrelation, coherence and power spectra of the force.
+/// What a measurement can be drawn as: the ellipses, each alone and side by side, where the result is usable and has
+/// findings; from the diagnostics measured and predicted force, the residual's autocorrelation, coherence and power
+/// spectra of the force.
 [[nodiscard]] std::vector<NamedChart> measurement_charts(const Measurement& measured,
                                                          const std::optional<Diagnostics>& diagnostics);
 

@@ -44,16 +44,17 @@ std::string in_hz(RadPerSec omega) {
   return fmt::format("{:.4g} Hz", omega.value / (2.0 * std::numbers::pi));
 }
 
-std::string band_text(const ViolatedBand& band) {
+std::string band_text(const ViolatedBand& band, std::optional<RadPerSec> limit) {
   if (band.low == band.high && !band.detail.empty()) return band.detail;
   if (band.low == band.high) return fmt::format("at {} rad/s", value_text(band.low.value));
   const std::string range = std::isinf(band.high.value) ? fmt::format("above {} rad/s", value_text(band.low.value))
                                                         : fmt::format("from {} to {} rad/s", value_text(band.low.value),
                                                                       value_text(band.high.value));
+  if (limit && band.worst > *limit) return range + (band.low > *limit ? " (of the Padé approximation)" : "");
   return fmt::format("{}, worst near {:.4g} rad/s ({})", range, band.worst.value, in_hz(band.worst));
 }
 
-std::string outcome_text(const StabilityOutcome& outcome) {
+std::string outcome_text(const StabilityOutcome& outcome, std::optional<RadPerSec> limit) {
   if (outcome.violated.empty()) return "holds";
   std::vector<std::string> places;
   for (const ViolatedBand& band : outcome.violated) {
@@ -61,15 +62,15 @@ std::string outcome_text(const StabilityOutcome& outcome) {
       places.push_back(fmt::format("and {} more", outcome.violated.size() - kMaxPlaces));
       break;
     }
-    places.push_back(band_text(band));
+    places.push_back(band_text(band, limit));
   }
   return fmt::format("VIOLATED {}", fmt::join(places, "; "));
 }
 
-std::string conditions_table(const AbsoluteStability& stability) {
+std::string conditions_table(const AbsoluteStability& stability, std::optional<RadPerSec> limit) {
   std::vector<std::vector<std::string>> rows;
   for (const StabilityOutcome& outcome : stability.conditions) {
-    rows.push_back({text(outcome.condition), outcome_text(outcome)});
+    rows.push_back({text(outcome.condition), outcome_text(outcome, limit)});
   }
   return table(rows);
 }
@@ -94,7 +95,25 @@ std::string touches_text(const AbsoluteStability& stability) {
   return fmt::format("a condition holds with equality at {} rad/s", fmt::join(places, ", "));
 }
 
-std::string meaning(const AbsoluteStability& stability) {
+/// Whether every violated band lies where the Padé approximation is no longer the delay.
+bool only_of_pade(const AbsoluteStability& stability, std::optional<RadPerSec> limit) {
+  bool any = false;
+  for (const StabilityOutcome& outcome : stability.conditions) {
+    for (const ViolatedBand& band : outcome.violated) {
+      any = true;
+      if (!limit || !band.detail.empty() || band.low < *limit) return false;
+    }
+  }
+  return any;
+}
+
+std::string meaning(const AbsoluteStability& stability, std::optional<RadPerSec> limit) {
+  if (only_of_pade(stability, limit)) {
+    return fmt::format(
+        "with the Padé approximation some passive pair is unstable, but only above {:.4g} rad/s, where its "
+        "phase is not that of the delay: omit pade in [delay] to decide the true delay",
+        limit->value);
+  }
   if (stability.verdict == StabilityVerdict::unstable) {
     return "some passive hand and some passive environment make the system oscillate or run away, most likely near the "
            "worst frequency";
@@ -135,10 +154,11 @@ std::string admissible_text(const AdmissibleSet& set, bool with_operator) {
                             "same for all values between two boundaries");
 }
 
-std::string shortage_text(const LargestShortage& largest, bool on_grid) {
+std::string shortage_text(const LargestShortage& largest, const std::optional<FrequencyGrid>& grid) {
   if (!largest.exists) return fmt::format("port {}: none; no excess of passivity is sufficient", largest.port);
-  return fmt::format("port {}: a ≤ {} N·s/m{}", largest.port, value_text(rounded_limit(largest.value(), Side::down)),
-                     on_grid ? ", on the grid" : "");
+  return fmt::format("port {}: a ≤ {} N·s/m{}", largest.port,
+                     value_text(rounded_limit(grid ? largest.at_least : largest.value(), Side::down)),
+                     grid && !grid->bounded ? ", on the grid" : "");
 }
 
 std::string run_text(const TeleoperationRun& run) {
@@ -226,24 +246,30 @@ std::string teleoperation_text(const TeleoperationFinding& finding) {
     }
     result += "\n" + table(rows);
   }
-  const std::string where = finding.grid ? fmt::format(" on {} points from {:g} to {:g} rad/s", finding.grid->points,
-                                                       finding.grid->low.value, finding.grid->high.value)
-                                         : "";
+  std::string where;
+  if (finding.grid && !finding.grid->bounded) {
+    where = fmt::format(" on {} points from {:g} to {:g} rad/s", finding.grid->points, finding.grid->low.value,
+                        finding.grid->high.value);
+  } else if (finding.grid) {
+    where = std::isinf(finding.grid->high.value) || !finding.stability.holds()
+                ? " with the true delay"
+                : fmt::format(" with the true delay, up to {:.4g} rad/s", finding.grid->high.value);
+  }
   result += fmt::format("\nLlewellyn's criterion (r = Re {0}, p = {0}12 {0}21): {1}\n", finding.stability.form,
                         verdict_line(finding.stability, where.c_str()));
-  result += conditions_table(finding.stability);
-  result += paragraph("  meaning  ", meaning(finding.stability));
+  result += conditions_table(finding.stability, finding.pade_limit);
+  result += paragraph("  meaning  ", meaning(finding.stability, finding.pade_limit));
   if (finding.with_operator) {
     const double a = finding.operator_shortage->a;
     result += fmt::format("\nWith the operator at port {}, Re z ≥ {:g} N·s/m, a = {:g} ({} of passivity): {}\n",
                           finding.operator_port, 0.0 - a, a, a > 0.0 ? "shortage" : "excess",
                           verdict_line(*finding.with_operator, where.c_str()));
-    result += conditions_table(*finding.with_operator);
+    result += conditions_table(*finding.with_operator, finding.pade_limit);
     result += paragraph("  operator  ", finding.operator_shortage->rule);
   }
   result += "\nLargest shortage of passivity of one termination if the other is passive:\n";
   for (const LargestShortage& largest : finding.largest_shortages) {
-    result += paragraph("  ", shortage_text(largest, finding.grid.has_value()));
+    result += paragraph("  ", shortage_text(largest, finding.grid));
   }
   result += paragraph("  ", "a < 0: the termination needs that much excess (Re z ≥ −a at every frequency)");
   if (finding.admissible) result += admissible_text(*finding.admissible, finding.with_operator.has_value());

@@ -116,6 +116,6 @@ export function chartsBlock(exhibit: Exhibit, drawings: string[]): HTMLElement {
         h("span", { class: "enlarge" }, "Enlarge"));
       open.addEventListener("click", () => enlarge(exhibit, drawings, k));
       return h("figure", {}, open,
-        h("figcaption", { class: "files" }, h("a", { href: `figures/${chartFile(exhibit, k)}.svg`, "aria-label": `SVG file beside this page: ${chart.title}` }, "SVG")));
+        h("figcaption", { class: "files" }, `${chart.title}. `, h("a", { href: `figures/${chartFile(exhibit, k)}.svg`, "aria-label": `SVG file beside this page: ${chart.title}` }, "SVG")));
     }));
 }

@@ -1,0 +1,153 @@
+#include "apps/mbk/options/chart_format.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <regex>
+#include <sstream>
+
+#include "apps/mbk/options/word_options.h"
+#include "mbk/batch/command_output.h"
+#include "mbk/files/recording/write_file.h"
+
+namespace mbk::app {
+namespace chart_format {
+
+enum class Converter { rsvg, inkscape, browser };
+
+struct Program {
+  const char* name;
+  Converter converter;
+};
+
+constexpr auto kPrograms = std::to_array<Program>({{"rsvg-convert", Converter::rsvg},
+                                                   {"inkscape", Converter::inkscape},
+                                                   {"chromium", Converter::browser},
+                                                   {"chromium-browser", Converter::browser},
+                                                   {"chromium-headless-shell", Converter::browser},
+                                                   {"google-chrome", Converter::browser}});
+
+/// The first that is in PATH.
+std::optional<Program> installed() {
+  const char* const path = std::getenv("PATH");
+  for (const Program& program : kPrograms) {
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');) {
+      if (::access((std::filesystem::path(folder) / program.name).c_str(), X_OK) == 0) return program;
+    }
+  }
+  return std::nullopt;
+}
+
+Result<Program> converter() {
+  if (const auto found = installed()) return *found;
+  return bad_usage("--chart-format pdf: no program that converts SVG to PDF is installed",
+                   "install librsvg2-bin (rsvg-convert), inkscape or chromium, or omit --chart-format");
+}
+
+/// A page of exactly the drawing's size.
+std::string page_of(const std::string& svg) {
+  static const std::regex size(R"re(width="([\d.]+mm)" height="([\d.]+mm)")re");
+  std::smatch found;
+  if (!std::regex_search(svg, found, size)) return svg;
+  return fmt::format(
+      "<!DOCTYPE html><meta charset=\"utf-8\"><style>@page {{ size: {} {}; margin: 0 }} html, body {{ margin: 0 }} "
+      "svg {{ display: block; break-inside: avoid }}</style>{}",
+      found[1].str(), found[2].str(), svg);
+}
+
+std::vector<std::string> command_of(const Program& program, const std::string& in, const std::string& out,
+                                    const std::string& folder) {
+  switch (program.converter) {
+    case Converter::rsvg:
+      return {program.name, "--format=pdf", "--output=" + out, in};
+    case Converter::inkscape:
+      return {program.name, in, "--export-type=pdf", "--export-filename=" + out};
+    case Converter::browser:
+      break;
+  }
+  std::vector<std::string> command = {
+      program.name,           "--headless", "--disable-gpu", "--no-pdf-header-footer", "--user-data-dir=" + folder,
+      "--print-to-pdf=" + out};
+  if (::geteuid() == 0) command.emplace_back("--no-sandbox");  // it refuses to run as root otherwise
+  command.push_back("file://" + in);
+  return command;
+}
+
+/// A folder of its own, removed at the end.
+class Temporary {
+ public:
+  Temporary() {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / "mbk-chart-XXXXXX").string();
+    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+Result<std::string> pdf_of(const std::string& svg) {
+  constexpr double kLongest_s = 60.0;
+  const Program program = MBK_TRY(converter());
+  const Temporary temporary;
+  if (temporary.folder().empty()) return bad_data("no temporary folder could be created", "check TMPDIR");
+  const bool browser = program.converter == Converter::browser;
+  const std::filesystem::path in = temporary.folder() / (browser ? "chart.html" : "chart.svg");
+  const std::filesystem::path out = temporary.folder() / "chart.pdf";
+  std::ofstream(in, std::ios::binary) << (browser ? page_of(svg) : svg);
+  const auto ran = MBK_TRY(batch::command_output(
+      command_of(program, in.string(), out.string(), (temporary.folder() / "profile").string()), kLongest_s));
+  std::ifstream file(out, std::ios::binary);
+  std::string pdf((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (ran.code == 0 && pdf.starts_with("%PDF")) return pdf;
+  return bad_data(fmt::format("{} did not make a PDF (exit code {}): {}", program.name, ran.code,
+                              ran.error.substr(0, ran.error.find('\n'))),
+                  "install librsvg2-bin (rsvg-convert), or omit --chart-format");
+}
+
+}  // namespace chart_format
+
+std::string ChartFormat::file(const std::string& name) const {
+  return fmt::format("{}.{}", name, word_of(format));
+}
+
+Result<void> ChartFormat::write(const std::filesystem::path& file, const report::NamedChart& chart, bool overwrite,
+                                const std::vector<std::filesystem::path>& sources) const {
+  std::vector<Chart> panels = {chart.chart};
+  panels.insert(panels.end(), chart.beside.begin(), chart.beside.end());
+  std::string drawn = report::charts_svg(chart.chart.title, panels, width_mm);
+  if (format == Format::pdf) drawn = MBK_TRY(chart_format::pdf_of(drawn));
+  return recording::write_derived(file, overwrite, drawn, sources);
+}
+
+Result<void> ChartFormat::check() const {
+  if (format == Format::pdf) MBK_TRY(chart_format::converter());
+  return {};
+}
+
+void add_chart_format(Command command, ChartFormat& format) {
+  constexpr int kNarrowest = 60, kWidest = 400;
+  const Option charts = command.get_option("--charts");
+  command
+      .add_option("--chart-width", format.width_mm,
+                  "width of the charts in mm, with text of 8 pt: 85 for one column of a page, 180 for two")
+      .type_name("MM")
+      .check(whole_number(kNarrowest, kWidest))
+      .needs(charts);
+  add_choice(command, "--chart-format", format.format,
+             "format of the charts; pdf needs rsvg-convert, inkscape or chromium")
+      .needs(charts);
+}
+
+}  // namespace mbk::app
