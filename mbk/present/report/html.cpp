@@ -22,8 +22,7 @@ std::string_view page_template() {
 }
 
 std::string static_html(const StaticReport& plain) {
-  std::string html =
-      "<main class=\"page\"><p>Scripts are off. This is the report as text; with scripts it has plots.</p><pre>";
+  std::string html = "<main class=\"plain\"><p>Scripts are off, so this is the report as text and drawings.</p><pre>";
   for (const char c : plain.text) {
     if (c == '&') {
       html += "&amp;";

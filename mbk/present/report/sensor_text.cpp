@@ -150,7 +150,8 @@ std::string sensor_text(const SensorCalibration& c) {
     text += paragraph("  ! ", fmt::format("{}: {}", word_of(warning.code), warning.message));
     if (!warning.remedy.empty()) text += paragraph("    try: ", warning.remedy);
   }
-  return text + "\n(± is the 95 % interval; the result is the inverted slope of V on F; F on V is for comparison)\n";
+  return text +
+         "\n(±: half of the 95 % interval; the result is the inverted slope of V on F; F on V is for comparison)\n";
 }
 
 std::string sensor_delay_text(const MeasuredDelay& found) {
@@ -165,8 +166,9 @@ std::string sensor_delay_text(const MeasuredDelay& found) {
   for (const std::string& problem : found.problems) text += paragraph("  ! ", problem);
   if (!found.usable()) return text + paragraph("  ", "do not use this delay");
   if (std::abs(kMilli * found.delay) <= half) return text + "  no delay between force and motion was detected\n";
-  return text + fmt::format("  correct it with mbk measure --force-delay-ms {:.2f} ... (± is the 95 % interval)\n",
-                            kMilli * found.delay);
+  return text +
+         fmt::format("  correct it with mbk measure --force-delay-ms {:.2f} ... (±: half of the 95 % interval)\n",
+                     kMilli * found.delay);
 }
 
 }  // namespace mbk::report

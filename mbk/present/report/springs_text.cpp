@@ -154,7 +154,7 @@ std::string spring_design_text(const SpringDesign& design) {
 std::string spring_constants_text(const std::vector<SpringConstant>& constants) {
   std::string text;
   for (const SpringConstant& constant : constants) text += constant_text(constant) + "\n";
-  return text + "(± is the 95 % interval)\n";
+  return text + "(±: half of the 95 % interval)\n";
 }
 
 }  // namespace mbk::report

@@ -250,7 +250,7 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
   std::string text = inputs_line(id) + how_made(id) + "\n";
   if (id.usable) {
     text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
-    text += "  (± is the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F: force of the limb on the machine)\n";
+    text += "  (±: half of the 95 % interval; M ẍ + B ẋ + K (x − x0) = −F, F: force of the limb on the machine)\n";
     text += unseen(id) + "\n";
   }
   text += table({{id.fit.held_out ? "fit on held-out data" : "fit on the same data",
@@ -375,7 +375,7 @@ std::string summary_text(const SeveralTrials& together) {
       fmt::format("mean of {}{} trials, by {}\n", summary.trials,
                   summary.omitted.empty() ? "" : fmt::format(" of {}", all), method_name(summary.method)) +
       model_table(summary.mean, summary.half_width95, 1.0, summary.motion) +
-      "  (± is the 95 % interval of the mean, from the differences between trials with Student's t)\n";
+      "  (±: half of the 95 % interval of the mean, from the differences between trials with Student's t)\n";
   for (const OmittedTrial& one : summary.omitted)
     text += paragraph("  omitted  ", fmt::format("{}: {}", one.file, one.why));
   return text;

@@ -260,7 +260,7 @@ TEST(SummaryText, ShowsThe95PercentIntervalAndWhatIsNoPartOfTheMean) {
   const std::string text = summary_text(all);
   EXPECT_THAT(text, AllOf(HasSubstr("3 of 4 trials"), HasSubstr("least squares")));
   EXPECT_THAT(text, HasSubstr("120 ± 43"));  // Student's t of two degrees of freedom times 10
-  EXPECT_THAT(text, HasSubstr("± is the 95 % interval of the mean"));
+  EXPECT_THAT(text, HasSubstr("±: half of the 95 % interval of the mean"));
   EXPECT_THAT(text, HasSubstr("omitted  fourth.mat: not usable"));
   all.summary->omitted.clear();
   EXPECT_THAT(summary_text(all), HasSubstr(" 3 trials"));

@@ -118,7 +118,7 @@ std::string coefficients_text(const TransferFunctionIdentification& found) {
     rows.push_back({fmt::format("{}{}", continuous ? "a" : "f", at),
                     with_interval(found.model.denominator[at], half[continuous ? k : at - 1])});
   }
-  return table(rows) + "  (± is the 95 % interval; coefficients in " +
+  return table(rows) + "  (±: half of the 95 % interval; coefficients in " +
          (continuous ? "seconds and SI units"
                      : fmt::format("SI units, q: shift by {:.6g} ms", 1e3 * found.model.sample_time)) +
          (found.hac_lag_s > 0.0 ? ", for noise correlated over up to " + fmt::format("{:g} s)\n", found.hac_lag_s)
