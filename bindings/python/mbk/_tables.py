@@ -49,7 +49,7 @@ def unit_as_read(unit: str) -> str:
 
 
 def with_half_width(value: float | None, error: float | None, scale: float = 1.0) -> str:
-    """34 ± 15, where ± is the 95 % interval."""
+    """34 ± 15, where ± is half of the 95 % interval."""
     if value is None or error is None:
         return significant(None if value is None else scale * value, 4)
     half = scale * NORMAL95 * error
@@ -305,7 +305,7 @@ def result_html(result: dict[str, Any], heading: bool = True) -> str:
            f"{escaped(result.get('protocol', 'unknown'))} protocol</p>"] if heading else []
     out.append(verdict(result))
     if result["usable"]:
-        out.append(table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval",
+        out.append(table("Inertia, damping, stiffness and equilibrium; ± is half of the 95 % interval",
                          ["", "xx", "xy", "yx", "yy", "unit"] if axes == 2 else ["", "value ± 95 %", "unit"],
                          model_rows(result["model"], result["standard_error"], units)))
     where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
@@ -347,7 +347,7 @@ def joint_html(joints: dict[str, Any]) -> str:
     pairs = [(0, 0), (0, 1), (1, 0), (1, 1)]
     rows = [[f"{name} {symbol}", *(with_half_width(joints["model"][symbol][i][j], joints["standard_error"][symbol][i][j])
                                    for i, j in pairs), joints["units"][symbol]] for symbol, name in MATRICES]
-    return table(f"At the joints of the {joints['of']}; ± is the 95 % interval",
+    return table(f"At the joints of the {joints['of']}; ± is half of the 95 % interval",
                  ["", *(f"{i + 1}{j + 1}" for i, j in pairs), "unit"], rows)
 
 
@@ -381,7 +381,7 @@ def results_rows(found: dict[str, Any]) -> list[list[str]]:
 def results_html(found: dict[str, Any]) -> str:
     head, *rows = results_rows(found)
     out = [f"<p><strong>Impedance of {len(found['results'])} recordings</strong></p>",
-           table("Diagonal entries; ± is the 95 % interval", head, rows)]
+           table("Diagonal entries; ± is half of the 95 % interval", head, rows)]
     for one in found.get("failed", []):
         out.append(f"<p>{escaped(one['file'])}: {for_python(one['message'])}; {for_python(one['try'])}</p>")
     if "no_summary" in found:
@@ -396,7 +396,7 @@ def transfer_function_html(found: dict[str, Any]) -> str:
     return "".join([
         f"<p><strong>Transfer function</strong> from {escaped(found['input']['name'])} to "
         f"{escaped(found['output']['name'])}, {escaped(found['method'])}, delay {found['delay_s']:.4g} s</p>",
-        verdict(found), table("Coefficients; ± is the 95 % interval", ["", "value"], rows),
+        verdict(found), table("Coefficients; ± is half of the 95 % interval", ["", "value"], rows),
         table("Poles", [], poles) if poles else "", warning_list(found["warnings"])])
 
 
@@ -451,7 +451,7 @@ def result_text(result: dict[str, Any]) -> str:
                    for one in result["inputs"])
     text += f"  {METHODS[result['method']]}, {result.get('protocol', 'unknown')} protocol\n\n"
     if result["usable"]:
-        text += model_text(result["model"], result["standard_error"], units) + "  (± is the 95 % interval)\n\n"
+        text += model_text(result["model"], result["standard_error"], units) + "  (± is half of the 95 % interval)\n\n"
     where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
     text += f"  fit on {where}: VAF {per_axis(fit['VAF'], 2, '%')}; RMSE {per_axis(fit['RMSE'], 3, units['force'])}\n"
     for one in result["warnings"]:
@@ -463,7 +463,7 @@ def result_text(result: dict[str, Any]) -> str:
 
 def results_text(found: dict[str, Any]) -> str:
     """A row for each recording, the mean, and what failed."""
-    text = text_table(results_rows(found)).replace("−", "-") + "  (± is the 95 % interval)\n"
+    text = text_table(results_rows(found)).replace("−", "-") + "  (± is half of the 95 % interval)\n"
     if "summary" in found:
         mean = found["summary"]
         error = {name: (np.array(mean["half_width95"][name], float) / NORMAL95).tolist() for name in mean["half_width95"]}

@@ -305,7 +305,7 @@ function impulseSection({ result }: ExplorationReport): HTMLElement | undefined 
       pairsOf(result.axes).map((pair) => (pair ? `from ${pair[1]} to force ${pair[0]}` : "response")), unitsOf(result).response,
       "Positive lags: force that follows the motion; negative lags: force that precedes it. Stiffness, damping and inertia act at lag 0; values at other lags are memory.")),
     table(`VAF of the force on ${judged}; brackets are 95 % intervals`, ["", "by the response", "by M, B and K"], rows, "numbers"),
-    modelTable(found.model, unitsOf(result), "M, B and K fitted to the response; ± is the 95 % interval", "irf") ?? h("p", {}, "M, B and K are not identifiable: the motion does not excite them enough."),
+    modelTable(found.model, unitsOf(result), "M, B and K fitted to the response; ± is half of the 95 % interval", "irf") ?? h("p", {}, "M, B and K are not identifiable: the motion does not excite them enough."),
     enough
       ? h("p", {}, h("strong", {}, enough.enough ? "M, B and K are sufficient" : "M, B and K are not sufficient"), `: F = ${significant(enough.F, 3)}, ${probability(enough.p)} if M, B and K are sufficient.`)
       : "");
@@ -381,7 +381,7 @@ function reflexSection({ result }: ExplorationReport): HTMLElement | undefined {
           pairsOf(result.axes).map((pair) => (pair ? `from ${pair[1]} to force ${pair[0]}` : "response")), unitsOf(result).response, "The passive response of the limb, too early to be a reflex."))
       : undefined,
     ...delayed,
-    found.intrinsic_model ? modelTable(found.intrinsic_model, unitsOf(result), "M, B and K of the intrinsic path; ± is the 95 % interval", "intrinsic") : undefined);
+    found.intrinsic_model ? modelTable(found.intrinsic_model, unitsOf(result), "M, B and K of the intrinsic path; ± is half of the 95 % interval", "intrinsic") : undefined);
 }
 
 function provenance(result: Exploration): HTMLElement {

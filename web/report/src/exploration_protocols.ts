@@ -56,7 +56,7 @@ export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, 
           panelHeight: 120,
         })
       : undefined,
-    table("Constant model; ± is the 95 % interval", ["", ...entries(axes), "unit"], rows, "numbers"));
+    table("Constant model; ± is half of the 95 % interval", ["", ...entries(axes), "unit"], rows, "numbers"));
 }
 
 export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
@@ -66,7 +66,7 @@ export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, u
   });
   return h("section", { id: "onset" }, heading(2, "First milliseconds after onset"),
     h("p", {}, `The first ${milliseconds(found.window_s)} after ${found.onsets} onsets of the reference, before a voluntary response; ${found.omitted_onsets} more were omitted because the limb did not rest before them or the recording is too short.`),
-    table("M, B and K of the limb alone; ± is the 95 % interval", ["", ...entries(axes), "unit", ""], rows, "numbers"),
+    table("M, B and K of the limb alone; ± is half of the 95 % interval", ["", ...entries(axes), "unit", ""], rows, "numbers"),
     facts([["VAF", found.VAF.map((value) => `${fixed(value ?? NaN, 1)} %`).join(", ")]]));
 }
 

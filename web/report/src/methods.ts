@@ -33,7 +33,7 @@ function comparison(trial: Trial): HTMLElement | undefined {
     units[symbol],
   ]);
   rows.push(["VAF", ...shown.map((method) => perAxis((method === other.method ? other.fit : fit).VAF, 1, "%", `${method}-VAF`)), ""]);
-  return table(shown.length === 2 ? "Results of both methods from the same recording; ± is the 95 % interval" : `Results of ${methodNames[shown[0] as Method]} only, since the other method is not usable here; ± is the 95 % interval`, ["", ...shown.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
+  return table(shown.length === 2 ? "Results of both methods from the same recording; ± is half of the 95 % interval" : `Results of ${methodNames[shown[0] as Method]} only, since the other method is not usable here; ± is the 95 % interval`, ["", ...shown.map((method) => `${methodNames[method]}${method === trial.result.method ? " (the model above)" : ""}`), "unit"], rows, "numbers methods");
 }
 
 function disagreement(trial: Trial): HTMLElement | undefined {

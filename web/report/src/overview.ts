@@ -121,7 +121,7 @@ export function overviewSection(report: Report): HTMLElement {
     { id: "overview" },
     heading(2, "Comparison of recordings"),
     table("Model of each recording, by participant and condition", head, body, "numbers overview"),
-    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is the 95 % interval: for a recording, from its own data; for the mean, from the differences between recordings.${order}`),
+    h("p", { class: "reading" }, h("strong", {}, "How to read this. "), `± is half of the 95 % interval: for a recording, from its own data; for the mean, from the differences between recordings.${order}`),
     noSummary ? h("p", { "data-name": "no-summary" }, h("strong", {}, "No mean: "), `${noSummary}.`) : "",
     ...(summary?.omitted ?? []).map(({ file, why }) => h("p", { "data-name": "omitted" }, h("strong", {}, "Not in the mean: "), `${file}: ${why}.`)),
     ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, first.name ? "Omitted: " : "Not measured: "), `${file}: ${message}; ${what}.`)),

@@ -71,7 +71,7 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
     heading(level, "Model"),
     h("p", { class: "equation" }, "M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."),
     result.usable
-      ? table("Inertia, damping, stiffness and equilibrium; ± is the 95 % interval", head, rows, "numbers")
+      ? table("Inertia, damping, stiffness and equilibrium; ± is half of the 95 % interval", head, rows, "numbers")
       : h("p", { "data-name": "no-model" }, "The model is not usable, so its numbers are not shown. ", h("code", {}, "mbk measure --json"), " writes them."),
     axes === 2 && result.usable
       ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x caused by motion along y.")

@@ -106,7 +106,7 @@ function coefficientsSection(result: TransferFunction): HTMLElement {
   ]);
   const power = result.variable === "s" ? "of the powers of s: b numerator, a denominator" : "of the powers of q⁻¹: b numerator, f denominator";
   return h("section", { id: "coefficients" }, heading(2, "Coefficients"),
-    table(`Coefficients ${power}, in seconds and SI units; ± is the 95 % interval, for ${result.hac_lag_s > 0 ? `noise correlated over up to ${plain(result.hac_lag_s)} s` : "white noise"}`,
+    table(`Coefficients ${power}, in seconds and SI units; ± is half of the 95 % interval, for ${result.hac_lag_s > 0 ? `noise correlated over up to ${plain(result.hac_lag_s)} s` : "white noise"}`,
       ["", "value ± 95 %"], rows, "numbers"));
 }
 
@@ -119,7 +119,7 @@ function rootsSection(result: TransferFunction): HTMLElement {
     root.outside_band ? "outside the excited band" : "",
   ];
   return h("section", { id: "roots" }, heading(2, "Poles, zeros and gain"),
-    table("Poles and zeros; ± is the 95 % interval", ["", "frequency", "damping ζ", "value [1/s]", ""],
+    table("Poles and zeros; ± is half of the 95 % interval", ["", "frequency", "damping ζ", "value [1/s]", ""],
       [...result.poles.map((root, k) => row("pole", root, `pole${k}`)), ...result.zeros.map((root, k) => row("zero", root, `zero${k}`))], "numbers"),
     h("p", {}, "Gain at frequency zero: ", withHalfWidth(result.gain, result.gain_standard_error, "gain"), ` ${ratioUnit(result)}.`));
 }
@@ -137,7 +137,7 @@ function impedanceSection(result: TransferFunction): HTMLElement | undefined {
     impedance.unstable
       ? h("p", { class: "care-text" }, "This impedance is unstable because the admittance has zeros in the right half-plane. This is impossible for a limb.")
       : "",
-    rows.length ? table("Inertia, damping and stiffness; ± is the 95 % interval", ["", "value ± 95 %", "unit"], rows, "numbers") : "",
+    rows.length ? table("Inertia, damping and stiffness; ± is half of the 95 % interval", ["", "value ± 95 %", "unit"], rows, "numbers") : "",
     figure(bode(impedance.force_per_velocity, {
       id: "impedance-bode",
       title: "Impedance, force per velocity",
