@@ -20,7 +20,7 @@ from tf_test import oscillator
 ROOT = pathlib.Path(__file__).parents[2]
 CODES = schemas.validator("result").schema["definitions"]["WarningCode"]["enum"]
 
-OF_OTHER_PROGRAMS = ("slurm_engine.cpp",)  # which calls sbatch with options of its own
+OF_OTHER_PROGRAMS = ("slurm_engine.cpp", "chart_format.cpp")  # which call programs with their own options
 
 ADVICE = {}  # code: a function of the test case, which raises it and follows its advice
 
