@@ -3,6 +3,7 @@
 
 import json
 import re
+import shutil
 
 import schemas
 from command import BAD_DATA, FINE, NOT_USABLE, WRONG_USAGE, Case, copy, main, make_log, run
@@ -105,6 +106,16 @@ class Report(Case):
 
     def test_a_folder_that_is_not_there(self):
         self.refused(BAD_DATA, "measure", make_log().path, "--report", self.folder / "none" / "r.html", says="none")
+
+    def test_a_name_that_ends_in_pdf_gives_a_pdf(self):
+        pdf = self.folder / "report.pdf"
+        if any(shutil.which(name) for name in ("chromium", "chromium-browser", "chromium-headless-shell", "google-chrome")):
+            self.fine("measure", make_log().path, "--report", pdf)
+            self.assertTrue(pdf.read_bytes().startswith(b"%PDF"))
+        nowhere = run("measure", make_log().path, "--report", self.folder / "none.pdf", environment={"PATH": "/nonexistent"})
+        self.assertEqual(nowhere.code, WRONG_USAGE, nowhere.err)
+        self.assertIn("browser", nowhere.err)
+        self.assertFalse((self.folder / "none.pdf").exists())
 
     def test_identify_has_no_report(self):
         self.refused(WRONG_USAGE, "identify", make_log().path, "--report", self.path)

@@ -30,10 +30,11 @@ constexpr auto kPrograms = std::to_array<Program>({{"rsvg-convert", Converter::r
                                                    {"chromium-headless-shell", Converter::browser},
                                                    {"google-chrome", Converter::browser}});
 
-/// The first that is in PATH.
-std::optional<Program> installed() {
+/// The first that is in PATH; for pages the first browser.
+std::optional<Program> installed(bool for_pages = false) {
   const char* const path = std::getenv("PATH");
   for (const Program& program : kPrograms) {
+    if (for_pages && program.converter != Converter::browser) continue;
     std::istringstream folders(path == nullptr ? "" : path);
     for (std::string folder; std::getline(folders, folder, ':');) {
       if (::access((std::filesystem::path(folder) / program.name).c_str(), X_OK) == 0) return program;
@@ -69,9 +70,13 @@ std::vector<std::string> command_of(const Program& program, const std::string& i
     case Converter::browser:
       break;
   }
-  std::vector<std::string> command = {
-      program.name,           "--headless", "--disable-gpu", "--no-pdf-header-footer", "--user-data-dir=" + folder,
-      "--print-to-pdf=" + out};
+  std::vector<std::string> command = {program.name,
+                                      "--headless",
+                                      "--disable-gpu",
+                                      "--no-pdf-header-footer",
+                                      "--user-data-dir=" + folder,
+                                      "--virtual-time-budget=10000",
+                                      "--print-to-pdf=" + out};
   if (::geteuid() == 0) command.emplace_back("--no-sandbox");  // it refuses to run as root otherwise
   command.push_back("file://" + in);
   return command;
@@ -97,15 +102,14 @@ class Temporary {
   std::filesystem::path folder_;
 };
 
-Result<std::string> pdf_of(const std::string& svg) {
+Result<std::string> pdf_by(const Program& program, const std::string& content, const char* otherwise) {
   constexpr double kLongest_s = 60.0;
-  const Program program = MBK_TRY(converter());
   const Temporary temporary;
   if (temporary.folder().empty()) return bad_data("no temporary folder could be created", "check TMPDIR");
-  const bool browser = program.converter == Converter::browser;
-  const std::filesystem::path in = temporary.folder() / (browser ? "chart.html" : "chart.svg");
-  const std::filesystem::path out = temporary.folder() / "chart.pdf";
-  std::ofstream(in, std::ios::binary) << (browser ? page_of(svg) : svg);
+  const std::filesystem::path in =
+      temporary.folder() / (program.converter == Converter::browser ? "page.html" : "chart.svg");
+  const std::filesystem::path out = temporary.folder() / "made.pdf";
+  std::ofstream(in, std::ios::binary) << content;
   const auto ran = MBK_TRY(batch::command_output(
       command_of(program, in.string(), out.string(), (temporary.folder() / "profile").string()), kLongest_s));
   std::ifstream file(out, std::ios::binary);
@@ -113,10 +117,35 @@ Result<std::string> pdf_of(const std::string& svg) {
   if (ran.code == 0 && pdf.starts_with("%PDF")) return pdf;
   return bad_data(fmt::format("{} did not make a PDF (exit code {}): {}", program.name, ran.code,
                               ran.error.substr(0, ran.error.find('\n'))),
-                  "install librsvg2-bin (rsvg-convert), or omit --chart-format");
+                  otherwise);
+}
+
+Result<std::string> pdf_of(const std::string& svg) {
+  const Program program = MBK_TRY(converter());
+  return pdf_by(program, program.converter == Converter::browser ? page_of(svg) : svg,
+                "install librsvg2-bin (rsvg-convert), or omit --chart-format");
+}
+
+Result<Program> browser() {
+  if (const auto found = installed(true)) return *found;
+  return bad_usage("a report as PDF needs a browser, and none is installed",
+                   "install chromium, or write the report as .html and print it from any browser");
 }
 
 }  // namespace chart_format
+
+bool is_pdf(const std::filesystem::path& report) {
+  return report.extension() == ".pdf";
+}
+
+Result<void> check_report_format(const std::filesystem::path& report) {
+  if (is_pdf(report)) MBK_TRY(chart_format::browser());
+  return {};
+}
+
+Result<std::string> page_as_pdf(const std::string& html) {
+  return chart_format::pdf_by(MBK_TRY(chart_format::browser()), html, "write the report as .html instead");
+}
 
 std::string ChartFormat::file(const std::string& name) const {
   return fmt::format("{}.{}", name, word_of(format));

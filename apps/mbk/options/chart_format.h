@@ -35,6 +35,15 @@ struct ChartFormat {
   return std::to_array<Word<ChartFormat::Format>>({{svg, "svg"}, {pdf, "pdf"}});
 }
 
+/// Whether a report is to be written as PDF, by the end of its name.
+[[nodiscard]] bool is_pdf(const std::filesystem::path& report);
+
+/// Before the work begins.   @fails  usage: the report is a PDF, and no browser is installed
+[[nodiscard]] Result<void> check_report_format(const std::filesystem::path& report);
+
+/// A page as a browser prints it.   @fails  as above. data: the browser failed
+[[nodiscard]] Result<std::string> page_as_pdf(const std::string& html);
+
 /// Adds --chart-width and --chart-format, which need --charts.
 void add_chart_format(Command command, ChartFormat& format);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "apps/mbk/options/chart_format.h"
 #include "mbk/base/core/option_checks.h"
 #include "mbk/present/report/html.h"
 
@@ -35,8 +36,10 @@ void add_output_options(Command command, OutputArguments& arguments, const std::
 void add_report_options(Command command, ReportArguments& arguments) {
   const Option report =
       command
-          .add_option("--report", arguments.file,
-                      "also write a report with all results and plots as one HTML file, to read, print or share")
+          .add_option(
+              "--report", arguments.file,
+              "also write a report with all results and plots as one HTML file, to read, print or share; as PDF if the "
+              "name ends in .pdf and a browser is installed")
           .type_name("FILE")
           .check(not_empty());
   command
@@ -83,6 +86,7 @@ Result<void> check_files(const std::vector<std::filesystem::path>& inputs, const
   }
   if (!report.file) return {};
   MBK_TRY(mbk::report::page("", {}));
+  MBK_TRY(check_report_format(*report.file));
   std::error_code error;
   if (output.file && std::filesystem::weakly_canonical(*output.file, error) ==
                          std::filesystem::weakly_canonical(*report.file, error)) {

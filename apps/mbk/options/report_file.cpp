@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "apps/mbk/commands/commands.h"
+#include "apps/mbk/options/chart_format.h"
 #include "mbk/files/recording/write_file.h"
 #include "mbk/measure/analyse/posture.h"
 #include "mbk/present/report/html.h"
@@ -45,7 +46,8 @@ std::string report_json(const std::string& typed, const std::string& note,
 
 Result<void> write_page(const ReportArguments& arguments, const OutputArguments& output, std::string_view report_json,
                         const report::StaticReport& plain, const std::vector<std::filesystem::path>& sources) {
-  const auto page = MBK_TRY(report::page(report_json, plain));
+  std::string page = MBK_TRY(report::page(report_json, plain));
+  if (is_pdf(*arguments.file)) page = MBK_TRY(page_as_pdf(page));
   MBK_TRY(recording::write_derived(*arguments.file, output.to.overwrite, page, sources));
   say_written(arguments.file->string(), output.quiet);
   return {};
