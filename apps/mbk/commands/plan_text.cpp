@@ -25,7 +25,7 @@ std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehea
       "                perturbation {:.1f} s, move back, soft stop {:g} s\n",
       rehearsal.duration, trial.sequence.soft_start, trial.sequence.settle, perturbation, trial.sequence.soft_start);
   text += report::schedule_text(plan.schedule);
-  text += "  peaks in a rehearsal on the simulated robot, and the limits of the gate\n";
+  text += "  peaks in a simulated rehearsal, and the safety limits\n";
   text += limit_line("force of the motors at the handle", rehearsal.handle_force, limits.handle_force, "N");
   text += limit_line("torque of joint 1", rehearsal.joint_torque[0], limits.joint_torque[0], "N·m");
   text += limit_line("torque of joint 2", rehearsal.joint_torque[1], limits.joint_torque[1], "N·m");

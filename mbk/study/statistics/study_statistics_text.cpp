@@ -63,7 +63,8 @@ std::string condition_title(const std::string& condition) {
 std::string why_not(Support support, int people) {
   switch (support) {
     case Support::too_few_people:
-      return fmt::format("too few people ({} of {} needed)", people, reliability::kMinPeople);
+      return fmt::format("too few people with two or more sessions ({}; at least {} needed)", people,
+                         reliability::kMinPeople);
     case Support::too_few_sessions:
       return "nobody was measured in two sessions";
     case Support::too_few_trials:

@@ -131,8 +131,9 @@ class Adder::File {
     for (const store::StoredRecording& one : there) {
       if (one.sha256 == one.origin_sha256) continue;
       if (facts.participant && *facts.participant != one.participant) {
-        return bad_data(fmt::format("is already stored as recording {} of participant {}", one.number, one.participant),
-                        "check both: a file belongs to one participant");
+        return bad_data(
+            fmt::format("the file is already stored as recording {} of participant {}", one.number, one.participant),
+            "a recording can belong to only one participant: check the number and the file");
       }
       found.push_back({one, true});
     }
