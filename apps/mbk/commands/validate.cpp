@@ -116,6 +116,7 @@ Result<ValidationTable> perform(const validation::Study& study, const validation
   }
   if (arguments.link == Link::function && arguments.faults.empty()) return study.perform(options);
   if (study.name != "faults" || arguments.link != Link::udp) {
+    if (study.name == "faults") return bad_usage("--fault is valid only with --link udp", "add it, or omit --fault");
     return bad_usage("--link and --fault are valid only with 'mbk validate faults --link udp'", "omit them");
   }
   std::error_code error;
