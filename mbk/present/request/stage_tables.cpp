@@ -72,10 +72,10 @@ const OptionTable<identify::Options>& identify_table() {
     table.group("Model")
         .add({"--method", "",
               "ls: least squares; iv: instrumental variables, which need the recorded reference and are unbiased in "
-              "closed "
-              "loop too (default: iv if the reference is a strong instrument, with every first-stage F (how well "
-              "the reference predicts the motion) above 104.7, and "
-              "the result is usable; otherwise ls; in reference mode always ls)"},
+              "closed loop too (default: iv if the reference is a strong instrument, with every first-stage F (how "
+              "well the "
+              "reference predicts the motion) above 104.7, and the result is usable; otherwise ls; in reference mode "
+              "always ls)"},
              &Options::method)
         .add({"--structure", "",
               "structure of M, B and K. full: unconstrained; symmetric: M and K symmetric; mass-spring: M = m I, no "
