@@ -24,7 +24,7 @@ Result<std::vector<Maker>> chosen(const std::vector<std::string>& only) {
   std::vector<Maker> makers = all_makers();
   for (const std::string& id : only) {
     if (std::ranges::find(makers, id, &Maker::id) == makers.end()) {
-      return bad_usage(fmt::format("there is no exhibit '{}'", id), "'mbk reproduce --list' names everything");
+      return bad_usage(fmt::format("there is no exhibit '{}'", id), "'mbk reproduce --list' lists all exhibits");
     }
   }
   if (!only.empty()) {

@@ -89,7 +89,7 @@ Result<std::string> read_whole(const fs::path& file) {
 }
 
 tl::unexpected<Error> damaged(const fs::path& file) {
-  return bad_data("is damaged", "remove the job's folder, and start the job again", file.string());
+  return bad_data("the file is damaged", "remove the job's folder, and start the job again", file.string());
 }
 
 Result<Job> job_from(const fs::path& file) {
@@ -97,7 +97,8 @@ Result<Job> job_from(const fs::path& file) {
   try {
     const auto json = nlohmann::json::parse(text);
     if (json.at("schema") != "mbk.job/1") {
-      return bad_data("is of another version of mbk", "finish it with the version that started it", file.string());
+      return bad_data("the job is from another version of mbk", "finish it with the version that started it",
+                      file.string());
     }
     Job job;
     job.id = json.at("id");

@@ -21,7 +21,7 @@ bool is_unit(RecordKind kind) {
 Result<ShardRecord> next_unit(ShardReader& reader, const fs::path& file) {
   while (true) {
     auto record = MBK_TRY(reader.next());
-    if (!record) return bad_data("ends early", "", file.string());
+    if (!record) return bad_data("the file ends early", "", file.string());
     if (is_unit(record->kind) || record->kind == RecordKind::end) return std::move(*record);
   }
 }
@@ -63,7 +63,7 @@ Result<ShardReader> open_shard_of(const JobFolder& folder, const fs::path& file,
   auto reader = ShardReader::open(file);
   if (!reader) return reader;
   const auto record = MBK_TRY(reader->next());
-  if (!record || record->kind != RecordKind::header) return bad_data("has no header", "", file.string());
+  if (!record || record->kind != RecordKind::header) return bad_data("the file has no header", "", file.string());
   const auto header = shard_header_from(record->payload);
   if (!header) return tl::unexpected(header.error().in(file.string()));
   if (header->program != folder.job().program) {

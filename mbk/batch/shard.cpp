@@ -160,7 +160,7 @@ Result<ShardReader> ShardReader::open(const fs::path& file) {
   std::array<char, kMagic.size()> magic{};
   reader.stream_.read(magic.data(), magic.size());
   if (!reader.stream_ || std::string_view(magic.data(), magic.size()) != kMagic) {
-    return bad_data("is not a shard", "", file.string());
+    return bad_data("the file is not a shard", "", file.string());
   }
   reader.left_ = bytes - kMagic.size();
   return reader;

@@ -28,6 +28,11 @@ Result<std::string> ask(const std::vector<std::string>& command) {
   const auto begin = said.error.find("error: ");  // warnings and news may stand before it
   const auto line = said.error.substr(begin == std::string::npos ? 0 : begin);
   const auto cause = line.substr(0, line.find('\n'));
+  if (command.front() == "scontrol") {
+    return bad_data(fmt::format("Slurm did not answer ('scontrol': {})",
+                                cause.empty() ? fmt::format("exit code {}", said.code) : cause),
+                    "run this on the cluster, or use --engine local");
+  }
   const bool unreachable = cause.empty() || cause.find("ontact") != std::string::npos ||
                            cause.find("onnection") != std::string::npos || cause.find("imed out") != std::string::npos;
   return bad_data(

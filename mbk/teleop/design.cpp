@@ -76,7 +76,8 @@ TwoPort read_two_port(const Section& section) {
       const std::string name = fmt::format("{}{}{}", word_of(result.form), i + 1, j + 1);
       const Section entry = section.section(name);
       if (!section.has(name)) {
-        section.reject(name, "is missing", fmt::format("write {} = {{numerator = [1], denominator = [1, 0]}}", name));
+        section.reject(name, "this entry is missing",
+                       fmt::format("write {} = {{numerator = [1], denominator = [1, 0]}}", name));
         continue;
       }
       const Polynomial numerator = read_polynomial(entry, "numerator", {});
@@ -155,7 +156,7 @@ Result<Design> design_of(const Document& document, std::string_view file) {
     return tl::unexpected(two_port.error("form", "there is also an [architecture]", "keep one of the two"));
   }
   if (!two_port.given() && !root.section("architecture").given()) {
-    return tl::unexpected(root.error("architecture", "is missing, and there is no [two_port] either",
+    return tl::unexpected(root.error("", "[architecture] is missing, and there is no [two_port] either",
                                      "write [architecture] with kind = \"position-position\""));
   }
   if (two_port.given()) {

@@ -186,8 +186,9 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
 
   ValidationTable table{
       "coverage",
-      fmt::format("how often do the 95 % intervals hold the truth, with coloured force noise of {:g} N in one trial?",
-                  options.remnant_force),
+      fmt::format(
+          "how often do the 95 % intervals contain the true values, with coloured force noise of {:g} N in one trial?",
+          options.remnant_force),
       "%", options.runs, options.seed};
   for (std::size_t k = 0; k < held.front().size(); ++k) {
     int hits = 0;
@@ -199,7 +200,7 @@ Result<ValidationTable> coverage(const CoverageOptions& options) {
   }
   table.notes = {
       "An active arm is one whose antisymmetric stiffness or inertia makes the passivity index negative at 0.4 or at "
-      "2.9 Hz, by so little that no arm would be harder to tell; each run has two of the four kinds in turn. The "
+      "2.9 Hz, by so little that this is the hardest case; each run has two of the four kinds in turn. The "
       "passive arms have a quarter of that antisymmetry: how often they are recognised from one trial is informative."};
   return table;
 }

@@ -173,7 +173,8 @@ Result<ValidationTable> recorded_reliability_study(const StudyOptions& options) 
           kRecordedPeople, kRecordedSessions, kRecordedSeconds, 100.0 * kOfPeople, 100.0 * kOfSessions),
       "What is compared is known of each run: the stiffness of the same people, and by how much each measurement is "
       "off. Errors of measurement make sessions of a person differ, so that the ICC of such short recordings is less "
-      "than that of the stiffness itself. How often intervals hold the truth takes thousands of studies to see, which "
+      "than that of the stiffness itself. How often intervals contain the true values takes thousands of studies to "
+      "see, which "
       "'mbk validate reliability' draws."};
   return table;
 }

@@ -114,13 +114,13 @@ class Experiments(Asked):
         self.answer("new", "experiment", "--yes")
         text = self.planned("experiment.toml")
         self.assertEqual(len(re.findall(r"trial_\d", text)), 3, text)
-        self.assertRegex(text, r"speed +[\d.]+ ")
+        self.assertRegex(text, r"speed +peak [\d.]+ ")
 
     def test_answers_come_from_a_pipe(self):
         self.answer("new", "experiment", "--out", "force.toml", answers="simulated\nforce\n\n30\nrigid grasp\n1\n")
         text = self.planned("force.toml")
         self.assertIn("rigid grasp", text)
-        self.assertRegex(text, r"force rate +[\d.]+ N/s")
+        self.assertRegex(text, r"force rate +peak [\d.]+ N/s")
         self.assertNotIn("acceleration  ", text)
         self.answer("new", "experiment", "--out", "udp.toml", answers="udp\n192.168.1.10\n25001\n300\n280\n\npulses\n10\n\n2\n")
         text = (self.folder / "udp.toml").read_text(encoding="utf-8")

@@ -132,7 +132,7 @@ class RampAndHold(Case):
     def test_it_can_be_run(self):
         ran = self.fine("run", "relaxed_ramp_and_hold", "--dry-run")
         self.assertIn("measured force", ran.out)
-        self.assertNotIn("safety stop", ran.out)
+        self.assertNotIn("SAFETY STOP", ran.out)
 
 
 if __name__ == "__main__":

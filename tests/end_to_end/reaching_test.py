@@ -99,7 +99,7 @@ class Reaching(Case):
         experiment, log = self.scenario(), self.folder / "run.h5"
         plan = self.fine("run", experiment, "--dry-run").out
         self.assertIn("8 mm", plan)
-        self.assertNotIn("safety stop", plan)
+        self.assertNotIn("SAFETY STOP", plan)
         ran = self.fine("run", experiment, "--fast", "--no-console", "--quiet", "--out", log).out
         self.assertIn("completed", ran)
         self.assertIn("mbk explore", ran)

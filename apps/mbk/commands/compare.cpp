@@ -194,12 +194,12 @@ Action add_compare(Command app, const std::string& typed) {
       "      measures both recordings with the same options first\n"
       "  mbk compare results/ --report all.html\n"
       "      every result of a folder: side by side on a page, and each compared with the first\n\n"
-      "The width is √(Σ ln² λ) over the eigenvalues λ of Z₁⁻¹Z₂, for the symmetric parts of M, B and K\n"
-      "each: 0 if both are equal, √2 ln 7 = 2.75 if the second is seven times the first in every\n"
-      "direction. It does not depend on axes and units, nor on hand or joint coordinates. The minimum and\n"
-      "maximum ratio of the second to the first are reported with their directions from x. A matrix that\n"
-      "is not positive definite has no width (exit code 4). Each of several results is compared with the\n"
-      "first.");
+      "The width measures how much two matrices differ. It is √(Σ ln² λ) over the eigenvalues λ of\n"
+      "Z₁⁻¹Z₂, for the symmetric parts of M, B and K each: 0 if both are equal, √2 ln 7 = 2.75 if the\n"
+      "second is seven times the first in every direction. It does not depend on axes and units, nor on\n"
+      "hand or joint coordinates. The minimum and maximum ratio of the second to the first are reported\n"
+      "with their directions from x. A matrix that is not positive definite has no width (exit code 4).\n"
+      "Each of several results is compared with the first.");
   add_measure_options(command, *arguments);
   command.get_option("FILE").description("results of 'mbk measure --json', recordings, or folders of results");
   // They join files or add what a comparison does not show.

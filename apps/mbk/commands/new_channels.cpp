@@ -185,7 +185,11 @@ int run(const NewChannelsArguments& arguments) {
     return read ? "" : read.error().line();
   };
   const auto answer = Questions(!ask).ask("channels", guess.missing.empty() ? kAccept : "", check);
-  if (!answer) return report_error(answer.error().in(arguments.file.string()));
+  if (!answer) {
+    const std::string name = arguments.file.string();
+    const bool named = answer.error().line().find(name) != std::string::npos;
+    return report_error(named ? answer.error() : answer.error().in(name));
+  }
   const std::string rate = arguments.rate_hz ? fmt::format(" --rate {:g}", *arguments.rate_hz) : "";
   const std::string option = fmt::format("--channels {}{}", shell_word(map), rate);
   say("\nmbk measure {} {}\n", shell_word(arguments.file.string()), option);

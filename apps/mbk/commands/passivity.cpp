@@ -173,7 +173,7 @@ Action add_passivity(Command app) {
       "      the model's prediction in a band of your choice; beyond the data it is an extrapolation\n"
       "  mbk passivity result.json\n"
       "      from the model and the energy stored by 'mbk measure --json'\n\n"
-      "There are two statements. The energy of the trial: passive if the hand absorbed energy, active if\n"
+      "It makes two statements. The energy of the trial: passive if the hand absorbed energy, active if\n"
       "it delivered energy, undecided if the 95 % interval contains zero. The prediction of the model, in\n"
       "the band in which the perturbation moves all axes and explains force and motion: passive, active,\n"
       "undecided, or none if no model is usable. Neither statement guarantees that a robot coupled to\n"

@@ -20,12 +20,15 @@ std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehea
   const double perturbation = plan.schedule.duration();
   std::string text = fmt::format("{}{}{}\n", trial.protocol, trial.name.empty() ? "" : ", trial " + trial.name,
                                  trial.condition.empty() ? "" : ": " + trial.condition);
+  const bool tripped = rehearsal.trip.reason != safety::Reason::none;
+  if (tripped) text += fmt::format("  SAFETY STOP in the rehearsal: {}\n", safety::sentence(rehearsal.trip));
   text += fmt::format(
-      "  total         {:.1f} s: soft start {:g} s, move to the test location, {:g} s of rest,\n"
+      "  {}    {:.1f} s{}: soft start {:g} s, move to the test location, {:g} s of rest,\n"
       "                perturbation {:.1f} s, move back, soft stop {:g} s\n",
-      rehearsal.duration, trial.sequence.soft_start, trial.sequence.settle, perturbation, trial.sequence.soft_start);
+      tripped ? "stopped at" : "total     ", rehearsal.duration, tripped ? "; planned" : "", trial.sequence.soft_start,
+      trial.sequence.settle, perturbation, trial.sequence.soft_start);
   text += report::schedule_text(plan.schedule);
-  text += "  peaks in a rehearsal on the simulated robot, and the limits of the gate\n";
+  text += "  peaks in a simulated rehearsal, and the safety limits\n";
   text += limit_line("force of the motors at the handle", rehearsal.handle_force, limits.handle_force, "N");
   text += limit_line("torque of joint 1", rehearsal.joint_torque[0], limits.joint_torque[0], "N·m");
   text += limit_line("torque of joint 2", rehearsal.joint_torque[1], limits.joint_torque[1], "N·m");
@@ -35,9 +38,6 @@ std::string plan_text(const session::Plan& plan, const session::Rehearsal& rehea
     text += limit_line("distance from the test location", 1e3 * rehearsal.excursion, 1e3 * limits.excursion, "mm");
   }
   for (const std::string& one : safety::weakened(limits)) text += fmt::format("  ! {}\n", one);
-  if (rehearsal.trip.reason != safety::Reason::none) {
-    text += fmt::format("  the rehearsal ended in a safety stop: {}\n", safety::sentence(rehearsal.trip));
-  }
   return text;
 }
 

@@ -129,8 +129,8 @@ Action add_robot_check(Command group) {
       "      measures how punctually this computer wakes the control loop, and what delays it\n\n"
       "Run all of these before a participant sits down at a new robot. docs/guide/own_robot.md has a\n"
       "bridge to start from, the keys of [device] and the rules of the link.\n\n"
-      "Exit codes: 0 fine, 2 wrong usage, 3 unreadable or silent, 4 something is wrong, 6 not everything\n"
-      "was tested.");
+      "Exit codes: 0 fine, 2 wrong usage, 3 the file cannot be read or the robot does not\n"
+      "answer, 4 something is wrong, 6 not everything was tested.");
   const Option file = command
                           .add_option("FILE", arguments->file,
                                       "description of a robot, or an experiment: .toml, or the name of a built-in one")
@@ -162,7 +162,7 @@ Action add_robot_check(Command group) {
       .needs(link);
   command
       .add_option("--rt", arguments->timing,
-                  "wake a loop as a session does for this time, in seconds, and report its lateness (default: 10)")
+                  "run the timer of the control loop for S seconds and report how late it wakes (default: 10)")
       .type_name("S")
       .expected(0, 1)
       .default_str("10")

@@ -182,12 +182,12 @@ OptionTable<RobotIdentifyArguments> model_table() {
       .add({"--stribeck-velocity", "V|auto", "Stribeck velocity, in rad/s or m/s; auto estimates it (default: 0.05)",
             not_empty()},
            &Arguments::stribeck_velocity)
-      .add({"--motor-delay", "MS|auto",
-            "delay of the motors after the recorded torque, in ms; a torque that is held for one sample counts as half "
-            "a "
-            "sample; auto estimates it (default: auto)",
-            not_empty()},
-           &Arguments::delay)
+      .add(
+          {"--motor-delay", "MS|auto",
+           "delay of the motors after the recorded torque, in ms; auto estimates it (default: auto). A torque held for "
+           "one sample counts as half a sample",
+           not_empty()},
+          &Arguments::delay)
       .add(
           {"--method", "",
            "wls: least squares, each joint weighted by its noise; ls: unweighted least squares; iv: instrumental "

@@ -64,7 +64,7 @@ OptionTable<SensorCalibrateArguments> calibrate_table() {
            whole_number(2, 32)},
           [](auto& a) -> auto& { return a.converter.bits; })
       .add(
-          {"--range", "V", "range of the converter, ± volts", positive(), "--bits"},
+          {"--range", "V", "range of the converter, from -V to +V, in volts", positive(), "--bits"},
           [](auto& a) -> auto& { return a.converter.range; })
       .add({"--sensor-frame", "",
             "link: the reference force is rotated into the axes of the last link, at angle q2; base: it is not; auto: "

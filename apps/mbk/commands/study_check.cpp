@@ -35,7 +35,7 @@ std::string check_text(const store::CheckReport& report, bool quick) {
   text += counted(report.results, "result", "results");
   text += quick ? ", not measured again\n" : fmt::format(", {} reproduced by measuring again\n", report.repeated);
   text += fmt::format("{} of the log, head {}\n", counted(report.log_lines, "line", "lines"), report.head);
-  return text + (report.problems.empty() ? "sound\n"
+  return text + (report.problems.empty() ? "no problem found\n"
                                          : counted(std::ssize(report.problems), "problem", "problems") +
                                                ": restore what is missing or changed from a backup\n");
 }
@@ -217,7 +217,7 @@ Action add_study_log(Command group) {
   command.footer(
       "Examples:\n"
       "  mbk study log\n"
-      "      the last line is the head: keep a copy of it where nobody can change both\n"
+      "      the last line is the head: keep a copy where no one who can change the log can change it\n"
       "  mbk study log --verify --head 3f0c…\n"
       "      also checks that the log still contains the line with this head\n\n"
       "Each line contains the hash of the previous one, so that a changed, removed or inserted line is\n"

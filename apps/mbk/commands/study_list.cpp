@@ -41,7 +41,7 @@ std::string analysis_line(const store::Analysis& analysis) {
   const auto options = workflow::options_from_json(analysis.options);
   const std::string text = options ? typed_text(*options) : analysis.options;
   return fmt::format("analysis {}: mbk {}, {}\n", analysis.number, analysis.version,
-                     text.empty() ? "no options" : text);
+                     text.empty() ? "default options" : text);
 }
 
 /// "3 usable, 1 not usable, 2 not measured": those that there are.

@@ -130,7 +130,7 @@ Action add_study_measure(Command group) {
       "      adds another analysis; 'mbk study list' shows both\n"
       "  mbk study measure --again-failed\n"
       "  mbk study measure --engine slurm --tasks 40\n"
-      "      as a job array on the cluster, 40 tasks at a time; the results are the same to the byte\n\n"
+      "      as a job array on the cluster, 40 tasks at a time; the results are identical\n\n"
       "The options are those of 'mbk measure'; a given option overrides the default of the study. Each\n"
       "result is stored with the hash of the recording, the options and the version of mbk. An\n"
       "interrupted run continues where it stopped. The results do not depend on the number of threads.\n\n"

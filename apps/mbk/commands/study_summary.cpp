@@ -235,7 +235,7 @@ Action add_study_summary(Command group) {
       "  mbk study summary --bootstrap 2000 --compare condition relaxed tensed\n"
       "      bootstrap intervals, which assume no distribution, from 2000 resamples of the people\n"
       "  mbk study summary --bootstrap 100000 --engine slurm\n"
-      "      on the cluster; the intervals are the same to the last bit\n"
+      "      on the cluster; the intervals are identical\n"
       "  mbk study summary --json --out summary.json\n"
       "  mbk study summary --outcome K_xx K_yy --out table_1.tex\n"
       "      a table for a paper: n, mean ± SD, ICC(A,1), SEM, MDC; or --format latex, csv, markdown\n\n"

@@ -147,7 +147,9 @@ Action add_teleop(Command app) {
   command.add_option("DESIGN.toml", arguments->design, "a design with an [architecture] or a [two_port]").required();
   command
       .add_option("--operator", arguments->operator_result,
-                  "result of the operator's arm; a is the negative lower bound of its smallest passivity index")
+                  "result of the operator's arm; the operator's lack of passivity, a, is the negative lower bound of "
+                  "its smallest "
+                  "passivity index")
       .type_name("RESULT.json")
       .check(not_empty());
   command

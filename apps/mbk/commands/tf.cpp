@@ -148,7 +148,7 @@ Action add_tf(Command app, const std::string& typed) {
   const char* const model = "Model";
   command
       .add_option("--start-pole", arguments->start_poles_hz,
-                  "additional start of the search, as a frequency in Hz, beside six over the band; may be repeated")
+                  "another starting frequency of the search, in Hz, besides the six in the band; may be repeated")
       .type_name("HZ")
       .check(positive())
       .expected(1)

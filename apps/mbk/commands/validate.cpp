@@ -116,6 +116,7 @@ Result<ValidationTable> perform(const validation::Study& study, const validation
   }
   if (arguments.link == Link::function && arguments.faults.empty()) return study.perform(options);
   if (study.name != "faults" || arguments.link != Link::udp) {
+    if (study.name == "faults") return bad_usage("--fault is valid only with --link udp", "add it, or omit --fault");
     return bad_usage("--link and --fault are valid only with 'mbk validate faults --link udp'", "omit them");
   }
   std::error_code error;
@@ -312,11 +313,11 @@ Action add_validate(Command app) {
            "  mbk validate participant --charts charts\n"
            "      charts/participant-1.svg: energy against the amplitude of the pulses\n"
            "  mbk validate recovery --runs 5000 --engine slurm --tasks 200\n"
-           "      on a cluster; the table is identical to the byte\n"
+           "      on a cluster; the table is identical\n"
            "  mbk validate faults --link udp --runs 2\n"
            "      robots that misbehave, as separate processes over UDP, in real time; four trials at a time\n\n"
            "A row is met if its 95 % interval lies within the expected range, and falls short if the whole\n"
-           "interval lies outside it. Otherwise it is not shown: more runs are needed.\n\n"
+           "interval lies outside it. 'not shown' means undecided: more runs are needed.\n\n"
            "Exit codes: 0 every row is met, 1 one falls short, 2 wrong usage, 3 bad or unreadable data,\n"
            "6 not shown by this many runs.";
   });

@@ -93,7 +93,8 @@ Action add_work(Command app) {
   command.add_option("FOLDER", arguments->folder, "the job's folder").required().check(not_empty());
   const Option chunk =
       command
-          .add_option("--chunk", arguments->chunk, "do only this chunk, counted from 0 (default: all unstarted chunks)")
+          .add_option("--chunk", arguments->chunk,
+                      "do only this chunk, a part of the job, counted from 0 (default: all unstarted chunks)")
           .type_name("K")
           .check(whole_number(0, 1'000'000'000));
   command

@@ -23,8 +23,7 @@ void add_study_option(Command command, StudyArguments& arguments) {
 }
 
 void add_choice_of_role(Command command, StudyArguments& arguments) {
-  add_choice(command, "--role", arguments.role,
-             "role of the person, recorded in the log; never a name (default: analyst)");
+  add_choice(command, "--role", arguments.role, "your role, recorded in the log; never a name (default: analyst)");
 }
 
 void add_study_and_role(Command command, StudyArguments& arguments) {

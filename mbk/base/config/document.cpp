@@ -112,10 +112,7 @@ class Reading {
     const std::optional<UnknownKey> unknown = first_unknown();
     for (const Reading* reading : family()) {
       const auto& absent = reading->missing;
-      // A misspelt key is reported instead of the missing one.
-      if (absent && !(unknown && unknown->section == absent->section && unknown->meant == absent->key)) {
-        return tl::unexpected(absent->error);
-      }
+      if (absent && !(unknown && explains(*unknown, *absent))) return tl::unexpected(absent->error);
     }
     if (unknown) return tl::unexpected(describe(*unknown));
     return {};
@@ -165,6 +162,13 @@ class Reading {
         search(value, path, first);
       }
     }
+  }
+
+  /// A misspelt key, or table around it, is reported instead of the missing one.
+  static bool explains(const UnknownKey& unknown, const Missing& absent) {
+    if (unknown.meant.empty()) return false;
+    const std::string meant = joined(unknown.section, unknown.meant), path = joined(absent.section, absent.key);
+    return path == meant || path.starts_with(meant + ".") || path.starts_with(meant + "[");
   }
 
   [[nodiscard]] Error describe(const UnknownKey& unknown) const {
@@ -321,7 +325,7 @@ std::optional<double> Section::checked(std::string_view key, const Node& node, R
     return std::nullopt;
   }
   if (!allowed.holds(value)) {
-    reject(key, fmt::format("{}{} {}", place, value, allowed.violation()));
+    reject(key, fmt::format("{}{} is out of range", place, value), allowed.remedy());
     return std::nullopt;
   }
   return unit_of_key(key).to_si(value);
@@ -362,7 +366,7 @@ std::optional<std::int64_t> Section::find_integer(std::string_view key, std::int
     return std::nullopt;
   }
   if (*value < low || *value > high) {
-    reject(key, fmt::format("{} is not from {} to {}", *value, low, high));
+    reject(key, fmt::format("{} is out of range", *value), fmt::format("choose {} to {}", low, high));
     return std::nullopt;
   }
   return *value;
@@ -524,7 +528,9 @@ void Section::reject(std::string_view key, std::string message, std::string reme
 
 void Section::wrong_type(std::string_view key, const Node& node, std::string_view requested,
                          std::string_view place) const {
-  reject(key, fmt::format("{}expected {}, found {}", place, requested, kind_of(node)));
+  const auto* text = std::get_if<std::string>(&node.value);
+  const std::string found = text == nullptr ? std::string(kind_of(node)) : "the text " + in_quotes(*text);
+  reject(key, fmt::format("{}expected {}, found {}", place, requested, found));
 }
 
 }  // namespace mbk::config

@@ -165,7 +165,7 @@ TEST(Section, RefusesOtherTypes) {
   const auto section = [](const Section& s) { (void)s.section("k"); };
   const auto sections = [](const Section& s) { (void)s.sections("k"); };
   const auto choice = [](const Section& s) { (void)s.choice("k", {{"a", 1}, {"b", 2}}, 1); };
-  EXPECT_THAT(said("'fast'", number), HasSubstr("number"));
+  EXPECT_THAT(said("'fast'", number), AllOf(HasSubstr("number"), HasSubstr("'fast'")));
   EXPECT_THAT(said("2.5", integer), HasSubstr("number"));
   EXPECT_THAT(said("10", integer), HasSubstr("10"));
   EXPECT_THAT(said("1", text), HasSubstr("text"));
@@ -253,6 +253,12 @@ TEST(Document, SaysMisspeltRatherThanMissing) {
   const Document document = parsed("[limb]\nmas_kg = 1\n");
   (void)document.root().section("limb").required_number("mass_kg");
   EXPECT_THAT(problem(document), AllOf(HasSubstr("line 2"), HasSubstr("'mas_kg'"), HasSubstr("'mass_kg'")));
+  const Document table = parsed("a = 1\n[participent]\nkind = 'arm'\n[participant.arm]\nx = 1\n");
+  (void)table.root().number("a", 0.0);
+  const Section person = table.root().section("participant");
+  (void)person.required_text("kind");
+  (void)person.section("arm").number("x", 0.0);
+  EXPECT_THAT(problem(table), AllOf(HasSubstr("line 2"), HasSubstr("'participent'"), HasSubstr("'participant'")));
 }
 
 TEST(Document, NamesAWrongValueBeforeAnUnknownKey) {
@@ -384,7 +390,7 @@ TEST(ParseToml, NamesLineAndColumn) {
   EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("a = 1é\n"), HasSubstr("line 1"));  // é, where white space may stand
   EXPECT_THAT(refusal("é = 1\n"), HasSubstr("line 1"));
-  EXPECT_THAT(refusal("a = \"\xff\"\n"), HasSubstr("line 1"));
+  EXPECT_THAT(refusal("a = \"\xff\"\n"), AllOf(HasSubstr("line 1"), HasSubstr("not UTF-8 text")));
 }
 
 TEST(ParseToml, BoundsSizeAndDepth) {

@@ -20,20 +20,20 @@ bool Range::holds(double value) const {
   return true;
 }
 
-std::string Range::violation() const {
+std::string Range::remedy() const {
   switch (kind) {
     case Kind::above:
-      return fmt::format("is not above {}", low);
+      return fmt::format("choose a value above {}", low);
     case Kind::at_least:
-      return fmt::format("is below {}", low);
+      return fmt::format("choose {} or more", low);
     case Kind::between:
-      return fmt::format("is not from {} to {}", low, high);
+      return fmt::format("choose {} to {}", low, high);
     case Kind::within:
-      return fmt::format("is not above {} and below {}", low, high);
+      return fmt::format("choose a value above {} and below {}", low, high);
     case Kind::any:
       break;
   }
-  return "is not allowed";
+  return "choose another value";
 }
 
 }  // namespace mbk::config

@@ -12,8 +12,8 @@ struct Range {
   double high = 0.0;
 
   [[nodiscard]] bool holds(double value) const;
-  /// "is not above 0": the words that follow a value outside the range.
-  [[nodiscard]] std::string violation() const;
+  /// "choose a value above 0": what to do about a value outside the range.
+  [[nodiscard]] std::string remedy() const;
 };
 
 [[nodiscard]] constexpr Range any() {

@@ -145,7 +145,11 @@ Result<Node> parse_toml(std::string_view text) {
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
     const toml::source_position& at = error.source().begin;
-    return bad_data(std::string(error.description()), "", fmt::format("line {}, column {}", at.line, at.column));
+    const std::string place = fmt::format("line {}, column {}", at.line, at.column);
+    if (error.description().find("utf-8") != std::string_view::npos) {
+      return bad_data("the file is not UTF-8 text", "save it as UTF-8", place);
+    }
+    return bad_data(std::string(error.description()), "", place);
   }
   return converted(parsed.table());
 }

@@ -41,8 +41,11 @@ Result<TrialControl> TrialControl::create(const Mode& mode, const Schedule& sche
     control.law_ = MBK_TRY(JointPositionControl::create(follow->gains, sample_time));
     perturbation::Limits limits;
     limits.reachable = [&](const Vector2d& displacement) -> Result<void> {
-      MBK_TRY(robot::check_hand(geometry, control.displaced(displacement)));
-      return {};
+      const auto reached = robot::check_hand(geometry, control.displaced(displacement));
+      if (reached) return {};
+      Error error = reached.error();
+      error.remedy = "reduce the amplitude, or move the test location";
+      return tl::unexpected(std::move(error));
     };
     if (auto ok = schedule.check(limits); !ok) return tl::unexpected(ok.error().in("perturbation"));
   } else if (const auto* along = std::get_if<LineMode>(&mode)) {

@@ -51,7 +51,7 @@ constexpr std::array<BridgeRuleText, kRules> kTexts = {{
     {"sends finite numbers", "check for readings of missing sensors"},
     {"obeys each command within 20 ms, and says which", "set byte 24 to the command that the drives obey now"},
     {"refuses a damaged command", "compare the CRC-32 of bytes 0-39 before using anything"},
-    {"refuses another magic, version or length", "compare length, bytes 0-3 and bytes 4-5"},
+    {"rejects messages with a wrong identifier, version or length", "compare length, bytes 0-3 and bytes 4-5"},
     {"refuses an older command", "accept only a sequence above the last one"},
     {"refuses a command of another session", "compare bytes 8-11 with the greeting's"},
     {"refuses a command from another address", "compare address and port with those of the greeting"},
@@ -64,7 +64,7 @@ constexpr std::array<BridgeRuleText, kRules> kTexts = {{
     {"its watchdog switches the motors off in time", "take its time from bytes 12-15, count from the last command"},
     {"stays off after that until the next greeting", "keep the motors off and flag 16 set, whatever is commanded"},
     {"takes the next greeting after that", "accept it, and clear flag 16 with it"},
-    {"obeys last words, and nothing after them", "keep all 64 bits of the sequence"},
+    {"obeys the final command, and none after it", "keep all 64 bits of the sequence"},
 }};
 
 double seconds(std::int64_t nanoseconds) {

@@ -202,7 +202,7 @@ std::string paragraph(const std::string& head, const std::string& text) {
 std::string findings_text(const std::vector<Finding>& findings) {
   std::string text;
   for (const Finding& one : findings) {
-    const char* word = one.verdict == Verdict::fine ? "fine" : one.verdict == Verdict::doubtful ? "look" : "WRONG";
+    const char* word = one.verdict == Verdict::fine ? "fine" : one.verdict == Verdict::doubtful ? "note" : "WRONG";
     text += paragraph(fmt::format("  {}", word), one.text);
   }
   return text;

@@ -69,7 +69,7 @@ Result<void> read_pieces(const fs::path& file, const std::function<Result<void>(
   if (in.value < 0) return cannot("cannot be read", file, errno);
   struct stat status {};
   if (::fstat(in.value, &status) != 0) return cannot("cannot be read", file, errno);
-  if (!S_ISREG(status.st_mode)) return bad_data("is not a file", "name a recording", file.string());
+  if (!S_ISREG(status.st_mode)) return bad_data("this is not a file", "name a recording", file.string());
   constexpr std::size_t kPiece = std::size_t{1} << 18;
   std::vector<std::byte> piece(kPiece);
   while (true) {

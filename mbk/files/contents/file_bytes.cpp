@@ -47,9 +47,9 @@ Result<Opened> open_file(const std::filesystem::path& file) {
   }
   struct stat status {};
   if (::fstat(descriptor.number, &status) != 0) return bad_data(fmt::format("cannot be read: {}", reason(errno)));
-  if (S_ISDIR(status.st_mode)) return bad_data("is a folder, not a file", "name the recording in it");
-  if (!S_ISREG(status.st_mode)) return bad_data("is not a regular file", "copy the recording to a file first");
-  if (status.st_size == 0) return bad_data("the file is empty", "nothing was recorded, or the copy failed");
+  if (S_ISDIR(status.st_mode)) return bad_data("this is a folder, not a file", "name the recording in it");
+  if (!S_ISREG(status.st_mode)) return bad_data("this is not a regular file", "copy the recording to a file first");
+  if (status.st_size == 0) return bad_data("the file is empty", "copy it again");
   if (static_cast<std::uint64_t>(status.st_size) > kLargestFile) {
     return bad_data(fmt::format("the file has {} bytes; the limit is {}", status.st_size, kLargestFile),
                     "split the recording into numbered parts");

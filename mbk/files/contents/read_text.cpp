@@ -20,11 +20,11 @@ Result<std::string> read_text(const std::filesystem::path& file) {
                     file.string());
   }
   if (std::filesystem::file_size(file, error) > kLargest)
-    return bad_data("larger than 256 MB", "check the name: a result is much smaller", file.string());
+    return bad_data("the file is larger than 256 MB", "check the name: a result is much smaller", file.string());
   std::ifstream stream(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.good() && !stream.eof()) return bad_data("cannot be read", "check its permissions", file.string());
-  if (text.empty()) return bad_data("the file is empty", "nothing was written, or the copy failed", file.string());
+  if (text.empty()) return bad_data("the file is empty", "copy it again", file.string());
   return text;
 }
 

@@ -348,10 +348,11 @@ Result<Journal> decode(Bytes bytes) {
   const auto strange = [&](const Block& block) { return block.kind == kTicks && !numbers_rise(bytes, block); };
   std::erase_if(blocks, strange);
   for (const Block& block : blocks) damage.bytes -= block.bytes + (second ? sizeof(BlockHead) : sizeof(BlockHead1));
+  if (bytes.empty()) return bad_data("the journal is empty", "nothing was recorded");
   if (blocks.empty()) {
     return named ? bad_data("the journal contains neither a complete header nor any complete block",
                             "nothing was recorded yet")
-                 : bad_data("is not an mbk journal", "name the journal beside the recording: NAME.h5.journal");
+                 : bad_data("the file is not an mbk journal", "name the journal beside the recording: NAME.h5.journal");
   }
   const std::uint64_t trial = trial_of(blocks);
   damage.foreign = std::erase_if(blocks, [&](const Block& block) { return block.trial != trial; });

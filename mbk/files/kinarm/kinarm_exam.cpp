@@ -179,7 +179,7 @@ struct KinarmExam::Open {
     Result<Buffer> bytes = archive.read_begin(part.members.front(), kBeginOfC3d);
     if (!bytes) return tl::unexpected(bytes.error());
     for (bool whole = part.size <= kBeginOfC3d;; whole = true) {
-      if (!looks_like_c3d(bytes->bytes())) return bad_data("is not a C3D file");
+      if (!looks_like_c3d(bytes->bytes())) return bad_data("the file is not a C3D file");
       const auto parameters = decode_c3d_parameters(bytes->bytes());
       const auto length = decode_c3d_length(bytes->bytes(), part.size);
       if (parameters && length) {
@@ -197,7 +197,7 @@ struct KinarmExam::Open {
   Result<void> read_common() {
     if (c3d) {
       const auto bytes = MBK_TRY(read(std::string(kCommonC3d)));
-      if (!looks_like_c3d(bytes.bytes())) return bad_data("is not a C3D file", "", std::string(kCommonC3d));
+      if (!looks_like_c3d(bytes.bytes())) return bad_data("the file is not a C3D file", "", std::string(kCommonC3d));
       const auto parameters = decode_c3d_parameters(bytes.bytes());
       if (!parameters) return tl::unexpected(parameters.error().in(kCommonC3d));
       common = ExamParameters::of(*parameters);
@@ -390,7 +390,7 @@ struct KinarmExam::Open {
 
   [[nodiscard]] Result<ExamTrial> load_c3d(const Part& part, ArrayFilter filter) const {
     const auto bytes = MBK_TRY(read(part.members.front()));
-    if (!looks_like_c3d(bytes.bytes())) return bad_data("is not a C3D file");
+    if (!looks_like_c3d(bytes.bytes())) return bad_data("the file is not a C3D file");
     const auto parameters = MBK_TRY(decode_c3d_parameters(bytes.bytes()));
     auto contents = MBK_TRY(decode_c3d(bytes.bytes()));
     ExamTrial trial;

@@ -24,7 +24,7 @@ Result<Part> parse_part(const std::filesystem::path& file) {
   const auto [end, error] = std::from_chars(name.data() + digits, name.data() + name.size(), part.number);
   if (digits == name.size() || error != std::errc()) {
     return bad_usage(fmt::format("'{}' has no number at the end of its name", file.filename().string()),
-                     "name parts of one record like log_1.mat, log_2.mat, or read each file separately");
+                     "name the parts of one recording log_1.mat, log_2.mat, … or read each file separately");
   }
   return part;
 }
@@ -42,8 +42,8 @@ Result<std::vector<Part>> ordered(const std::vector<std::filesystem::path>& file
     const Part& part = parts[i];
     if (part.stem != before.stem) {
       return bad_data(
-          fmt::format("'{}' and '{}' are not parts of one record", before.file.string(), part.file.string()),
-          "read the records separately");
+          fmt::format("'{}' and '{}' are not parts of one recording", before.file.string(), part.file.string()),
+          "read the recordings separately");
     }
     if (part.number == before.number) {
       return bad_data(fmt::format("part {} is given twice", part.number), "name each part once", part.file.string());

@@ -22,7 +22,8 @@ Result<fs::path> write_bids(const Recording& recording, const fs::path& folder, 
   std::error_code code;
   if (fs::exists(folder, code)) {
     if (!fs::is_directory(folder, code)) {
-      return fail(ErrorKind::usage, "is a file, but a data set is a folder", "choose another name", folder.string());
+      return fail(ErrorKind::usage, "this is a file, but a data set is a folder", "choose another name",
+                  folder.string());
     }
     if (!fs::is_empty(folder, code) && !fs::exists(folder / "dataset_description.json", code)) {
       return fail(ErrorKind::usage, "the folder contains files that do not belong to a BIDS data set",

@@ -92,7 +92,8 @@ Result<void> check_name(const fs::path& file, bool overwrite) {
   }
   if (!overwrite && name != fs::file_type::not_found) return cannot_write(file, EEXIST);
   if (type != fs::file_type::not_found && type != fs::file_type::regular) {
-    return fail(ErrorKind::usage, "is not a regular file and cannot be replaced", "choose another name", file.string());
+    return fail(ErrorKind::usage, "this is not a regular file and cannot be replaced", "choose another name",
+                file.string());
   }
   return {};
 }

@@ -134,7 +134,7 @@ Result<void> check_equilibrium(const SpringArray& array, const Vector2d& place, 
     if (length < kCoincide) {
       return fail(ErrorKind::not_usable,
                   fmt::format("the two ends of spring {} coincide at the equilibrium, so it has no direction", i + 1),
-                  "move its screw eye");
+                  springs.size() == 1 ? "add springs on other sides" : "move its screw eye");
     }
     if (length <= springs[i].rest_length && array.compression() == Compression::slack) {
       return fail(

@@ -77,7 +77,8 @@ void judge(MeasuredDelay& found) {
   const double half = numeric::kNormal95 * found.delay_error;
   if (!(found.vaf >= kSmallestVaf)) {
     found.problems.push_back(fmt::format(
-        "the mass explains only {:.1f} % of the force: something else is at the handle, or a channel is wrong",
+        "the mass explains only {:.1f} % of the force: something else is at the handle, or a channel is wrong; remove "
+        "the hand and everything but the mass, and check --channels",
         found.vaf));
   }
   if (found.mass < 0.0) {
@@ -86,7 +87,7 @@ void judge(MeasuredDelay& found) {
              std::max(kSameMass * found.stated_mass, numeric::kNormal95 * found.mass_error)) {
     found.problems.push_back(
         fmt::format("the mass found is {:.4g} kg, but {:.4g} kg was stated: the gain of the sensor, a unit or the "
-                    "stated mass is wrong",
+                    "stated mass is wrong; check --channels and --mass",
                     found.mass, found.stated_mass));
   }
   if (!(half <= kWidest)) {

@@ -138,7 +138,7 @@ Result<std::vector<Source>> make_ready(std::span<const Recording> recordings, co
     for (const SourceFile& file : recording.sources) {
       const auto [twin, fresh] = files.emplace(file.sha256 + " " + file.trial, file.label());
       if (!fresh && !file.sha256.empty()) {
-        return bad_data(fmt::format("is the same file as {}", twin->second), "pool each trial once", file.label());
+        return bad_data(fmt::format("this is the same file as {}", twin->second), "pool each trial once", file.label());
       }
     }
     if (auto ok = preprocess::check_consent(recording); !ok) return in_file(recording, ok.error());

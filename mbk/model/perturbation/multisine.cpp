@@ -48,7 +48,7 @@ Multisine::Multisine(double period, std::vector<Line> lines) : period_(period), 
 
 Result<Multisine> Multisine::create(double period, std::vector<Line> lines) {
   if (!(period > 0.0 && std::isfinite(period))) return bad_usage(fmt::format("period {} s is not positive", period));
-  if (lines.empty()) return bad_usage("a multisine needs at least one harmonic");
+  if (lines.empty()) return bad_usage("a multisine needs at least one harmonic", "name its harmonics");
   std::set<int> seen;
   for (const Line& line : lines) {
     if (line.harmonic < 1) return bad_usage(fmt::format("harmonic {} is not positive", line.harmonic));
@@ -56,7 +56,9 @@ Result<Multisine> Multisine::create(double period, std::vector<Line> lines) {
       return bad_usage(fmt::format("harmonic {} is above {}", line.harmonic, kHighestHarmonic),
                        "choose a shorter period");
     }
-    if (!seen.insert(line.harmonic).second) return bad_usage(fmt::format("harmonic {} occurs twice", line.harmonic));
+    if (!seen.insert(line.harmonic).second) {
+      return bad_usage(fmt::format("harmonic {} occurs twice", line.harmonic), "name each harmonic once");
+    }
     if (!std::isfinite(line.amplitude) || !std::isfinite(line.phase)) {
       return bad_usage(fmt::format("amplitude {} or phase {} rad of harmonic {} is not finite", line.amplitude,
                                    line.phase, line.harmonic));

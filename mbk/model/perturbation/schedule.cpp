@@ -65,7 +65,8 @@ Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity
                                      double moving_in) {
   MBK_TRY(check_duration(duration));
   if (!(moving_in > 0.0 && moving_in <= duration)) {
-    return bad_usage(fmt::format("moving-in time {} s is not between 0 and the duration {} s", moving_in, duration));
+    return bad_usage(fmt::format("moving-in time {} s is not between 0 and the duration {} s", moving_in, duration),
+                     "shorten the moving-in time, or lengthen the perturbation");
   }
   const MinimumJerk growth({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, moving_in);
   return with_countable_cycles(

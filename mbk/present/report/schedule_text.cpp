@@ -31,17 +31,17 @@ std::string schedule_text(const perturbation::Schedule& schedule) {
   text += fmt::format("  rms           {:.4g} {}; first axis {:.4g}, second {:.4g}\n", factor * facts.rms, unit, rms[0],
                       rms[1]);
   const bool force = schedule.quantity() == perturbation::Quantity::force;
-  text += fmt::format("  {:<12}  {:.4g} {}/s at most, at {:.2f} s\n",
+  text += fmt::format("  {:<12}  peak {:.4g} {}/s at {:.2f} s\n",
                       !force                                           ? "speed"
                       : schedule.space() == perturbation::Space::joint ? "torque rate"
                                                                        : "force rate",
                       factor * facts.peak_speed, unit, facts.peak_speed_time);
   if (!force) {
-    text += fmt::format("  acceleration  {:.4g} {}/s² at most, at {:.2f} s\n", factor * facts.peak_acceleration, unit,
+    text += fmt::format("  acceleration  peak {:.4g} {}/s² at {:.2f} s\n", factor * facts.peak_acceleration, unit,
                         facts.peak_acceleration_time);
   }
-  text += fmt::format("  crest factor  {:.3g} and {:.3g}, including pauses and moving in\n", facts.crest_factor[0],
-                      facts.crest_factor[1]);
+  text += fmt::format("  crest factor  first axis {:.3g}, second {:.3g}, with pauses and fade-in\n",
+                      facts.crest_factor[0], facts.crest_factor[1]);
   text +=
       fmt::format("  band          {:.3g} to {:.3g} Hz\n", facts.lowest_frequency.value, facts.highest_frequency.value);
   return text;

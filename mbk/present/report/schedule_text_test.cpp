@@ -26,14 +26,14 @@ TEST(ScheduleText, SpeaksTheUnitThatPeopleThinkIn) {
 
 TEST(ScheduleText, AForceHasARateAndNoSpeed) {
   const std::string force = text_of(Quantity::force, Space::hand), torque = text_of(Quantity::force, Space::joint);
-  EXPECT_THAT(force, testing::ContainsRegex("force rate    [0-9.]+ N/s"));
-  EXPECT_THAT(torque, testing::ContainsRegex("torque rate   [0-9.]+ N·m/s"));
+  EXPECT_THAT(force, testing::ContainsRegex("force rate    peak [0-9.]+ N/s"));
+  EXPECT_THAT(torque, testing::ContainsRegex("torque rate   peak [0-9.]+ N·m/s"));
   for (const std::string& text : {force, torque}) {
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("speed")));
     EXPECT_THAT(text, testing::Not(testing::HasSubstr("acceleration")));
   }
   const std::string position = text_of(Quantity::position, Space::hand);
-  EXPECT_THAT(position, testing::ContainsRegex("speed         [0-9.]+ mm/s "));
+  EXPECT_THAT(position, testing::ContainsRegex("speed         peak [0-9.]+ mm/s "));
   EXPECT_THAT(position, testing::HasSubstr(" mm/s²"));
 }
 

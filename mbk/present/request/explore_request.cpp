@@ -79,7 +79,7 @@ OptionTable<measurement::ExploreOptions> course_table() {
       .group("Change over time")
       .add({"--after-onset", "MS",
             "estimate M, B and K from the first MS milliseconds after each step or pulse of the reference, before the "
-            "person can respond; 100 to 150",
+            "person can respond (100 to 150 ms)",
             positive()},
            &Options::after_onset_s, kMilliseconds);
   return table;
@@ -97,7 +97,7 @@ const OptionTable<ExploreRequest>& explore_table() {
     table.include(read_table(), &ExploreRequest::reading)
         .add(
             {"--input", "NAME",
-             "input of another response than that of force to motion: a channel, column, row or variable", not_empty()},
+             "input of a response other than that of force to motion: a channel, column, row or variable", not_empty()},
             &ExploreRequest::input)
         .add({"--output", "NAME", "its output, named likewise", not_empty()}, &ExploreRequest::output)
         .add({"--reference", "NAME", "the signal that drives both, named likewise", not_empty()},

@@ -70,13 +70,13 @@ const OptionTable<identify::Options>& identify_table() {
   static const auto kTable = [] {
     OptionTable<Options> table;
     table.group("Model")
-        .add(
-            {"--method", "",
-             "ls: least squares; iv: instrumental variables, which need the recorded reference and are unbiased in "
-             "closed "
-             "loop too (default: iv if the reference is a strong instrument, with every first-stage F above 104.7, and "
-             "the result is usable; otherwise ls; in reference mode always ls)"},
-            &Options::method)
+        .add({"--method", "",
+              "ls: least squares; iv: instrumental variables, which need the recorded reference and are unbiased in "
+              "closed loop too (default: iv if the reference is a strong instrument, with every first-stage F (how "
+              "well the "
+              "reference predicts the motion) above 104.7, and the result is usable; otherwise ls; in reference mode "
+              "always ls)"},
+             &Options::method)
         .add({"--structure", "",
               "structure of M, B and K. full: unconstrained; symmetric: M and K symmetric; mass-spring: M = m I, no "
               "damping, K "
@@ -99,7 +99,7 @@ const OptionTable<identify::Options>& identify_table() {
         .add({"--bootstrap", "N",
               "number of block-bootstrap resamples (blocks of 2.5 s) for confidence intervals of the parameters, "
               "ellipses, "
-              "eigenvalues and the excess of passivity (default: 0, none; 1000 take a moment)",
+              "eigenvalues and the excess of passivity, damping to spare (default: 0, none; 1000 take some seconds)",
               whole_number(0, 1'000'000)},
              &Options::bootstrap)
         .add({"--seed", "N", "random seed of the bootstrap (default: 1)", whole_number(0, 2'000'000'000)},

@@ -106,14 +106,14 @@ const OptionTable<TransferFunctionRequest>& transfer_function_clock_table() {
   static const auto kTable = [] {
     OptionTable<TransferFunctionRequest> table;
     OptionFacts resample = resample_option();
-    resample.help += "; srivc does not need it";
+    resample.help += "; srivc needs no even sampling";
     table
         .include(
             window_table(), [](auto& request) -> auto& { return request.options.window; })
         .add(resample, &TransferFunctionRequest::resample)
         .add({"--sample-rate", "HZ|recorded",
-              "decimate to this rate, in Hz, after a low-pass filter (default: oe and bj 50 to 100 Hz; the others "
-              "recorded)",
+              "decimate to this rate, in Hz, after a low-pass filter (default: 50 to 100 Hz for oe and bj, "
+              "otherwise the recorded rate)",
               not_empty()},
              &TransferFunctionRequest::sample_rate);
     return table;

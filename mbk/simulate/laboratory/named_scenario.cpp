@@ -15,7 +15,7 @@ Result<ScenarioText> read_scenario_text(const std::string& argument) {
   }
   std::error_code error;
   if (!std::filesystem::exists(argument, error)) {
-    return bad_data("there is no such file and no built-in scenario of that name",
+    return bad_data("there is no such file and no built-in scenario or experiment of that name",
                     "list the built-in scenarios with 'mbk simulate --list'", argument);
   }
   auto text = read_text(argument);

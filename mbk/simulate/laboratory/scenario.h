@@ -77,7 +77,7 @@ struct Scenario : protocol::TrialPlan {
 
 /// Shown with every result of a participant with voluntary position or force control.
 inline constexpr const char* kTunedGains =
-    "the gains of the participant's voluntary control are tuned, not fitted to anyone";
+    "the gains of the participant's voluntary control were chosen, not fitted to data from people";
 
 struct SimulateOptions {
   std::function<void(double fraction)> progress;   ///< of this recording

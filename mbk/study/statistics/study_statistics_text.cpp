@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -60,10 +61,10 @@ std::string condition_title(const std::string& condition) {
 }
 
 /// Why there is no number, with the count that is too small.
-std::string why_not(Support support, int people) {
+std::string why_not(Support support, int people, std::string_view whom = "people with two or more sessions") {
   switch (support) {
     case Support::too_few_people:
-      return fmt::format("too few people ({} of {} needed)", people, reliability::kMinPeople);
+      return fmt::format("too few {} ({}; at least {} needed)", whom, people, reliability::kMinPeople);
     case Support::too_few_sessions:
       return "nobody was measured in two sessions";
     case Support::too_few_trials:
@@ -193,7 +194,7 @@ std::string bootstrap_table(const std::vector<OutcomeReliability>& all) {
 
 std::string model_details(const MixedReliability& model) {
   if (model.support != Support::enough) {
-    return item("  mixed model: ", why_not(model.support, model.participants));
+    return item("  mixed model: ", why_not(model.support, model.participants, "people"));
   }
   std::string text = item("  mixed model (REML): ",
                           fmt::format("{} results of {} people in {} sessions{}", model.results, model.participants,
@@ -250,7 +251,8 @@ std::string details_of(const OutcomeReliability& one) {
   } else {
     text += item("  within a session: ", trials.support == Support::too_few_sessions
                                              ? "nobody has two trials in one session"
-                                             : why_not(trials.support, static_cast<int>(trials.participants.size())));
+                                             : why_not(trials.support, static_cast<int>(trials.participants.size()),
+                                                       "people with two or more trials"));
   }
   text += model_details(one.mixed_model);
   for (const std::string& note : one.notes) text += item("  ! ", note);

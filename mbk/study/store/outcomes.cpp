@@ -147,7 +147,7 @@ std::string without_models(std::string_view document) {
 Result<std::vector<Outcome>> outcomes_of(std::string_view document) {
   const Json json = Json::parse(without_models(document), nullptr, false);
   if (!json.is_object() || !json.contains("model")) {
-    return bad_data("is not a result of 'mbk measure --json'", "give a file of schema mbk.result/2");
+    return bad_data("the file is not a result of 'mbk measure --json'", "give a file of schema mbk.result/2");
   }
   return OutcomeReader(json).read();
 }

@@ -242,9 +242,10 @@ Result<std::vector<AddedRecording>> Store::add(IncomingFile incoming, std::span<
         if (there.participant != facts.participant || there.session != facts.session ||
             there.condition != facts.condition || (facts.trial && there.trial != *facts.trial)) {
           return bad_data(
-              fmt::format("is already stored as recording {}: participant {}, session {}, condition '{}', trial {}",
-                          there.number, there.participant, there.session, there.condition, there.trial),
-              "check both: a file belongs to one participant");
+              fmt::format(
+                  "the file is already stored as recording {}: participant {}, session {}, condition '{}', trial {}",
+                  there.number, there.participant, there.session, there.condition, there.trial),
+              "a recording can belong to only one participant: check the number and the file");
         }
         added.push_back({there, true});
         continue;
@@ -342,7 +343,8 @@ Result<void> Store::include(std::int64_t number, const std::string& why, Role ro
     SQLite::Database& connection = database_->connection;
     WriteTransaction transaction(connection);
     const auto there = MBK_TRY(recording(number));
-    if (!there.excluded_why) return bad_usage(fmt::format("recording {} is not excluded", number));
+    if (!there.excluded_why)
+      return bad_usage(fmt::format("recording {} is not excluded", number), "omit --undo to exclude it");
     execute(connection, "UPDATE recording SET excluded_why = NULL WHERE number = ?", number);
     LogLine line{.role = role, .action = LoggedAction::include};
     line.recording = number;

@@ -83,8 +83,10 @@ class ChainReader {
   LogVerdict finished() {
     if (verdict.lines == 0) say("the log is empty");
     if (!noted_.empty() && !noted_found_) {
-      say(fmt::format("the line with hash {}… is no longer in the log, which was shortened or rewritten",
-                      noted_.substr(0, 12)));
+      say(fmt::format(
+          "the log has no line with the hash {}: the head was mistyped, or the log was shortened or rewritten; "
+          "compare the copy that you kept",
+          noted_));
     }
     return std::move(verdict);
   }

@@ -153,7 +153,7 @@ Result<std::unique_ptr<Database>> Database::snapshot(const std::filesystem::path
     if (before && before == whole_state(file)) return in_memory(folder, std::move(bytes));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  return bad_data("is read-only, and another process is changing it or was interrupted while changing it",
+  return bad_data("the study is read-only, and another process is changing it or was interrupted while changing it",
                   "try again later, or have someone with write permission run 'mbk study list'", file.string());
 }
 
@@ -195,7 +195,7 @@ Result<void> migrate(SQLite::Database& connection, const std::filesystem::path& 
   const int found = version();
   const int application = pragma_number(connection, "PRAGMA application_id");
   if (application != kApplication && (application != 0 || found != 0)) {
-    return bad_data("is the database of another program", "name the folder of a study", file);
+    return bad_data("the file is the database of another program", "name the folder of a study", file);
   }
   if (found > latest) {
     return bad_data(

@@ -131,8 +131,9 @@ class Adder::File {
     for (const store::StoredRecording& one : there) {
       if (one.sha256 == one.origin_sha256) continue;
       if (facts.participant && *facts.participant != one.participant) {
-        return bad_data(fmt::format("is already stored as recording {} of participant {}", one.number, one.participant),
-                        "check both: a file belongs to one participant");
+        return bad_data(
+            fmt::format("the file is already stored as recording {} of participant {}", one.number, one.participant),
+            "a recording can belong to only one participant: check the number and the file");
       }
       found.push_back({one, true});
     }
@@ -157,7 +158,7 @@ class Adder::File {
   Added add_of_bids(const std::filesystem::path& motion, const KnownFacts& facts) {
     std::error_code code;
     if (std::filesystem::is_directory(motion, code)) {
-      return fail(ErrorKind::usage, "is a folder", "'mbk study import' takes all recordings of a BIDS data set",
+      return fail(ErrorKind::usage, "this is a folder", "'mbk study import' takes all recordings of a BIDS data set",
                   motion.string());
     }
     request::ReadRequest reading = request::reading_for(measuring_.request.reading, measuring_.options);
@@ -210,7 +211,7 @@ Added Adder::add(const std::filesystem::path& file, const KnownFacts& facts) {
 Result<std::vector<store::SheetRow>> rows_of_bids(const std::filesystem::path& folder) {
   const auto runs = MBK_TRY(recording::find_bids_runs(folder));
   if (runs.empty()) {
-    return fail(ErrorKind::data, "is a folder without a BIDS recording (…_motion.tsv)",
+    return fail(ErrorKind::data, "the folder has no BIDS recording (…_motion.tsv)",
                 "name recordings, or the folder of a BIDS data set with motion data", folder.string());
   }
   std::vector<store::SheetRow> rows;

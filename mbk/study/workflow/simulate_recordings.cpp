@@ -26,14 +26,19 @@ fs::path file_name(const SimulateOptions& options, const std::string& trial, std
   return options.out.parent_path() / (stem + options.out.extension().string());
 }
 
-/// "relaxed.mat: 62.1 s at 1000 Hz, relaxed, sinusoidal …; E = 1.23 J absorbed".
+/// "absorbed +1.759 J" or "delivered 0.473 J".
+std::string energy_text(double absorbed) {
+  return absorbed < 0.0 ? fmt::format("delivered {:.3f} J", -absorbed) : fmt::format("absorbed {:+.3f} J", absorbed);
+}
+
+/// "relaxed.mat: 62.1 s at 1000 Hz, seed 1; relaxed, sinusoidal …; the limb absorbed +1.759 J".
 std::string summary_line(const SimulatedTrial& job, const laboratory::Performance& performance) {
   const Recording& recording = performance.recording;
   const auto note = recording.metadata.find("truth_note");
-  return fmt::format("{}: {:.1f} s at {:g} Hz, seed {}; {}the limb absorbed {:+.3f} J{}\n", job.file.string(),
-                     recording.time[recording.samples() - 1], job.scenario.rate.value, job.scenario.seed,
-                     job.scenario.condition.empty() ? "" : job.scenario.condition + "; ", performance.energy_absorbed,
-                     note == recording.metadata.end() ? "" : "; " + note->second);
+  return fmt::format(
+      "{}: {:.1f} s at {:g} Hz, seed {}; {}the limb {}{}\n", job.file.string(), recording.time[recording.samples() - 1],
+      job.scenario.rate.value, job.scenario.seed, job.scenario.condition.empty() ? "" : job.scenario.condition + "; ",
+      energy_text(performance.energy_absorbed), note == recording.metadata.end() ? "" : "; " + note->second);
 }
 
 /// The scenario's text, which a job rests on.

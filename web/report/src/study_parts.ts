@@ -14,7 +14,7 @@ export const counted = (n: number, one: string, more: string): string => `${n} $
 export function analysisText(analysis: Analysis | null): string {
   if (!analysis) return "nothing was measured";
   const options = Object.entries(analysis.options).map(([name, values]) => (values.length > 0 ? values.map((value) => `${name} ${value}`).join(" ") : name));
-  return `analysis ${analysis.number}: mbk ${analysis.version}, ${options.length > 0 ? options.join(" ") : "no options"}`;
+  return `analysis ${analysis.number}: mbk ${analysis.version}, ${options.length > 0 ? options.join(" ") : "default options"}`;
 }
 
 export const verdictWords: Record<SessionChange["verdict"], { text: string; kind: string }> = {
