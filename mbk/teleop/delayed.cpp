@@ -289,7 +289,7 @@ class Decision {
       pending.pop_back();
       const State state = state_of(cell);
       const double middle = 0.5 * (cell.low + cell.high);
-      if (state != State::unresolved || cell.high - cell.low < kFinest * cell.high || evaluations_ >= kMost) {
+      if (state != State::unresolved || cell.high - cell.low < kFinest * cell.high || evaluations_ >= kMax) {
         add({cell, state});
         continue;
       }
@@ -307,7 +307,7 @@ class Decision {
       const State state = state_of(cell);
       if (state == State::holds) continue;
       if (state == State::violated || cell.high - cell.low < kFinest * cell.high) return false;
-      if (evaluations_ >= kMostOfSearch) return false;
+      if (evaluations_ >= kMaxOfSearch) return false;
       const double middle = 0.5 * (cell.low + cell.high);
       pending.push_back({middle, cell.high});
       pending.push_back({cell.low, middle});
@@ -331,8 +331,8 @@ class Decision {
   }
 
  private:
-  static constexpr double kFinest = 1e-12, kNarrow = 1e-6;          // relative widths
-  static constexpr int kMost = 1'000'000, kMostOfSearch = 200'000;  // evaluations
+  static constexpr double kFinest = 1e-12, kNarrow = 1e-6;        // relative widths
+  static constexpr int kMax = 1'000'000, kMaxOfSearch = 200'000;  // evaluations
 
   State state_of(Bounds omega) {
     ++evaluations_;

@@ -172,7 +172,7 @@ class Content(BadInput):
     def test_a_missing_channel(self):
         self.columns.pop(4)
         path = self.csv(names=("time", "x", "y", "Fx", "xr", "yr"))
-        self.bad_data(path, says=["'force_y'", "hand_x, hand_y, force_x", "--channels force_y="])
+        self.bad_data(path, says=["'force_y'", "hand_x, hand_y, force_x", "--channels", "force_y="])
 
     def test_values_that_are_no_numbers(self):
         for value in (math.nan, math.inf):

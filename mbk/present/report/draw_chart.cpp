@@ -367,10 +367,10 @@ struct Frame {
 
 /// At least three, so that a small drawing has a scale.
 std::vector<Tick> svg_ticks(const Range& range, double expected, const ChartAxis& axis) {
-  constexpr int kMost = 12;
+  constexpr int kMax = 12;
   int n = std::max(2, static_cast<int>(expected));
   std::vector<Tick> ticks = ticks_of(range, n, axis);
-  while (ticks.size() < 3 && n < kMost) ticks = ticks_of(range, ++n, axis);
+  while (ticks.size() < 3 && n < kMax) ticks = ticks_of(range, ++n, axis);
   return ticks;
 }
 

@@ -56,7 +56,7 @@ void describe(Fields<AbsoluteStability>& fields) {
 void describe(Fields<FrequencyGrid>& fields) {
   fields.type("Grid", "Logarithmically spaced frequencies, unless bounded.");
   fields.add_number("from", through(&FrequencyGrid::low, &RadPerSec::value), "[rad/s]");
-  fields.add_number("to", through(&FrequencyGrid::high, &RadPerSec::value), "[rad/s]");
+  fields.add("to", through(&FrequencyGrid::high, &RadPerSec::value), "[rad/s]; null: no upper limit");
   fields.add("points", &FrequencyGrid::points);
   fields.add("bounded", &FrequencyGrid::bounded,
              "between the points no violation deeper than 1e-6 of the sum of the terms is missed");
