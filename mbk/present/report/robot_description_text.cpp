@@ -41,7 +41,7 @@ std::string drives_text(const robot::DynamicModel& model) {
   for (const auto& [word, expected] : terms) {
     if (expected) words.emplace_back(word);
   }
-  std::string text = words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ", "));
+  std::string text = words.empty() ? "no friction or motor inertia" : fmt::format("{}", fmt::join(words, ", "));
   if (drive.coulomb || drive.stribeck) {
     text += drive.smoothing > 0.0
                 ? fmt::format("; the sign of friction is smoothed over {:.4g} rad/s or m/s", drive.smoothing)
