@@ -261,7 +261,7 @@ class Assembler {
             ? "assign the columns by number or name, as in --channels x=1,y=2,Fx=-LABEL" + or_guess
             : fmt::format("assign the columns or variables, as in --channels time=1,x=2,{}=3{}",
                           options_.axes == 1 ? "F" : "Fx", or_guess);
-    return with_code(kNothingRecognised, bad_data(fmt::format("no channel {}was recognised; {}",
+    return with_code(kNothingRecognised, bad_data(fmt::format("no channel {}was recognised in the file; {}",
                                                               time ? "except time " : "", inventory(contents_)),
                                                   remedy));
   }
@@ -743,7 +743,7 @@ class Assembler {
                         "select one of them by name or column number");
       }
       const std::string neither = asked == entry.source ? "" : fmt::format("'{}' or ", asked);
-      return bad_data(fmt::format("channel {}: there is no {}'{}'; {}", entry.channel, neither, entry.source,
+      return bad_data(fmt::format("channel {}: the file has no {}'{}'; {}", entry.channel, neither, entry.source,
                                   inventory(contents_)));
     }
     if (contents_.table) {
