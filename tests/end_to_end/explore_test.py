@@ -363,7 +363,7 @@ class AfterOnset(Case):
     def test_needs_onsets(self):
         path = self.folder / "sines.h5"
         self.mbk("simulate", "relaxed_sinusoidal", "--out", path, "--quiet")
-        self.refused(BAD_DATA, "explore", path, "--after-onset", "120", says="onset")
+        self.refused(BAD_DATA, "explore", path, "--after-onset", "120", says="of rest")
         self.refused(WRONG_USAGE, "explore", path, "--after-onset", "-5", says="--after-onset")
 
 
@@ -375,6 +375,7 @@ class Mistakes(Case):
             with self.subTest(options):
                 self.refused(WRONG_USAGE, "explore", log, *options, says=says)
         self.refused(BAD_DATA, "explore", log, "--method", "welch", "--segment", "1000", says="segment")
+        self.refused(BAD_DATA, "explore", log, "--only", "ramp-and-hold", says=("ramps and holds", "--only"))
         self.refused(BAD_DATA, "explore", self.folder / "none.mat", says="none.mat")
         self.refused(WRONG_USAGE, "explore", log, "--input", "x", says="--output")
         self.refused(BAD_DATA, "explore", log, "--input", "x", "--output", "nothing", says="nothing")

@@ -127,7 +127,7 @@ for (const [name, { json, file }] of Object.entries(all)) {
     instrument.coherent_residual_fraction.forEach((share, axis) => close(read[`answered${axis}`].value, 100 * share, "answered"));
     const text = await page.textContent("#trial-1-methods");
     assert.match(text, instrument.strong ? /The instruments are strong/ : /The instruments are weak/);
-    assert.match(text, !holds ? /are not valid here and cannot check least squares/
+    assert.match(text, !holds ? /so they cannot be compared with least squares/
       : json.disagreement.significant ? /differ significantly.*voluntary or reflex activity/s
       : /do not differ significantly/);
     assertAllShown(read);

@@ -166,7 +166,7 @@ task("watch, and take control", async (person) => {
 
   // what was marked on the page is what is left out: on the clock of the perturbation, which begins later
   const said = mbk("measure", "day_second.h5").out.replaceAll(/\s+/g, " ");
-  const begin = Number(/only the perturbation counts: ([\d.]+) s/.exec(said)[1]);
+  const begin = Number(/only the perturbation is analysed: ([\d.]+) s/.exec(said)[1]);
   const [from, to] = /omitted: ([\d.]+) s to ([\d.]+) s, excluded: spoke/.exec(said).slice(1).map(Number);
   assert.ok(Math.abs(from - (4 - begin)) < 1e-3 && Math.abs(to - (5.5 - begin)) < 1e-3, said);
 });

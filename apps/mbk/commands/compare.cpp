@@ -135,8 +135,8 @@ std::string text_of(const std::vector<Compared>& all, const std::vector<WidthFin
     const Identification& second = identification(all[k + 1]);
     if (widths.size() > 1) text += fmt::format("{}{}\n", k == 0 ? "" : "\n", all[k + 1].name);
     text += source_line(first, "first") + source_line(second, "second");
-    text += first.usable && second.usable ? report::width_text(widths[k])
-                                          : "  no width is shown; --json contains the numbers\n";
+    text +=
+        first.usable && second.usable ? report::width_text(widths[k]) : "  not compared; --json contains the numbers\n";
   }
   return text;
 }

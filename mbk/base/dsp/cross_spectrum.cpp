@@ -111,7 +111,12 @@ Result<CrossSpectra> cross_spectra(const std::vector<Matrix>& pieces, Hertz samp
     if (piece.cols() != pieces.front().cols()) return bad_data("the segments have different numbers of signals");
     longest = std::max(longest, piece.rows());
   }
-  if (longest < segment) return bad_data(fmt::format("{} samples are too few for a segment of {}", longest, segment));
+  if (longest < segment) {
+    const double of_segment = static_cast<double>(segment) / sample_rate.value,
+                 of_data = static_cast<double>(longest) / sample_rate.value;
+    return bad_data(fmt::format("a segment of {:g} s is longer than the data, {:g} s", of_segment, of_data),
+                    "choose a shorter segment");
+  }
 
   const double spacing = sample_rate.value / static_cast<double>(segment);
   const Index nyquist = segment / 2, signals = pieces.front().cols();

@@ -21,10 +21,13 @@ Result<void> check(const SavitzkyGolay& filter, int derivative) {
     return bad_usage(
         fmt::format("Savitzky–Golay order {} and derivative {} must not be negative", filter.order, derivative));
   }
-  if (filter.window % 2 == 0 || filter.window <= filter.order) {
+  if (filter.window <= filter.order) {
     return bad_usage(
-        fmt::format("Savitzky–Golay window {} must be odd and larger than the order {}", filter.window, filter.order),
-        "choose another --sg-window");
+        fmt::format("Savitzky–Golay window {} is not larger than the order, {}", filter.window, filter.order),
+        "choose a larger, odd --sg-window");
+  }
+  if (filter.window % 2 == 0) {
+    return bad_usage(fmt::format("Savitzky–Golay window {} is not odd", filter.window), "choose an odd --sg-window");
   }
   return {};
 }

@@ -47,14 +47,15 @@ class Decoder {
   Result<void> check_room() {
     const std::uint64_t room = layout_.end - layout_.data, size = layout_.frame_size();
     if (layout_.frames > room / size) {
-      return bad_data(fmt::format("{} frames of {} bytes need more than the {} bytes from block {} on", layout_.frames,
-                                  size, room, layout_.data / kC3dBlock + 1),
+      return bad_data(fmt::format("{} frame{} of {} bytes need{} more than the {} bytes from block {} on",
+                                  layout_.frames, layout_.frames == 1 ? "" : "s", size, layout_.frames == 1 ? "s" : "",
+                                  room, layout_.data / kC3dBlock + 1),
                       std::string(kC3dRemedy));
     }
     const std::uint64_t rest = room - layout_.frames * size;
     if (rest >= std::max<std::uint64_t>(kC3dBlock, size)) {
-      note(fmt::format("the data section is longer than its {} frames, by {} frames; the excess was ignored",
-                       layout_.frames, rest / size));
+      note(fmt::format("the data section is longer than its {} frame{}, by {} frame{}; the excess was ignored",
+                       layout_.frames, layout_.frames == 1 ? "" : "s", rest / size, rest / size == 1 ? "" : "s"));
     }
     return {};
   }

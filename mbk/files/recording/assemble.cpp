@@ -259,8 +259,9 @@ class Assembler {
         : !contents_.table ? "assign the columns or variables, as in --channels " + example_map() + or_guess
         : !contents_.arrays.empty() && contents_.arrays.front().rate_hz > 0.0
             ? "assign the columns by number or name, as in --channels x=1,y=2,Fx=-LABEL" + or_guess
-            : "assign the columns or variables, as in --channels time=1,x=2,Fx=3" + or_guess;
-    return with_code(kNothingRecognised, bad_data(fmt::format("no channel {}was recognised; {}",
+            : fmt::format("assign the columns or variables, as in --channels time=1,x=2,{}=3{}",
+                          options_.axes == 1 ? "F" : "Fx", or_guess);
+    return with_code(kNothingRecognised, bad_data(fmt::format("no channel {}was recognised in the file; {}",
                                                               time ? "except time " : "", inventory(contents_)),
                                                   remedy));
   }
@@ -742,7 +743,7 @@ class Assembler {
                         "select one of them by name or column number");
       }
       const std::string neither = asked == entry.source ? "" : fmt::format("'{}' or ", asked);
-      return bad_data(fmt::format("channel {}: there is no {}'{}'; {}", entry.channel, neither, entry.source,
+      return bad_data(fmt::format("channel {}: the file has no {}'{}'; {}", entry.channel, neither, entry.source,
                                   inventory(contents_)));
     }
     if (contents_.table) {
@@ -835,7 +836,7 @@ class Assembler {
     if (array == nullptr) {
       MBK_TRY(refuse_damaged_source("channel " + entry.channel, counted->name));
       return bad_data(
-          fmt::format("channel {}: there is no '{}'; {}", entry.channel, counted->name, inventory(contents_)));
+          fmt::format("channel {}: the file has no '{}'; {}", entry.channel, counted->name, inventory(contents_)));
     }
     if (is_vector(*array) && counted->number == 1) return vector_of(*array);
     return line_of(entry, *array, counted->number);

@@ -195,8 +195,8 @@ Result<void> check_unit_of_time(const Recording& recording, bool said_by_user) {
   remedy += fmt::format("{}time={}:{} if this is correct", remedy.empty() ? "pass --channels " : ", or ", source, said);
   const std::string in = unit == nullptr || said == "s" ? "seconds" : std::string(said);
   std::string message = fmt::format(
-      "time cannot be in {}: '{}' advances by {:.6g} per sample, so the recording would last {} at {:.4g} Hz{}{}", in,
-      source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ", fmt::join(readings, "; "));
+      "time is probably not in {}: '{}' advances by {:.6g} per sample, so the recording would last {} at {:.4g} Hz{}{}",
+      in, source, in_unit, lasting(duration), rate, readings.empty() ? "" : "; ", fmt::join(readings, "; "));
   return with_code(kUnbelievableTime, bad_data(std::move(message), std::move(remedy)));
 }
 

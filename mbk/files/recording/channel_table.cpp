@@ -124,6 +124,7 @@ std::string_view nearest_channel_name(std::string_view name) {
   const std::string given = in_lower_case(name);
   for (const ChannelKind& kind : kKinds) {
     for (const std::string_view known : {kind.name, kind.alias}) {
+      if (known == "t") continue;  // the help lists only "time"
       const std::size_t d = edit_distance(given, in_lower_case(known));
       if (d < least) {
         least = d;

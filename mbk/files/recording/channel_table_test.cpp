@@ -31,6 +31,7 @@ TEST(ChannelTable, KnowsTheChannelsOfEveryQuantity) {
 TEST(ChannelTable, NamesTheNearestWhateverItsCase) {
   EXPECT_EQ(nearest_channel_name("HNAD_X"), "hand_x");
   EXPECT_EQ(nearest_channel_name("vx"), "Vx");
+  EXPECT_NE(nearest_channel_name("z"), "t");
 }
 
 }  // namespace

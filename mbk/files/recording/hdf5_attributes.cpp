@@ -351,8 +351,8 @@ class Applier {
         ++count;
       }
       if (count == 0) continue;
-      notes_.add(fmt::format("{} of the values {} {} ({}) and {} missing (NaN) in", count, count == 1 ? "is" : "are",
-                             one.name, one.value, count == 1 ? "is" : "are"),
+      notes_.add(fmt::format("{} value{} equal to {} ({}) {} read as missing (NaN) in", count, count == 1 ? "" : "s",
+                             one.name, one.value, count == 1 ? "was" : "were"),
                  array_.name);
     }
   }
@@ -368,8 +368,8 @@ class Applier {
       ++count;
     }
     if (count == 0) return;
-    notes_.add(fmt::format("{} of the values {} outside the valid range, {} to {}, and {} missing (NaN) in", count,
-                           count == 1 ? "is" : "are", least, most, count == 1 ? "is" : "are"),
+    notes_.add(fmt::format("{} value{} outside the valid range, {} to {}, {} read as missing (NaN) in", count,
+                           count == 1 ? "" : "s", least, most, count == 1 ? "was" : "were"),
                array_.name);
   }
 

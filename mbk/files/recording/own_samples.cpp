@@ -100,12 +100,13 @@ Warning warning_of(const Channel& channel, const Filled& filled, double rate_hz)
                     : ". These samples were interpolated from their neighbours";
   }
   if (filled.lost > 0) message += fmt::format("; {} samples in longer gaps are NaN", filled.lost);
-  return {held ? WarningCode::held_signal : WarningCode::missing_samples,
-          std::move(message),
-          held ? "record every channel at the rate of the recording; compare the delay with 'mbk sensor delay'"
-               : "correct the logging: record a sample only when it was measured",
-          {},
-          channel.name};
+  return {
+      held ? WarningCode::held_signal : WarningCode::missing_samples,
+      std::move(message),
+      held ? "record every channel at the rate of the recording; measure the delay of the force with 'mbk sensor delay'"
+           : "correct the logging: record a sample only when it was measured",
+      {},
+      channel.name};
 }
 
 Warning warning_of_command(const Channel& channel, double rate_hz) {

@@ -279,7 +279,7 @@ class Decoder {
       const ClockStep& step = steps[k];
       if (step.unsure == 0) {
         doubts.push_back(
-            fmt::format("the sender's clock was set by {} after sample {}, as its clock offsets show: later time "
+            fmt::format("the sender's clock jumped by {} after sample {} (seen in its clock offsets); later time "
                         "stamps were corrected",
                         signed_duration(-step.size), step.first));
         continue;
@@ -310,10 +310,10 @@ class Decoder {
     }
     (wander ? doubts : said).push_back(std::move(moved));
     if (breaks == 0) return;
-    std::string what = fmt::format("{} break{} in its time", breaks, breaks == 1 ? "" : "s");
+    std::string what = breaks == 1 ? std::string("a break of") : fmt::format("{} breaks in its time:", breaks);
     for (std::size_t k = 0; k < std::min(breaks, kMaxPartsListed); ++k) {
       const Index last = even.segments[k].last;
-      what += fmt::format("{} {:.6g} s after sample {}", k == 0 ? ":" : ",", before[last + 1] - before[last], last + 1);
+      what += fmt::format("{} {:.6g} s after sample {}", k == 0 ? "" : ",", before[last + 1] - before[last], last + 1);
     }
     if (breaks > kMaxPartsListed) what += ", …";
     doubts.push_back(what + "; each part was dejittered separately");

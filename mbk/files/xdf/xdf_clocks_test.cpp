@@ -337,7 +337,7 @@ TEST(XdfClocks, ChunksOutOfOrderAreSortedThoughStampsJitter) {
 TEST(XdfClocks, AChunkThatIsThereTwiceIsABreak) {
   Scene scene;
   scene.shuffle = [](auto& chunks) { chunks.insert(chunks.begin() + 100, chunks[100]); };
-  EXPECT_THAT(read(scene).doubts, Contains(AllOf(HasSubstr("1 break"), HasSubstr("-0.19"))));
+  EXPECT_THAT(read(scene).doubts, Contains(AllOf(HasSubstr("a break of"), HasSubstr("-0.19"))));
 }
 
 TEST(XdfClocks, LostSamplesAreABreak) {
@@ -345,7 +345,7 @@ TEST(XdfClocks, LostSamplesAreABreak) {
   scene.lost = [](int k) { return k >= 20000 && k < 20020; };
   const Outcome outcome = read(scene);
   EXPECT_LT(outcome.worst(), kRight);
-  EXPECT_THAT(outcome.doubts, Contains(AllOf(HasSubstr("1 break"), HasSubstr("0.021"))));
+  EXPECT_THAT(outcome.doubts, Contains(AllOf(HasSubstr("a break of"), HasSubstr("0.021"))));
   scene.lost = [](int k) { return k % 1500 < 20; };
   EXPECT_LT(read(scene).worst(), kRight);
 }

@@ -136,7 +136,7 @@ class Advisor {
     }
     return fmt::format(
         "use 'mbk explore' to distinguish noise from a nonlinear limb and 'mbk passivity' to see whether the limb "
-        "absorbed energy: no linear response to the motion could explain more than {:.0f} % of that force; do not "
+        "absorbed energy (no linear response to the motion could explain more than {:.0f} % of that force); do not "
         "interpret M, B and K as those of a passive limb",
         *share);
   }

@@ -391,7 +391,8 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
   if (all_reversed) {
     return Warning{
         WarningCode::force_sign_reversed,
-        "inertia, damping and stiffness have the wrong sign for a limb: the force was recorded with the opposite sign",
+        "inertia, damping and stiffness have the wrong sign for a limb: the force was probably recorded with the "
+        "opposite sign",
         remedy};
   }
   return Warning{

@@ -364,7 +364,8 @@ std::optional<TrialPassivity> trial_passivity(const Identification& result, Ener
       fmt::format("in {} the {} {} {:.3g} J",
                   result.sources.size() > 1 ? fmt::format("these {} trials", result.sources.size()) : "this trial",
                   result.axes == 1 ? "limb" : "hand", delivered ? "delivered" : "absorbed", sign * energy.absorbed);
-  if (std::isfinite(energy.absorbed95.first) && std::isfinite(energy.absorbed95.second)) {
+  const bool bounded = std::isfinite(energy.absorbed95.first) && std::isfinite(energy.absorbed95.second);
+  if (bounded) {
     const auto [low, high] = std::minmax({sign * energy.absorbed95.first, sign * energy.absorbed95.second});
     text += fmt::format(" (95 %: {:.3g} to {:.3g} J)", low, high);
   }
@@ -375,7 +376,9 @@ std::optional<TrialPassivity> trial_passivity(const Identification& result, Ener
   }
   if (!delivering.empty())
     text += fmt::format("; among the lines of the perturbation, it delivered energy at {} Hz", delivering);
-  if (energy.verdict == Verdict::undecided) text += "; this does not decide whether it absorbed or delivered energy";
+  if (energy.verdict == Verdict::undecided) {
+    text += bounded ? "; the interval includes zero" : "; without an interval, the sign of this energy is uncertain";
+  }
   return TrialPassivity{std::move(energy), std::move(lines), std::move(text)};
 }
 

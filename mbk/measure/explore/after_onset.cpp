@@ -223,6 +223,12 @@ Result<AfterOnsetEstimate> after_onset(std::span<const ExplorationTrial> trials,
   found.onsets = static_cast<Index>(responses.size());
   found.omitted = seen - found.onsets;
   if (found.onsets < kMinOnsets * n) {
+    if (seen == 0) {
+      return bad_data(
+          fmt::format("the reference has no steps or pulses after {:.0f} ms of rest; at least {} are needed",
+                      1e3 * kBaseline, kMinOnsets * n),
+          "perturb with steps or pulses, with pauses between them");
+    }
     return bad_data(fmt::format("the reference has {} onset{} after {:.0f} ms of rest, and the limb rested before {} "
                                 "of them: at least {} are needed",
                                 seen, seen == 1 ? "" : "s", 1e3 * kBaseline, found.onsets, kMinOnsets * n),

@@ -179,9 +179,8 @@ Result<FrequencyResponseEstimate> local_polynomial_response(std::span<const Expl
   }
   const auto kept = static_cast<Index>(frequencies.size());
   if (2 * kept < tried || kept == 0) {
-    return bad_data(
-        "the perturbation leaves most lines empty, so the response cannot be distinguished from a transient",
-        "use --method welch, or record several trials with different phases");
+    return bad_data("most frequencies are not excited, so the local polynomial method cannot be used",
+                    "use --method welch, which suits any perturbation, or record several trials with different phases");
   }
   found.frequency = Eigen::Map<const Vector>(frequencies.data(), kept);
   found.multiple_coherence = Eigen::Map<const Matrix>(coherences.data(), outputs, kept).transpose();

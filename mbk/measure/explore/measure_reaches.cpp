@@ -1,9 +1,12 @@
 #include "mbk/measure/explore/measure_reaches.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "mbk/measure/explore/servo_displacement.h"
@@ -75,8 +78,15 @@ Result<Reaches> reaches_of(std::span<const ExplorationTrial> trials, const std::
     }
   }
   if (all.empty() && found.left_out == 0) {
-    return bad_data(fmt::format("event '{}' is missing", trigger),
-                    "name the event at which reaches are aligned with --trigger");
+    std::set<std::string> names;
+    for (const ExplorationTrial& trial : trials) {
+      for (const Event& event : trial.events) names.insert(event.name);
+    }
+    return bad_data(names.empty()
+                        ? fmt::format("there is no event '{}': no events were recorded", trigger)
+                        : fmt::format("there is no event '{}'; the events are {}", trigger, fmt::join(names, ", ")),
+                    names.empty() ? "record an event at the start of each reach"
+                                  : "name the event at which reaches are aligned with --trigger");
   }
   double largest = 0.0;
   for (const Reach& one : all) largest = std::max(largest, one.commanded.norm());

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mbk/base/core/significant.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/impedance/ellipse.h"
@@ -43,7 +44,8 @@ class Checker {
       id_.usable = false;
     } else if (excitation.condition > kLargestCondition) {
       warn(WarningCode::poorly_conditioned,
-           fmt::format("the regressors are nearly linearly dependent (condition number {:.2g})", excitation.condition),
+           fmt::format("the motion is too uniform to separate M, B and K (condition number {})",
+                       significant(excitation.condition, 2)),
            "perturb at several frequencies and in both directions");
     }
     if (axes() == 2 && excitation.motion_ratio < kSmallestMotionRatio) {
@@ -67,9 +69,11 @@ class Checker {
     const bool damped = id_.structure != Structure::mass_spring;
     if (inertia.largest < 0.0 && stiffness.largest < 0.0 && (!damped || damping.largest < 0.0)) {
       warn(WarningCode::force_sign_reversed,
-           "inertia, damping and stiffness are all negative: the force was recorded with the opposite sign",
-           "F must be the force of the limb on the machine: put a minus before its columns, naming all channels, as in "
-           "--channels x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13");
+           "inertia, damping and stiffness are all negative: the force was probably recorded with the opposite sign",
+           axes() == 1 ? "F must be the force of the limb on the machine: put a minus before its column, naming all "
+                         "channels, as in --channels x=1,F=-2"
+                       : "F must be the force of the limb on the machine: put a minus before its columns, naming all "
+                         "channels, as in --channels x=2,y=3,Fx=-10,Fy=-11,xr=12,yr=13");
       id_.usable = false;
       return;
     }
@@ -135,8 +139,10 @@ class Checker {
       id_.usable = false;
     } else if (const double least = std::min(fit.vaf.minCoeff(), fit.vaf_in_sample.minCoeff()); least < kPoorVaf) {
       warn(WarningCode::fit_poor,
-           fmt::format("inertia, damping and stiffness explain only {:.1f} % of the {}{}", least, what,
-                       least < fit.vaf.minCoeff() ? " in the fitted data" : ""),
+           fmt::format("inertia, damping and stiffness explain {} the {}{}{}",
+                       least < 0.0 ? std::string("none of") : fmt::format("only {:.1f} % of", least), what,
+                       least < fit.vaf.minCoeff() ? " in the fitted data" : "",
+                       least < 0.0 ? fmt::format(" (VAF {:.1f} %)", least) : std::string()),
            "look for voluntary activity or reflexes with 'mbk explore', and check with 'mbk passivity' whether the "
            "limb absorbed energy; do not interpret M, B and K as those of a passive limb");
       if (!(fit.vaf.minCoeff() > 0.0)) id_.usable = false;
@@ -184,12 +190,14 @@ class Checker {
          "ask the participant to give no response, or perturb less or less predictably; do not interpret M, B and K as "
          "those of a passive limb");
     if (!by_instruments || !pulses) return;
-    warn(WarningCode::invalid_instruments,
-         fmt::format(
-             "during pulses the variance of the residual is higher than at rest between them, by {:.0f} % of that of "
-             "the force: the limb responds to each pulse, which instrumental variables attribute to mechanics",
-             100.0 * induced),
-         "use --method ls and read its warnings, or perturb with a multisine");
+    warn(
+        WarningCode::invalid_instruments,
+        fmt::format(
+            "the unexplained force is much larger during pulses than between them (excess variance {:.0f} % of that of "
+            "the force): the limb responds to each pulse, and instrumental variables would count that response as M, B "
+            "and K",
+            100.0 * induced),
+        "use --method ls and read its warnings, or perturb with a multisine");
     id_.usable = false;
   }
 

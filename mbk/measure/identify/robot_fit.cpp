@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "mbk/base/core/nan.h"
+#include "mbk/base/core/significant.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/instrumental_variables.h"
 #include "mbk/base/numeric/least_squares.h"
@@ -495,10 +496,10 @@ void warn(RobotIdentification& found, double loss_by_chance) {
   if (found.condition > kLargestCondition) {
     std::string which;
     for (const auto& [name, share] : found.weakest) which += (which.empty() ? "" : ", ") + name;
-    warnings.push_back(
-        {WarningCode::poorly_conditioned,
-         fmt::format("the motion hardly distinguishes {} (condition number {:.3g})", which, found.condition),
-         "move more and more variedly, or omit terms with --terms"});
+    warnings.push_back({WarningCode::poorly_conditioned,
+                        fmt::format("the motion hardly distinguishes {} (condition number {})", which,
+                                    significant(found.condition, 3)),
+                        "move more and more variedly, or omit terms with --terms"});
   }
   for (std::size_t joint = 0; joint < found.fit.size(); ++joint) {
     constexpr double kPoor = 80.0;

@@ -847,7 +847,8 @@ Fitter::Search Fitter::search(double pole) const {
 Result<void> Fitter::check() {
   if (n_ < 1 || n_ > kMaxPoles) return bad_usage(fmt::format("{} poles are not between 1 and {}", n_, kMaxPoles));
   if (q_ < 1 || q_ > n_ + 1) {
-    return bad_usage(fmt::format("{} zeros exceed the {} poles of the model", q_ - 1, n_));
+    return bad_usage(fmt::format("{} zero{} exceed{} the {} pole{} of the model", q_ - 1, q_ == 2 ? "" : "s",
+                                 q_ == 2 ? "s" : "", n_, n_ == 1 ? "" : "s"));
   }
   if (experiments_.empty()) return bad_usage("no experiment was given");
   for (const double pole : options_.start_poles) {

@@ -367,24 +367,27 @@ tl::unexpected<Error> Identifier::nothing_settled(const std::vector<SearchStart>
     if (!start.stable && start.growth > 0.0) growth.push_back(start.growth);
   }
   const auto unstable = std::ranges::count(starts, false, &SearchStart::stable);
-  std::string text = fmt::format(
-      "no stable model with {} was found: of {} starts, {} converged to an unstable model and {} did not converge",
-      model, starts.size(), unstable, std::ssize(starts) - unstable);
+  const std::string none = fmt::format("no stable model with {} was found: ", model);
+  std::string text =
+      none + (unstable == std::ssize(starts)
+                  ? fmt::format("all {} starts converged to an unstable model", unstable)
+                  : fmt::format("of {} starts, {} converged to an unstable model and {} did not converge",
+                                starts.size(), unstable, std::ssize(starts) - unstable));
   const char* const otherwise =
-      "swap input and output, use fewer poles, or give a start near the slowest pole with --start-pole";
+      "use fewer poles, swap input and output, or give a start near the slowest pole with --start-pole";
   if (2 * unstable < std::ssize(starts)) return fail(ErrorKind::not_usable, text, otherwise);
   constexpr double kAgree = 1.5;
   if (!growth.empty() && std::ranges::max(growth) <= kAgree * std::ranges::min(growth)) {
-    text +=
-        fmt::format(", whose response grows by a factor e in {:.2g} s", 1.0 / numeric::upper_median(std::move(growth)));
+    text += fmt::format(" (the unstable response grows e-fold in {:.2g} s)",
+                        1.0 / numeric::upper_median(std::move(growth)));
   }
   const bool loop = options_.method == TransferFunctionMethod::closed_loop;
   return fail(ErrorKind::not_usable, text,
-              fmt::format("if the system is unstable without its control loop, identify the closed loop, which is "
-                          "stable: --input {0} --output OUTPUT and --input {0} --output INPUT; the system is the first "
-                          "over the second; if the system itself is stable, {1}{2}",
+              fmt::format("{2}{1}; if the system is unstable without its control loop, identify the closed loop, which "
+                          "is stable: --input {0} --output OUTPUT and --input {0} --output INPUT; the system is the "
+                          "first over the second",
                           loop ? "REFERENCE" : "WHAT-DRIVES-THE-LOOP",
-                          loop ? "" : "use --method clsrivc in a closed loop, ", otherwise));
+                          loop ? "" : "; in a closed loop use --method clsrivc", otherwise));
 }
 
 Result<Fit> Identifier::choose_order() {
@@ -413,7 +416,9 @@ Result<Fit> Identifier::choose_order() {
   if (chosen == fits.size()) {
     return nothing_settled(
         fits.back().starts,
-        several ? "these orders" : fmt::format("{} poles and {} zeros", orders.front().first, orders.front().second));
+        several ? "these orders"
+                : fmt::format("{} pole{} and {} zero{}", orders.front().first, orders.front().first == 1 ? "" : "s",
+                              orders.front().second, orders.front().second == 1 ? "" : "s"));
   }
   found_.orders[chosen].chosen = true;
   delay_ = delays[chosen];

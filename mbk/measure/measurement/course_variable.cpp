@@ -41,10 +41,11 @@ tl::unexpected<Error> nothing_to_align(std::span<const ExplorationTrial> trials,
   for (const ExplorationTrial& trial : trials) {
     for (const Event& event : trial.events) names.insert(event.name);
   }
-  return bad_data(
-      fmt::format("event '{}' is missing{}", align,
-                  names.empty() ? std::string() : fmt::format("; the events are {}", fmt::join(names, ", "))),
-      "name one of them with --align, or --align reference");
+  if (names.empty()) {
+    return bad_data(fmt::format("there is no event '{}': no events were recorded", align), "use --align reference");
+  }
+  return bad_data(fmt::format("there is no event '{}'; the events are {}", align, fmt::join(names, ", ")),
+                  "name one of them with --align, or use --align reference");
 }
 
 Result<explore::CourseVariable> aligned(std::span<const ExplorationTrial> trials, const std::string& align) {

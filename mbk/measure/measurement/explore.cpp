@@ -179,11 +179,16 @@ Result<std::vector<ExplorationTrial>> whole_trials(std::span<const Recording> re
 /// Where every recording's reference is ramps and holds, or the window on the plateau was given.
 Result<void> add_plateaus(std::span<const Recording> recordings, std::span<const ExplorationTrial> trials,
                           const ExploreOptions& options, Exploration& found) {
-  const bool asked = options.plateau.asked();
+  const bool asked = options.plateau.asked() || options.only == ExplorationPart::ramp_and_hold;
   const auto displaces = [&](const ExplorationTrial& trial) {
     return explore::is_ramp_and_hold(trial, options.plateau);
   };
-  if (options.signals || (!asked && !std::ranges::all_of(trials, displaces))) return {};
+  if (options.signals) return {};
+  if (!options.plateau.asked() && !std::ranges::all_of(trials, displaces)) {
+    if (!asked) return {};
+    return bad_data("no position reference with at least 4 ramps and holds was recorded",
+                    "record a ramp-and-hold perturbation, or omit --only");
+  }
   auto plateaus = plateau_stiffness(recordings, options, found.warnings);
   if (!plateaus) {
     if (asked) return tl::unexpected(plateaus.error());

@@ -82,7 +82,7 @@ void judge(MeasuredDelay& found) {
         found.vaf));
   }
   if (found.mass < 0.0) {
-    found.problems.emplace_back("the mass is negative: the force was recorded with the opposite sign");
+    found.problems.emplace_back("the mass is negative: the force was probably recorded with the opposite sign");
   } else if (std::abs(found.mass - found.stated_mass) >
              std::max(kSameMass * found.stated_mass, numeric::kNormal95 * found.mass_error)) {
     found.problems.push_back(

@@ -58,7 +58,7 @@ Result<std::vector<RecordingReader::Record>> RecordingReader::records_of(const f
   if (trials.empty() && !trial.empty()) {
     // A slice that is wrong is why there are no trials.
     MBK_TRY(all.channels.empty() ? Result<Recording>(Recording{}) : recording::read(**open, all));
-    return in_file(bad_usage(fmt::format("--trial {}: the file holds one record only", trial), "leave --trial out"));
+    return in_file(bad_usage(fmt::format("--trial {}: the file contains only one recording", trial), "omit --trial"));
   }
   std::vector<Record> records;
   if (trials.empty()) records.push_back({.file = file, .open = *open});

@@ -37,7 +37,7 @@ Recording perturbation_only(Recording recording) {
   const Index first = std::lower_bound(times, times + samples, from) - times,
               last = std::lower_bound(times, times + samples, to) - times;
   if (first >= last) return recording;
-  recording.notes.push_back(fmt::format("only the perturbation counts: {:.3f} s to {:.3f} s of {:.3f} s", from,
+  recording.notes.push_back(fmt::format("only the perturbation is analysed: {:.3f} s to {:.3f} s of {:.3f} s", from,
                                         recording.time[last - 1], recording.time[samples - 1]));
   move_excluded_windows(-from, recording);
   recording.time = Vector(recording.time.segment(first, last - first).array() - from);

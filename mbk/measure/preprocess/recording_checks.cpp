@@ -55,9 +55,9 @@ Result<void> check_length(Index samples, const Inspection& inspection) {
     return bad_data("time never increases", "check which channel is the time, and whether it is reversed");
   }
   if (inspection.duration <= 0.0 && inspection.backward_times > 0) {
-    return bad_data(fmt::format("the last time is before the first: time runs backwards{} at sample {}",
+    return bad_data(fmt::format("time runs backwards{} at sample {}, and the last time is before the first",
                                 inspection.backward_times == 1 ? "" : ", first", inspection.first_backward + 1),
-                    "cut the recording there, or name another time channel with --channels");
+                    "correct the time, or assign another column as time with --channels");
   }
   return {};
 }
@@ -75,6 +75,10 @@ Result<void> check_step(const Clock& clock, const Inspection& inspection, Index 
       if (std::isnan(interval)) return fmt::format("time is not a number at sample {}", i + 1);
       return fmt::format("time {} {}", interval == 0.0 ? "repeats" : "runs backwards", at());
     };
+    if (interval < 0.0 && inspection.backward_times > 1 && inspection.first_backward == i) {
+      return bad_data(fmt::format("time runs backwards {} times, first {}", inspection.backward_times, at()),
+                      "correct the time, or pass --rate HZ if the samples are evenly spaced");
+    }
     const bool coarse = interval == 0.0 && kOften * inspection.duplicated_times > clock.samples();
     return bad_data(fault(), coarse ? "time is too coarse: give the sample rate, as in --rate 1000"
                                     : "choose a window without it with --from and --to");
@@ -234,7 +238,7 @@ Result<void> check_alive(const Signals& signals, const WindowPlan& plan) {
   for (Index axis = 0; axis < signals.axes; ++axis) {
     if (constant(signals.force_hand_on_robot, axis)) {
       return refusal(kForceChannels, signals.force_hand_on_robot, axis,
-                     "check that the sensor was on, or name its channel with --channels");
+                     "check that the sensor was on, or assign another column with --channels");
     }
     resting += constant(signals.position, axis) ? 1 : 0;
   }

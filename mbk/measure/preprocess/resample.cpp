@@ -32,9 +32,13 @@ Result<Recording> resample(const Recording& recording, Hertz rate) {
   if (n < 2) return bad_data("a recording of fewer than 2 samples cannot be resampled");
   for (Index i = 1; i < n; ++i) {
     if (!(recording.time[i] > recording.time[i - 1])) {
-      return bad_data(fmt::format("time does not increase at sample {} ({:.6f} s after {:.6f} s)", i + 1,
-                                  recording.time[i], recording.time[i - 1]),
-                      "cut the recording there; resampling needs increasing time");
+      return bad_data(
+          fmt::format("time {} at sample {} ({:.6f} s after {:.6f} s), and only increasing time can be resampled",
+                      recording.time[i] == recording.time[i - 1]  ? "repeats"
+                      : recording.time[i] < recording.time[i - 1] ? "runs backwards"
+                                                                  : "is not a number",
+                      i + 1, recording.time[i], recording.time[i - 1]),
+          "correct the time");
     }
   }
   const double first = recording.time[0];

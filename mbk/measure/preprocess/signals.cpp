@@ -14,16 +14,18 @@ Result<Columns> require(const Recording& recording, const QuantityChannels& quan
   Columns columns = channels_of(recording, quantity, axes);
   if (columns.size() > 0) return columns;
   std::string missing, present, first;
+  int count = 0;
   for (Index axis = 0; axis < axes; ++axis) {
     const char* name = quantity.name(axes, axis);
     if (recording.find(name) != nullptr) continue;
     missing += fmt::format("{}'{}'", missing.empty() ? "" : " and ", name);
     if (first.empty()) first = name;
+    ++count;
   }
   for (const Channel& channel : recording.channels) present += (present.empty() ? "" : ", ") + channel.name;
   return bad_data(
-      fmt::format("channel {} is missing (the channels are: {}){}", missing, present.empty() ? "none" : present,
-                  why_missing(recording, first)),
+      fmt::format("channel{} {} {} missing (the channels are: {}){}", count == 1 ? "" : "s", missing,
+                  count == 1 ? "is" : "are", present.empty() ? "none" : present, why_missing(recording, first)),
       fmt::format("name all columns with --channels, as in {}=COLUMN; 'mbk new channels FILE' guesses them", first));
 }
 

@@ -74,6 +74,14 @@ Result<SampleLimits> in_samples(const WindowLimits& limits, Index from, Index to
   SampleLimits result{from, to, {}};
   if (inside && limits.from_s) result.from = clock.sample(from_s);
   if (inside && limits.to_s) result.to = std::min(clock.sample(to_s), clock.samples());
+  if (from_s >= duration && limits.from_s) {
+    return bad_data(fmt::format("--from {:g} s is not before the end of the recording, {:g} s", from_s, duration),
+                    "choose an earlier --from");
+  }
+  if (from_s >= to_s && limits.from_s && limits.to_s) {
+    return bad_data(fmt::format("the window from {:g} s to {:g} s is empty", from_s, to_s),
+                    "choose --from before --to");
+  }
   if (!inside || result.from >= result.to) {
     return bad_data(
         fmt::format("the window from {:g} s to {:g} s is not within this recording of {:g} s", from_s, to_s, duration),

@@ -231,6 +231,15 @@ TEST(DefaultWindows, RefusesAWindowWithoutADisplacement) {
   EXPECT_THAT(plan.error().remedy, HasSubstr("--from"));
 }
 
+TEST(DefaultWindows, NamesTheOptionThatIsOutsideTheRecording) {
+  const auto late = default_windows(Protocol::free, sine(20000), clock(20000), {.from_s = 100.0});
+  ASSERT_FALSE(late);
+  EXPECT_THAT(late.error().line(), HasSubstr("--from 100 s"));
+  const auto empty = default_windows(Protocol::free, sine(20000), clock(20000), {.from_s = 5.0, .to_s = 4.0});
+  ASSERT_FALSE(empty);
+  EXPECT_THAT(empty.error().remedy, HasSubstr("--from before --to"));
+}
+
 TEST(DefaultWindows, RefusesAReferenceThatNeverRests) {
   Matrix varying(20000, 1);
   for (Index i = 0; i < varying.rows(); ++i) varying(i, 0) = std::sin(0.01 * static_cast<double>(i));

@@ -370,6 +370,10 @@ Result<ChainParts> chain_from_urdf(std::string_view urdf, const SerialChain::Opt
   std::copy_if(joints.begin(), joints.end(), std::back_inserter(moving),
                [](const JointOfTree& joint) { return joint->type != urdf::Joint::FIXED; });
   if (moving.empty() || moving.size() > kMaxJoints) {
+    if (moving.empty()) {
+      return bad_data(fmt::format("no joint between link '{}' and link '{}' moves", base->name, tip->name),
+                      fmt::format("1 to {} moving joints are needed", kMaxJoints));
+    }
     return bad_data(fmt::format("{} joints move between link '{}' and link '{}'", moving.size(), base->name, tip->name),
                     fmt::format("1 to {} are supported", kMaxJoints));
   }

@@ -46,8 +46,8 @@ std::string after_onset_text(const AfterOnsetEstimate& found, Motion motion) {
   std::string onsets = fmt::format("{}, minus the mean of the {:.0f} ms before each; displacement {:.2g} {}",
                                    found.onsets, kMilliseconds * found.baseline_s, found.displacement, units.position);
   if (found.omitted > 0) {
-    onsets += fmt::format("; {} omitted, because the limb did not rest before them or the recording is too short",
-                          found.omitted);
+    onsets += fmt::format("; {} omitted, because the limb did not rest before {} or the recording is too short",
+                          found.omitted, found.omitted == 1 ? "it" : "them");
   }
   rows.push_back({"onsets", onsets});
   add("M", found.M, units.inertia, rows);

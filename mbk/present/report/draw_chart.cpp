@@ -256,8 +256,11 @@ std::string references_sentence(const Chart& chart) {
     const std::string value = fmt::format("{:.4g}{}{}", at.value, axis.unit.empty() ? "" : " ", axis.unit);
     return at.name.empty() ? fmt::format("{} = {}", axis.label, value) : fmt::format("{} ({})", at.name, value);
   };
-  for (const ChartReference& at : shown(chart.horizontal)) add("across: " + named(at, chart.y));
-  for (const ChartReference& at : shown(chart.vertical)) add("upright: " + named(at, chart.x));
+  for (const ChartReference& at : shown(chart.horizontal)) {
+    const bool zero = at.value == 0.0 && (at.name.empty() || at.name == "0");
+    add(zero ? "horizontal: zero line" : "horizontal: " + named(at, chart.y));
+  }
+  for (const ChartReference& at : shown(chart.vertical)) add("vertical: " + named(at, chart.x));
   if (chart.identity) add("diagonal: identity line");
   return text;
 }

@@ -80,12 +80,12 @@ std::string energy_text(const EnergyAccount& account, const char* unit) {
                 {"excess of passivity at the end", excess(account.shortage_at_end),
                  between(negated(account.shortage_at_end95)), "eq. (4.3)"},
                 {"excess, worst case during the trial", excess(account.shortage_largest),
-                 between(negated(account.shortage_largest95)), "negative: damping is lacking"}});
+                 between(negated(account.shortage_largest95)), "below 0: damping is lacking"}});
 }
 
 std::string lines_text(const std::vector<EnergyLine>& lines) {
   if (lines.empty()) return "";
-  std::vector<std::vector<std::string>> rows = {{"line [Hz]", "absorbed [J]", "95 % for all lines jointly"}};
+  std::vector<std::vector<std::string>> rows = {{"frequency [Hz]", "absorbed [J]", "joint 95 % interval"}};
   for (const EnergyLine& line : lines) {
     rows.push_back(
         {fmt::format("{:.3g}", line.frequency.value), fmt::format("{:.3g}", line.absorbed), between(line.absorbed95)});
@@ -119,6 +119,19 @@ std::string passivity_text(const Passivity& passivity, Motion motion) {
   return text + paragraph("  ", fmt::format("Brackets are 95 % intervals. {}", kNoGuarantee));
 }
 
+namespace {
+
+/// "inertia, damping and stiffness".
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 < names.size() ? ", " : " and ") + names[k];
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string consistent_text(const ConsistentFit& fit, Motion motion) {
   std::vector<std::string> active;
   if (fit.inertia.active) active.emplace_back("inertia");
@@ -130,9 +143,9 @@ std::string consistent_text(const ConsistentFit& fit, Motion motion) {
     return std::vector<std::string>{name, fmt::format("{:.3g}", one.free_smallest), fmt::format("{:.3g}", smallest),
                                     unit};
   };
-  const std::string constraint =
-      active.empty() ? "only symmetry had to be imposed"
-                     : fmt::format("{} constrained at the limit for a passive limb", fmt::join(active, " and "));
+  const std::string constraint = active.empty() ? "only symmetry had to be imposed"
+                                                : fmt::format("{} {} moved to the limit of a passive limb",
+                                                              listed(active), active.size() == 1 ? "was" : "were");
   return paragraph(
              "  ",
              fmt::format("nearest model with M and K symmetric and M, B, K positive semidefinite: {}; the power of the "

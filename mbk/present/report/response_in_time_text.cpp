@@ -72,9 +72,10 @@ std::string impulse_response_text(const ImpulseResponseEstimate& found, Motion m
   }
   add_model(found.model, motion, rows);
   if (found.model.identifiable && found.model.numerator > 0.0) {
-    rows.push_back({"M-B-K", fmt::format("{}: F({:.0f}, {:.0f}) = {:.3g}, {}",
-                                         found.model.enough ? "sufficient" : "not sufficient", found.model.numerator,
-                                         found.model.denominator, found.model.statistic, p_text(found.model.p_value))});
+    rows.push_back(
+        {"M, B and K", fmt::format("{}: F({:.0f}, {:.0f}) = {:.3g}, {}",
+                                   found.model.enough ? "suffice" : "do not suffice", found.model.numerator,
+                                   found.model.denominator, found.model.statistic, p_text(found.model.p_value))});
   }
   return text + table(rows);
 }

@@ -41,7 +41,8 @@ std::string drives_text(const robot::DynamicModel& model) {
   for (const auto& [word, expected] : terms) {
     if (expected) words.emplace_back(word);
   }
-  std::string text = words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ", "));
+  std::string text =
+      words.empty() ? "no motor inertia, friction, cable or offset" : fmt::format("{}", fmt::join(words, ", "));
   if (drive.coulomb || drive.stribeck) {
     text += drive.smoothing > 0.0
                 ? fmt::format("; the sign of friction is smoothed over {:.4g} rad/s or m/s", drive.smoothing)
@@ -51,16 +52,18 @@ std::string drives_text(const robot::DynamicModel& model) {
   return text;
 }
 
-/// Coefficient j in terms of the identifiable ones: "in 0.04·upper.inertia_yy − 0.2·upper.mass_z".
+/// What coefficient j adds to the identifiable ones: "adds 0.04·fore.mass to upper.inertia_yy, −0.2·fore.mass to …".
 std::string part_of(const numeric::IndependentColumns& base, Index j, const std::vector<robot::Coefficient>& names) {
   constexpr double kNone = 1e-6;
   std::string text;
   for (std::size_t k = 0; k < base.kept.size(); ++k) {
     const double factor = base.combination(static_cast<Index>(k), j);
     if (std::abs(factor) < kNone) continue;
-    text += text.empty() ? (factor < 0.0 ? "in −" : "in ") : (factor < 0.0 ? " − " : " + ");
+    text += text.empty() ? "adds " : ", ";
+    if (factor < 0.0) text += "−";
     if (std::abs(std::abs(factor) - 1.0) >= kNone) text += fmt::format("{:.4g}·", std::abs(factor));
-    text += names[static_cast<std::size_t>(base.kept[k])].name;
+    text += fmt::format("{} to {}", names[static_cast<std::size_t>(j)].name,
+                        names[static_cast<std::size_t>(base.kept[k])].name);
   }
   return text.empty() ? "no effect" : text;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mbk/base/core/significant.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/present/report/force_comparison_text.h"
 #include "mbk/present/report/layout.h"
@@ -56,8 +57,9 @@ std::string how_found(const RobotIdentification& found) {
   rows.push_back({"window", how.window_rule});
   rows.push_back({"filters", filters_text(how)});
   rows.push_back(
-      {"excitation", fmt::format("{} of {} coefficients identifiable ({} with any motion), condition number {:.3g}",
-                                 found.rank, found.coefficients.size(), found.structural_rank, found.condition)});
+      {"excitation",
+       fmt::format("{} of {} coefficients identifiable ({} with any motion), condition number {}", found.rank,
+                   found.coefficients.size(), found.structural_rank, significant(found.condition, 3))});
   const double delay = 1e3 * found.model.delay;
   rows.push_back({"motor delay",
                   found.delay_standard_error

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/core/significant.h"
 #include "mbk/base/core/units.h"
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
@@ -83,7 +84,7 @@ std::string how_made(const Identification& id) {
       fmt::format("{:.3g} {} rms", metres ? 1e3 * e.motion : e.motion, metres ? "mm" : units_of(id.motion).position);
   if (id.axes == 2)
     motion += fmt::format(", {:.0f} % of it perpendicular to the main direction", 100.0 * e.motion_ratio);
-  rows.push_back({"motion", motion + fmt::format("; condition number {:.2g}", e.condition)});
+  rows.push_back({"motion", motion + fmt::format("; condition number {}", significant(e.condition, 2))});
   if (id.handle_mass > 0.0) {
     const bool recorded = id.handle_mass_from == HandleMassSource::recording;
     rows.push_back({"handle mass", fmt::format("{:g} kg subtracted from the inertia, {}", id.handle_mass,
@@ -240,10 +241,11 @@ std::string unseen(const Identification& id) {
   const Units units = units_of(id.motion);
   const bool metres = id.motion == Motion::translation;
   const double moved = 1.0 / stretched[stretched.size() - 1];
-  return paragraph("  ", fmt::format("(not visible in one recording: an offset of 1 {} in the force would shift x0 by "
-                                     "up to {:.2g} {}; a delay of the force by 1 ms would lower B by up to {:.2g} {})",
-                                     units.force, metres ? 1e3 * moved : moved, metres ? "mm" : units.position,
-                                     1e-3 * stretched[0], units.damping));
+  return paragraph(
+      "  ", fmt::format("(one recording cannot reveal: an offset of 1 {} in the force would shift x0 by "
+                        "up to {} {}; a delay of the force by 1 ms would lower B by up to {} {})",
+                        units.force, significant(metres ? 1e3 * moved : moved, 2), metres ? "mm" : units.position,
+                        significant(1e-3 * stretched[0], 2), units.damping));
 }
 
 std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
@@ -292,8 +294,8 @@ std::string alternative_text(const Identification& id, const Identification& alt
         why = warning.message;
       }
     }
-    const std::string invalid =
-        paragraph("  ", "instrumental variables are not valid here and cannot check least squares: " + why);
+    const std::string invalid = paragraph(
+        "  ", "instrumental variables gave no usable result, so they cannot be compared with least squares: " + why);
     return by_instruments && alternative.usable
                ? invalid + model() + (alternative.warnings.empty() ? "" : "\n" + warnings_text(alternative.warnings))
                : invalid;
@@ -393,8 +395,10 @@ std::string info_text(const Recording& recording, const Inspection& inspection) 
         {"rate",
          fmt::format("{:.6g} Hz{}", inspection.rate_hz,
                      recording.time_from_rate ? " (time from the given rate; the file contains no time)" : "")});
-    rows.push_back({"clock", fmt::format("intervals {:.4g} to {:.4g} ms, standard deviation {:.2g} ms",
-                                         1e3 * inspection.interval_min, 1e3 * inspection.interval_max,
+    const std::string shortest = fmt::format("{:.4g}", 1e3 * inspection.interval_min),
+                      longest = fmt::format("{:.4g}", 1e3 * inspection.interval_max);
+    rows.push_back({"clock", fmt::format("intervals {} ms, standard deviation {:.2g} ms",
+                                         shortest == longest ? shortest : shortest + " to " + longest,
                                          1e3 * inspection.interval_standard_deviation)});
   } else {
     rows.push_back({"rate", "undefined: time never increases"});

@@ -52,7 +52,7 @@ std::string time_course_text(const TimeCourseEstimate& found, Motion motion) {
   std::string text = "change over time\n";
   std::string over = fmt::format("{}, {:.4g} to {:.4g}{}", found.variable, found.from, found.to, unit);
   if (found.repetitions > 1) over += fmt::format(", {} repetitions pooled", found.repetitions);
-  std::vector<std::vector<std::string>> rows = {{"over", over}};
+  std::vector<std::vector<std::string>> rows = {{"variable", over}};
   rows.push_back({"loop", found.instruments ? "instrumental variables, from the motion that the reference explains"
                                             : "least squares: biased if the force moves the robot"});
   if (!found.changes) {

@@ -151,6 +151,9 @@ std::string starts_text(const TransferFunctionIdentification& found) {
   const auto same = std::ranges::count_if(found.starts, [&](const SearchStart& start) {
     return start.converged && std::abs(start.fit - found.fit) <= kSame;
   });
+  if (same == std::ssize(found.starts)) {
+    return same == 1 ? std::string("1, converged to this model") : fmt::format("{}, all converged to this model", same);
+  }
   return fmt::format("{}: {} converged, {} of them to this model", found.starts.size(), settled, same);
 }
 

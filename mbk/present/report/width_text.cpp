@@ -52,7 +52,8 @@ std::string width_text(const WidthFindings& widths) {
                                   : std::vector<std::string>{"", "width", "ratio second/first", ""});
     text += table(rows);
     text += paragraph("  ",
-                      "(width √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % intervals. Noise alone gives a "
+                      "(width: overall difference, 0 = equal, √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % "
+                      "intervals. Noise alone gives a "
                       "width above 0: interpret it only if both matrices are well identified)");
   }
   for (const std::string& note : notes) text += paragraph("  ! ", note);

@@ -75,7 +75,8 @@ Result<void> set_orders(const TransferFunctionRequest& request, identify::Transf
   fit.poles = *request.poles;
   fit.zeros = request.zeros.value_or(*request.poles - 1);
   if (fit.zeros > fit.poles) {
-    return bad_usage(fmt::format("a model with {} zeros and {} poles is improper", fit.zeros, fit.poles),
+    return bad_usage(fmt::format("a model with {} zero{} and {} pole{} is improper", fit.zeros,
+                                 fit.zeros == 1 ? "" : "s", fit.poles, fit.poles == 1 ? "" : "s"),
                      "exchange input and output, or use fewer zeros");
   }
   return {};

@@ -43,7 +43,7 @@ function disagreement(trial: Trial): HTMLElement | undefined {
   const instrument = trial.result.instrument ?? trial.result.alternatives.find((one) => one.instrument)?.instrument;
   const other = trial.result.alternatives[0];
   const holds = instrument?.strong && (trial.result.method === "iv" ? trial.result.usable : other?.usable);
-  if (!holds) return h("p", { "data-significant": "unknown" }, h("strong", {}, "Instrumental variables are not valid here and cannot check least squares."));
+  if (!holds) return h("p", { "data-significant": "unknown" }, h("strong", {}, "Instrumental variables gave no usable result, so they cannot be compared with least squares."));
   const share = d.least_squares ? `, ${significant(Math.abs((100 * (d.iv_less_ls ?? 0)) / d.least_squares), 2)} % of the least-squares value` : "";
   const numbers = [`The largest difference is in ${parameterName(d.parameter)}: `, withHalfWidth(d.iv_less_ls, d.standard_error, "iv-less-ls"), ` ${unit}${share}`];
   if (!d.significant) return h("p", { "data-significant": "false" }, h("strong", {}, "The two methods do not differ significantly (99 %). "), ...numbers, ".");

@@ -6,7 +6,7 @@ export type PlainWarnings = Record<WarningCode, { title: string; meaning: string
 
 export const plainWarnings: PlainWarnings = {
   "force-sign-reversed": {
-    title: "The force was recorded with the opposite sign",
+    title: "The force was probably recorded with the opposite sign",
     meaning: "Inertia, damping and stiffness are all negative, which is impossible for a limb. The recording itself is probably fine.",
   },
   "implausible-scale": {
