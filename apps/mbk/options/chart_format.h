@@ -16,7 +16,7 @@ namespace mbk::app {
 struct ChartFormat {
   enum class Format { svg, pdf };
   Format format = Format::svg;
-  double width_mm = report::kOneColumn_mm;
+  double width_mm = report::kOneColumnMm;
 
   /// "force" → "force.svg"
   [[nodiscard]] std::string file(const std::string& name) const;

@@ -248,7 +248,7 @@ TEST(ChartSvg, IsAsWideAsAskedWithTextOfAtLeast7Points) {
   Chart c = chart();
   c.horizontal.push_back({200.0, "expected"});
   c.notes.emplace_back(std::string("a note that is longer than one column of a page is wide, so that it is wrapped"));
-  for (const double width : {kOneColumn_mm, kTwoColumns_mm, 60.0}) {
+  for (const double width : {kOneColumnMm, kTwoColumnsMm, 60.0}) {
     const std::string svg = chart_svg(c, width);
     EXPECT_THAT(svg, HasSubstr("width=\"" + std::to_string(static_cast<int>(width)) + ".00mm\""));
     EXPECT_GE(smallest_text_mm(svg), kSmallest_pt * kPoint_mm) << width;
@@ -284,7 +284,7 @@ TEST(ChartSvg, NumbersUnderTheAxisDoNotTouch) {
 TEST(ChartSvg, NamesOfLinesThatAreCloseDoNotCoverEachOther) {
   Chart c = chart();
   c.vertical = {{200.0, "measured, low"}, {201.0, "measured, high"}, {300.0, "far"}};
-  const std::string svg = chart_svg(c, kOneColumn_mm);
+  const std::string svg = chart_svg(c, kOneColumnMm);
   const std::regex name(R"re(translate\(([\d.]+) [\d.]+\) rotate\(-90\)">(measured|far))re");
   std::vector<double> places;
   for (std::sregex_iterator it(svg.begin(), svg.end(), name), end; it != end; ++it) {
@@ -296,7 +296,7 @@ TEST(ChartSvg, NamesOfLinesThatAreCloseDoNotCoverEachOther) {
 
 TEST(ChartSvg, SeveralStandSideBySide) {
   const std::vector<Chart> three(3, chart());
-  const std::string svg = charts_svg("all three", three, kTwoColumns_mm);
+  const std::string svg = charts_svg("all three", three, kTwoColumnsMm);
   EXPECT_THAT(svg, HasSubstr("<title id=\"title\">all three</title>"));
   EXPECT_EQ(svg.find("</svg>"), svg.rfind("</svg>"));
   const std::regex column(R"re(<g transform="translate\(([\d.]+) 0\)">)re");
