@@ -277,9 +277,9 @@ class TwoTrials(Case):
     def test_one_trial_of_two_axes_is_not_taken_apart_by_periods_and_the_text_says_why(self):
         path = trial(self, "one", 1, 1)
         text = " ".join(self.fine("explore", path).out.split())
-        self.assertIn("1 realisation", text)
-        self.assertIn("2 inputs", text)
-        self.refused(BAD_DATA, "explore", path, "--method", "robust", says="1 realisation")
+        self.assertIn("one trial", text)
+        self.assertIn("two inputs", text)
+        self.refused(BAD_DATA, "explore", path, "--method", "robust", says="one trial")
         self.refused(WRONG_USAGE, "explore", path, "--method", "robust", "--period", "0.0005", says="period")
 
 

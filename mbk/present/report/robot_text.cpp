@@ -88,8 +88,8 @@ std::string free_text(const RobotIdentification& found) {
     rows.push_back({one.coefficient.name, with_interval(one.value, numeric::kNormal95 * one.standard_error),
                     one.coefficient.unit, one.together_with});
   }
-  text += table(rows) +
-          "  (±: half of the 95 % interval; W θ = τ + Jᵀ F; τ: motor torques, F: force of the hand on the robot)\n";
+  text +=
+      table(rows) + "  (±: half of the 95 % interval; W θ = τ + Jᵀ F; τ: motor torques, F: force of hand on robot)\n";
   if (combined) {
     text += paragraph("  ",
                       "Coefficients listed after a value are included in it: only these sums are identifiable (base "

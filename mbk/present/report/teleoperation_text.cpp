@@ -261,9 +261,11 @@ std::string teleoperation_text(const TeleoperationFinding& finding) {
   result += paragraph("  meaning  ", meaning(finding.stability, finding.pade_limit));
   if (finding.with_operator) {
     const double a = finding.operator_shortage->a;
-    result += fmt::format("\nWith the operator at port {}, Re z ≥ {:g} N·s/m, a = {:g} ({} of passivity): {}\n",
-                          finding.operator_port, 0.0 - a, a, a > 0.0 ? "shortage" : "excess",
-                          verdict_line(*finding.with_operator, where.c_str()));
+    result +=
+        "\n" +
+        paragraph("", fmt::format("With the operator at port {}, Re z ≥ {:g} N·s/m, a = {:g} ({} of passivity): {}",
+                                  finding.operator_port, 0.0 - a, a, a > 0.0 ? "shortage" : "excess",
+                                  verdict_line(*finding.with_operator, where.c_str())));
     result += conditions_table(*finding.with_operator, finding.pade_limit);
     result += paragraph("  operator  ", finding.operator_shortage->rule);
   }
