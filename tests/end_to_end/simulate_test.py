@@ -148,7 +148,7 @@ class Refusals(Case):
     def test_an_experiment_that_cannot_be_is_named_by_file_and_trial_and_leaves_nothing(self):
         mistakes = {
             SHORT.replace("[1.3, -0.9]", "[1.3, 0.5]"): ["participant", "symmetric"],
-            SHORT.replace("peak_deg = 2", "peak_deg = 60"): ["perturbation", "workspace"],
+            SHORT.replace("peak_deg = 2", "peak_deg = 60"): ["perturbation", "limit 0°", "amplitude"],
             SHORT.replace("peak_deg = 2", "peak_N = 2"): ["position", "force"],
             SHORT + '[[trial]]\nname = "a"\nperturbation.moving_in_s = 30\n': ["trial 'a'", "30"],
         }
