@@ -135,7 +135,7 @@ class Experiments(Asked):
         for answers, says in (("simulated\nwaves\n", "waves"), ("simulated\nsines\n-2\n", "-2"),
                               ("simulated\n", "--yes")):
             self.assertIn(says, self.answer("new", "experiment", answers=answers, code=WRONG_USAGE).err)
-        self.assertIn("workspace", self.answer("new", "experiment", answers="simulated\nsines\n500\n\n\n\n",
+        self.assertIn("amplitude", self.answer("new", "experiment", answers="simulated\nsines\n500\n\n\n\n",
                                                code=WRONG_USAGE).err)
         self.assertEqual(self.names(), [])
 

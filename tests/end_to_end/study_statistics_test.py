@@ -56,7 +56,7 @@ class StatisticsOfAStudy(command.Case):
             self.assertEqual(one["between_sessions"]["support"], "too few people", one["outcome"])
             self.assertEqual(one["between_sessions"]["icc"], [])
         text = self.do("summary").out
-        self.assertIn("3 of 5", text)
+        self.assertIn("(3; at least 5 needed)", text)
         self.assertNotIn("ICC(A,1)", text)
         self.assertLessEqual(max(map(len, text.splitlines())), 80)
         self.assertNotIn("comparison", summary)

@@ -24,7 +24,7 @@ ERRORS = (  # a call, and what its error must contain
     (lambda: mbk.measure("log.mat", sg_window=4), ("sg_window: ", "help(mbk.measure)")),
     (lambda: mbk.measure("log.mat", trial=7), ("trial=7",)),
     (lambda: mbk.measure("log.mat", side="left"), ('side="left"',)),
-    (lambda: mbk.measure("log.mat", from_=500), ("from_=…", "to=…")),
+    (lambda: mbk.measure("log.mat", from_=500), ("from_=500 s", "from_=…")),
     (lambda: mbk.measure("log.mat", split=500), ("split=500",)),
     (lambda: mbk.measure("log.mat", cutoff=900), ("cutoff=…",)),
     (lambda: mbk.measure("log.mat", procedure="chapter3"), ('mode="reference"', "procedure=…")),
