@@ -46,7 +46,7 @@ TEST(FrequencyResponse, IsByTheFirstMethodThatTheDataAllow) {
   const auto welch = frequency_response({&one, 1});
   ASSERT_TRUE(welch.has_value()) << welch.error().line();
   EXPECT_EQ(welch->method, FrequencyResponseMethod::welch);
-  EXPECT_THAT(welch->method_rule, HasSubstr("2 inputs"));
+  EXPECT_THAT(welch->method_rule, HasSubstr("two inputs"));
 }
 
 TEST(FrequencyResponse, IsByTheMethodThatIsAskedForOrRefused) {

@@ -273,7 +273,7 @@ TEST(PeriodicResponse, OfTwoAxesNeedsTwoRealisations) {
   const auto trials = two_axes(1, 5, false, 0.1);
   const auto found = periodic_response(trials);
   ASSERT_FALSE(found.has_value());
-  EXPECT_NE(found.error().line().find("1 realisation"), std::string::npos) << found.error().line();
+  EXPECT_NE(found.error().line().find("one trial"), std::string::npos) << found.error().line();
 }
 
 TEST(PeriodicResponse, TakesTheSameRealisationTwiceForOne) {

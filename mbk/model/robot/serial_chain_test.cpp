@@ -441,7 +441,7 @@ TEST(SerialChain, RefusesLinksThatItDoesNotFind) {
   options.base_link = "upper";
   EXPECT_THAT(refusal(pendulum(), options), AllOf(HasSubstr("'stand'"), HasSubstr("'upper'"), HasSubstr("base_link")));
   options.base_link = "stand";
-  EXPECT_THAT(refusal(pendulum(), options), HasSubstr("0 joints"));
+  EXPECT_THAT(refusal(pendulum(), options), HasSubstr("no joint"));
 }
 
 TEST(SerialChain, AsksForTheTipWhereThereAreSeveral) {

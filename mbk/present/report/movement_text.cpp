@@ -25,7 +25,7 @@ std::string movement_text(const MovementQuality& found) {
       {"to s", "{:.2f}", [](const Reach& r) { return r.end_s; }},
       {"SPARC", "{:.3f}", [](const Reach& r) { return r.sparc; }},
       {"LDLJ", "{:.3f}", [](const Reach& r) { return r.ldlj; }},
-      {"speed peaks", "{:.0f}", [](const Reach& r) { return static_cast<double>(r.peaks); }},
+      {"peaks", "{:.0f}", [](const Reach& r) { return static_cast<double>(r.peaks); }},
       {"mean " + unit + "/s", "{:.3g}", [](const Reach& r) { return r.mean_speed; }},
       {"peak " + unit + "/s", "{:.3g}", [](const Reach& r) { return r.peak_speed; }},
       {"distance " + unit, "{:.3g}", [](const Reach& r) { return r.distance; }},

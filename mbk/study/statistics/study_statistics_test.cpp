@@ -224,7 +224,7 @@ TEST(Reliability, IsNotStatedOfFourPeople) {
   EXPECT_THAT(found.reliability[0].between_sessions.test_retest.icc, IsEmpty());
   EXPECT_THAT(found.reliability[0].agreement, IsEmpty());
   EXPECT_THAT(found.reliability[0].mixed_model.of_trials, IsEmpty());
-  EXPECT_THAT(reliability_text(found, false), HasSubstr("4 of 5"));
+  EXPECT_THAT(reliability_text(found, false), HasSubstr("(4; at least 5 needed)"));
   EXPECT_THAT(reliability_text(found, false), Not(HasSubstr("ICC(A,1)")));
 }
 
