@@ -27,7 +27,7 @@ std::string movement_text(const MovementQuality& found) {
       {"LDLJ", "{:.3f}", [](const Reach& r) { return r.ldlj; }},
       {"peaks", "{:.0f}", [](const Reach& r) { return static_cast<double>(r.peaks); }},
       {"mean " + unit + "/s", "{:.3g}", [](const Reach& r) { return r.mean_speed; }},
-      {"peak " + unit + "/s", "{:.3g}", [](const Reach& r) { return r.peak_speed; }},
+      {"max " + unit + "/s", "{:.3g}", [](const Reach& r) { return r.peak_speed; }},
       {"distance " + unit, "{:.3g}", [](const Reach& r) { return r.distance; }},
       {"path ratio", "{:.3f}", [](const Reach& r) { return r.path_ratio; }},
       {"error " + unit, "{:.2g}", [](const Reach& r) { return r.endpoint_error; }},
