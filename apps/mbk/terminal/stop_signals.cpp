@@ -15,7 +15,7 @@ constexpr std::array kHeldSignals = {SIGTTIN, SIGTTOU};
 
 std::atomic<session::LoopFlags*> told{nullptr};
 std::atomic<bool> in_trial{false};
-std::atomic<int> ending_signal{0};                // by this signal
+std::atomic<int> ending_signal{0};        // by this signal
 std::atomic<bool> came_outside{false};    // of a trial
 std::atomic<bool> stopped_silent{false};  // in a trial whose loop does not come back
 static_assert(std::atomic<session::LoopFlags*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);

@@ -207,8 +207,8 @@ struct TeleoperationFinding {
   std::string file, name, kind;     ///< of the architecture, or "two-port z"
   std::vector<std::string> matrix;  ///< what the architecture's matrix is, one line each
   std::vector<DesignParameter> parameters;
-  AbsoluteStability stability;        ///< Llewellyn
-  std::optional<FrequencyGrid> grid;  ///< where it was evaluated, with true delays
+  AbsoluteStability stability;          ///< Llewellyn
+  std::optional<FrequencyGrid> grid;    ///< where it was evaluated, with true delays
   std::optional<RadPerSec> pade_limit;  ///< above it the phase of the chosen Padé approximation is wrong
   int operator_port = 1;
   std::optional<OperatorShortage> operator_shortage;
