@@ -340,7 +340,7 @@ std::string mark(std::size_t k, double x, double y) {
 }
 
 constexpr double kText = 13.0, kSmallText = 12.0, kLine = 15.0, kCharacter = 7.4;  // of text in SVG's units
-constexpr double kTextPt = 8.0, kMillimetres = 25.4 / 72.0;                       // of kText; of a point
+constexpr double kTextPt = 8.0, kMillimetres = 25.4 / 72.0;                        // of kText; of a point
 
 /// About the width of a text in SVG's units.
 double width_of(const std::string& text, double size = kText) {
