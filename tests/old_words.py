@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Words that mbk once used in place of the field's, and phrases that readers had to translate, do not come back.
+"""Words that mbk once used instead of the field's, and phrases that readers had to translate, do not come back.
 
 usage: old_words.py [ROOT]
 """

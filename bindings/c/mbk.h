@@ -152,9 +152,9 @@ typedef struct mbk_request {
   size_t option_count;
   const char* const* words; /* arguments other than options: names of files, … */
   size_t word_count;
-  const mbk_recording* const* recordings; /* in place of files; they come before the words */
+  const mbk_recording* const* recordings; /* instead of files; they come before the words */
   size_t recording_count;
-  const char* const* documents; /* results as JSON, in place of result files; they come after the recordings */
+  const char* const* documents; /* results as JSON, instead of result files; they come after the recordings */
   size_t document_count;
   int (*stop)(void* context); /* polled often, from several threads; non-zero ends the call. NULL: never */
   void (*progress)(void* context, const char* what, double fraction); /* 0 to 1; from any thread, one at a time */

@@ -282,7 +282,7 @@ class ModuleTest(unittest.TestCase):
         self.assert_error(lambda: _mbk.call("measure", {"--cutoff": 5}, [], ["log.mat"]), code=2)
         self.assert_error(lambda: _mbk.call("measure"), "FILE", code=2)
         self.assert_error(lambda: _mbk.call("measure", {}, [], ["none.mat"]), "none.mat: ", code=3)
-        self.assert_error(lambda: _mbk.call("measure", {"trial": "3"}, [self.recording]), "trial", code=2)
+        self.assert_error(lambda: _mbk.call("measure", {"trial": "3"}, [self.recording]), "trial=…", code=2)
         self.assert_error(lambda: _mbk.call("measure", {"parts": True}, [self.recording]), "parts=True", code=2)
         for command in ("", "run", "measures", "robot", "manual", "measure --json", "robot identify x"):
             self.assert_error(lambda name=command: _mbk.call(name, {}, [], ["log.mat"]), "command", code=2)

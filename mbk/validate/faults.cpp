@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "mbk/base/core/temporary_folder.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/base/realtime/clock.h"
 #include "mbk/experiment/session/plan.h"
@@ -19,7 +20,6 @@
 #include "mbk/validate/rows.h"
 #include "mbk/validate/seeded_runs.h"
 #include "mbk/validate/study.h"
-#include "mbk/validate/temporary_folder.h"
 
 namespace mbk::validation {
 namespace {

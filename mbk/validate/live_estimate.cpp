@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "mbk/base/core/temporary_folder.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/experiment/session/plan.h"
 #include "mbk/experiment/session/session.h"
@@ -16,7 +17,6 @@
 #include "mbk/simulate/laboratory/simulation.h"
 #include "mbk/validate/rows.h"
 #include "mbk/validate/seeded_runs.h"
-#include "mbk/validate/temporary_folder.h"
 
 namespace mbk::validation {
 namespace {

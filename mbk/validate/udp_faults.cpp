@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "mbk/base/core/temporary_folder.h"
 #include "mbk/base/core/words.h"
 #include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/parallel.h"
@@ -20,7 +21,6 @@
 #include "mbk/experiment/safety/gate.h"
 #include "mbk/files/recording/read.h"
 #include "mbk/validate/rows.h"
-#include "mbk/validate/temporary_folder.h"
 #include "mbk/validate/udp_fault_kinds.h"
 
 namespace mbk::validation {

@@ -152,6 +152,13 @@ Result<void> check(const MeasureCommandArguments& arguments) {
                            arguments.reading.files, {"force", "force-x"});
 }
 
+/// As a terminal shows them.
+std::string text_of(const MeasuredTrials& found) {
+  std::string text;
+  for (const Measurement& one : found.measured) text += (text.empty() ? "" : "\n") + report::measurement_text(one);
+  return found.several ? text + "\n" + report::summary_text(found.together) : text;
+}
+
 /// Runs `measure`, or `identify`, which computes no ellipses and no passivity.
 int run(const MeasureCommandArguments& given, const std::string& typed, bool with_findings) {
   MeasureCommandArguments arguments = given;
@@ -173,17 +180,16 @@ int run(const MeasureCommandArguments& given, const std::string& typed, bool wit
   }
 
   report::StaticReport plain;
-  for (const Measurement& one : found->measured) {
-    plain.text += (plain.text.empty() ? "" : "\n") + report::measurement_text(one);
-    for (report::NamedChart& drawn : report::measurement_charts(one, std::nullopt)) {
-      plain.charts.push_back(std::move(drawn.chart));
-    }
-  }
-  if (found->several) plain.text += "\n" + report::summary_text(found->together);
+  if (!arguments.output.json || arguments.report.file) plain.text = text_of(*found);
   const std::string text = !arguments.output.json ? plain.text
                            : found->several       ? result::to_json(found->measured, found->together)
                                                   : result::to_json(found->measured.front());
   if (arguments.report.file) {
+    for (const Measurement& one : found->measured) {
+      for (report::NamedChart& drawn : report::measurement_charts(one, std::nullopt)) {
+        plain.charts.push_back(std::move(drawn.chart));
+      }
+    }
     const std::string document = report_json(typed, arguments.report.note, found->facts, found->measured,
                                              found->diagnostics, found->several ? &found->together : nullptr);
     if (auto ok = write_page(arguments.report, arguments.output, document, plain, arguments.reading.files); !ok)

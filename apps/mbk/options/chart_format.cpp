@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "apps/mbk/options/word_options.h"
+#include "mbk/base/core/temporary_folder.h"
 #include "mbk/batch/command_output.h"
 #include "mbk/files/recording/write_file.h"
 
@@ -82,36 +83,15 @@ std::vector<std::string> command_of(const Program& program, const std::string& i
   return command;
 }
 
-/// A folder of its own, removed at the end.
-class Temporary {
- public:
-  Temporary() {
-    std::error_code error;
-    std::string name = (std::filesystem::temp_directory_path(error) / "mbk-chart-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() {
-    std::error_code ignored;
-    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
-  }
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-
- private:
-  std::filesystem::path folder_;
-};
-
 Result<std::string> pdf_by(const Program& program, const std::string& content, const char* otherwise) {
   constexpr double kLongest_s = 60.0;
-  const Temporary temporary;
-  if (temporary.folder().empty()) return bad_data("no temporary folder could be created", "check TMPDIR");
+  const TemporaryFolder temporary = MBK_TRY(TemporaryFolder::create("mbk-pdf"));
   const std::filesystem::path in =
-      temporary.folder() / (program.converter == Converter::browser ? "page.html" : "chart.svg");
-  const std::filesystem::path out = temporary.folder() / "made.pdf";
+      temporary.path() / (program.converter == Converter::browser ? "page.html" : "chart.svg");
+  const std::filesystem::path out = temporary.path() / "made.pdf";
   std::ofstream(in, std::ios::binary) << content;
   const auto ran = MBK_TRY(batch::command_output(
-      command_of(program, in.string(), out.string(), (temporary.folder() / "profile").string()), kLongest_s));
+      command_of(program, in.string(), out.string(), (temporary.path() / "profile").string()), kLongest_s));
   std::ifstream file(out, std::ios::binary);
   std::string pdf((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (ran.code == 0 && pdf.starts_with("%PDF")) return pdf;

@@ -93,8 +93,7 @@ Result<Carried> carry_out(const EngineArguments& arguments, const batch::JobRequ
   switch (report.end) {
     case batch::RunEnd::detached:
       say("mbk: the tasks continue without this process; 'mbk work {} --status' shows their progress, and repeating "
-          "this "
-          "command collects their results\n",
+          "this command collects their results\n",
           where);
       carried.code = kFine;
       break;

@@ -40,7 +40,7 @@ class DataSet(Protocol):
     def coords(self) -> Any: ...
 
 
-# What a function accepts in place of a file name.
+# What a function accepts instead of a file name.
 Source = Union[str, "os.PathLike[str]", Recording, _documents.Document, Mapping[str, Any], Sequence[Any], Table, DataSet]
 
 

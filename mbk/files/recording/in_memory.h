@@ -60,7 +60,7 @@ class InMemory {
 class RecordingHolder {
  public:
   virtual ~RecordingHolder() = default;
-  /// The recording that `word` names in place of a file; nullptr: it is the name of a file.
+  /// The recording that `word` names instead of a file; nullptr: it is the name of a file.
   [[nodiscard]] virtual std::shared_ptr<const InMemory> recording(const std::filesystem::path& word) const = 0;
 };
 

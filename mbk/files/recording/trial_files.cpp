@@ -28,7 +28,7 @@ Result<std::vector<std::filesystem::path>> files_of_trials(const std::filesystem
         fmt::format("{}_{}{}", pattern.stem().string(), kTrialPlace, pattern.extension().string());
     return bad_usage(
         fmt::format("{} trials would be written to one file", trials.size()),
-        fmt::format("put {} in the file name in place of the trial names, as in {}, or select one with --trial",
+        fmt::format("put {} in the file name instead of the trial names, as in {}, or select one with --trial",
                     kTrialPlace, (pattern.parent_path() / example).string()));
   }
   if (at == last.npos) return std::vector<std::filesystem::path>(trials.size(), pattern);

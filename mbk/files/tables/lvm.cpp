@@ -338,7 +338,7 @@ std::optional<double> follows(const Part& first, const Part& last, const Part& n
   const double end =
       a.has_one_x() ? last.at(0, last.end - 1) : x0_a + static_cast<double>(last.size() - 1) * dt.value_or(0.0);
   const double begin = b.has_one_x() ? next.at(0, next.begin) : x0_b;
-  if (a.has_one_x() && dt && std::abs(begin - end - *dt) < 0.5 * *dt) return last.later;  // X is continuous by itself
+  if (a.has_one_x() && dt && std::abs(begin - end - *dt) < 0.5 * *dt) return last.later;  // X is continuous anyway
   if (!a.start || !b.start) return std::nullopt;
   const double apart = *b.start - *a.start, later = *b.start - *first.segment->start;
   if (a.rows.count() == 1 && b.rows.count() == 1 && a.has_one_x() && apart + begin > end) return later;

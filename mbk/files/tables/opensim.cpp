@@ -136,7 +136,7 @@ Result<void> check_axes(const TextLine& line, char separator, const std::vector<
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const std::string label = in_lower_case(labels[k]);
     if (label.front() != "xyz"[k % 3]) {
-      return bad_data(fmt::format("'{}' was found in place of the {} axis of '{}'", printable(std::string(labels[k])),
+      return bad_data(fmt::format("'{}' was found instead of the {} axis of '{}'", printable(std::string(labels[k])),
                                   "XYZ"[k % 3], markers[k / 3]),
                       std::string(kWriteAgain), line_place(line.number));
     }

@@ -83,7 +83,7 @@ struct Synchronised {
 ///
 /// The sender's clock was reset if the time of the offsets runs backward, or if both their time and value jump: the
 /// interval is off its median by more than 5 s and five median absolute deviations, and the step of the value by more
-/// than 1 s and ten of them. A sample belongs to the segment among whose offsets it stands in the file; between the
+/// than 1 s and ten of them. A sample belongs to the segment among whose offsets it appears in the file; between the
 /// last offset of one and the first of the next, to that whose offsets are nearer in time. Where the file has the
 /// offsets before or behind all samples, time alone decides. In each segment steps are taken out (`take_out_steps`),
 /// and the correction that fits the offsets (`fit_correction`) is added.

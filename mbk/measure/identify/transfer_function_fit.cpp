@@ -383,11 +383,11 @@ tl::unexpected<Error> Identifier::nothing_settled(const std::vector<SearchStart>
   }
   const bool loop = options_.method == TransferFunctionMethod::closed_loop;
   return fail(ErrorKind::not_usable, text,
-              fmt::format("{2}{1}; if the system is unstable without its control loop, identify the closed loop, which "
-                          "is stable: --input {0} --output OUTPUT and --input {0} --output INPUT; the system is the "
-                          "first over the second",
+              fmt::format("if the system is unstable without its control loop, identify the closed loop, which is "
+                          "stable: --input {0} --output OUTPUT and --input {0} --output INPUT; the system is the "
+                          "first over the second; otherwise {1}{2}",
                           loop ? "REFERENCE" : "WHAT-DRIVES-THE-LOOP",
-                          loop ? "" : "; in a closed loop use --method clsrivc", otherwise));
+                          loop ? "" : "use --method clsrivc in a closed loop, ", otherwise));
 }
 
 Result<Fit> Identifier::choose_order() {

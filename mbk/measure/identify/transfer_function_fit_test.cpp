@@ -229,7 +229,7 @@ TEST(TransferFunctionFit, OfAnUnstableSystemInALoopSaysToIdentifyTheLoop) {
       ASSERT_FALSE(found.has_value());
       EXPECT_EQ(found.error().kind, ErrorKind::not_usable);
       const std::string& remedy = found.error().remedy;
-      EXPECT_NE(remedy.find("--output INPUT"), std::string::npos) << remedy;
+      EXPECT_LT(remedy.find("--output INPUT"), remedy.find("--start-pole")) << remedy;
     }
     options.method = TransferFunctionMethod::closed_loop;
     const auto found = identify_transfer_function({pair}, {}, options);

@@ -8,15 +8,18 @@
 
 #include "mbk/base/core/result.h"
 
-namespace mbk::validation {
+namespace mbk {
 
-/// A folder that goes when it does.
+/// A folder that is removed at the end of its lifetime.
 class TemporaryFolder {
  public:
-  /// @fails  data: it cannot be made.
+  /// @fails  data: it cannot be created
   static Result<TemporaryFolder> create(const std::string& prefix) {
-    std::string name = (std::filesystem::temp_directory_path() / (prefix + "-XXXXXX")).string();
-    if (mkdtemp(name.data()) == nullptr) return bad_data("no temporary folder", "set TMPDIR to one that exists", name);
+    std::error_code ignored;  // then mkdtemp fails
+    std::string name = (std::filesystem::temp_directory_path(ignored) / (prefix + "-XXXXXX")).string();
+    if (mkdtemp(name.data()) == nullptr) {
+      return bad_data("no temporary folder could be created", "set TMPDIR to a folder that exists", name);
+    }
     return TemporaryFolder(name);
   }
   TemporaryFolder(TemporaryFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
@@ -34,4 +37,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace mbk::validation
+}  // namespace mbk
