@@ -377,6 +377,7 @@ Result<TeleoperationFinding> judge(const Design& design, const Question& questio
     auto with = judge_with(design, design.operator_port, a);
     if (!with) return tl::unexpected(with.error().in(design.file));
     finding.with_operator = std::move(with->stability);
+    finding.operator_grid = with->grid;
   }
   for (const Port port : {Port::one, Port::two}) {
     auto largest = largest_shortage_of(design, port);

@@ -52,9 +52,9 @@ Result<Program> converter() {
 
 /// A page of exactly the drawing's size.
 std::string page_of(const std::string& svg) {
-  static const std::regex size(R"re(width="([\d.]+mm)" height="([\d.]+mm)")re");
+  static const std::regex kPageSize(R"re(width="([\d.]+mm)" height="([\d.]+mm)")re");
   std::smatch found;
-  if (!std::regex_search(svg, found, size)) return svg;
+  if (!std::regex_search(svg, found, kPageSize)) return svg;
   return fmt::format(
       "<!DOCTYPE html><meta charset=\"utf-8\"><style>@page {{ size: {} {}; margin: 0 }} html, body {{ margin: 0 }} "
       "svg {{ display: block; break-inside: avoid }}</style>{}",
@@ -84,14 +84,14 @@ std::vector<std::string> command_of(const Program& program, const std::string& i
 }
 
 Result<std::string> pdf_by(const Program& program, const std::string& content, const char* otherwise) {
-  constexpr double kLongest_s = 60.0;
+  constexpr double kLongestSeconds = 60.0;
   const TemporaryFolder temporary = MBK_TRY(TemporaryFolder::create("mbk-pdf"));
   const std::filesystem::path in =
       temporary.path() / (program.converter == Converter::browser ? "page.html" : "chart.svg");
   const std::filesystem::path out = temporary.path() / "made.pdf";
   std::ofstream(in, std::ios::binary) << content;
   const auto ran = MBK_TRY(batch::command_output(
-      command_of(program, in.string(), out.string(), (temporary.path() / "profile").string()), kLongest_s));
+      command_of(program, in.string(), out.string(), (temporary.path() / "profile").string()), kLongestSeconds));
   std::ifstream file(out, std::ios::binary);
   std::string pdf((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (ran.code == 0 && pdf.starts_with("%PDF")) return pdf;

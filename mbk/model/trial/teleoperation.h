@@ -213,6 +213,7 @@ struct TeleoperationFinding {
   int operator_port = 1;
   std::optional<OperatorShortage> operator_shortage;
   std::optional<AbsoluteStability> with_operator;  ///< modified Llewellyn, with that a
+  std::optional<FrequencyGrid> operator_grid;      ///< where that was evaluated, with true delays
   std::vector<LargestShortage> largest_shortages;  ///< one for each port
   std::optional<AdmissibleSet> admissible;
   std::optional<ExcessSweep> excess;

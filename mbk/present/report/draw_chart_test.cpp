@@ -244,16 +244,16 @@ double smallest_text_mm(const std::string& svg) {
 }
 
 TEST(ChartSvg, IsAsWideAsAskedWithTextOfAtLeast7Points) {
-  constexpr double kPoint_mm = 25.4 / 72.0, kSmallest_pt = 7.0;
+  constexpr double kMillimetresPerPoint = 25.4 / 72.0, kSmallestPoints = 7.0;
   Chart c = chart();
   c.horizontal.push_back({200.0, "expected"});
   c.notes.emplace_back(std::string("a note that is longer than one column of a page is wide, so that it is wrapped"));
   for (const double width : {kOneColumnMm, kTwoColumnsMm, 60.0}) {
     const std::string svg = chart_svg(c, width);
     EXPECT_THAT(svg, HasSubstr("width=\"" + std::to_string(static_cast<int>(width)) + ".00mm\""));
-    EXPECT_GE(smallest_text_mm(svg), kSmallest_pt * kPoint_mm) << width;
+    EXPECT_GE(smallest_text_mm(svg), kSmallestPoints * kMillimetresPerPoint) << width;
     const std::vector<Chart> three(3, c);
-    EXPECT_GE(smallest_text_mm(charts_svg("three", three, width)), kSmallest_pt * kPoint_mm) << width;
+    EXPECT_GE(smallest_text_mm(charts_svg("three", three, width)), kSmallestPoints * kMillimetresPerPoint) << width;
   }
 }
 

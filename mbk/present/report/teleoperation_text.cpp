@@ -107,7 +107,25 @@ bool only_of_pade(const AbsoluteStability& stability, std::optional<RadPerSec> l
   return any;
 }
 
-std::string meaning(const AbsoluteStability& stability, std::optional<RadPerSec> limit) {
+/// Whether a verdict does not apply to all frequencies.
+bool is_limited(const std::optional<FrequencyGrid>& grid) {
+  return grid && (!grid->bounded || grid->low.value > 0.0 || !std::isinf(grid->high.value));
+}
+
+/// The frequencies to which a verdict applies; nothing if it applies to all without a delay.
+std::string where_text(const std::optional<FrequencyGrid>& grid, const AbsoluteStability& stability) {
+  if (!grid) return "";
+  if (!grid->bounded) {
+    return fmt::format(" on {} points from {:g} to {:g} rad/s", grid->points, grid->low.value, grid->high.value);
+  }
+  std::string where = " with the true delay";
+  if (!stability.holds()) return where;
+  if (grid->low.value > 0.0) where += fmt::format(", from {:.4g} rad/s", grid->low.value);
+  if (!std::isinf(grid->high.value)) where += fmt::format(", up to {:.4g} rad/s", grid->high.value);
+  return where;
+}
+
+std::string meaning(const AbsoluteStability& stability, std::optional<RadPerSec> limit, bool limited) {
   if (only_of_pade(stability, limit)) {
     return fmt::format(
         "with the Padé approximation some passive pair is unstable, but only above {:.4g} rad/s, where its "
@@ -118,7 +136,8 @@ std::string meaning(const AbsoluteStability& stability, std::optional<RadPerSec>
     return "some passive hand and some passive environment make the system oscillate or run away, most likely near the "
            "worst frequency";
   }
-  std::string words = "no passive hand and no passive environment can make the system unstable";
+  std::string words = limited ? "at these frequencies " : "";
+  words += "no passive hand and no passive environment can make the system unstable";
   if (stability.verdict == StabilityVerdict::marginal) words += "; " + touches_text(stability);
   return words;
 }
@@ -246,26 +265,19 @@ std::string teleoperation_text(const TeleoperationFinding& finding) {
     }
     result += "\n" + table(rows);
   }
-  std::string where;
-  if (finding.grid && !finding.grid->bounded) {
-    where = fmt::format(" on {} points from {:g} to {:g} rad/s", finding.grid->points, finding.grid->low.value,
-                        finding.grid->high.value);
-  } else if (finding.grid) {
-    where = std::isinf(finding.grid->high.value) || !finding.stability.holds()
-                ? " with the true delay"
-                : fmt::format(" with the true delay, up to {:.4g} rad/s", finding.grid->high.value);
-  }
+  const std::string where = where_text(finding.grid, finding.stability);
   result += fmt::format("\nLlewellyn's criterion (r = Re {0}, p = {0}12 {0}21): {1}\n", finding.stability.form,
                         verdict_line(finding.stability, where.c_str()));
   result += conditions_table(finding.stability, finding.pade_limit);
-  result += paragraph("  meaning  ", meaning(finding.stability, finding.pade_limit));
+  result += paragraph("  meaning  ", meaning(finding.stability, finding.pade_limit, is_limited(finding.grid)));
   if (finding.with_operator) {
     const double a = finding.operator_shortage->a;
     result +=
         "\n" +
         paragraph("", fmt::format("With the operator at port {}, Re z ≥ {:g} N·s/m, a = {:g} ({} of passivity): {}",
                                   finding.operator_port, 0.0 - a, a, a > 0.0 ? "shortage" : "excess",
-                                  verdict_line(*finding.with_operator, where.c_str())));
+                                  verdict_line(*finding.with_operator,
+                                               where_text(finding.operator_grid, *finding.with_operator).c_str())));
     result += conditions_table(*finding.with_operator, finding.pade_limit);
     result += paragraph("  operator  ", finding.operator_shortage->rule);
   }

@@ -205,6 +205,7 @@ void describe(Fields<TeleoperationFinding>& fields) {
     part.add("port", &Finding::operator_port);
     part.add("a", through(&Finding::operator_shortage, &OperatorShortage::a), "shortage of passivity [N·s/m]");
     part.add("rule", through(&Finding::operator_shortage, &OperatorShortage::rule), "source of the shortage");
+    part.add("grid", &Finding::operator_grid, "frequencies to which modified_llewellyn applies; with true delays");
   };
   fields.group("operator", of_operator).only_if([](From finding) { return finding.with_operator.has_value(); });
   fields.add("modified_llewellyn", &Finding::with_operator);
