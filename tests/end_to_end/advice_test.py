@@ -496,6 +496,23 @@ def _(test):
     test.goes("force-drifts", raised, test.measured("--from", 20, "--to", 34, path))
 
 
+@advice_of("contact-lost")
+def _(test):  # the hand leaves the handle, whose own inertia is 5 % of the force
+    path = test.simulated("relaxed_sinusoidal")
+    names, columns = test.columns(path)
+    time = columns[0]
+
+    def lost(values):
+        return [0.05 * value if t > 30.37 else value for t, value in zip(time, values)]
+    raised = test.measured(test.with_columns(path, "lost.csv", force_x=lost, force_y=lost))
+    test.assertIs(raised.json["usable"], False)
+    test.assertRegex(next(w["message"] for w in raised.json["warnings"] if w["code"] == "contact-lost"),
+                     r"^from 31 s on the force varies by at most [4-7]\.?\d* %")
+    followed = test.measured(*first_options(hint_of(raised, "contact-lost")), test.folder / "lost.csv")
+    test.goes("contact-lost", raised, followed)
+    test.assertIs(followed.json["usable"], True)
+
+
 @advice_of("tremor")
 def _(test):
     path = departing(test, "[participant.departures]\ntremor_N = 1\ntremor_hz = 4.5")

@@ -396,8 +396,12 @@ Action add_run(Command app) {
   command.add_option("--participant", arguments->person, "number of the participant; overrides the experiment file")
       .type_name("N")
       .check(whole_number(1, 999'999));
-  command.add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: run as fast as possible");
-  command.add_option("--speed", arguments->speed, "virtual clock: run X times faster than real time").type_name("X");
+  const Option fast =
+      command.add_flag("--fast", arguments->as_fast_as_possible, "virtual clock: run as fast as possible");
+  command.add_option("--speed", arguments->speed, "virtual clock: run X times faster than real time")
+      .type_name("X")
+      .check(positive())
+      .excludes(fast);
   add_readers_option(command, arguments->readers);
   command.add_flag("--dry-run", arguments->dry_run, "print what would be done; nothing moves");
   command.add_flag("!--no-measure", arguments->measure, "record without measuring");

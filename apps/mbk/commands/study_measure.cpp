@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,11 +32,26 @@ using workflow::Tally;
 /// Results that are not usable: by recording, the first of their warnings.
 using NotUsable = std::map<store::Unit, std::string>;
 
-workflow::MeasureListener listener_of(const StudyMeasureArguments& arguments, Progress& progress,
-                                      NotUsable& not_usable) {
+/// "recording 3: participant 1, session 2, trial 1"
+std::string name_of(const store::StoredRecording& r) {
+  return fmt::format("recording {}: participant {}, session {}, {}trial {}", r.number, r.participant, r.session,
+                     r.condition.empty() ? "" : r.condition + ", ", r.trial);
+}
+
+/// The same of a unit; the name of its stored file if the study does not know it.
+std::string name_of(const store::Store& study, const store::Unit& unit) {
+  const auto recordings = study.recordings();
+  if (!recordings) return unit.file;
+  const auto is_unit = [&](const store::StoredRecording& r) { return r.sha256 == unit.sha256 && r.part == unit.part; };
+  const auto found = std::ranges::find_if(*recordings, is_unit);
+  return found == recordings->end() ? unit.file : name_of(*found);
+}
+
+workflow::MeasureListener listener_of(const store::Store& study, const StudyMeasureArguments& arguments,
+                                      Progress& progress, NotUsable& not_usable) {
   return {
       arguments.study.role, [&](int done, int of) { progress.count(done, of); },
-      [](const std::string& file, const std::string& why) { say("mbk: {}: {}\n", file, why); },
+      [&](const store::Unit& unit, const std::string& why) { say("mbk: {}: {}\n", name_of(study, unit), why); },
       [&](const store::Unit& unit, const std::string& codes) { not_usable[unit] = codes.substr(0, codes.find(',')); },
       [](const Error& error) { std::ignore = report_error(error); }};
 }
@@ -48,9 +64,7 @@ Result<std::string> lines_of(const store::Store& study, const NotUsable& not_usa
   for (const store::StoredRecording& r : recordings) {
     const auto found = not_usable.find({r.sha256, r.part, ""});
     if (found == not_usable.end()) continue;
-    text +=
-        fmt::format("  recording {}: participant {}, session {}, {}trial {}: not usable: {}\n", r.number, r.participant,
-                    r.session, r.condition.empty() ? "" : r.condition + ", ", r.trial, found->second);
+    text += fmt::format("  {}: not usable: {}\n", name_of(r), found->second);
   }
   return text;
 }
@@ -74,7 +88,7 @@ int measure_as_job(store::Store& study, const std::string& key, const OptionText
                    const StudyMeasureArguments& arguments) {
   Progress progress(arguments.quiet);
   NotUsable not_usable;
-  const auto listener = listener_of(arguments, progress, not_usable);
+  const auto listener = listener_of(study, arguments, progress, not_usable);
   Tally tally;
   while (true) {
     const auto units = study.pending(key, std::string(version()), arguments.again_failed && tally.count() == 0);
@@ -112,7 +126,7 @@ int run(Command command, const StudyMeasureArguments& arguments) {
   Progress progress(arguments.quiet);
   NotUsable not_usable;
   const auto tally = workflow::measure_units_here(*study, *key, **measuring, *units, arguments.threads,
-                                                  listener_of(arguments, progress, not_usable));
+                                                  listener_of(*study, arguments, progress, not_usable));
   return tally ? said_of(*study, *tally, not_usable) : report_error(tally.error());
 }
 

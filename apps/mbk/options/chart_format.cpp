@@ -120,6 +120,10 @@ bool is_pdf(const std::filesystem::path& report) {
 
 Result<void> check_report_format(const std::filesystem::path& report) {
   if (is_pdf(report)) MBK_TRY(chart_format::browser());
+  const std::string extension = report.extension().string();
+  if (!is_pdf(report) && extension != ".html" && extension != ".htm") {
+    return bad_usage("a report is an HTML or a PDF file", "choose a name that ends in .html or .pdf");
+  }
   return {};
 }
 

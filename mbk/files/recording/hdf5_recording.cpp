@@ -221,9 +221,9 @@ class Decoder {
   void check_frame(const std::string& name, const std::string& frame) {
     const auto kinds = kinds_called(name);
     if (frame.empty() || kinds.size() != 1 || kinds.front()->frame == frame) return;
-    contents.notes.push_back(fmt::format(
-        "the frame of '{}' is '{}'; mbk reads it {}", name, frame,
-        kinds.front()->frame.empty() ? "unchanged" : fmt::format("in the frame '{}'", kinds.front()->frame)));
+    if (kinds.front()->frame.empty()) return;  // it has no frame of its own: a joint's, or the sensor's
+    contents.notes.push_back(
+        fmt::format("the frame of '{}' is '{}'; mbk reads it in the frame '{}'", name, frame, kinds.front()->frame));
   }
 
   void lost(const std::string& name, const std::string& why) {

@@ -84,12 +84,20 @@ std::string_view text(Format format) {
 
 Result<Format> format_of(const std::filesystem::path& file, std::string_view name) {
   const std::string extension = file.extension().string();
-  if (const auto by_name = value_of<Format>(name == "mat" ? "mat5" : name)) return *by_name;
+  const auto by_extension = std::ranges::find(kExtensions, extension, &Extension::name);
+  if (const auto by_name = value_of<Format>(name == "mat" ? "mat5" : name)) {
+    const auto kind = [](Format format) { return format == Format::mat73 ? Format::mat5 : format; };
+    if (by_extension != kExtensions.end() && by_extension->format != kind(*by_name)) {
+      return fail(ErrorKind::usage,
+                  fmt::format("the extension {} is not that of the format {}", extension, text(*by_name)),
+                  "change the file name, or omit the format", file.string());
+    }
+    return *by_name;
+  }
   if (!name.empty()) {
     return bad_usage(fmt::format("format '{}' cannot be written", printable(std::string(name))),
                      "choose mat5, mat73, hdf5 or csv");
   }
-  const auto by_extension = std::ranges::find(kExtensions, extension, &Extension::name);
   if (by_extension != kExtensions.end()) return by_extension->format;
   return fail(ErrorKind::usage,
               extension.empty() ? "the file name has no extension that gives the format"

@@ -174,8 +174,12 @@ void judge_plausibility(const std::vector<const Recording*>& recordings, const s
     if (!columns) columns = check_columns(*recording, id.axes);
   }
   std::vector<Warning> causes;
+  const auto lost = std::ranges::find(id.warnings, WarningCode::contact_lost, &Warning::code);
   if (columns) {
     causes.push_back(*columns);
+  } else if (lost != id.warnings.end()) {
+    causes.push_back(std::move(*lost));
+    id.warnings.erase(lost);
   } else {
     for (auto found : {check_scale(recordings, trials, measured, ignored), check_axes(recordings, trials, measured),
                        check_handle(id)}) {

@@ -153,6 +153,7 @@ Result<PreparedTrial> prepare(const Recording& recording, const Inspection& insp
   MBK_TRY(check_finite(clock, signals, plan, recording.warnings));
   MBK_TRY(check_alive(signals, plan));
   warn_of_small_motion(signals, plan, trial.warnings);
+  warn_of_lost_contact(clock, signals, plan, trial.warnings);
 
   const bool by_reference = how.protocol == Protocol::sinusoidal;
   const auto band = MBK_TRY(by_reference ? excited_band(signals.reference, whole, rate)  // known where the limb is not

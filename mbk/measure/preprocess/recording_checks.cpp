@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/model/trial/quantity_channels.h"
 
 namespace mbk::preprocess {
@@ -219,6 +220,75 @@ void warn_of_small_motion(const Signals& signals, const WindowPlan& plan, std::v
              : fmt::format("the position moves by only {:.2g} (standard deviation), but is recorded in steps of {:.2g}",
                            motion, step),
          "perturb more, and check the position channel and its unit"});
+  }
+}
+
+namespace {
+
+/// How strongly force and position vary within about a second from a sample on.
+struct Activity {
+  Index begin = 0, end = 0;
+  double force = 0.0, motion = 0.0;  ///< standard deviations over all axes
+};
+
+double variation(const Columns& columns, Index begin, Index samples) {
+  double square = 0.0;
+  for (Index axis = 0; axis < columns.cols(); ++axis) {
+    const auto piece = columns.col(axis).segment(begin, samples).array();
+    square += (piece - piece.mean()).square().mean();
+  }
+  return std::sqrt(square);
+}
+
+std::vector<Activity> activity(const Clock& clock, const Signals& signals, const WindowPlan& plan) {
+  const auto second = std::max<Index>(kMinSamples, std::lround(clock.rate().value));
+  std::vector<Activity> blocks;
+  for (const Cut& cut : plan.cuts) {
+    const Index count = std::max<Index>(1, (cut.end - cut.begin) / second);
+    for (Index k = 0; k < count; ++k) {
+      const Index begin = cut.begin + (cut.end - cut.begin) * k / count;
+      const Index end = cut.begin + (cut.end - cut.begin) * (k + 1) / count;
+      blocks.push_back({begin, end, variation(signals.force_hand_on_robot, begin, end - begin),
+                        variation(signals.position, begin, end - begin)});
+    }
+  }
+  return blocks;
+}
+
+}  // namespace
+
+void warn_of_lost_contact(const Clock& clock, const Signals& signals, const WindowPlan& plan,
+                          std::vector<Warning>& warnings) {
+  constexpr double kGone = 0.1, kThere = 0.4, kStillMoves = 0.5;  // of the level before
+  constexpr std::size_t kBefore = 3, kAfter = 2;                  // blocks that show a level
+  const std::vector<Activity> blocks = activity(clock, signals, plan);
+  std::vector<double> force, motion;
+  for (std::size_t k = 0; k + kAfter <= blocks.size(); ++k) {
+    if (k >= kBefore) {
+      const double usual = numeric::median(force), moved = numeric::median(motion);
+      std::size_t end = k;
+      double left = 0.0;
+      while (end < blocks.size() && blocks[end].force < kGone * usual && blocks[end].motion > kStillMoves * moved) {
+        left = std::max(left, blocks[end++].force);
+      }
+      // Sudden: a sweep in frequency also changes the force, but gradually. One block may contain the change.
+      const bool in_block_before = blocks[k - 1].force < kThere * usual;
+      const bool sudden = !in_block_before || blocks[k - 2].force >= kThere * usual;
+      if (end - k >= kAfter && sudden) {
+        const double from = clock.seconds(blocks[k - 1].begin), gone = clock.seconds(blocks[k].begin);
+        const bool comes_back = end < blocks.size();
+        const std::string until = comes_back ? fmt::format(" to {:.3g} s", clock.seconds(blocks[end].begin)) : "";
+        warnings.push_back(
+            {WarningCode::contact_lost,
+             fmt::format("from {:.3g} s{} the force varies by at most {:.2g} % of its level before, while the motion "
+                         "continues: the hand probably left the handle, or the force sensor failed",
+                         gone, comes_back ? until : " on", 100.0 * left / usual),
+             fmt::format("measure the part before it: --to {:.3g}", std::floor(10.0 * from) / 10.0)});
+        return;
+      }
+    }
+    force.push_back(blocks[k].force);
+    motion.push_back(blocks[k].motion);
   }
 }
 

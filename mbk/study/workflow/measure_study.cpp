@@ -94,7 +94,7 @@ class ResultQueue {
       return;
     }
     if (result->document.empty()) {
-      listener_.failed(unit.file, result->reason);
+      listener_.failed(unit, result->reason);
     } else if (!result->usable) {
       listener_.not_usable(unit, result->reason);
     }

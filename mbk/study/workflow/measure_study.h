@@ -26,8 +26,8 @@ struct Tally {
 struct MeasureListener {
   store::Role role = store::Role::analyst;
   std::function<void(int done, int of)> progress = [](int, int) {};
-  std::function<void(const std::string& file, const std::string& why)> failed =
-      [](const std::string&, const std::string&) {};  ///< a recording cannot be measured
+  std::function<void(const store::Unit&, const std::string& why)> failed = [](const store::Unit&, const std::string&) {
+  };  ///< a recording cannot be measured
   std::function<void(const store::Unit&, const std::string& codes)> not_usable =
       [](const store::Unit&, const std::string&) {};               ///< with the codes of its warnings, "a, b"
   std::function<void(const Error&)> unread = [](const Error&) {};  ///< its file cannot be had

@@ -105,6 +105,10 @@ export const plainWarnings: PlainWarnings = {
     title: "The model does not fit at the frequencies of the perturbation",
     meaning: "The difference repeats in every period, so it is not noise. Inertia, damping and stiffness do not describe the limb at each frequency.",
   },
+  "contact-lost": {
+    title: "The force suddenly vanished while the motion continued",
+    meaning: "The hand probably left the handle, or the force sensor failed. The model describes neither the arm nor the empty handle.",
+  },
   "force-drifts": {
     title: "The force drifted during the recording",
     meaning: "The equilibrium position of the hand or the zero of the force sensor shifted. The equilibrium shown is an average.",
