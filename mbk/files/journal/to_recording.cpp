@@ -76,7 +76,7 @@ Rows rows_of(const Journal& journal) {
 template <class Get>
 Channel channel(const Rows& rows, const QuantityChannels& quantity, std::size_t axis, int latency, const Get& get) {
   const Index samples = std::ssize(rows.ticks);
-  Channel made{quantity.plane[axis], quantity.unit, quantity.frame, Vector(samples)};
+  Channel made{quantity.several[axis], quantity.unit, quantity.frame, Vector(samples)};
   for (Index i = 0; i < samples; ++i) {
     const Tick* const tick = rows.ticks[static_cast<std::size_t>(i)];
     const Tick* const later = rows.ticks[static_cast<std::size_t>(std::min(i + latency, samples - 1))];

@@ -15,7 +15,7 @@ TEST(ChannelTable, KnowsTheChannelsOfEveryQuantity) {
   for (const QuantityChannels& quantity : {kPositionChannels, kForceChannels, kReferenceChannels, kAccelerationChannels,
                                            kJointChannels, kTorqueChannels}) {
     const auto known = [](const char* name) { return std::ranges::find(channel_kinds(), name, &ChannelKind::name); };
-    for (const char* const name : quantity.plane) {
+    for (const char* const name : quantity.several) {
       const auto kind = known(name);
       ASSERT_NE(kind, channel_kinds().end()) << name;
       EXPECT_EQ(kind->frame, quantity.frame) << name;

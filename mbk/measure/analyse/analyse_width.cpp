@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,12 +16,20 @@
 namespace mbk::analyse {
 namespace {
 
-constexpr double kChiSquared95One = 3.841458820694124, kChiSquared95Three = 7.814727903251179;
+/// χ², 95 %, of 1, 3 and 6 degrees of freedom: the numbers of a symmetric part with 1, 2 and 3 axes.
+constexpr std::array kChiSquared95 = {3.841458820694124, 7.814727903251179, 12.591587243743977};
 
-/// The numbers of a symmetric part from those of its matrix, row by row: [z], or [z_xx z_s z_yy].
+/// The numbers of a symmetric part from those of its matrix, row by row: [z], or [z_xx z_s z_yy], …
 Matrix symmetrise(Index axes) {
-  if (axes == 1) return Matrix::Identity(1, 1);
-  return (Matrix(3, 4) << 1, 0, 0, 0, 0, 0.5, 0.5, 0, 0, 0, 0, 1).finished();
+  Matrix to_symmetric = Matrix::Zero(axes * (axes + 1) / 2, axes * axes);
+  Index row = 0;
+  for (Index i = 0; i < axes; ++i) {
+    for (Index j = i; j < axes; ++j, ++row) {
+      to_symmetric(row, i * axes + j) += 0.5;
+      to_symmetric(row, j * axes + i) += 0.5;
+    }
+  }
+  return to_symmetric;
 }
 
 bool differ(const Matrix& first, const Matrix& second, const Matrix& covariance, Index axes) {
@@ -30,7 +39,7 @@ bool differ(const Matrix& first, const Matrix& second, const Matrix& covariance,
   const Vector difference = to_symmetric * Vector(change.reshaped());
   const Matrix spread = to_symmetric * covariance * to_symmetric.transpose();
   const double distance = difference.dot(numeric::PivotedCholesky(spread).solve(difference));
-  return distance > (axes == 1 ? kChiSquared95One : kChiSquared95Three);
+  return distance > kChiSquared95[static_cast<std::size_t>(axes - 1)];
 }
 
 double root(double variance) {

@@ -1,7 +1,10 @@
 #include "mbk/measure/analyse/axis_maps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,12 +32,15 @@ constexpr double kBothMoved = 0.2;   ///< the same, for what no map explains: a 
 constexpr double kTurned = 20.0;     ///< degrees from which a rotation is told
 constexpr double kSameAngle = 10.0;  ///< degrees within which M, B and K must agree on it
 constexpr double kAsymmetric = 4.4;  ///< standard errors of m_yx − m_xy: 10⁻⁵ by chance
-constexpr double kAgreeOfThree = 13.8, kAgreeOfTwo = 10.8;  ///< χ² of 2 and 1 degrees of freedom, 0.1 % by chance
+constexpr double kAsymmetricInSpace = 25.9;  ///< χ² of the antisymmetric vector of M, 3 degrees of freedom: likewise
+/// χ² of the antisymmetric parts of B and K, or of K alone, that one parameter leaves, 0.1 % by chance.
+constexpr double kAgreeOfThree = 13.8, kAgreeOfTwo = 10.8;
+constexpr double kAgreeOfThreeInSpace = 22.5, kAgreeOfTwoInSpace = 16.3;  ///< the same after a rotation in space
 
 /// F = R·(F as read), R a signed permutation: row i takes `from[i]` with `sign[i]`.
 struct AxisMap {
-  std::array<int, 2> from{0, 1};
-  std::array<double, 2> sign{1.0, 1.0};
+  std::array<int, 3> from{0, 1, 2};
+  std::array<double, 3> sign{1.0, 1.0, 1.0};
 
   [[nodiscard]] Matrix matrix(Index axes) const {
     Matrix R = Matrix::Zero(axes, axes);
@@ -43,25 +49,31 @@ struct AxisMap {
   }
   [[nodiscard]] AxisMap transposed() const {
     AxisMap result;
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
       const auto j = static_cast<std::size_t>(from[i]);
       result.from[j] = static_cast<int>(i);
       result.sign[j] = sign[i];
     }
     return result;
   }
-  [[nodiscard]] bool exchanges() const { return from[0] != 0; }
+  [[nodiscard]] bool exchanges() const { return !std::ranges::is_sorted(from); }
+  [[nodiscard]] bool reverses_all(int axes) const {
+    return !exchanges() && std::all_of(sign.begin(), sign.begin() + axes, [](double s) { return s < 0.0; });
+  }
   friend bool operator==(const AxisMap&, const AxisMap&) = default;
 };
 
 std::vector<AxisMap> all_maps(int axes) {
-  if (axes == 1) return {{{0, 1}, {1.0, 1.0}}, {{0, 1}, {-1.0, 1.0}}};
   std::vector<AxisMap> maps;
-  for (const std::array<int, 2> from : {std::array{0, 1}, std::array{1, 0}}) {
-    for (const double first : {1.0, -1.0}) {
-      for (const double second : {1.0, -1.0}) maps.push_back({from, {first, second}});
+  AxisMap map;
+  do {
+    for (unsigned signs = 0; signs < (1U << axes); ++signs) {
+      for (int i = 0; i < axes; ++i) {
+        map.sign[static_cast<std::size_t>(i)] = ((signs >> (axes - 1 - i)) & 1U) != 0 ? -1.0 : 1.0;
+      }
+      maps.push_back(map);
     }
-  }
+  } while (std::next_permutation(map.from.begin(), map.from.begin() + axes));
   return maps;
 }
 
@@ -109,12 +121,31 @@ Tally tally(const AxisMap& map, const Identification& id) {
   return result;
 }
 
-/// How far a matrix is turned [degrees] and that angle's standard error; nothing where it mirrors.
-std::optional<std::pair<double, double>> turn_of(const Matrix& Z, const Matrix& error) {
+/// How far a matrix is turned [degrees] about each axis, and the standard error of that angle.
+struct Turn {
+  Vector angle;  ///< the rotation vector; in the plane one number
+  double standard_error = 0;
+
+  [[nodiscard]] double size() const { return angle.norm(); }
+};
+
+/// Of Z = R S with S symmetric and positive, the rotation R; nothing where it mirrors.
+std::optional<Turn> turn_in_space(const Matrix& Z, const Matrix& error) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Eigen::Matrix3d(Z), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::Vector3d s = svd.singularValues();
+  if (!(R.determinant() > 0.0) || !(s[1] > 0.0)) return std::nullopt;
+  const Eigen::AngleAxisd turn(R);
+  return Turn{kDegrees * turn.angle() * turn.axis(), kDegrees * error.norm() / (s[1] + s[2])};
+}
+
+/// The same of a matrix of the plane.
+std::optional<Turn> turn_of(const Matrix& Z, const Matrix& error) {
+  if (Z.rows() == 3) return turn_in_space(Z, error);
   const double cosine = Z(0, 0) + Z(1, 1), sine = Z(1, 0) - Z(0, 1);
   const double mirror = std::hypot(Z(0, 0) - Z(1, 1), Z(0, 1) + Z(1, 0)), turn = std::hypot(cosine, sine);
   if (!(turn > mirror)) return std::nullopt;
-  return std::pair(kDegrees * std::atan2(sine, cosine), kDegrees * error.norm() / turn);
+  return Turn{Vector::Constant(1, kDegrees * std::atan2(sine, cosine)), kDegrees * error.norm() / turn};
 }
 
 /// Whether M and K are nearly symmetric by a map: columns of other things may become positive, but lopsided.
@@ -124,7 +155,7 @@ bool symmetric_by(const AxisMap& map, const Identification& id) {
   for (const auto& [Z, error] :
        {std::pair{&id.model.M, &id.standard_error.M}, std::pair{&id.model.K, &id.standard_error.K}}) {
     const auto turn = turn_of(R * *Z, *error);
-    if (!turn || std::abs(turn->first) - kSure * turn->second > kTurned) return false;
+    if (!turn || turn->size() - kSure * turn->standard_error > kTurned) return false;
   }
   return true;
 }
@@ -191,15 +222,22 @@ std::optional<AxisMap> map_by_reference(const std::vector<PreparedTrial>& trials
   return nearest_map(scale_y.cwiseInverse().asDiagonal() * yr * scale_r.cwiseInverse().asDiagonal());
 }
 
-/// "with Fx and Fy exchanged", "with the sign of Fy reversed".
-std::string in_words(const AxisMap& map, const std::string& first, const std::string& second, int axes) {
-  std::string text;
-  if (map.exchanges()) text = fmt::format("with {} and {} exchanged", first, second);
+/// "with Fx and Fy exchanged", "with Fx, Fy and Fz read as Fy, Fz and Fx", "with the sign of Fy reversed".
+std::string in_words(const AxisMap& map, const std::vector<std::string>& names) {
+  const auto name_at = [&](int axis) { return names[static_cast<std::size_t>(axis)]; };
+  std::vector<std::string> moved, takes;
   std::string signs;
-  for (int axis = 0; axis < axes; ++axis) {
-    if (map.sign[static_cast<std::size_t>(axis)] > 0.0) continue;
-    signs += (signs.empty() ? "" : " and ") + (map.from[static_cast<std::size_t>(axis)] == 0 ? first : second);
+  for (std::size_t axis = 0; axis < names.size(); ++axis) {
+    const std::string from = name_at(map.from[axis]);
+    if (from != names[axis]) {
+      moved.push_back(names[axis]);
+      takes.push_back(from);
+    }
+    if (map.sign[axis] < 0.0) signs += (signs.empty() ? "" : " and ") + from;
   }
+  std::string text;
+  if (moved.size() == 2) text = fmt::format("with {} and {} exchanged", moved[0], moved[1]);
+  if (moved.size() == 3) text = fmt::format("with {} read as {}", fmt::join(moved, ", "), fmt::join(takes, ", "));
   if (!signs.empty()) text += (text.empty() ? "with the sign of " : " and the sign of ") + signs + " reversed";
   return text;
 }
@@ -210,110 +248,169 @@ struct Reading {
   std::string text;   ///< the same, and the options that do it
 
   Reading(const Recording& recording, const QuantityChannels& quantity, const AxisMap& map, int axes)
-      : words(in_words(map, name_of(recording, quantity, axes, 0),
-                       axes == 2 ? name_of(recording, quantity, axes, 1) : "", axes)) {
+      : words(in_words(map, names_of(recording, quantity, axes))) {
     const bool motion = quantity.one_axis == kPositionChannels.one_axis;
     ChannelCure cure;
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < map.from.size(); ++i) {
       (motion ? cure.position : cure.force)[i] = {map.from[i], map.sign[i] < 0.0, "", 1.0};
     }
     const auto option = cured_channels(recording, axes, cure);
     text = words + (option ? ": " + *option : ", using --channels, where a minus reverses the sign: Fx=-10");
   }
+
+ private:
+  static std::vector<std::string> names_of(const Recording& recording, const QuantityChannels& quantity, int axes) {
+    std::vector<std::string> names;
+    for (int axis = 0; axis < axes; ++axis) names.push_back(name_of(recording, quantity, axes, axis));
+    return names;
+  }
 };
 
 /// By how many degrees the force is turned against the motion, where M, B and K say the same.
-std::optional<double> turned(const Identification& id) {
-  if (id.axes != 2 || id.structure != Structure::full || !can_be_judged(id)) return std::nullopt;
-  double sum = 0.0, weight = 0.0, least = 360.0, most = -360.0;
+std::optional<Vector> turned(const Identification& id) {
+  if (id.axes < 2 || id.structure != Structure::full || !can_be_judged(id)) return std::nullopt;
+  std::vector<Turn> turns;
   for (const auto& [Z, error] :
        {std::pair{&id.model.M, &id.standard_error.M}, std::pair{&id.model.B, &id.standard_error.B},
         std::pair{&id.model.K, &id.standard_error.K}}) {
     const auto turn = turn_of(*Z, *error);
-    if (!turn || !(turn->second < kSameAngle)) return std::nullopt;
-    least = std::min(least, turn->first);
-    most = std::max(most, turn->first);
-    sum += turn->first / (turn->second * turn->second);
-    weight += 1.0 / (turn->second * turn->second);
+    if (!turn || !(turn->standard_error < kSameAngle)) return std::nullopt;
+    turns.push_back(*turn);
   }
-  const double angle = sum / weight;
-  if (most - least > 2.0 * kSameAngle || std::min(std::abs(least), std::abs(most)) < kTurned || least * most < 0.0) {
-    return std::nullopt;
+  Vector sum = Vector::Zero(turns.front().angle.size());
+  double weight = 0.0;
+  for (const Turn& one : turns) {
+    if (one.size() < kTurned) return std::nullopt;
+    for (const Turn& other : turns) {
+      if ((one.angle - other.angle).norm() > 2.0 * kSameAngle) return std::nullopt;
+    }
+    sum += one.angle / (one.standard_error * one.standard_error);
+    weight += 1.0 / (one.standard_error * one.standard_error);
   }
-  return angle;
+  return Vector(sum / weight);
+}
+
+/// "by 12°", "by 12° about [0.10, −0.20, 0.97]"
+std::string rotation_text(const Vector& angle, const std::string& size) {
+  if (angle.size() == 1) return "by " + size;
+  const Vector axis = angle.normalized();
+  return fmt::format("by {} about [{:.2f}, {:.2f}, {:.2f}]", size, axis[0], axis[1], axis[2]);
 }
 
 /// What to do about a force that is turned by so many degrees.
-std::string turn_back(double angle) {
+std::string turn_back(const Vector& angle) {
   return fmt::format(
       "if the force sensor is mounted at that angle, correct it with --force-rotation-deg {:.1f}; if instead the frame "
       "of the position is rotated, M, B and K are in that frame",
-      -angle);
+      fmt::join(Vector(-angle), ","));
 }
 
-/// One parameter that makes M, B and K symmetric.
+/// Parameters that make M, B and K symmetric: a rotation or a gain.
 struct Symmetric {
-  double value = 0, standard_error = 0;
-  double misfit = 0;  ///< χ² of the antisymmetric parts that are left, of one degree less than there are matrices
+  Vector value, standard_error;
+  double misfit = 0;  ///< χ² of the antisymmetric parts that are left
 };
 
 /// D(p) Z symmetric for each Z of M, B and K: minimises aᵀ V⁻¹ a over p, a of the antisymmetric parts and V their
 /// covariance, by Gauss–Newton.
-/// @param map  D of p, and its derivative
-template <class Map>
-std::optional<Symmetric> made_symmetric(const Identification& id, std::span<const Index> parts, double start,
-                                        const Map& map) {
+/// @param map  D of p, and its derivatives    @param moved  p after a step
+template <class Map, class Moved>
+std::optional<Symmetric> made_symmetric(const Identification& id, std::span<const Index> parts, const Vector& start,
+                                        const Map& map, const Moved& moved) {
   Matrix M = id.model.M;
   M.diagonal().array() += id.handle_mass;  // the sensor carries the handle too
   const std::array<const Matrix*, 3> all = {&M, &id.model.B, &id.model.K};
-  const auto count = static_cast<Index>(parts.size());
-  Vector left(count), slope(count), gain;
-  Matrix to_parts = Matrix::Zero(count, id.covariance.rows());
-  Symmetric result{start};
+  const Index n = id.axes, pairs = n * (n - 1) / 2, count = pairs * std::ssize(parts);
+  Vector left(count);
+  Matrix slope(count, start.size()), to_parts = Matrix::Zero(count, id.covariance.rows());
+  Symmetric result{start, {}, 0.0};
   constexpr int kSteps = 20;
   for (int step = 0; step < kSteps; ++step) {
-    const auto [D, derivative] = map(result.value);
-    for (Index k = 0; k < count; ++k) {
-      const Index part = parts[static_cast<std::size_t>(k)];
-      const Matrix &Z = *all[static_cast<std::size_t>(part)], turned = D * Z, change = derivative * Z;
-      left[k] = turned(1, 0) - turned(0, 1);
-      slope[k] = change(1, 0) - change(0, 1);
-      to_parts.row(k).segment(4 * part, 4) << D(1, 0), -D(0, 0), D(1, 1), -D(0, 1);
+    const auto [D, derivatives] = map(result.value);
+    Index row = 0;
+    for (const Index part : parts) {
+      const Matrix& Z = *all[static_cast<std::size_t>(part)];
+      const Matrix turned = D * Z;
+      for (Index i = 1; i < n; ++i) {
+        for (Index j = 0; j < i; ++j, ++row) {
+          left[row] = turned(i, j) - turned(j, i);
+          for (Index p = 0; p < start.size(); ++p) {
+            const Matrix change = derivatives[static_cast<std::size_t>(p)] * Z;
+            slope(row, p) = change(i, j) - change(j, i);
+          }
+          for (Index k = 0; k < n; ++k) {
+            to_parts(row, part * n * n + k * n + j) = D(i, k);
+            to_parts(row, part * n * n + k * n + i) = -D(j, k);
+          }
+        }
+      }
     }
-    const Matrix V = to_parts * id.covariance * to_parts.transpose();
-    const numeric::PivotedCholesky weight(V);
-    gain = weight.solve(slope);
-    const double information = gain.dot(slope);
-    if (!(information > 0.0)) return std::nullopt;
-    result.standard_error = 1.0 / std::sqrt(information);
-    result.misfit = left.dot(weight.solve(left));
-    const double move = -gain.dot(left) / information;
-    if (!std::isfinite(move)) return std::nullopt;
-    if (std::abs(move) < 1e-3 * result.standard_error) return result;
-    result.value += move;
+    const numeric::PivotedCholesky weight(Matrix(to_parts * id.covariance * to_parts.transpose()));
+    const Matrix gain = weight.solve(slope), information = slope.transpose() * gain;
+    if (!(numeric::symmetric_eigenvalues(information).minCoeff() > 0.0)) return std::nullopt;
+    const Matrix spread = numeric::inverse(information);
+    result.standard_error = spread.diagonal().cwiseSqrt();
+    result.misfit = left.dot(Vector(weight.solve(left)));
+    const Vector move = -spread * gain.transpose() * left;
+    if (!move.allFinite()) return std::nullopt;
+    if (((move.cwiseAbs() - 1e-3 * result.standard_error).array() < 0.0).all()) return result;
+    result.value = moved(result.value, move);
   }
   return std::nullopt;
 }
 
-/// In place of F, R(−θ) F.
-std::optional<Symmetric> turned_by(const Identification& id, std::span<const Index> parts) {
-  return made_symmetric(id, parts, 0.0, [](double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    Matrix turn(2, 2), derivative(2, 2);
-    turn << c, s, -s, c;
-    derivative << -s, c, -c, -s;
-    return std::pair(turn, derivative);
-  });
+Eigen::Matrix3d rotation_of(const Vector& turn) {
+  const double angle = turn.norm();
+  if (!(angle > 0.0)) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, Eigen::Vector3d(turn / angle)).toRotationMatrix();
 }
 
-/// In place of F_y, F_y/g.
+/// In place of F, R(−θ) F; in space θ is a rotation vector.
+std::optional<Symmetric> turned_by(const Identification& id, std::span<const Index> parts) {
+  if (id.axes == 3) {
+    return made_symmetric(
+        id, parts, Vector::Zero(3),
+        [](const Vector& turn) {
+          const Eigen::Matrix3d D = rotation_of(turn).transpose();
+          std::vector<Matrix> derivatives;
+          for (Index k = 0; k < 3; ++k) {
+            Matrix change(3, 3);  // −e_k × each column
+            for (Index column = 0; column < 3; ++column) {
+              change.col(column) = -Eigen::Vector3d::Unit(k).cross(Eigen::Vector3d(D.col(column)));
+            }
+            derivatives.push_back(change);
+          }
+          return std::pair(Matrix(D), derivatives);
+        },
+        [](const Vector& turn, const Vector& move) {
+          const Eigen::AngleAxisd both(Eigen::Matrix3d(rotation_of(turn) * rotation_of(move)));
+          return Vector(both.angle() * both.axis());
+        });
+  }
+  return made_symmetric(
+      id, parts, Vector::Zero(1),
+      [](const Vector& angle) {
+        const double c = std::cos(angle[0]), s = std::sin(angle[0]);
+        Matrix turn(2, 2), derivative(2, 2);
+        turn << c, s, -s, c;
+        derivative << -s, c, -c, -s;
+        return std::pair(turn, std::vector{derivative});
+      },
+      [](const Vector& angle, const Vector& move) { return Vector(angle + move); });
+}
+
+/// In place of F_y, F_y/g. Of two axes.
 std::optional<Symmetric> scaled_by(const Identification& id, std::span<const Index> parts) {
-  return made_symmetric(id, parts, 1.0, [](double gain) {
-    Matrix scale = Matrix::Identity(2, 2), derivative = Matrix::Zero(2, 2);
-    scale(1, 1) = 1.0 / gain;
-    derivative(1, 1) = -1.0 / (gain * gain);
-    return std::pair(scale, derivative);
-  });
+  if (id.axes != 2) return std::nullopt;
+  return made_symmetric(
+      id, parts, Vector::Ones(1),
+      [](const Vector& gain) {
+        Matrix scale = Matrix::Identity(2, 2), derivative = Matrix::Zero(2, 2);
+        scale(1, 1) = 1.0 / gain[0];
+        derivative(1, 1) = -1.0 / (gain[0] * gain[0]);
+        return std::pair(scale, std::vector{derivative});
+      },
+      [](const Vector& gain, const Vector& move) { return Vector(gain + move); });
 }
 
 /// Whether a limb that is no M, B and K biases the inertia, too.
@@ -326,12 +423,47 @@ bool biased(const Identification& id) {
                              [&](const Warning& one) { return std::ranges::count(kBiasing, one.code) > 0; });
 }
 
-/// m_yx − m_xy in standard errors; 0 where it is not known.
-double asymmetry_of(const Identification& id) {
-  if (id.axes != 2 || id.structure == Structure::symmetric || !can_be_judged(id)) return 0.0;
-  const Matrix& C = id.covariance;
-  const double variance = C(1, 1) + C(2, 2) - 2.0 * C(1, 2);
-  return variance > 0.0 ? (id.model.M(1, 0) - id.model.M(0, 1)) / std::sqrt(variance) : 0.0;
+/// How far the inertia is from symmetric.
+struct Asymmetry {
+  Vector difference;      ///< m_yx − m_xy, and so on [kg]; empty where it is not known
+  double errors = 0;      ///< its size in standard errors, or √χ² in space
+  bool is_clear = false;  ///< beyond chance
+
+  [[nodiscard]] bool agrees(const Asymmetry& other) const {
+    return is_clear && other.is_clear && difference.dot(other.difference) > 0.0;
+  }
+};
+
+Asymmetry asymmetry_of(const Identification& id) {
+  const Index n = id.axes;
+  if (n == 1 || id.structure == Structure::symmetric || !can_be_judged(id)) return {};
+  Asymmetry found{Vector(n * (n - 1) / 2)};
+  Matrix to_difference = Matrix::Zero(found.difference.size(), n * n);
+  Index row = 0;
+  for (Index i = 1; i < n; ++i) {
+    for (Index j = 0; j < i; ++j, ++row) {
+      found.difference[row] = id.model.M(i, j) - id.model.M(j, i);
+      to_difference(row, n * i + j) = 1.0;
+      to_difference(row, n * j + i) = -1.0;
+    }
+  }
+  const Matrix spread = to_difference * id.covariance.topLeftCorner(n * n, n * n) * to_difference.transpose();
+  if (!(numeric::symmetric_eigenvalues(spread).minCoeff() > 0.0)) return {};
+  found.errors = std::sqrt(found.difference.dot(Vector(numeric::PivotedCholesky(spread).solve(found.difference))));
+  found.is_clear = found.errors > (n == 2 ? kAsymmetric : std::sqrt(kAsymmetricInSpace));
+  return found;
+}
+
+/// "the inertia is not symmetric, …: m_yx − m_xy is −0.3 ± 0.05 kg"
+std::string asymmetry_text(const Asymmetry& found, const Matrix& M) {
+  const std::string what = "the inertia is not symmetric, which is impossible for a limb: ";
+  if (found.difference.size() == 1) {
+    const double difference = found.difference[0];
+    return what + fmt::format("m_yx − m_xy is {:.2g} ± {:.1g} kg", difference,
+                              numeric::kNormal95 * std::abs(difference / found.errors));
+  }
+  return what + fmt::format("m_yx − m_xy is {:.2g}, m_zx − m_xz {:.2g} and m_zy − m_yz {:.2g} kg", M(1, 0) - M(0, 1),
+                            M(2, 0) - M(0, 2), M(2, 1) - M(1, 2));
 }
 
 /// Whether the reference moves the limb along all axes. Along one that it does not move, least squares finds the
@@ -360,7 +492,7 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
   if (!map && measured.alternative) map = map_of(*measured.alternative);
   if (!map) {
     const auto angle = turned(id);
-    const bool both_axes_moved = axes == 2 && id.excitation.motion_ratio > kBothMoved;
+    const bool both_axes_moved = axes > 1 && id.excitation.motion_ratio > kBothMoved;
     if (!angle && both_axes_moved && contradicts(id) && (!measured.alternative || contradicts(*measured.alternative))) {
       return Warning{WarningCode::axes_mismatched,
                      "force and motion are inconsistent for a limb, with any sign and order of the axes",
@@ -369,9 +501,9 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
     }
     if (!angle) return std::nullopt;
     return Warning{WarningCode::axes_mismatched,
-                   fmt::format("the force is rotated by {:.0f}° relative to the motion: inertia, damping and stiffness "
+                   fmt::format("the force is rotated {} relative to the motion: inertia, damping and stiffness "
                                "are all asymmetric by that angle, which is impossible for a limb",
-                               *angle),
+                               rotation_text(*angle, fmt::format("{:.0f}°", axes == 2 ? (*angle)[0] : angle->norm()))),
                    turn_back(*angle)};
   }
   // Either the force as read is Rᵀ F, or the motion as read is R x. In the second case the reference, which moves x,
@@ -387,8 +519,7 @@ std::optional<Warning> check_axes(const std::vector<const Recording*>& recording
   std::string remedy =
       "F must be the force of the limb on the machine, in the frame of the position: read it " + likelier.text;
   if (!motion && !force) remedy += "; or, if the motion was read wrongly, " + of_motion.text;
-  const bool all_reversed = !map->exchanges() && map->sign[0] < 0.0 && (axes == 1 || map->sign[1] < 0.0);
-  if (all_reversed) {
+  if (map->reverses_all(axes)) {
     return Warning{
         WarningCode::force_sign_reversed,
         "inertia, damping and stiffness have the wrong sign for a limb: the force was probably recorded with the "
@@ -406,10 +537,9 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
       !moved_by_reference(measured)) {
     return std::nullopt;
   }
-  const double asymmetry = asymmetry_of(id);
-  if (!(std::abs(asymmetry) > kAsymmetric)) return std::nullopt;
-  if (measured.alternative && measured.alternative->usable &&
-      !(asymmetry_of(*measured.alternative) * asymmetry > kAsymmetric * kAsymmetric)) {
+  const Asymmetry asymmetry = asymmetry_of(id);
+  if (!asymmetry.is_clear) return std::nullopt;
+  if (measured.alternative && measured.alternative->usable && !asymmetry_of(*measured.alternative).agrees(asymmetry)) {
     return std::nullopt;
   }
   constexpr std::array<Index, 3> kAll = {0, 1, 2};
@@ -417,19 +547,18 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
   constexpr std::array<Index, 1> kInertia = {0};
   const bool damped = id.structure == Structure::full;
   const std::span<const Index> parts = damped ? std::span<const Index>(kAll) : std::span<const Index>(kUndamped);
-  const double agree = damped ? kAgreeOfThree : kAgreeOfTwo;
+  const bool in_space = id.axes == 3;
+  const double agree =
+      damped ? (in_space ? kAgreeOfThreeInSpace : kAgreeOfThree) : (in_space ? kAgreeOfTwoInSpace : kAgreeOfTwo);
   std::optional<Symmetric> turn = turned_by(id, parts);
   const auto scale = scaled_by(id, parts);
   const bool turn_fits = turn && turn->misfit < agree;
-  const std::string what =
-      fmt::format("the inertia is not symmetric, which is impossible for a limb: m_yx − m_xy is {:.2g} ± {:.1g} kg",
-                  id.model.M(1, 0) - id.model.M(0, 1),
-                  numeric::kNormal95 * std::abs((id.model.M(1, 0) - id.model.M(0, 1)) / asymmetry));
-  if (!turn_fits && scale && scale->misfit < agree && scale->value > 0.0) {
+  const std::string what = asymmetry_text(asymmetry, id.model.M);
+  if (!turn_fits && scale && scale->misfit < agree && scale->value[0] > 0.0) {
     return Warning{
         WarningCode::inertia_not_symmetric,
         fmt::format("{}; M, B and K would be symmetric if Fy were {:.3g} ± {:.2g} times too large relative to Fx", what,
-                    scale->value, numeric::kNormal95 * scale->standard_error),
+                    scale->value[0], numeric::kNormal95 * scale->standard_error[0]),
         "check the gain of both force axes with 'mbk sensor calibrate'"};
   }
   if (!turn_fits && biased(id)) return std::nullopt;  // the cause of the bias is reported already
@@ -438,14 +567,16 @@ std::optional<Warning> check_symmetry(const Measurement& measured) {
     return Warning{WarningCode::inertia_not_symmetric, what,
                    "check the frames, gains and crosstalk of force and position"};
   }
-  const double angle = kDegrees * turn->value, half = kDegrees * numeric::kNormal95 * turn->standard_error;
+  const Vector angle = kDegrees * turn->value;
+  const double half = kDegrees * numeric::kNormal95 * turn->standard_error.maxCoeff();
+  const std::string rotated =
+      rotation_text(angle, fmt::format("{:.1f}° ± {:.1f}°", in_space ? angle.norm() : angle[0], half));
   return Warning{
       WarningCode::inertia_not_symmetric,
-      turn_fits ? fmt::format("{}: the force is rotated by {:.1f}° ± {:.1f}° relative to the motion, or has crosstalk",
-                              what, angle, half)
-                : fmt::format("{}: according to M alone the force is rotated by {:.1f}° ± {:.1f}° relative to the "
-                              "motion, but B and K contradict this: gains, crosstalk or reflexes may be the cause",
-                              what, angle, half),
+      turn_fits ? fmt::format("{}: the force is rotated {} relative to the motion, or has crosstalk", what, rotated)
+                : fmt::format("{}: according to M alone the force is rotated {} relative to the motion, but B and K "
+                              "contradict this: gains, crosstalk or reflexes may be the cause",
+                              what, rotated),
       turn_back(angle)};
 }
 

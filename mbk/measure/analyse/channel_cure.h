@@ -19,7 +19,7 @@ struct AxisCure {
 
 /// Corrections to the reading; initially none.
 struct ChannelCure {
-  std::array<AxisCure, 2> position{AxisCure{0}, AxisCure{1}}, force{AxisCure{0}, AxisCure{1}};
+  std::array<AxisCure, 3> position{AxisCure{0}, AxisCure{1}, AxisCure{2}}, force = position;
   std::string reference_unit, time_unit;  ///< "" as they were
 };
 

@@ -7,15 +7,19 @@
 #include <limits>
 #include <numbers>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
 
 namespace mbk::analyse {
 namespace {
 
-double standard_error(const Eigen::RowVector4d& gradient, const Eigen::Matrix4d& covariance) {
+template <class Gradient, class Covariance>
+double standard_error(const Gradient& gradient, const Covariance& covariance) {
   const double variance = (gradient * covariance * gradient.transpose()).value();
   return variance < 0.0 ? 0.0 : std::sqrt(variance);  // NaN, where there is no covariance, stays NaN
 }
+
+constexpr double kChiSquared2 = 5.991464547107982, kChiSquared3 = 7.814727903251179;  // 95 %
 
 /// What is known of v = [(z_xx − z_yy)/2, z_s], whose direction is twice the orientation and whose length is half the
 /// difference of the eigenvalues.
@@ -32,21 +36,18 @@ class Deviator {
     white_ = root_.triangularView<Eigen::Lower>().solve(v_);
   }
 
-  [[nodiscard]] bool may_be_zero() const {
-    constexpr double kChiSquared2 = 5.991464547107982;
-    return known_ && white_.squaredNorm() <= kChiSquared2;
-  }
+  [[nodiscard]] bool may_be_zero() const { return known_ && white_.squaredNorm() <= kChiSquared2; }
 
-  /// The directions of the vectors that lie within 1.96 standard errors of their own component across v: between the
+  /// The directions of the vectors that lie within so many standard errors of their own component across v: between the
   /// tangents from the origin to that ellipse around v.
-  [[nodiscard]] Interval orientation95() const {
+  [[nodiscard]] Interval orientation95(double errors = numeric::kNormal95) const {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     if (!known_) return {kNaN, kNaN};
     const double at = 0.5 * std::atan2(v_[1], v_[0]);
     const double centre = at < 0.0 ? at + std::numbers::pi : at;
     constexpr double kAny = 0.5 * std::numbers::pi * (1.0 + 1e-12);  // 180° wide in any unit
     if (may_be_zero()) return {centre - kAny, centre + kAny};
-    const double half = std::asin(numeric::kNormal95 / white_.norm());
+    const double half = std::asin(errors / white_.norm());
     const auto turned = [&](double angle) {
       const Eigen::Vector2d edge = root_ * (Eigen::Rotation2Dd(angle) * white_);
       return 0.5 * std::remainder(std::atan2(edge[1], edge[0]) - 2.0 * at, 2.0 * std::numbers::pi);
@@ -59,6 +60,46 @@ class Deviator {
   Eigen::Vector2d v_, white_;
   Eigen::Matrix2d root_;
   bool known_ = false;
+};
+
+/// Derivative of uᵀ Z w by the elements of Z, row by row.
+Eigen::RowVectorXd bilinear(const Vector& u, const Vector& w) {
+  return Vector((w * u.transpose()).reshaped()).transpose();
+}
+
+/// What is known of the symmetric part in the plane of two of its principal directions.
+class PrincipalPlane {
+ public:
+  PrincipalPlane(const Matrix& Z, const Matrix& covariance, const Vector& u, const Vector& w)
+      : to_plane_(rows(u, w)), deviator_(in_plane(Z, u, w), to_plane_ * covariance * to_plane_.transpose()) {
+    const Eigen::RowVectorXd mean = 0.5 * (to_plane_.row(0) + to_plane_.row(3));
+    mean95_ = numeric::interval95(0.5 * (u.dot(Z * u) + w.dot(Z * w)), standard_error(mean, covariance));
+  }
+
+  [[nodiscard]] bool may_be_round() const { return deviator_.may_be_zero(); }
+  [[nodiscard]] const Interval& mean95() const { return mean95_; }
+
+  /// How far an axis may be turned in this plane [rad], as one direction of two in which it may be.
+  [[nodiscard]] double half_angle95() const {
+    if (may_be_round()) return 0.5 * std::numbers::pi;
+    const auto [low, high] = deviator_.orientation95(std::sqrt(kChiSquared2));
+    return std::max(-low, high);  // around 0, as the first direction has the larger eigenvalue
+  }
+
+ private:
+  static Matrix rows(const Vector& u, const Vector& w) {
+    Matrix all(4, u.size() * u.size());
+    all << bilinear(u, u), bilinear(u, w), bilinear(w, u), bilinear(w, w);
+    return all;
+  }
+  static Matrix in_plane(const Matrix& Z, const Vector& u, const Vector& w) {
+    const Matrix S = impedance::symmetric_part(Z);
+    return (Matrix(2, 2) << u.dot(S * u), 0.0, 0.0, w.dot(S * w)).finished();
+  }
+
+  Matrix to_plane_;
+  Deviator deviator_;
+  Interval mean95_;
 };
 
 }  // namespace
@@ -81,8 +122,8 @@ EllipseFinding ellipse_finding(const Matrix& Z, const Eigen::Matrix4d& covarianc
   if (closed) finding.shape95.first = std::max(finding.shape95.first, 1.0);
   if (!finding.round) return finding;
   // Both eigenvalues may be their mean.
-  const Interval mean =
-      numeric::interval95(0.5 * (Z(0, 0) + Z(1, 1)), standard_error({0.5, 0.0, 0.0, 0.5}, covariance));
+  const Interval mean = numeric::interval95(0.5 * (Z(0, 0) + Z(1, 1)),
+                                            standard_error(Eigen::RowVector4d(0.5, 0.0, 0.0, 0.5), covariance));
   if (closed) finding.shape95.first = 1.0;
   finding.lambda_min95.second = std::max(finding.lambda_min95.second, mean.second);
   finding.lambda_max95.first = std::min(finding.lambda_max95.first, mean.first);
@@ -108,8 +149,94 @@ AntisymmetryFinding antisymmetry_finding(const Matrix& Z, const Eigen::Matrix4d&
   return finding;
 }
 
+EllipsoidFinding ellipsoid_finding(const Matrix& Z, const Matrix& covariance) {
+  EllipsoidFinding finding;
+  finding.symmetric = impedance::symmetric_part(Z);
+  const auto [values, vectors] = numeric::symmetric_eigen(finding.symmetric);
+  std::array<Eigen::RowVectorXd, 3> gradient;
+  for (Index k = 0; k < 3; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    Vector v = vectors.col(2 - k);
+    Index largest = 0;
+    v.cwiseAbs().maxCoeff(&largest);
+    if (v[largest] < 0.0) v = -v;
+    gradient[place] = bilinear(v, v);
+    PrincipalDirection& one = finding.principal[place];
+    one.value = values[2 - k];
+    one.value95 = numeric::interval95(one.value, standard_error(gradient[place], covariance));
+    one.direction = v;
+    one.half_angle95 = 0.0;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i + 1; j < 3; ++j) {
+      PrincipalDirection &larger = finding.principal[i], &smaller = finding.principal[j];
+      const PrincipalPlane plane(Z, covariance, larger.direction, smaller.direction);
+      const double angle = plane.half_angle95();
+      for (PrincipalDirection* one : {&larger, &smaller}) {
+        one->half_angle95 = std::isnan(angle) ? angle : std::max(one->half_angle95, angle);
+      }
+      if (!plane.may_be_round()) continue;
+      smaller.value95.second = std::max(smaller.value95.second, plane.mean95().second);
+      larger.value95.first = std::min(larger.value95.first, plane.mean95().first);
+    }
+  }
+  const double first = finding.principal[0].value, second = finding.principal[1].value,
+               third = finding.principal[2].value;
+  finding.closed = finding.principal[2].value95.first > 0.0;
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  finding.volume = finding.shape = kNaN;
+  finding.volume95 = finding.shape95 = {kNaN, kNaN};
+  if (!(third > 0.0)) return finding;
+  finding.volume = 4.0 / 3.0 * std::numbers::pi * first * second * third;
+  finding.shape = first / third;
+  const Eigen::RowVectorXd by_volume =
+      finding.volume * (gradient[0] / first + gradient[1] / second + gradient[2] / third);
+  const Eigen::RowVectorXd by_shape = finding.shape * (gradient[0] / first - gradient[2] / third);
+  finding.volume95 = numeric::positive_interval95(finding.volume, standard_error(by_volume, covariance));
+  finding.shape95 = numeric::positive_interval95(finding.shape, standard_error(by_shape, covariance));
+  const bool round = finding.principal[0].half_angle95 >= 0.5 * std::numbers::pi &&
+                     finding.principal[1].half_angle95 >= 0.5 * std::numbers::pi &&
+                     finding.principal[2].half_angle95 >= 0.5 * std::numbers::pi;
+  finding.shape95.first = round ? 1.0 : std::max(finding.shape95.first, 1.0);
+  return finding;
+}
+
+CirculationFinding circulation_finding(const Matrix& Z, const Matrix& covariance) {
+  CirculationFinding finding;
+  finding.vector = impedance::antisymmetric_vector(Z);
+  finding.size = finding.vector.norm();
+  Matrix to_vector = Matrix::Zero(3, 9);
+  for (Index k = 0; k < 3; ++k) {
+    const Index i = (k + 1) % 3, j = (k + 2) % 3;
+    to_vector(k, 3 * j + i) = 0.5;
+    to_vector(k, 3 * i + j) = -0.5;
+  }
+  const Matrix spread = to_vector * covariance * to_vector.transpose();
+  for (Index k = 0; k < 3; ++k) {
+    finding.vector95[static_cast<std::size_t>(k)] =
+        numeric::interval95(finding.vector[k], std::sqrt(std::max(0.0, spread(k, k))));
+  }
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  finding.size95 = {kNaN, kNaN};
+  if (spread.allFinite() && finding.size > 0.0) {
+    const Vector a = finding.vector;
+    finding.significant = a.dot(numeric::PivotedCholesky(spread).solve(a)) > kChiSquared3;
+    const double along = std::sqrt(std::max(0.0, a.dot(spread * a))) / finding.size;
+    const double widest = std::sqrt(std::max(0.0, numeric::symmetric_eigenvalues(spread).maxCoeff()));
+    finding.size95 = {finding.significant ? std::max(0.0, finding.size - numeric::kNormal95 * along) : 0.0,
+                      finding.size + numeric::kNormal95 * (finding.significant ? along : widest)};
+  }
+  const Vector values = numeric::symmetric_eigenvalues(impedance::symmetric_part(Z));
+  finding.percent = values[0] > 0.0 ? 100.0 * finding.size / std::cbrt(values.prod()) : kNaN;
+  return finding;
+}
+
 Result<Findings> analyse_ellipses(const Identification& identification) {
-  if (identification.axes != 2) return bad_data("a result with one axis has no ellipses", "use a result with two axes");
+  if (identification.axes != 2) {
+    return bad_data(identification.axes == 1 ? "a result with one axis has no ellipses"
+                                             : "a result with three axes has ellipsoids, not ellipses",
+                    "use a result with two axes");
+  }
   const auto block = [&](Index part) {
     return Eigen::Matrix4d(identification.covariance.block<4, 4>(4 * part, 4 * part));
   };
@@ -118,6 +245,18 @@ Result<Findings> analyse_ellipses(const Identification& identification) {
   findings.ellipses = {ellipse_finding(model.M, block(0)), ellipse_finding(model.B, block(1)),
                        ellipse_finding(model.K, block(2))};
   findings.antisymmetry = {antisymmetry_finding(model.M, block(0)), antisymmetry_finding(model.K, block(2))};
+  return findings;
+}
+
+Result<SpatialFindings> analyse_ellipsoids(const Identification& identification) {
+  if (identification.axes != 3)
+    return bad_data("only a result with three axes has ellipsoids", "measure with --axes 3");
+  const auto block = [&](Index part) { return Matrix(identification.covariance.block<9, 9>(9 * part, 9 * part)); };
+  const impedance::Model& model = identification.model;
+  SpatialFindings findings;
+  findings.ellipsoids = {ellipsoid_finding(model.M, block(0)), ellipsoid_finding(model.B, block(1)),
+                         ellipsoid_finding(model.K, block(2))};
+  findings.antisymmetry = {circulation_finding(model.M, block(0)), circulation_finding(model.K, block(2))};
   return findings;
 }
 

@@ -13,6 +13,7 @@
 
 #include "mbk/base/dsp/autocorrelation.h"
 #include "mbk/base/dsp/fourier.h"
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/distributions.h"
 #include "mbk/base/numeric/statistics.h"
 #include "mbk/model/trial/filtered_band.h"
@@ -210,9 +211,11 @@ LineResidual judged(const Eigen::MatrixXcd& residual) {
   const Eigen::VectorXcd mean = residual.colwise().mean().transpose();
   const Eigen::MatrixXcd away = residual.rowwise() - mean.transpose();
   const Eigen::MatrixXcd scatter = (away.transpose() * away.conjugate()) / (periods - 1.0);
-  // T² = P meanᴴ S⁻¹ mean, n at most 2
+  // T² = P meanᴴ S⁻¹ mean
   double square = 0.0;
-  if (n == 1) {
+  if (n > 2) {
+    square = (mean.adjoint() * numeric::complex_inverse(scatter) * mean).value().real();
+  } else if (n == 1) {
     square = std::norm(mean[0]) / scatter(0, 0).real();
   } else {
     const double determinant = scatter(0, 0).real() * scatter(1, 1).real() - std::norm(scatter(0, 1));

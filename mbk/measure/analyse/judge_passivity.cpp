@@ -157,7 +157,8 @@ std::string words(const PassivityBand& band) {
 std::string words(const ModelPassivity& model) {
   std::string text = fmt::format("the model ({}", method_name(model.method));
   for (Index axis = 0; axis < model.vaf.size(); ++axis) {
-    text += fmt::format("{}{:.0f}", axis == 0 ? ", VAF " : " and ", model.vaf[axis]);
+    const char* const between = axis == 0 ? ", VAF " : (axis + 1 == model.vaf.size() ? " and " : ", ");
+    text += fmt::format("{}{:.0f}", between, model.vaf[axis]);
   }
   return text + (model.vaf.size() > 0 ? " %)" : ")");
 }
@@ -318,13 +319,20 @@ Result<ModelPassivity> model_passivity(const Identification& id, const Passivity
   if (id.instrument) result.coherent_residual = largest_share(id.instrument->coherent_residual);
   result.published_rule =
       std::ranges::all_of(result.conditions, [](const PassivityCondition& c) { return c.value >= 0.0; });
-  if (id.axes == 2) {
+  if (id.axes == 3) {
+    for (const Hertz end : {band.low, band.high}) {
+      add(fmt::format("√(det B/uᵀB u) − |ω m_a − k_a/ω| at {:.3g} Hz", end.value), "theory, passivity in three axes",
+          units.damping, impedance::antisymmetry_margin(id.model, omega_of(end), 1));
+    }
+  } else if (id.axes == 2) {
     for (const Hertz end : {band.low, band.high}) {
       for (const int sign : {1, -1}) {
         add(fmt::format("√det B {} (ω m_a − k_a/ω) at {:.3g} Hz", sign > 0 ? "−" : "+", end.value), "(3.18), (3.21)",
             units.damping, impedance::antisymmetry_margin(id.model, omega_of(end), sign));
       }
     }
+  }
+  if (id.axes > 1) {
     result.antisymmetric = common_verdict(std::span(result.conditions).subspan(kSymmetricConditions));
     result.circular_hz = circular_band(id.model);
   }

@@ -53,6 +53,12 @@ class Checker {
            fmt::format("the hand moved along one line: perpendicular to it only {:.1f} % as far",
                        100.0 * excitation.motion_ratio),
            "perturb both axes independently, or measure one axis: --axes 1, with its columns in --channels");
+    } else if (axes() == 3 && excitation.motion_ratio < kSmallestMotionRatio) {
+      warn(WarningCode::motion_on_one_line,
+           fmt::format("the hand moved in one plane or along one line: in one direction only {:.1f} % as far as in "
+                       "another",
+                       100.0 * excitation.motion_ratio),
+           "perturb all three axes independently, or measure the plane of two axes: --axes 2");
     }
     if (excitation.duration < kShortestDuration) {
       warn(WarningCode::too_little_data,

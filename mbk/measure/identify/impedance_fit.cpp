@@ -500,8 +500,8 @@ Disagreement Fitter::compare() const {
     }
   }
   // Bonferroni: 1 % over 3n² parameters.
-  constexpr double kOneAxis = 2.935, kTwoAxes = 3.341;  // two-sided normal quantiles of 0.01/3 and 0.01/12
-  result.significant = largest > (n == 1 ? kOneAxis : kTwoAxes);
+  constexpr std::array kQuantiles = {2.935, 3.341, 3.560};  // two-sided, normal, of 0.01/3, 0.01/12 and 0.01/27
+  result.significant = largest > kQuantiles[static_cast<std::size_t>(n - 1)];
   return result;
 }
 
@@ -511,9 +511,13 @@ std::vector<std::string> parameter_names(int axes) {
   if (axes == 1) return {"m", "b", "k", "x0"};
   std::vector<std::string> names;
   for (const char matrix : {'m', 'b', 'k'}) {
-    for (const char* entry : {"xx", "xy", "yx", "yy"}) names.push_back(fmt::format("{}_{}", matrix, entry));
+    for (int row = 0; row < axes; ++row) {
+      for (int column = 0; column < axes; ++column) {
+        names.push_back(fmt::format("{}_{}{}", matrix, "xyz"[row], "xyz"[column]));
+      }
+    }
   }
-  names.insert(names.end(), {"x0", "y0"});
+  for (int axis = 0; axis < axes; ++axis) names.push_back(fmt::format("{}0", "xyz"[axis]));
   return names;
 }
 

@@ -94,7 +94,8 @@ Matrix simulate_axes(const impedance::Model& model, const Matrix& u, double samp
 
 Matrix simulate(const impedance::Model& model, const Matrix& u, double sample_time,
                 const std::vector<RowRange>& ranges) {
-  return (u.cols() == 1 ? simulate_axes<1> : simulate_axes<2>)(model, u, sample_time, ranges);
+  const auto of_axes = u.cols() == 1 ? simulate_axes<1> : (u.cols() == 2 ? simulate_axes<2> : simulate_axes<3>);
+  return of_axes(model, u, sample_time, ranges);
 }
 
 /// [motion 1] with the means of the rows that count removed.

@@ -159,7 +159,7 @@ Matrix structure_matrix(Structure structure, Index n) {
     return Matrix::Identity(n * p, n * p);
   }
   std::vector<Vector> columns;
-  const auto add = [&](std::initializer_list<std::pair<Index, Index>> entries) {
+  const auto add = [&](const std::vector<std::pair<Index, Index>>& entries) {
     Vector column = Vector::Zero(n * p);
     for (const auto& [output, regressor] : entries) column[output * p + regressor] = 1.0;
     columns.push_back(std::move(column));
@@ -176,11 +176,9 @@ Matrix structure_matrix(Structure structure, Index n) {
       for (Index i = 0; i < n; ++i) add({{j, n + i}});
     }
   } else {  // M = m I, no damping
-    if (n == 1) {
-      add({{0, 0}});
-    } else {
-      add({{0, 0}, {1, 1}});
-    }
+    std::vector<std::pair<Index, Index>> mass;
+    for (Index j = 0; j < n; ++j) mass.emplace_back(j, j);
+    add(mass);
   }
   add_symmetric(2 * n);
   for (Index j = 0; j < n; ++j) add({{j, 3 * n}});

@@ -455,6 +455,10 @@ Result<Measurement> measure_prepared(const std::vector<Source>& sources, const s
     auto findings = MBK_TRY(analyse::analyse_ellipses(measured.identification));
     measured.findings = std::move(findings);
   }
+  if (measured.identification.axes == 3 && measured.identification.model.M.allFinite()) {
+    auto findings = MBK_TRY(analyse::analyse_ellipsoids(measured.identification));
+    measured.spatial = std::move(findings);
+  }
   if (measured.identification.replicates) {
     auto bootstrap = MBK_TRY(analyse::bootstrap_findings(measured.identification));
     measured.bootstrap = std::move(bootstrap);

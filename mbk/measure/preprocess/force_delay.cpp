@@ -13,7 +13,7 @@ namespace mbk::preprocess {
 namespace {
 
 bool is_force(const Channel& channel) {
-  return channel.name == kForceChannels.one_axis || std::ranges::count(kForceChannels.plane, channel.name) > 0;
+  return channel.name == kForceChannels.one_axis || std::ranges::count(kForceChannels.several, channel.name) > 0;
 }
 
 }  // namespace

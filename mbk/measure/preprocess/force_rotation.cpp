@@ -11,7 +11,7 @@ Result<Recording> turn_force(const Recording& recording, double angle) {
   if (!std::isfinite(angle)) return bad_usage("the rotation angle of the force must be finite");
   Recording result = recording;
   const auto channel = [&](std::size_t axis) {
-    return std::ranges::find(result.channels, kForceChannels.plane[axis], &Channel::name);
+    return std::ranges::find(result.channels, kForceChannels.several[axis], &Channel::name);
   };
   const auto x = channel(0), y = channel(1);
   if (x == result.channels.end() || y == result.channels.end()) {

@@ -64,7 +64,7 @@ StampEvidence stamp_evidence(const Recording& recording) {
   const double step = even[1] - even[0];
   const Vector delay = recording.time - even;
   Sums all;
-  for (const int axes : {1, 2}) {
+  for (const int axes : {1, 3, 2}) {
     const Matrix position = recorded(recording, kPositionChannels, axes);
     if (position.size() == 0 || !position.allFinite()) continue;
     for (Index axis = 0; axis < position.cols(); ++axis) {
@@ -72,6 +72,7 @@ StampEvidence stamp_evidence(const Recording& recording) {
       all.gg += one.gg;
       all.gh += one.gh;
     }
+    if (axes == 3) break;  // x and y are among them
   }
   if (!(all.gg > 0.0)) return none;
   return {all.gh / all.gg, std::sqrt(kCorrelation / all.gg)};

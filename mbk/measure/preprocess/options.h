@@ -21,7 +21,7 @@ struct Options {
   Mode mode = Mode::default_mode;
   std::optional<Procedure> procedure;  ///< of reference mode; absent: chapter3
   std::optional<Protocol> protocol;    ///< absent: detect_protocol
-  int axes = 0;                        ///< 1, 2, or 0 = by the channels that are there
+  int axes = 0;                        ///< 1, 2, 3, or 0 = by the channels that are there
   std::optional<int> smoothing_order, smoothing_window;
   std::optional<Hertz> cutoff;
   bool no_lowpass = false;  ///< smoothing only, no Butterworth filter

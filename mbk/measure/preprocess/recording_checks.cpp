@@ -15,8 +15,8 @@ namespace mbk::preprocess {
 
 Result<void> check_choices(const Options& options) {
   constexpr int kLongestWindow = 1000000;
-  if (options.axes < 0 || options.axes > 2)
-    return bad_usage(fmt::format("{} axes are not supported; use 1 or 2", options.axes));
+  if (options.axes < 0 || options.axes > 3)
+    return bad_usage(fmt::format("{} axes are not supported; use 1, 2 or 3", options.axes));
   if (options.smoothing_window && (*options.smoothing_window < 1 || *options.smoothing_window > kLongestWindow)) {
     return bad_usage(
         fmt::format("a Savitzky–Golay window of {} samples is not in 1…{}", *options.smoothing_window, kLongestWindow));

@@ -14,7 +14,7 @@ namespace {
 
 /// A reference that is constant but for some steps: between two samples it is what was commanded last.
 bool is_held(const Channel& channel) {
-  for (const int axes : {1, 2}) {
+  for (const int axes : {1, 3}) {
     for (Index axis = 0; axis < axes; ++axis) {
       if (channel.name == kReferenceChannels.name(axes, axis))
         return detect_protocol(channel.values).protocol == Protocol::underdamped;

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "mbk/base/numeric/statistics.h"
 #include "mbk/measure/preprocess/recording_checks.h"
 #include "mbk/model/trial/quantity_channels.h"
 
@@ -31,7 +34,7 @@ Result<Columns> require(const Recording& recording, const QuantityChannels& quan
 
 /// What moves, by the units of position and force; where one is unknown the other decides.
 Result<Motion> motion_of(const Recording& recording, int axes) {
-  if (axes == 2) return Motion::translation;
+  if (axes > 1) return Motion::translation;
   const std::string &position = recording.find("position")->unit, &reaction = recording.find("reaction")->unit;
   const bool rotates = position == "rad" || reaction == "N.m", shifts = position == "m" || reaction == "N";
   if (rotates && shifts) {
@@ -49,12 +52,27 @@ ReferenceQuantity reference_quantity(const Recording& recording, int axes) {
   return ReferenceQuantity::unknown;
 }
 
+double deviation(const Vector& values) {
+  const double square = numeric::variance(values);
+  return std::isfinite(square) ? std::sqrt(square) : 0.0;
+}
+
+/// Whether the hand was measured along z too, and moved along it: not that of a robot in the plane.
+bool moves_in_space(const Recording& recording) {
+  constexpr double kMoves = 0.05;  // of the larger motion along x or y: less is on one line or in one plane
+  if (recording.find(kForceChannels.name(3, 2)) == nullptr) return false;
+  const Columns position = channels_of(recording, kPositionChannels, 3);
+  if (position.size() == 0) return false;
+  const double plane = std::max(deviation(position.col(0)), deviation(position.col(1)));
+  return deviation(position.col(2)) > kMoves * plane;
+}
+
 }  // namespace
 
 Result<Signals> select_signals(const Recording& recording, int axes, bool acceleration_from_sensor) {
   Signals signals;
   const bool one_axis = recording.find("position") != nullptr || recording.find("reaction") != nullptr;
-  signals.axes = axes != 0 ? axes : (one_axis ? 1 : 2);
+  signals.axes = axes != 0 ? axes : (one_axis ? 1 : (moves_in_space(recording) ? 3 : 2));
   const auto take = [&](const QuantityChannels& quantity, Columns& target) -> Result<void> {
     target = MBK_TRY(require(recording, quantity, signals.axes));
     return {};

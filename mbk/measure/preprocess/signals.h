@@ -21,7 +21,7 @@ struct Signals {
 };
 
 /// Finds them in a recording, which must stay as long as they are used.
-/// @param axes 1, 2, or 0 = by the channels that are there
+/// @param axes 1, 2, 3, or 0 = by the channels that are there
 /// @fails a channel is missing (it is named, with those that are there); with one axis, position and reaction in units
 /// that do not belong together.
 [[nodiscard]] Result<Signals> select_signals(const Recording& recording, int axes, bool acceleration_from_sensor);

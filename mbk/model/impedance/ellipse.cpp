@@ -14,6 +14,10 @@ double antisymmetric_part(const Matrix& Z) {
   return 0.5 * (Z(0, 1) - Z(1, 0));
 }
 
+Eigen::Vector3d antisymmetric_vector(const Matrix& Z) {
+  return 0.5 * Eigen::Vector3d(Z(2, 1) - Z(1, 2), Z(0, 2) - Z(2, 0), Z(1, 0) - Z(0, 1));
+}
+
 double antisymmetry_percent(const Matrix& Z) {
   const Ellipse e = ellipse(Z);
   if (!(e.lambda_min > 0.0)) return std::numeric_limits<double>::quiet_NaN();

@@ -12,6 +12,10 @@ namespace mbk::impedance {
 /// z_a = (z_xy − z_yx)/2, signed: the rotational part. @param Z 2×2
 [[nodiscard]] double antisymmetric_part(const Matrix& Z);
 
+/// z_a of a 3×3 matrix: (Z − Zᵀ)/2 · u = z_a × u. Its direction is the axis about which the part rotates; in the plane
+/// only its z component is left, with the opposite sign of antisymmetric_part.
+[[nodiscard]] Eigen::Vector3d antisymmetric_vector(const Matrix& Z);
+
 /// z_mean = 100 |z_a|/√(λ_max λ_min) [%], relative to the symmetric part (Dyck 2013, eq. 3.26).
 /// NaN where the symmetric part is not positive definite. @param Z 2×2
 [[nodiscard]] double antisymmetry_percent(const Matrix& Z);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "mbk/base/core/nan.h"
@@ -36,6 +37,88 @@ Sensitive antisymmetry(const Model& model, double omega) {
   return a;
 }
 
+/// a(ω) = ω m_a − k_a/ω of three axes, and ∂a/∂(model), 3×(27 + 3).
+struct Circulation {
+  Eigen::Vector3d a;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> gradient;
+
+  Circulation(const Model& model, double omega)
+      : a(omega * antisymmetric_vector(model.M) - antisymmetric_vector(model.K) / omega),
+        gradient(Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, no_gradient(model).size())) {
+    constexpr Index kM = 0, kK = 18;
+    for (const auto& [first, factor] : {std::pair(kM, 0.5 * omega), std::pair(kK, -0.5 / omega)}) {
+      for (Index k = 0; k < 3; ++k) {
+        const Index i = (k + 1) % 3, j = (k + 2) % 3;  // a_k = (z_ji − z_ij)/2
+        gradient(k, first + 3 * j + i) = factor;
+        gradient(k, first + 3 * i + j) = -factor;
+      }
+    }
+  }
+};
+
+constexpr Index kDampingInSpace = 9;  ///< of b_xx in the stacked model of three axes
+
+/// The smallest eigenvalue of B_s + j [a]×.
+Sensitive index_in_space(const Model& model, double omega) {
+  const Circulation circulation(model, omega);
+  const Eigen::Vector3d& a = circulation.a;
+  Eigen::Matrix3d cross;
+  cross << 0.0, -a[2], a[1], a[2], 0.0, -a[0], -a[1], a[0], 0.0;
+  Eigen::Matrix3cd H = symmetric_part(model.B).cast<std::complex<double>>();
+  H.imag() = cross;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3cd> eigen(H);
+  const Eigen::Vector3cd v = eigen.eigenvectors().col(0);
+  Sensitive index{eigen.eigenvalues()[0], no_gradient(model)};
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 3; ++j) index.gradient[kDampingInSpace + 3 * i + j] = (std::conj(v[i]) * v[j]).real();
+  }
+  // vᴴ j [da]× v = 2 da · (Re v × Im v)
+  const Eigen::Vector3d re = v.real(), im = v.imag();
+  index.gradient -= 2.0 * im.cross(re).transpose() * circulation.gradient;
+  return index;
+}
+
+/// √(det B_s/(uᵀ B_s u)) − |a|, a = |a| u.
+Sensitive margin_in_space(const Model& model, double omega) {
+  const Circulation circulation(model, omega);
+  const Eigen::Matrix3d B = symmetric_part(model.B);
+  const double determinant = B.determinant();
+  if (!(determinant > 0.0)) return {kNaN, Eigen::RowVectorXd::Constant(no_gradient(model).size(), kNaN)};
+  const double size = circulation.a.norm();
+  const Eigen::Vector3d u = size > 0.0 ? Eigen::Vector3d(circulation.a / size)
+                                       : Eigen::Vector3d(numeric::symmetric_eigen(Matrix(B)).vectors.col(2));
+  const Eigen::Vector3d Bu = B * u;
+  const double s = u.dot(Bu), root = std::sqrt(determinant / s);
+  Sensitive margin{root - size, no_gradient(model)};
+  const Eigen::Matrix3d by_damping = 0.5 * root * (Eigen::Matrix3d(B.inverse()) - u * u.transpose() / s);
+  for (Index i = 0; i < 3; ++i) {
+    for (Index j = 0; j < 3; ++j) margin.gradient[kDampingInSpace + 3 * i + j] = by_damping(i, j);
+  }
+  if (size > 0.0) {
+    const Eigen::RowVector3d by_direction = -(root / (s * size)) * (Bu - s * u).transpose();
+    margin.gradient += (by_direction - u.transpose()) * circulation.gradient;
+  }
+  return margin;
+}
+
+/// aᵀ B_s a = alpha ω² − 2 beta + gamma/ω².
+struct CirculationPower {
+  double alpha, beta, gamma, determinant;
+
+  explicit CirculationPower(const Model& model) {
+    const Eigen::Matrix3d B = symmetric_part(model.B);
+    const Eigen::Vector3d m = antisymmetric_vector(model.M), k = antisymmetric_vector(model.K);
+    alpha = m.dot(B * m);
+    beta = m.dot(B * k);
+    gamma = k.dot(B * k);
+    determinant = B.determinant();
+  }
+};
+
+bool is_damped(const Model& model) {
+  return smallest_eigenvalue(model, 1).value > 0.0;
+}
+
 }  // namespace
 
 double standard_error(const Sensitive& quantity, const Matrix& covariance) {
@@ -53,6 +136,7 @@ Sensitive smallest_eigenvalue(const Model& model, int matrix) {
 
 Sensitive passivity_index(const Model& model, double omega) {
   if (model.axes() == 1) return eigenvalue(model, 1, 0);
+  if (model.axes() == 3) return index_in_space(model, omega);
   const Sensitive a = antisymmetry(model, omega);
   const Matrix B = symmetric_part(model.B);
   const double half = (B(0, 0) - B(1, 1)) / 2.0, radius = std::hypot(half, B(0, 1), a.value);
@@ -70,6 +154,7 @@ Sensitive passivity_index(const Model& model, double omega) {
 
 Sensitive antisymmetry_margin(const Model& model, double omega, int sign) {
   if (model.axes() == 1) return eigenvalue(model, 1, 0);
+  if (model.axes() == 3) return margin_in_space(model, omega);
   const Matrix B = symmetric_part(model.B);
   const double determinant = numeric::determinant(B);
   const Sensitive a = antisymmetry(model, omega);
@@ -87,6 +172,11 @@ Sensitive antisymmetry_margin(const Model& model, double omega, int sign) {
 
 std::optional<double> nonpassive_below(const Model& model) {
   if (model.axes() == 1) return model.B(0, 0) > 0.0 ? std::optional(0.0) : std::nullopt;
+  if (model.axes() == 3) {
+    const CirculationPower power(model);
+    if (!is_damped(model)) return std::nullopt;
+    return std::sqrt(power.gamma / power.determinant) / (2.0 * std::numbers::pi);
+  }
   const Matrix B = symmetric_part(model.B);
   const double determinant = numeric::determinant(B);
   if (!(determinant > 0.0 && B.trace() > 0.0)) return std::nullopt;
@@ -95,6 +185,14 @@ std::optional<double> nonpassive_below(const Model& model) {
 
 std::optional<std::pair<double, double>> absorbing_in_circles(const Model& model) {
   if (model.axes() == 1) return std::nullopt;
+  if (model.axes() == 3) {
+    const CirculationPower power(model);
+    const double middle = power.determinant + 2.0 * power.beta;
+    const double discriminant = middle * middle - 4.0 * power.alpha * power.gamma;
+    if (!(is_damped(model) && middle > 0.0 && discriminant > 0.0)) return std::nullopt;
+    const double sum = middle + std::sqrt(discriminant);
+    return std::pair{std::sqrt(2.0 * power.gamma / sum), std::sqrt(sum / (2.0 * power.alpha))};  // ∞ if m_a = 0
+  }
   const Matrix B = symmetric_part(model.B);
   const double m_a = antisymmetric_part(model.M), k_a = antisymmetric_part(model.K);
   const double determinant = numeric::determinant(B), discriminant = determinant + 4.0 * m_a * k_a;

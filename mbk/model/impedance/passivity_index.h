@@ -29,22 +29,27 @@ struct Sensitive {
 /// Passivity index at one frequency, ½ λ_min(Z(jω) + Zᴴ(jω)) with Z(s) = M s + B + K/s: the smallest damping of the
 /// limb over direction and phase [N·s/m]. In closed form
 ///   tr(B_s)/2 − √( ((b_xx − b_yy)/2)² + b_s² + (ω m_a − k_a/ω)² ),
-/// with B_s = (B + Bᵀ)/2, and m_a, k_a the antisymmetric parts of M and K. One axis: b.
-/// Over a band its minimum is at an end, for |ω m_a − k_a/ω| is largest there. @param omega > 0 [rad/s]
+/// with B_s = (B + Bᵀ)/2, and m_a, k_a the antisymmetric parts of M and K. One axis: b. Three axes: the smallest
+/// eigenvalue of B_s + j [a]×, a = ω m_a − k_a/ω of antisymmetric_vector.
+/// Over a band its minimum is at an end: |ω m_a − k_a/ω| is largest there; with three axes, the frequencies at which it
+/// exceeds any δ form one interval, since aᵀ(B_s − δI)a is convex in log ω (docs/theory/passivity.md).
+/// @param omega > 0 [rad/s]
 [[nodiscard]] Sensitive passivity_index(const Model& model, double omega);
 
 /// √det B_s ∓ (ω m_a − k_a/ω), `sign` = ±1: both are positive where B_s is positive definite and the index is positive.
-/// NaN where det B_s ≤ 0; with one axis b. @param omega > 0 [rad/s]
+/// NaN where det B_s ≤ 0; with one axis b. Three axes: √(det B_s/(uᵀ B_s u)) − |a| with a = |a| u, whatever the sign.
+/// @param omega > 0 [rad/s]
 [[nodiscard]] Sensitive antisymmetry_margin(const Model& model, double omega, int sign);
 
 /// Below this frequency [Hz] the antisymmetric stiffness makes a limb without inertial antisymmetry active:
-/// |k_a|/(2π √det B_s). Absent where B_s is not positive definite. 0 with one axis.
+/// |k_a|/(2π √det B_s); with three axes √(k_aᵀ B_s k_a/det B_s)/(2π). Absent where B_s is not positive definite. 0 with one axis.
 [[nodiscard]] std::optional<double> nonpassive_below(const Model& model);
 
-/// Where the index of a model of two axes whose B_s is positive definite is positive, ω from first to second [rad/s]:
+/// Where the index of a model of several axes whose B_s is positive definite is positive, ω from first to second
+/// [rad/s]; for two axes
 /// |ω m_a − k_a/ω| < √det B_s. With m_a = 0 above |k_a|/√det B_s; with k_a = 0 below √det B_s/|m_a|; with
 /// D = det B_s + 4 m_a k_a from 2|k_a|/(√det B_s + √D) to (√det B_s + √D)/(2|m_a|). Beyond, circular motion can draw
-/// energy from the model. The second is infinite if m_a = 0.
+/// energy from the model. The second is infinite if m_a = 0. For three axes: aᵀ B_s a < det B_s, quadratic in ω².
 /// @returns absent with one axis, where B_s is not positive definite, or D ≤ 0: then there is no such frequency
 [[nodiscard]] std::optional<std::pair<double, double>> absorbing_in_circles(const Model& model);
 

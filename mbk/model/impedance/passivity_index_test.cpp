@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,13 +29,13 @@ Matrix matrix(double xx, double xy, double yx, double yy) {
 }
 
 /// M near 1 kg, B near 10 N·s/m and K near 100 N/m, with antisymmetric parts; definite or not.
-Model random_model(std::mt19937& random) {
+Model random_model(std::mt19937& random, Index axes = 2) {
   const auto part = [&](double size) {
-    Matrix Z(2, 2);
+    Matrix Z(axes, axes);
     for (double& z : Z.reshaped()) z = size * uniform(random, -1.0, 1.0);
-    return Matrix(Z + size * uniform(random, 0.0, 1.5) * Matrix::Identity(2, 2));
+    return Matrix(Z + size * uniform(random, 0.0, 1.5) * Matrix::Identity(axes, axes));
   };
-  return {part(1.0), part(10.0), part(100.0), Vector::Zero(2)};
+  return {part(1.0), part(10.0), part(100.0), Vector::Zero(axes)};
 }
 
 /// P1 of table 3.3 of Dyck 2013, symmetric parts rebuilt, with antisymmetric stiffness k_a.
@@ -56,8 +57,8 @@ double largest_number(const Model& model, double omega) {
 
 TEST(PassivityIndex, IsTheSmallestEigenvalueOfTheHermitianPart) {
   std::mt19937 random(1);
-  for (int i = 0; i < 500; ++i) {
-    const Model model = random_model(random);
+  for (int i = 0; i < 1000; ++i) {
+    const Model model = random_model(random, i < 500 ? 2 : 3);
     const double omega = std::pow(10.0, uniform(random, -1.0, 2.0));
     EXPECT_NEAR(passivity_index(model, omega).value, slow_index(model, omega), 1e-13 * largest_number(model, omega))
         << "model " << i;
@@ -75,8 +76,8 @@ TEST(PassivityIndex, OfOneAxisIsItsDampingAtEveryFrequency) {
 
 TEST(PassivityIndex, IsSmallestAtAnEndOfAnyBand) {
   std::mt19937 random(2);
-  for (int i = 0; i < 200; ++i) {
-    const Model model = random_model(random);
+  for (int i = 0; i < 400; ++i) {
+    const Model model = random_model(random, i < 200 ? 2 : 3);
     const double low = uniform(random, 0.2, 5.0), high = low * uniform(random, 1.5, 30.0);
     const double ends = std::min(passivity_index(model, low).value, passivity_index(model, high).value);
     for (int k = 1; k < 50; ++k) {
@@ -110,8 +111,9 @@ TEST(NonpassiveBelow, IsAbsentWhereDampingIsNotDefinite) {
 TEST(AntisymmetryMargins, ArePositiveExactlyWhereTheIndexIs) {
   std::mt19937 random(3);
   int positive = 0, negative = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const Model model = random_model(random);
+  for (int i = 0; i < 6000; ++i) {
+    Model model = random_model(random, i < 2000 ? 2 : 3);
+    if (i >= 2000) model.B += 8.0 * Matrix::Identity(3, 3);
     if (smallest_eigenvalue(model, 1).value <= 0.0) continue;
     const double omega = std::pow(10.0, uniform(random, -0.5, 1.5));
     const double index = passivity_index(model, omega).value;
@@ -141,6 +143,58 @@ struct Case {
   std::function<Sensitive(const Model&)> quantity;
 };
 
+TEST(PassivityInSpace, OfAPlanarLimbIsThatOfThePlane) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 200; ++i) {
+    const Model plane = random_model(random);
+    if (smallest_eigenvalue(plane, 1).value <= 0.0) continue;
+    const double own = uniform(random, 20.0, 40.0);  // damping of the third axis
+    Model space{Matrix::Identity(3, 3), own * Matrix::Identity(3, 3), Matrix::Identity(3, 3), Vector::Zero(3)};
+    for (const int k : {0, 1, 2}) const_cast<Matrix&>(matrix_of(space, k)).topLeftCorner(2, 2) = matrix_of(plane, k);
+    const double omega = std::pow(10.0, uniform(random, -0.5, 1.5));
+    EXPECT_NEAR(passivity_index(space, omega).value, std::min(own, passivity_index(plane, omega).value), 1e-10);
+    const double margin =
+        std::min(antisymmetry_margin(plane, omega, 1).value, antisymmetry_margin(plane, omega, -1).value);
+    EXPECT_NEAR(antisymmetry_margin(space, omega, 1).value, margin, 1e-10);
+    const auto inside = absorbing_in_circles(plane), outside = absorbing_in_circles(space);
+    ASSERT_EQ(inside.has_value(), outside.has_value());
+    if (!inside) continue;
+    EXPECT_NEAR(outside->first, inside->first, 1e-9 * inside->first);
+    EXPECT_NEAR(outside->second, inside->second, 1e-9 * inside->second);
+  }
+}
+
+TEST(PassivityInSpace, IsTheSameInEveryFrame) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Model model = random_model(random, 3);
+    const Eigen::Quaterniond turn(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0),
+                                  uniform(random, -1.0, 1.0));
+    const Eigen::Matrix3d R = turn.normalized().toRotationMatrix();
+    const auto turned = [&](const Matrix& Z) { return Matrix(R * Z * R.transpose()); };
+    const Model other{turned(model.M), turned(model.B), turned(model.K), Vector::Zero(3)};
+    EXPECT_NEAR(passivity_index(other, 3.0).value, passivity_index(model, 3.0).value, 1e-9);
+    if (smallest_eigenvalue(model, 1).value <= 0.0) continue;
+    EXPECT_NEAR(antisymmetry_margin(other, 3.0, 1).value, antisymmetry_margin(model, 3.0, 1).value, 1e-9);
+  }
+}
+
+TEST(PassivityInSpace, TheBandOfCirclesEndsWhereTheIndexIsZero) {
+  std::mt19937 random(7);
+  int found = 0;
+  for (int i = 0; i < 200; ++i) {
+    Model model = random_model(random, 3);
+    model.B += 12.0 * Matrix::Identity(3, 3);
+    const auto band = absorbing_in_circles(model);
+    if (!band) continue;
+    ++found;
+    for (const double omega : {band->first, band->second}) {
+      EXPECT_NEAR(passivity_index(model, omega).value, 0.0, 1e-9 * largest_number(model, omega));
+    }
+  }
+  EXPECT_GT(found, 100);
+}
+
 class Gradient : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     All, Gradient,
@@ -158,18 +212,21 @@ TEST_P(Gradient, AgreesWithCentralDifferences) {
   // Steps of 1e-5 of the number err by their square times the third derivative, and by ε/1e-5 of rounding.
   constexpr double kStep = 1e-5, kTolerance = 1e-7;
   std::mt19937 random(4);
-  int tried = 0;
-  for (int i = 0; i < 60; ++i) {
-    Model model = random_model(random);
-    model.B += 12.0 * Matrix::Identity(2, 2);
+  std::array<int, 4> tried{};
+  for (int i = 0; i < 180; ++i) {
+    const Index axes = i < 60 ? 2 : 3;
+    Model model = random_model(random, axes);
+    model.B += 12.0 * Matrix::Identity(axes, axes);
     const Sensitive quantity = GetParam().quantity(model);
-    ASSERT_EQ(quantity.gradient.size(), 14);
+    ASSERT_EQ(quantity.gradient.size(), 3 * axes * axes + axes);
     // Where two eigenvalues nearly meet or a root is near 0 the derivative changes within a step.
-    const Ellipse ellipses[] = {ellipse(model.M), ellipse(model.B), ellipse(model.K)};
-    const bool smooth = std::ranges::all_of(
-        ellipses, [](const Ellipse& e) { return e.lambda_max - e.lambda_min > 0.1 * std::abs(e.lambda_max); });
+    const bool smooth = std::ranges::all_of(std::array{0, 1, 2}, [&](int part) {
+      const Vector values = numeric::symmetric_eigenvalues(symmetric_part(matrix_of(model, part)));
+      const double gap = (values.tail(axes - 1) - values.head(axes - 1)).minCoeff();
+      return gap > 0.1 * values.cwiseAbs().maxCoeff();
+    });
     if (!smooth || !std::isfinite(quantity.value)) continue;
-    ++tried;
+    ++tried[static_cast<std::size_t>(axes)];
     const Vector numbers = stacked(model);
     for (Index k = 0; k < numbers.size(); ++k) {
       const double step = kStep * std::max(1.0, std::abs(numbers[k]));
@@ -177,13 +234,14 @@ TEST_P(Gradient, AgreesWithCentralDifferences) {
       above[k] += step;
       below[k] -= step;
       const double slope =
-          (GetParam().quantity(unstacked(above, 2)).value - GetParam().quantity(unstacked(below, 2)).value) /
+          (GetParam().quantity(unstacked(above, axes)).value - GetParam().quantity(unstacked(below, axes)).value) /
           (2.0 * step);
       EXPECT_NEAR(quantity.gradient[k], slope, kTolerance * (1.0 + std::abs(slope)))
           << "model " << i << " number " << k;
     }
   }
-  EXPECT_GT(tried, 20);
+  EXPECT_GT(tried[2], 20);
+  EXPECT_GT(tried[3], 20);
 }
 
 TEST(PassivityIndex, AtItsKinkMovesWithTheMeanDamping) {

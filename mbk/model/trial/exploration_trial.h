@@ -20,7 +20,7 @@ struct SignalLabel {
 /// Evenly sampled, unfiltered signals for exploration without a model of the limb: motion of the hand and the response
 /// force, so that the response from one to the other is the dynamic stiffness D = −F_h/X of the limb, K at rest.
 struct ExplorationTrial {
-  int axes = 2;  ///< n, 1 or 2
+  int axes = 2;  ///< n, 1, 2 or 3
   Motion motion = Motion::translation;
   double sample_time = 0;  ///< T [s]
   double from_s = 0;       ///< of the first row, [s] from the recording's first sample

@@ -206,7 +206,7 @@ struct Replicates {
   std::uint64_t seed = 1;
 };
 
-/// An impedance with its uncertainty, its fit, and whether it is usable. n is the number of axes, 1 or 2.
+/// An impedance with its uncertainty, its fit, and whether it is usable. n is the number of axes, 1, 2 or 3.
 struct Identification {
   /// M ẍ + B ẋ + K (x − x₀) = −F: M [kg], B [N·s/m], K [N/m], x₀ [m], or their rotational units (`units_of(motion)`).
   /// Every number is NaN if the regressors could not be distinguished; `usable` is then false.

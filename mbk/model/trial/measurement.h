@@ -20,8 +20,11 @@ struct Measurement {
   /// M, B, K and x₀ with their covariance, fit and warnings, and whether they may be used.
   Identification identification;
 
-  /// Ellipses of M, B and K with intervals. Absent with one axis.
+  /// Ellipses of M, B and K with intervals. Only with two axes.
   std::optional<Findings> findings;
+
+  /// Ellipsoids of M, B and K with intervals. Only with three axes.
+  std::optional<SpatialFindings> spatial;
 
   /// The other method on the same rows: least squares if the result uses instrumental variables, or the reverse. Absent
   /// if no reference was recorded.

@@ -92,7 +92,7 @@ struct TrialConditions {
 /// Evenly sampled signals, equally filtered, ready for a fit. SI units or radians, base frame. Decimated if the
 /// low-pass permits it without loss.
 struct PreparedTrial {
-  int axes = 2;  ///< n, 1 or 2
+  int axes = 2;  ///< n, 1, 2 or 3
   Motion motion = Motion::translation;
   double sample_time = 0;      ///< T [s], between rows
   double recording_rate = 0;   ///< [Hz]
