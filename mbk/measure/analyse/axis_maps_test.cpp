@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -15,42 +17,46 @@ namespace mbk::analyse {
 namespace {
 
 /// Symmetric and positive definite, of any size and orientation.
-Matrix random_stiffness(numeric::Random& random) {
-  Matrix A(2, 2);
+Matrix random_stiffness(numeric::Random& random, Index axes = 2) {
+  Matrix A(axes, axes);
   for (double& value : A.reshaped()) value = random.normal();
-  return A * A.transpose() + 0.2 * Matrix::Identity(2, 2);
+  return A * A.transpose() + 0.2 * Matrix::Identity(axes, axes);
 }
 
 Measurement measured(const Matrix& R, const impedance::Model& model, double relative_error) {
   Measurement result;
   Identification& id = result.identification;
-  id.axes = 2;
-  id.model = {R * model.M, R * model.B, R * model.K, Vector::Zero(2)};
-  id.covariance = Matrix::Zero(14, 14);
+  const Index n = R.rows();
+  id.axes = static_cast<int>(n);
+  id.model = {R * model.M, R * model.B, R * model.K, Vector::Zero(n)};
+  id.covariance = Matrix::Zero(3 * n * n + n, 3 * n * n + n);
   for (Index part = 0; part < 3; ++part) {
     const Matrix& Z = part == 0 ? model.M : part == 1 ? model.B : model.K;
     const double error = relative_error * Z.norm();
-    id.covariance.diagonal().segment(4 * part, 4).setConstant(error * error);
+    id.covariance.diagonal().segment(n * n * part, n * n).setConstant(error * error);
   }
-  id.standard_error = impedance::unstacked(id.covariance.diagonal().cwiseSqrt(), 2);
+  id.standard_error = impedance::unstacked(id.covariance.diagonal().cwiseSqrt(), n);
   return result;
 }
 
-/// Channels read from columns 2 to 5.
-Recording recording() {
+/// Channels read from columns 2 to 5, or 2 to 7.
+Recording recording(int axes) {
   Recording result;
   int column = 2;
-  for (const auto& [name, alias] :
-       {std::pair{"hand_x", "x"}, std::pair{"hand_y", "y"}, std::pair{"force_x", "Fx"}, std::pair{"force_y", "Fy"}}) {
-    result.channels.push_back({name, "", "base", Vector::Zero(1), {alias, std::to_string(column++), "", ""}});
+  for (const auto& [quantity, prefix] : {std::pair(kPositionChannels, ""), std::pair(kForceChannels, "F")}) {
+    for (int axis = 0; axis < axes; ++axis) {
+      const std::string alias = fmt::format("{}{}", prefix, "xyz"[axis]);
+      result.channels.push_back(
+          {quantity.name(axes, axis), "", "base", Vector::Zero(1), {alias, std::to_string(column++), "", ""}});
+    }
   }
   return result;
 }
 
 std::optional<Warning> checked(const Measurement& one) {
-  const Recording from = recording();
+  const Recording from = recording(one.identification.axes);
   PreparedTrial trial;
-  trial.axes = 2;
+  trial.axes = one.identification.axes;
   return check_axes({&from}, {trial}, one);
 }
 
@@ -79,6 +85,32 @@ TEST(AxisMaps, EachOfTheEightIsFoundAndNamed) {
       EXPECT_NE(found->remedy.find(map.channels), std::string::npos) << k << ": " << found->remedy;
     }
   }
+}
+
+TEST(AxisMaps, EveryMapOfThreeAxesIsFound) {
+  numeric::Random random(4);
+  const impedance::Model model = {random_stiffness(random, 3), random_stiffness(random, 3), random_stiffness(random, 3),
+                                  Vector::Zero(3)};
+  EXPECT_FALSE(checked(measured(Matrix::Identity(3, 3), model, 0.01)));
+  std::array<Index, 3> from = {0, 1, 2};
+  int maps = 0;
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Matrix R = Matrix::Zero(3, 3);
+      std::string channels = "x=2,y=3,z=4";
+      for (Index i = 0; i < 3; ++i) R(from[static_cast<std::size_t>(i)], i) = ((signs >> i) & 1) != 0 ? -1.0 : 1.0;
+      if (R.isIdentity()) continue;
+      for (Index i = 0; i < 3; ++i) {
+        const Index column = from[static_cast<std::size_t>(i)];
+        channels += fmt::format(",F{}={}{}", "xyz"[i], R(column, i) < 0.0 ? "-" : "", 5 + column);
+      }
+      const auto found = checked(measured(R, model, 0.005));
+      ASSERT_TRUE(found) << R;
+      EXPECT_NE(found->remedy.find(channels), std::string::npos) << channels << ": " << found->remedy;
+      ++maps;
+    }
+  } while (std::next_permutation(from.begin(), from.end()));
+  EXPECT_EQ(maps, 47);
 }
 
 TEST(AxisMaps, NothingIsSaidOfNoise) {
@@ -121,6 +153,40 @@ TEST(Symmetry, OfAForceThatIsTurnedByLessTheAngleIsNamedWithWhatTurnsItBack) {
     EXPECT_NE(found->remedy.find(fmt::format("--force-rotation-deg {:.1f};", -degrees)), std::string::npos)
         << found->remedy;
   }
+}
+
+impedance::Model relaxed_arm_in_space() {
+  return {Matrix{{1.3, -0.9, 0.1}, {-0.9, 1.9, 0.2}, {0.1, 0.2, 1.4}},
+          Matrix{{5.8, -2.1, 0.5}, {-2.1, 10.6, 1.0}, {0.5, 1.0, 8.0}},
+          Matrix{{42.0, -28.0, 5.0}, {-28.0, 125.0, 9.0}, {5.0, 9.0, 90.0}}, Vector::Zero(3)};
+}
+
+TEST(Symmetry, NamesTheRotationVectorOfAForceThatIsTurnedInSpace) {
+  numeric::Random random(5);
+  for (const double degrees : {5.0, 8.0, 15.0}) {
+    for (int k = 0; k < 20; ++k) {
+      const Eigen::Vector3d axis = Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+      const Matrix turn = Eigen::AngleAxisd(degrees / kDegrees, axis).toRotationMatrix();
+      const auto found = check_symmetry(measured(turn, relaxed_arm_in_space(), 0.003));
+      ASSERT_TRUE(found) << degrees << " about " << axis.transpose();
+      EXPECT_EQ(found->code, WarningCode::inertia_not_symmetric);
+      EXPECT_NE(found->message.find(fmt::format("{:.1f}°", degrees)), std::string::npos) << found->message;
+      const Eigen::Vector3d back = -degrees * axis;
+      EXPECT_NE(
+          found->remedy.find(fmt::format("--force-rotation-deg {:.1f},{:.1f},{:.1f};", back[0], back[1], back[2])),
+          std::string::npos)
+          << found->remedy << " for " << back.transpose();
+    }
+  }
+  EXPECT_FALSE(check_symmetry(measured(Matrix::Identity(3, 3), relaxed_arm_in_space(), 0.003)));
+}
+
+TEST(AxisMaps, AForceThatIsTurnedInSpaceIsNamedByItsAngleAndAxis) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 2.0, -1.0).normalized();
+  const Matrix turn = Eigen::AngleAxisd(0.6, axis).toRotationMatrix();
+  const auto found = checked(measured(turn, relaxed_arm_in_space(), 0.005));
+  ASSERT_TRUE(found);
+  EXPECT_NE(found->message.find("34° about [0.41, 0.82, -0.41]"), std::string::npos) << found->message;
 }
 
 TEST(Symmetry, CountsTheHandleThatTheTurnedSensorCarries) {

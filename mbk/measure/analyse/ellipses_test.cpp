@@ -4,12 +4,15 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <utility>
 
 #include "mbk/base/numeric/dense.h"
+#include "mbk/base/numeric/random.h"
 #include "mbk/model/impedance/ellipse.h"
 
 namespace mbk::analyse {
@@ -198,6 +201,103 @@ TEST(EllipseFinding, GivesTheEigenvaluesTheirIntervals) {
   EXPECT_LT(stiffness.lambda_min95.first, stiffness.ellipse.lambda_min);
   EXPECT_GT(stiffness.lambda_min95.second, stiffness.ellipse.lambda_min);
   EXPECT_FALSE(stiffness.round);
+}
+
+/// Of a matrix in space, with errors of `relative` of its norm.
+EllipsoidFinding ellipsoid(const Matrix& Z, double relative) {
+  return ellipsoid_finding(Z, std::pow(relative * Z.norm(), 2) * Matrix::Identity(9, 9));
+}
+
+const Matrix kInSpace = (Matrix(3, 3) << 90.0, -30.0, 20.0, -40.0, 200.0, 10.0, 30.0, -20.0, 150.0).finished();
+
+TEST(Ellipsoids, PrincipalValuesAndAxesAreThoseOfTheSymmetricPart) {
+  const EllipsoidFinding found = ellipsoid(kInSpace, 1e-3);
+  Matrix sum = Matrix::Zero(3, 3);
+  for (const PrincipalDirection& one : found.principal) {
+    EXPECT_NEAR(one.direction.norm(), 1.0, 1e-14);
+    sum += one.value * one.direction * one.direction.transpose();
+  }
+  EXPECT_LE((sum - found.symmetric).norm(), 1e-11);
+  EXPECT_GT(found.principal[0].value, found.principal[1].value);
+  EXPECT_TRUE(found.closed);
+  EXPECT_NEAR(found.volume, 4.0 / 3.0 * std::numbers::pi * numeric::determinant(found.symmetric), 1e-6);
+}
+
+TEST(Ellipsoids, TurnWithTheFrame) {
+  const Eigen::Matrix3d R = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.4).normalized().toRotationMatrix();
+  const EllipsoidFinding here = ellipsoid(kInSpace, 0.01), there = ellipsoid(R * kInSpace * R.transpose(), 0.01);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(there.principal[k].value, here.principal[k].value, 1e-9);
+    EXPECT_NEAR(there.principal[k].value95.first, here.principal[k].value95.first, 1e-9);
+    EXPECT_NEAR(there.principal[k].half_angle95, here.principal[k].half_angle95, 1e-9);
+    EXPECT_NEAR(std::abs(there.principal[k].direction.dot(R * here.principal[k].direction)), 1.0, 1e-9);
+  }
+  EXPECT_NEAR(there.volume95.first, here.volume95.first, 1e-6 * here.volume);
+  const CirculationFinding one = circulation_finding(kInSpace, Matrix::Identity(9, 9)),
+                           other = circulation_finding(R * kInSpace * R.transpose(), Matrix::Identity(9, 9));
+  EXPECT_LE((other.vector - R * one.vector).norm(), 1e-9);
+  EXPECT_NEAR(other.size95.first, one.size95.first, 1e-9);
+}
+
+TEST(Ellipsoids, ConesAndIntervalsContainTheTruthAsOftenAsTheySay) {
+  const Matrix symmetric = impedance::symmetric_part(kInSpace);
+  const EllipsoidFinding truth = ellipsoid(symmetric, 1e-6);
+  numeric::Random random(6);
+  constexpr int kDraws = 2000;
+  constexpr double kRelative = 0.01;
+  std::array<int, 3> in_cone{}, in_interval{};
+  int in_volume = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    Matrix Z = symmetric;
+    for (double& value : Z.reshaped()) value += kRelative * symmetric.norm() * random.normal();
+    const EllipsoidFinding found =
+        ellipsoid_finding(Z, std::pow(kRelative * symmetric.norm(), 2) * Matrix::Identity(9, 9));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const PrincipalDirection &one = found.principal[k], &real = truth.principal[k];
+      const double away = std::acos(std::min(1.0, std::abs(one.direction.dot(real.direction))));
+      in_cone[k] += away <= one.half_angle95 ? 1 : 0;
+      in_interval[k] += real.value >= one.value95.first && real.value <= one.value95.second ? 1 : 0;
+    }
+    in_volume += truth.volume >= found.volume95.first && truth.volume <= found.volume95.second ? 1 : 0;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_GE(in_cone[k], 0.94 * kDraws);  // a cone is as wide as its widest side
+    EXPECT_NEAR(in_interval[k], 0.95 * kDraws, 0.02 * kDraws);
+  }
+  EXPECT_NEAR(in_volume, 0.95 * kDraws, 0.02 * kDraws);
+}
+
+TEST(Ellipsoids, WhereTwoValuesMayBeEqualTheirAxesHaveNoDirection) {
+  const Matrix Z = Eigen::Vector3d(100.0, 101.0, 200.0).asDiagonal();
+  const EllipsoidFinding found = ellipsoid(Z, 0.02);
+  EXPECT_LT(found.principal[0].half_angle95, 0.3);
+  EXPECT_EQ(found.principal[1].half_angle95, 0.5 * std::numbers::pi);
+  EXPECT_EQ(found.principal[2].half_angle95, 0.5 * std::numbers::pi);
+  EXPECT_LE(found.principal[1].value95.first, 100.5);
+  EXPECT_GE(found.principal[2].value95.second, 100.5);
+}
+
+TEST(Ellipsoids, OfAnIndefiniteMatrixThereIsNone) {
+  const EllipsoidFinding found = ellipsoid(Eigen::Vector3d(100.0, 50.0, -3.0).asDiagonal(), 0.001);
+  EXPECT_FALSE(found.closed);
+  EXPECT_TRUE(std::isnan(found.volume));
+  EXPECT_EQ(found.principal[2].value, -3.0);
+  EXPECT_FALSE(ellipsoid(Eigen::Vector3d(100.0, 50.0, 0.1).asDiagonal(), 0.01).closed);  // nor of one that may be
+}
+
+TEST(Ellipsoids, OfAPlaneAreTheEllipseOfThePlane) {
+  Matrix Z = Matrix::Zero(3, 3);
+  Z.topLeftCorner(2, 2) << 42.4, -20.9, -36.3, 125.3;
+  Z(2, 2) = 1000.0;
+  const EllipsoidFinding found = ellipsoid_finding(Z, Matrix::Identity(9, 9));
+  const EllipseFinding plane = ellipse_finding(Z.topLeftCorner(2, 2), Eigen::Matrix4d::Identity());
+  EXPECT_NEAR(found.principal[1].value, plane.ellipse.lambda_max, 1e-10);
+  EXPECT_NEAR(found.principal[1].value95.first, plane.lambda_max95.first, 1e-9);
+  EXPECT_NEAR(found.principal[2].value95.second, plane.lambda_min95.second, 1e-9);
+  const CirculationFinding about = circulation_finding(Z, Matrix::Identity(9, 9));
+  EXPECT_NEAR(about.vector[2], -impedance::antisymmetric_part(Z.topLeftCorner(2, 2)), 1e-12);
+  EXPECT_TRUE(about.significant);
+  EXPECT_FALSE(circulation_finding(Z, 100.0 * Matrix::Identity(9, 9)).significant);
 }
 
 }  // namespace ellipses_test

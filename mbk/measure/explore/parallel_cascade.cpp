@@ -45,6 +45,14 @@ struct Both {
 std::vector<Vector> directions_of(Index axes) {
   if (axes == 1) return {Vector::Ones(1), -Vector::Ones(1)};
   std::vector<Vector> directions;
+  if (axes == 3) {
+    for (Index code = 0; code < 27; ++code) {
+      const Eigen::Vector3d corner(static_cast<double>(code / 9 - 1), static_cast<double>(code / 3 % 3 - 1),
+                                   static_cast<double>(code % 3 - 1));
+      if (corner.norm() > 0.0) directions.emplace_back(corner.normalized());
+    }
+    return directions;
+  }
   for (Index k = 0; k < kDirections; ++k) {
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(kDirections);
     directions.push_back(Vector{{std::cos(angle), std::sin(angle)}});

@@ -18,6 +18,13 @@ inline impedance::Model arm(int axes = 2) {
     model.x0 = Vector::Constant(1, 0.01);
     return model;
   }
+  if (axes == 3) {
+    model.M = (Matrix(3, 3) << 1.2, -0.5, 0.2, -0.4, 1.6, 0.1, 0.3, -0.1, 0.9).finished();
+    model.B = (Matrix(3, 3) << 6.0, -3.0, 1.0, -2.0, 12.0, 2.0, 0.5, 1.0, 9.0).finished();
+    model.K = (Matrix(3, 3) << 90.0, -30.0, 20.0, -40.0, 200.0, 10.0, 30.0, -20.0, 150.0).finished();
+    model.x0 = (Vector(3) << 0.304, -0.053, 0.121).finished();
+    return model;
+  }
   model.M = (Matrix(2, 2) << 1.2, -0.5, -0.4, 1.6).finished();
   model.B = (Matrix(2, 2) << 6.0, -3.0, -2.0, 12.0).finished();
   model.K = (Matrix(2, 2) << 90.0, -30.0, -40.0, 200.0).finished();
@@ -64,7 +71,9 @@ inline PreparedTrial trial(const impedance::Model& model, const Making& making =
       }
     }
   }
-  out.position.rowwise() += (axes == 2 ? (Vector(2) << 0.28, 0.02).finished() : Vector::Constant(1, 0.02)).transpose();
+  const Vector place =
+      axes == 1 ? Vector::Constant(1, 0.02) : Vector((Vector(3) << 0.28, 0.02, 0.1).finished().head(axes));
+  out.position.rowwise() += place.transpose();
   const double keep = std::exp(-2.0 * M_PI * 1.5 * making.sample_time);
   const auto normal = [&] {
     double sum = -6.0;  // twelve uniform numbers: normal enough, and the same on every platform
