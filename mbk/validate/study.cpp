@@ -11,6 +11,8 @@ namespace {
 
 // What shares the studies judge, with the trials of a run where they are not one.
 constexpr std::array kOfCoverage = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 2.0, 0.5}};
+constexpr std::array kOfSpatial = {JudgedShare{kNominal, 95.0}, JudgedShare{kHardlyEver, 0.5},
+                                   JudgedShare{kNearlyAlways, 99.0}};
 constexpr std::array kOfIntervals = {JudgedShare{kNearNominal, 95.0}};
 constexpr std::array kOfClosedLoop = {JudgedShare{kNearlyAlways, 100.0},
                                       JudgedShare{kNominal, 95.0, kTrialsWithoutController}};
@@ -39,6 +41,7 @@ std::span<const Study> studies() {
   static constexpr std::array kStudies = {
       Study{"coverage", "how often the 95 % intervals of M, B, K and x0 contain the truth", kOfCoverage, 2,
             coverage_study},
+      Study{"spatial", "three axes: intervals, ellipsoids, turned sensors and verdicts", kOfSpatial, 2, spatial_study},
       Study{"recovery", "bias, spread and coverage for a relaxed arm in the closed loop", kOfIntervals, 2,
             recovery_study},
       Study{"closed-loop", "both methods and the energy of an arm with voluntary control", kOfClosedLoop, 2,

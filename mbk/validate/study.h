@@ -50,6 +50,11 @@ struct Study {
 /// @fails  runs < 1; as the laboratory and the measurement. The same for the others.
 [[nodiscard]] Result<ValidationTable> coverage_study(const StudyOptions& options);
 
+/// Three axes: how often the 95 % intervals of the 30 numbers and of the ellipsoids hold the truth, and how often a
+/// recording that is not what it should be is told: a force sensor turned about any axis, an axis that hardly moved, an
+/// active arm, too little excitation. A run is one prescribed motion of each.
+[[nodiscard]] Result<ValidationTable> spatial_study(const StudyOptions& options);
+
 /// Bias, spread and coverage of M, B, K and x₀ of a relaxed arm in the closed loop, with sinusoidal and with
 /// underdamped perturbations: the ready scenarios, measured by the default pipeline. A run is one seed of each.
 /// Expected is a bias below 5 % of the largest element of the matrix, and below 2 mm for x₀.
