@@ -115,9 +115,46 @@ def outline(ellipse: dict[str, Any]) -> tuple[Any, Any] | None:
     return along * math.cos(turn) - across * math.sin(turn), along * math.sin(turn) + across * math.cos(turn)
 
 
+def shadow(ellipsoid: dict[str, Any], first: int, second: int) -> tuple[Any, Any] | None:
+    """Outline of an ellipsoid's projection onto the plane of two axes; nothing if it is not closed."""
+    if not ellipsoid["closed"]:
+        return None
+    symmetric = np.array(ellipsoid["symmetric_part"], float)
+    plane = (symmetric @ symmetric)[np.ix_([first, second], [first, second])]
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
+    points = np.linalg.cholesky(plane) @ np.vstack([np.cos(angle), np.sin(angle)])
+    return points[0], points[1]
+
+
+def ellipsoids(results: list[dict[str, Any]], into: Any = None) -> matplotlib.figure.Figure:
+    """Projections of the ellipsoids of M, B and K onto the planes xy, xz and yz, a row for each plane."""
+    units = results[0].get("units", _tables.UNITS)
+    made, axes = figure(3, 3, width=9.0, height=3.0, into=into)
+    for row, (first, second) in enumerate([(0, 1), (0, 2), (1, 2)]):
+        for panel, (symbol, name) in zip(axes[row], _tables.MATRICES):
+            outlines = [shadow(one["ellipsoids"][name], first, second) for one in results]
+            drawn = [points for points in outlines if points is not None]
+            for points in drawn:
+                panel.plot(*points, color=MATRIX_COLOURS[name], linewidth=1.8 if len(results) == 1 else 1.0)
+            if not drawn:
+                panel.text(0.5, 0.5, "no ellipsoid:\nnot positive beyond\nits interval", ha="center", va="center",
+                           transform=panel.transAxes)
+            panel.set_aspect("equal", adjustable="datalim")
+            if row == 0:
+                title(panel, f"{name} {symbol}", into)
+            panel.set_xlabel(f"along {'xyz'[first]}{unit_text(units[symbol])}")
+            panel.set_ylabel(f"along {'xyz'[second]}{unit_text(units[symbol])}")
+            panel.axhline(0.0, color=GREY, linewidth=0.5)
+            panel.axvline(0.0, color=GREY, linewidth=0.5)
+    return made
+
+
 def ellipses(document: Any, into: Any = None) -> matplotlib.figure.Figure:
     values = document._values
     results = [one for one in values.get("results", [values]) if one.get("usable", True)]
+    in_space = [one for one in results if "ellipsoids" in one]
+    if in_space:
+        return ellipsoids(in_space, into)
     with_ellipses = [one for one in results if "ellipses" in one]
     if not with_ellipses:
         return parameters(results or values.get("results", [values]), into)

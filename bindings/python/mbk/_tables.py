@@ -68,7 +68,7 @@ def with_interval(value: float | None, interval: list[float | None], decimals: i
 
 
 def axis_names(axes: int) -> list[str]:
-    return [""] if axes == 1 else ["x", "y"]
+    return [""] if axes == 1 else ["x", "y", "z"][:axes]
 
 
 def named(symbol: str, *axes: str) -> str:
@@ -115,6 +115,11 @@ def one_row(result: dict[str, Any]) -> dict[str, Any]:
     for matrix, ellipse in result.get("ellipses", {}).items():
         for field in ("area", "shape", "orientation_deg"):
             row[f"{matrix}_{field}"] = number(ellipse[field])
+    for matrix, ellipsoid in result.get("ellipsoids", {}).items():
+        for field in ("volume", "shape"):
+            row[f"{matrix}_{field}"] = number(ellipsoid[field])
+        for k, one in enumerate(ellipsoid["principal"]):
+            row[f"{matrix}_principal_{k + 1}"] = number(one["value"])
     return row
 
 
@@ -277,13 +282,19 @@ def verdict(document: dict[str, Any]) -> str:
 
 
 def per_axis(values: list[float | None], decimals: int, unit: str) -> str:
-    names = axis_names(len(values)) if len(values) < 3 else [str(k) for k in range(len(values))]
+    names = axis_names(len(values)) if len(values) < 4 else [str(k) for k in range(len(values))]
     return ", ".join(f"{name} {fixed(value, decimals)} {unit}".strip() for name, value in zip(names, values))
 
 
 def model_rows(model: dict[str, Any], error: dict[str, Any], units: dict[str, str]) -> list[list[str]]:
-    """A row for each matrix and one for the equilibrium: name, values ± 95 %, unit."""
+    """A row for each matrix and one for the equilibrium: name, values ± 95 %, unit. In space, three rows each."""
     names = axis_names(len(model["x0"]))
+    if len(names) == 3:
+        rows = [[f"{name} {symbol}" if i == 0 else "", first,
+                 *(with_half_width(model[symbol][i][j], error[symbol][i][j]) for j in range(3)),
+                 units[symbol] if i == 0 else ""] for symbol, name in MATRICES for i, first in enumerate(names)]
+        return [*rows, ["equilibrium x₀", "", *(with_half_width(model["x0"][k], error["x0"][k], 1000.0)
+                                               for k in range(3)), "mm"]]
     pairs = [(i, j) for i in range(len(names)) for j in range(len(names))]
     rows = [[f"{name} {symbol}", *(with_half_width(model[symbol][i][j], error[symbol][i][j]) for i, j in pairs),
              units[symbol]] for symbol, name in MATRICES]
@@ -306,7 +317,8 @@ def result_html(result: dict[str, Any], heading: bool = True) -> str:
     out.append(verdict(result))
     if result["usable"]:
         out.append(table("Inertia, damping, stiffness and equilibrium; ± is half of the 95 % interval",
-                         ["", "xx", "xy", "yx", "yy", "unit"] if axes == 2 else ["", "value ± 95 %", "unit"],
+                         {1: ["", "value ± 95 %", "unit"], 2: ["", "xx", "xy", "yx", "yy", "unit"],
+                          3: ["", "", "x", "y", "z", "unit"]}[axes],
                          model_rows(result["model"], result["standard_error"], units)))
     where = "held-out data" if fit["validated_on"] == "held-out" else "the same data"
     out.append(table("Goodness of fit", ["", "value"], [
@@ -315,6 +327,8 @@ def result_html(result: dict[str, Any], heading: bool = True) -> str:
         [f"RMSE on {where}", per_axis(fit["RMSE"], 3, units["force"])]]))
     if "ellipses" in result and result["usable"]:
         out.append(ellipses_html(result, units))
+    if "ellipsoids" in result and result["usable"]:
+        out.append(ellipsoids_html(result, units))
     if "joint_domain" in result and result["usable"]:
         out.append(joint_html(result["joint_domain"]))
     if "passivity" in result:
@@ -341,6 +355,18 @@ def ellipses_html(result: dict[str, Any], units: dict[str, str]) -> str:
             with_interval(anti["zmean_percent"], anti["interval95"], 1) + " %"])
     return table("Ellipses in numbers; brackets are 95 % intervals",
                  ["", "area", "shape", "orientation", "semi-axes", "antisymmetry"], rows)
+
+
+def ellipsoids_html(result: dict[str, Any], units: dict[str, str]) -> str:
+    rows = []
+    for symbol, name in MATRICES:
+        for k, one in enumerate(result["ellipsoids"][name]["principal"]):
+            half = one["half_angle95_deg"]
+            rows.append([f"{name} {symbol}" if k == 0 else "", with_interval(one["value"], one["value95"], 2),
+                         "[" + ", ".join(fixed(value, 2) for value in one["direction"]) + "]",
+                         "any direction" if half is not None and half >= 90.0 else f"± {fixed(half, 1)}°", units[symbol]])
+    return table("Principal values and axes; brackets are 95 % intervals",
+                 ["", "value", "axis", "cone", "unit"], rows)
 
 
 def joint_html(joints: dict[str, Any]) -> str:
@@ -440,7 +466,7 @@ def paragraph(first: str, text: str) -> str:
 
 
 def model_text(model: dict[str, Any], error: dict[str, Any], units: dict[str, str]) -> str:
-    head = [["", "xx", "xy", "yx", "yy", ""]] if len(model["x0"]) == 2 else []
+    head = {2: [["", "xx", "xy", "yx", "yy", ""]], 3: [["", "", "x", "y", "z", ""]]}.get(len(model["x0"]), [])
     return text_table(head + model_rows(model, error, units)).replace("−", "-")  # so that a number can be copied
 
 
