@@ -202,9 +202,8 @@ Result<JointSignals> select_joint_signals(const Recording& recording, const robo
     joint_references.push_back(reference != nullptr ? reference->name : "");
   }
   if (!count_alike(positions, references)) joint_references.front().clear();
-  const bool plane = axes == 2;
   signals.joint_reference = gather(recording, joint_references, mechanism.slides(0) ? "m" : "rad");
-  const int kinds = plane ? 2 : 1;
+  const int kinds = static_cast<int>(axes);
   const auto at_hand = [&](const QuantityChannels& quantity) {
     std::vector<std::string> names;
     for (Index axis = 0; axis < kinds; ++axis) names.emplace_back(quantity.name(kinds, axis));

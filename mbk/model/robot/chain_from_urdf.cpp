@@ -331,8 +331,8 @@ Result<void> check_options(const SerialChain::Options& options) {
   if (!options.gravity.allFinite()) return bad_usage("gravity is not finite", "give three numbers in m/s²");
   if (!options.tool.allFinite()) return bad_usage("the tool position is not finite", "give three numbers");
   const std::set<SerialChain::Axis> different(options.hand_axes.begin(), options.hand_axes.end());
-  if (different.empty() || different.size() > 2 || different.size() != options.hand_axes.size()) {
-    return bad_usage("the measured axes of the hand are not one or two different axes", "choose from x, y and z");
+  if (different.empty() || different.size() > 3 || different.size() != options.hand_axes.size()) {
+    return bad_usage("the measured axes of the hand are not one to three different axes", "choose from x, y and z");
   }
   return {};
 }

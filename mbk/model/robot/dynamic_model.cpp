@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -133,6 +134,14 @@ std::optional<HandJacobian> regular_hand_from_joints(const Mechanism& mechanism,
   if (gram.rows() == 1) {
     if (!(gram(0, 0) > 0.0)) return std::nullopt;
     return HandJacobian(J / gram(0, 0));
+  }
+  if (gram.rows() == 3) {
+    const Eigen::Matrix3d square = gram;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> squares;
+    squares.computeDirect(square, Eigen::EigenvaluesOnly);
+    const Eigen::Vector3d values = squares.eigenvalues();
+    if (!(values[0] > kSmallestRatio * kSmallestRatio * values[2])) return std::nullopt;
+    return HandJacobian(square.inverse() * J);
   }
   // Squares of the singular values, from trace and determinant.
   const double half = 0.5 * gram.trace(), det = gram.determinant();

@@ -13,10 +13,10 @@ inline constexpr int kMaxJoints = 8;
 /// One number for each joint [rad, or m where it slides]; never on the heap.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 using JointMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
-/// Along the axes in which the hand is measured: one or two.
-using HandVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1>;
-using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, 2>;
-using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 2, kMaxJoints>;
+/// Along the axes in which the hand is measured: one to three.
+using HandVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+using HandMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using HandJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, kMaxJoints>;
 
 /// A coefficient in which the dynamics are linear.
 struct Coefficient {
@@ -72,7 +72,7 @@ class Mechanism {
   [[nodiscard]] virtual JointRange joint_range(int joint) const = 0;
   /// The joint's coordinate is a length.
   [[nodiscard]] virtual bool slides(int joint) const = 0;
-  /// Of the hand: 1 or 2.
+  /// Of the hand: 1, 2 or 3.
   [[nodiscard]] virtual int hand_axes() const = 0;
   /// φ, p of them.
   [[nodiscard]] virtual const std::vector<Coefficient>& coefficients() const = 0;

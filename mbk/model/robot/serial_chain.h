@@ -25,7 +25,7 @@ class SerialChain : public Mechanism {
     std::string base_link;                             ///< empty: the root of the tree
     std::string tip_link;                              ///< empty: the only leaf of the tree
     Eigen::Vector3d gravity = {0.0, 0.0, -9.81};       ///< acceleration of free fall, base frame [m/s²]
-    std::vector<Axis> hand_axes = {Axis::x, Axis::y};  ///< of the base frame, in which the hand is measured: one or two
+    std::vector<Axis> hand_axes = {Axis::x, Axis::y};  ///< of the base frame, in which the hand is measured: up to three
     Eigen::Vector3d tool = {0.0, 0.0, 0.0};            ///< the hand from the tip link, tip frame [m]
     std::vector<double> zero;  ///< the URDF's coordinate where the recording's is 0 [rad or m]; empty: 0 for all
     std::vector<int> sign;     ///< +1 or −1: the URDF's coordinate is zero + sign · the recording's; empty: +1
@@ -45,7 +45,7 @@ class SerialChain : public Mechanism {
   /// @fails  data: it is not a URDF; a joint on the way is planar, floating or a mimic joint, has an axis of zero
   /// length, or limits without range; a moving body has no `<inertial>` or a non-finite number; the number of moving
   /// joints is not 1 … kMaxJoints; a link has two parents; several leaves and no tip_link.   usage: a link is unknown,
-  /// the tip is not a descendant of the base; hand_axes are not one or two different ones; zero or sign does not fit
+  /// the tip is not a descendant of the base; hand_axes are not one to three different ones; zero or sign does not fit
   /// the joints; a number is not finite.
   [[nodiscard]] static Result<std::shared_ptr<const SerialChain>> from_urdf(std::string_view urdf,
                                                                             const Options& options);

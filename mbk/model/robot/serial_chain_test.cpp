@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "mbk/model/robot/dynamic_model.h"
 #include "mbk/model/robot/dynamics.h"
 #include "mbk/model/robot/test_chains.h"
 #include "tests/support/allocations.h"
@@ -213,6 +214,7 @@ TEST(SerialChain, HasTheJacobianOfItsHandAndItsRate) {
     RandomChain random(kinds, 10);
     SerialChain::Options options;
     options.hand_axes = {Axis::z, Axis::x};
+    if (kinds.size() > 2) options.hand_axes.push_back(Axis::y);
     options.tool = random.uniform3(0.3);
     const auto robot = chain(random.urdf(), options);
     for (int i = 0; i < 20; ++i) {
@@ -235,6 +237,26 @@ TEST(SerialChain, MeasuresTheHandAlongOneAxisIfAsked) {
   ASSERT_EQ(height->hand_axes(), 1);
   EXPECT_EQ(height->hand_position(q)[0], both->hand_position(q)[1]);
   EXPECT_EQ(height->jacobian(q).row(0), both->jacobian(q).row(1));
+}
+
+TEST(SerialChain, TellsAForceInSpaceFromItsTorques) {
+  RandomChain random("RRRR", 12);
+  SerialChain::Options options;
+  options.hand_axes = {Axis::x, Axis::y, Axis::z};
+  options.tool = random.uniform3(0.3);
+  const auto robot = chain(random.urdf(), options);
+  ASSERT_EQ(robot->hand_axes(), 3);
+  int regular = 0;
+  for (int i = 0; i < 20; ++i) {
+    const JointVector q = random.uniform_joints(2.0);
+    const auto hand = hand_from_joints(*robot, q);
+    if (!hand) continue;
+    ++regular;
+    const Eigen::Vector3d force(3.0, -1.0, 7.0);
+    const Vector torque = robot->jacobian(q).transpose() * force;
+    EXPECT_LE((*hand * torque - force).norm(), 1e-6);
+  }
+  EXPECT_GT(regular, 10);
 }
 
 TEST(SerialChain, TurnsAnglesOfTheRecordingIntoTheURDFs) {

@@ -133,8 +133,8 @@ SerialChain::Options read_chain_options(const Section& s) {
   options.tool = vector("tool_mm", options.tool);
   using Axis = SerialChain::Axis;
   options.hand_axes = s.choices<Axis>("hand_axes", {{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}}, options.hand_axes);
-  if (options.hand_axes.empty() || options.hand_axes.size() > 2) {
-    s.reject("hand_axes", "the hand must be measured along one or two axes", R"(write two of "x", "y", "z")");
+  if (options.hand_axes.empty() || options.hand_axes.size() > 3) {
+    s.reject("hand_axes", "the hand must be measured along one to three axes", R"(choose from "x", "y", "z")");
     options.hand_axes = SerialChain::Options().hand_axes;
   }
   return options;
