@@ -283,11 +283,13 @@ class Explanations {
     return {Vector::Ones(axes_), Vector::Ones(axes_), 1.0, 0.0, "", {}, 0.0, 0.0};
   }
 
-  /// "x", "Fy"; "x and y" of both.
+  /// "x", "Fy"; "x and y", "x, y and z" of all.
   [[nodiscard]] std::string names(const QuantityChannels& quantity, int axis) const {
     const auto name = [&](int of) { return name_of(recording_, quantity, axes_, of); };
     if (axis >= 0) return name(axis);
-    return axes_ == 1 ? name(0) : name(0) + " and " + name(1);
+    std::string all = name(0);
+    for (int k = 1; k < axes_; ++k) all += (k + 1 == axes_ ? " and " : ", ") + name(k);
+    return all;
   }
 
   void of_signal(const QuantityChannels& quantity, bool position) {
