@@ -31,7 +31,9 @@ Vector2d joint_angles(const ArmPosture& posture) {
 
 Result<JointDomain> analyse_joint_domain(const Identification& identification, const ArmPosture& posture) {
   if (identification.axes != 2) {
-    return bad_data("a result with one axis is already in the joint domain", "use a result with two axes");
+    return bad_data(identification.axes == 1 ? "a result with one axis is already in the joint domain"
+                                             : "the joint domain is that of a planar arm, not of three axes",
+                    "use a result with two axes");
   }
   if (posture.of == ArmPosture::Of::hand || posture.points.size() != 3) {
     return bad_data(fmt::format("the posture of the arm is not known{}",

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
@@ -19,7 +21,8 @@ double standard_error(const Gradient& gradient, const Covariance& covariance) {
   return variance < 0.0 ? 0.0 : std::sqrt(variance);  // NaN, where there is no covariance, stays NaN
 }
 
-constexpr double kChiSquared2 = 5.991464547107982, kChiSquared3 = 7.814727903251179;  // 95 %
+constexpr double kChiSquared2 = 5.991464547107982, kChiSquared3 = 7.814727903251179,
+                 kChiSquared5 = 11.070497693516351;  // 95 %
 
 /// What is known of v = [(z_xx − z_yy)/2, z_s], whose direction is twice the orientation and whose length is half the
 /// difference of the eigenvalues.
@@ -65,6 +68,21 @@ class Deviator {
 /// Derivative of uᵀ Z w by the elements of Z, row by row.
 Eigen::RowVectorXd bilinear(const Vector& u, const Vector& w) {
   return Vector((w * u.transpose()).reshaped()).transpose();
+}
+
+/// Whether a sphere is not rejected: of three eigenvalues the largest and the smallest are farther apart by chance than
+/// two, so that this is tested for all three together.
+bool may_be_sphere(const Matrix& Z, const Matrix& covariance) {
+  Matrix to_deviator = Matrix::Zero(5, 9);
+  to_deviator.row(0) << 0.5, 0, 0, 0, -0.5, 0, 0, 0, 0;
+  to_deviator.row(1) << 1, 0, 0, 0, 1, 0, 0, 0, -2;
+  for (Index k = 0; k < 3; ++k) {
+    const Index i = k, j = (k + 1) % 3;
+    to_deviator(2 + k, 3 * i + j) = to_deviator(2 + k, 3 * j + i) = 0.5;
+  }
+  const Vector deviator = to_deviator * Vector(Matrix(Z.transpose()).reshaped());
+  const Matrix spread = to_deviator * covariance * to_deviator.transpose();
+  return spread.allFinite() && deviator.dot(Vector(numeric::PivotedCholesky(spread).solve(deviator))) <= kChiSquared5;
 }
 
 /// What is known of the symmetric part in the plane of two of its principal directions.
@@ -167,18 +185,33 @@ EllipsoidFinding ellipsoid_finding(const Matrix& Z, const Matrix& covariance) {
     one.direction = v;
     one.half_angle95 = 0.0;
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = i + 1; j < 3; ++j) {
-      PrincipalDirection &larger = finding.principal[i], &smaller = finding.principal[j];
-      const PrincipalPlane plane(Z, covariance, larger.direction, smaller.direction);
-      const double angle = plane.half_angle95();
-      for (PrincipalDirection* one : {&larger, &smaller}) {
-        one->half_angle95 = std::isnan(angle) ? angle : std::max(one->half_angle95, angle);
-      }
-      if (!plane.may_be_round()) continue;
-      smaller.value95.second = std::max(smaller.value95.second, plane.mean95().second);
-      larger.value95.first = std::min(larger.value95.first, plane.mean95().first);
+  // What λ₁ and λ₃ may be: themselves, or the mean with what may be equal to them.
+  std::vector<std::pair<double, Eigen::RowVectorXd>> largest = {{finding.principal[0].value, gradient[0]}},
+                                                     smallest = {{finding.principal[2].value, gradient[2]}};
+  const auto mean = [&](std::size_t i, std::size_t j) {
+    return std::pair<double, Eigen::RowVectorXd>(0.5 * (finding.principal[i].value + finding.principal[j].value),
+                                                 0.5 * (gradient[i] + gradient[j]));
+  };
+  const bool sphere = may_be_sphere(Z, covariance);
+  for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>(0, 1), {1, 2}, {0, 2}}) {
+    PrincipalDirection &larger = finding.principal[i], &smaller = finding.principal[j];
+    const PrincipalPlane plane(Z, covariance, larger.direction, smaller.direction);
+    const bool round = sphere || plane.may_be_round();
+    const double angle = round ? 0.5 * std::numbers::pi : plane.half_angle95();
+    for (PrincipalDirection* one : {&larger, &smaller}) {
+      one->half_angle95 = std::isnan(angle) ? angle : std::max(one->half_angle95, angle);
     }
+    if (!round) continue;
+    if (i == 0) largest.push_back(mean(i, j));
+    if (j == 2) smallest.push_back(mean(i, j));
+    smaller.value95.second = std::max(smaller.value95.second, plane.mean95().second);
+    larger.value95.first = std::min(larger.value95.first, plane.mean95().first);
+  }
+  if (sphere) {
+    const Eigen::RowVectorXd of_trace = (gradient[0] + gradient[1] + gradient[2]) / 3.0;
+    const Interval mean95 = numeric::interval95(finding.symmetric.trace() / 3.0, standard_error(of_trace, covariance));
+    finding.principal[0].value95.first = std::min(finding.principal[0].value95.first, mean95.first);
+    finding.principal[2].value95.second = std::max(finding.principal[2].value95.second, mean95.second);
   }
   const double first = finding.principal[0].value, second = finding.principal[1].value,
                third = finding.principal[2].value;
@@ -191,13 +224,19 @@ EllipsoidFinding ellipsoid_finding(const Matrix& Z, const Matrix& covariance) {
   finding.shape = first / third;
   const Eigen::RowVectorXd by_volume =
       finding.volume * (gradient[0] / first + gradient[1] / second + gradient[2] / third);
-  const Eigen::RowVectorXd by_shape = finding.shape * (gradient[0] / first - gradient[2] / third);
   finding.volume95 = numeric::positive_interval95(finding.volume, standard_error(by_volume, covariance));
-  finding.shape95 = numeric::positive_interval95(finding.shape, standard_error(by_shape, covariance));
-  const bool round = finding.principal[0].half_angle95 >= 0.5 * std::numbers::pi &&
-                     finding.principal[1].half_angle95 >= 0.5 * std::numbers::pi &&
-                     finding.principal[2].half_angle95 >= 0.5 * std::numbers::pi;
-  finding.shape95.first = round ? 1.0 : std::max(finding.shape95.first, 1.0);
+  const auto shape95 = [&](const auto& large, const auto& small) {
+    const double shape = large.first / small.first;
+    const Eigen::RowVectorXd by_shape = shape * (large.second / large.first - small.second / small.first);
+    return numeric::positive_interval95(shape, standard_error(by_shape, covariance));
+  };
+  finding.shape95 = shape95(largest.front(), smallest.front());
+  for (const auto& large : largest) {
+    for (const auto& small : smallest) {
+      finding.shape95.first = std::min(finding.shape95.first, shape95(large, small).first);
+    }
+  }
+  finding.shape95.first = sphere ? 1.0 : std::max(finding.shape95.first, 1.0);
   return finding;
 }
 
@@ -214,7 +253,7 @@ CirculationFinding circulation_finding(const Matrix& Z, const Matrix& covariance
   const Matrix spread = to_vector * covariance * to_vector.transpose();
   for (Index k = 0; k < 3; ++k) {
     finding.vector95[static_cast<std::size_t>(k)] =
-        numeric::interval95(finding.vector[k], std::sqrt(std::max(0.0, spread(k, k))));
+        numeric::interval95(finding.vector[k], standard_error(to_vector.row(k).eval(), covariance));
   }
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   finding.size95 = {kNaN, kNaN};

@@ -277,6 +277,40 @@ TEST(Ellipsoids, WhereTwoValuesMayBeEqualTheirAxesHaveNoDirection) {
   EXPECT_GE(found.principal[2].value95.second, 100.5);
 }
 
+TEST(Ellipsoids, IntervalsOfEqualValuesContainThemToo) {
+  numeric::Random random(7);
+  constexpr int kDraws = 2000;
+  constexpr double kError = 2.0;
+  for (const Eigen::Vector3d& truth : {Eigen::Vector3d(100.0, 100.0, 100.0), Eigen::Vector3d(200.0, 100.0, 100.0),
+                                       Eigen::Vector3d(200.0, 200.0, 100.0)}) {
+    std::array<int, 3> held{};
+    int shape = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      Matrix Z = truth.asDiagonal();
+      for (double& value : Z.reshaped()) value += kError * random.normal();
+      const EllipsoidFinding found = ellipsoid_finding(Z, kError * kError * Matrix::Identity(9, 9));
+      for (Index k = 0; k < 3; ++k) {
+        const auto [low, high] = found.principal[static_cast<std::size_t>(k)].value95;
+        held[static_cast<std::size_t>(k)] += truth[k] >= low && truth[k] <= high ? 1 : 0;
+      }
+      shape += truth[0] / truth[2] >= found.shape95.first && truth[0] / truth[2] <= found.shape95.second ? 1 : 0;
+    }
+    for (const int one : held) EXPECT_GE(one, 0.93 * kDraws) << truth.transpose();
+    EXPECT_GE(shape, 0.93 * kDraws) << truth.transpose();
+  }
+}
+
+TEST(Ellipsoids, WithoutACovarianceHaveNoIntervals) {
+  const Matrix none = Matrix::Constant(9, 9, std::nan(""));
+  const EllipsoidFinding found = ellipsoid_finding(kInSpace, none);
+  EXPECT_TRUE(std::isnan(found.principal[0].value95.first));
+  EXPECT_TRUE(std::isnan(found.volume95.first));
+  EXPECT_TRUE(std::isnan(found.principal[0].half_angle95));
+  const CirculationFinding about = circulation_finding(kInSpace, none);
+  EXPECT_TRUE(std::isnan(about.vector95[0].first));
+  EXPECT_TRUE(std::isnan(about.size95.first));
+}
+
 TEST(Ellipsoids, OfAnIndefiniteMatrixThereIsNone) {
   const EllipsoidFinding found = ellipsoid(Eigen::Vector3d(100.0, 50.0, -3.0).asDiagonal(), 0.001);
   EXPECT_FALSE(found.closed);

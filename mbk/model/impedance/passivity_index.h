@@ -42,7 +42,8 @@ struct Sensitive {
 [[nodiscard]] Sensitive antisymmetry_margin(const Model& model, double omega, int sign);
 
 /// Below this frequency [Hz] the antisymmetric stiffness makes a limb without inertial antisymmetry active:
-/// |k_a|/(2π √det B_s); with three axes √(k_aᵀ B_s k_a/det B_s)/(2π). Absent where B_s is not positive definite. 0 with one axis.
+/// |k_a|/(2π √det B_s); with three axes √(k_aᵀ B_s k_a/det B_s)/(2π). Absent where B_s is not positive definite. 0 with
+/// one axis.
 [[nodiscard]] std::optional<double> nonpassive_below(const Model& model);
 
 /// Where the index of a model of several axes whose B_s is positive definite is positive, ω from first to second
