@@ -24,6 +24,9 @@ export function verdict(trial: Judged): { kind: "good" | "care" | "bad"; sign: s
   const { usable, warnings } = trial.result;
   const titles = listed(warnings.map((warning) => warningTitle(warning.code, trial.plainly).replace(/^./, (c) => c.toLowerCase())));
   if (!usable) {
+    // What happened in the recording, and when, says more than the title.
+    const lost = warnings.find(({ code }) => code === "contact-lost");
+    if (lost) return { kind: "bad", sign: "✕", word: "Not usable", reason: `${lost.message.replace(/^./, (c) => c.toUpperCase())}.` };
     return { kind: "bad", sign: "✕", word: "Not usable", reason: `Do not report these numbers: ${titles || "see the warnings"}.` };
   }
   if (warnings.length > 0) return { kind: "care", sign: "!", word: "Usable with care", reason: `Read these warnings first: ${titles}.` };
