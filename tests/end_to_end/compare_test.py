@@ -39,6 +39,25 @@ class Width(Case):
         self.assertFalse(found["width"]["inertia"]["distinguishable"])
         self.assertEqual(found["refused"], {})
 
+    def test_three_axes_have_directions_in_space(self):
+        def stored(name, stiffness):
+            unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            error = [[0.01] * 3] * 3
+            diagonal = [[value * one for one in row] for value, row in zip(stiffness, unit)]
+            return self.file(name, json.dumps({
+                "schema": "mbk.result/2", "model": {"M": unit, "B": unit, "K": diagonal, "x0": [0.0] * 3},
+                "standard_error": {"M": error, "B": error, "K": error, "x0": [0.01] * 3}}))
+        files = stored("a.json", (100.0, 100.0, 100.0)), stored("b.json", (100.0, 200.0, 700.0))
+        stiffness = self.fine("compare", *files, "--json").json["width"]["stiffness"]
+        self.assertAlmostEqual(stiffness["distance"], math.hypot(math.log(2.0), math.log(7.0)), places=9)
+        self.assertEqual([len(one["direction"]) for one in stiffness["second_to_first"]], [3, 3, 3])
+        for found, expected in zip(stiffness["second_to_first"][-1]["direction"], (0.0, 0.0, 1.0)):
+            self.assertAlmostEqual(found, expected, places=9)
+        self.assertNotIn("direction_deg", stiffness["second_to_first"][0])
+        text = self.fine("compare", *files).out
+        self.assertIn("0.00  0.00  1.00", text)
+        self.assert_lines_fit(text)
+
     def test_results_recordings_and_one_of_each_give_the_same(self):
         logs = [make_log("sinusoidal", "--seed", str(seed)).path for seed in (1, 2)]
         paths = []

@@ -2,6 +2,7 @@
 """mbk identify and mbk ellipse: the two halves of mbk measure."""
 
 import json
+import math
 
 from command import NOT_USABLE, Case, main, make_log, run
 
@@ -58,6 +59,40 @@ class Ellipse(Case):
         self.assertIn("NOT USABLE", ran.out)
         self.assertNotIn("stiffness", ran.out)
         self.assertIn("ellipses", self.mbk("ellipse", "--json", path, code=NOT_USABLE).json)
+
+    def spatial(self, principal):
+        """A stored result with three axes, whose stiffness has these principal values along turned axes."""
+        c, s = math.cos(0.4), math.sin(0.4)
+        axes = [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]
+        stiffness = [[sum(value * axis[i] * axis[j] for value, axis in zip(principal, axes)) for j in range(3)]
+                     for i in range(3)]
+        one = [[2.0, 0.0, 0.0], [0.0, 1.5, 0.0], [0.0, 0.0, 1.0]]
+        error = [[0.01] * 3] * 3
+        return self.file("spatial.json", json.dumps({
+            "schema": "mbk.result/2", "model": {"M": one, "B": one, "K": stiffness, "x0": [0.0] * 3},
+            "standard_error": {"M": error, "B": error, "K": error, "x0": [0.01] * 3}}))
+
+    def test_three_axes_have_ellipsoids(self):
+        path = self.spatial((400.0, 200.0, 100.0))
+        found = self.fine("ellipse", "--json", path).json
+        self.assertNotIn("ellipses", found)
+        stiffness = found["ellipsoids"]["stiffness"]
+        self.assertTrue(stiffness["closed"])
+        self.assertAlmostEqual(stiffness["shape"], 4.0, places=9)
+        for one, value in zip(stiffness["principal"], (400.0, 200.0, 100.0), strict=True):
+            self.assertAlmostEqual(one["value"], value, places=9)
+            self.assertLess(one["half_angle95_deg"], 1.0)
+        self.assertAlmostEqual(stiffness["principal"][0]["direction"][0], math.cos(0.4), places=9)
+        self.assertFalse(found["antisymmetry_vectors"]["stiffness"]["significant"])
+        text = self.fine("ellipse", path).out
+        self.assert_lines_fit(text)
+        self.assertNotIn("not positive", text)
+
+    def test_a_matrix_that_may_be_indefinite_has_no_ellipsoid(self):
+        path = self.spatial((400.0, 200.0, -20.0))
+        stiffness = self.fine("ellipse", "--json", path).json["ellipsoids"]["stiffness"]
+        self.assertEqual((stiffness["closed"], stiffness["volume"], stiffness["shape"]), (False, None, None))
+        self.assertIn("not positive beyond its interval", self.fine("ellipse", path).out)
 
     def test_one_axis_has_none(self):
         path = self.result(make_log("sinusoidal", "--one-axis").path)

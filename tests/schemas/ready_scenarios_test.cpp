@@ -63,9 +63,8 @@ TEST_P(ReadyScenario, EveryDocumentOfItFitsItsSchema) {
     ASSERT_TRUE(measured.passivity);
     EXPECT_TRUE(fits_its_schema(result::to_json(std::array{
         result::PassivityDocument{measured.identification.sources, *measured.passivity, measured.energies}})));
-    if (measured.findings) {
-      EXPECT_TRUE(
-          fits_its_schema(result::to_json(std::vector{measured.identification}, std::vector{*measured.findings})));
+    if (measured.findings || measured.spatial) {
+      EXPECT_TRUE(fits_its_schema(result::ellipses_json({&measured, 1})));
     }
     const Preparation& how = measured.identification.preparations.front();
     const result::RecordingFacts facts = {recording.metadata, analyse::posture(recording, how.from_s, how.to_s)};

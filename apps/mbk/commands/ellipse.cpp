@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "apps/mbk/commands/commands.h"
 #include "apps/mbk/options/output.h"
 #include "mbk/files/contents/read_text.h"
-#include "mbk/measure/analyse/ellipses.h"
 #include "mbk/present/report/text.h"
+#include "mbk/present/request/stored_result.h"
 #include "mbk/present/result/json.h"
 
 namespace mbk::app {
@@ -24,24 +26,25 @@ int run(const EllipseArguments& arguments) {
   if (!text) return report_error(text.error());
   auto identifications = result::identifications_from_json(*text);
   if (!identifications) return report_error(identifications.error().in(arguments.file.string()));
-  std::vector<Findings> all;
+  std::vector<Measurement> all;
   std::string shown;
   int code = kFine;
-  for (const Identification& identification : *identifications) {
-    const auto findings = analyse::analyse_ellipses(identification);
-    if (!findings) return report_error(findings.error().in(arguments.file.string()));
-    all.push_back(*findings);
+  for (Identification& stored : *identifications) {
+    Measurement& one = all.emplace_back();
+    one.identification = std::move(stored);
+    if (auto ok = request::add_ellipses(one); !ok) return report_error(ok.error().in(arguments.file.string()));
+    const Identification& identification = one.identification;
     if (!shown.empty()) shown += "\n";
     for (const SourceFile& source : identification.sources) shown += source.label() + "\n";
     shown += fmt::format("  by {}\n", method_name(identification.method));
     if (identification.usable) {
-      shown += report::ellipses_text(*findings);
+      shown += one.findings ? report::ellipses_text(*one.findings) : report::ellipsoids_text(*one.spatial);
     } else {
       shown += "  NOT USABLE: no ellipse is shown; 'mbk measure' reports the reason. --json contains the numbers.\n";
       code = kNotUsable;
     }
   }
-  if (arguments.json) shown = result::to_json(*identifications, all);
+  if (arguments.json) shown = result::ellipses_json(all);
   if (auto ok = arguments.output.write(shown, {arguments.file}); !ok) return report_error(ok.error());
   return code;
 }
@@ -57,7 +60,7 @@ Action add_ellipse(Command app) {
       "  mbk ellipse result.json\n"
       "      a result written by 'mbk measure log.mat --json --out result.json'\n\n"
       "Area π λ_max λ_min, shape λ_max/λ_min, orientation of the major axis from x, each of the symmetric\n"
-      "part.");
+      "part. With three axes: principal values and directions, volume 4/3 π λ₁ λ₂ λ₃, shape λ₁/λ₃.");
   command.add_option("RESULT.json", arguments->file, "a result written by 'mbk measure --json'").required();
   command.add_flag("--json", arguments->json, "print JSON: schema mbk.ellipse/1");
   arguments->output.add_options(command);

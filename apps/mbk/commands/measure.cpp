@@ -175,7 +175,10 @@ int run(const MeasureCommandArguments& given, const std::string& typed, bool wit
   for (const Error& error : found->together.failed) code = std::max(code, report_error(error));
   if (found->measured.empty()) return code;
   for (Measurement& one : found->measured) {
-    if (!with_findings) one.findings.reset();
+    if (!with_findings) {
+      one.findings.reset();
+      one.spatial.reset();
+    }
     if (code == kFine && !one.identification.usable) code = kNotUsable;
   }
 

@@ -99,6 +99,12 @@ Result<WidthFindings> analyse_width(const Identification& first, const Identific
         if (direction >= std::numbers::pi) direction = 0.0;
       }
       finding.ratios.push_back({ratio, numeric::positive_interval95(ratio, ratio * error), direction});
+      if (n == 3) {
+        Vector& along = finding.ratios.back().along = width->directions.col(i);
+        Index largest = 0;
+        along.cwiseAbs().maxCoeff(&largest);
+        if (along[largest] < 0.0) along = -along;
+      }
     }
     findings.of[k] = std::move(finding);
   }

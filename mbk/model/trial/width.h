@@ -16,6 +16,7 @@ struct WidthRatio {
   double ratio = 1;      ///< uᵀZ₂u/uᵀZ₁u
   Interval ratio95;      ///< by the delta method on its logarithm
   double direction = 0;  ///< of u from the x axis [rad], in [0, π); 0 with one axis
+  Vector along = {};     ///< u with three axes, base frame; its largest component is positive; empty with fewer
 };
 
 /// How far the inertia, damping or stiffness of two limbs are apart (impedance/width.h).
@@ -26,7 +27,7 @@ struct WidthFinding {
       false;  ///< the symmetric parts differ by more than chance gives in 5 % (Wald's test of all at once)
   /// Both symmetric parts are positive definite with 95 % confidence each; otherwise the distance has no upper end.
   bool surely_positive = false;
-  std::vector<WidthRatio> ratios;  ///< least and most; one of them with one axis
+  std::vector<WidthRatio> ratios;  ///< increasing, one for each axis
 };
 
 /// Of two results: each matrix's width, or why it has none.

@@ -11,8 +11,8 @@
 namespace mbk::report {
 namespace after_onset_lines {
 
-/// Entries row by row, and with two axes the eigenvalues of the symmetric part; of what is not identifiable how far its
-/// interval reaches.
+/// Entries row by row, and with several axes the eigenvalues of the symmetric part; of what is not identifiable how far
+/// its interval reaches.
 void add(const char* name, const MatrixEstimate& one, const char* unit, std::vector<std::vector<std::string>>& rows) {
   if (!one.identifiable) {
     rows.push_back(

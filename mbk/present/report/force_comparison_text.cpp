@@ -21,8 +21,7 @@ std::string cell(double value, int decimals) {
 }
 
 std::string axis_name(Index axis, Index axes) {
-  if (axes == 1) return "F";
-  return axis == 0 ? "Fx" : "Fy";
+  return axes == 1 ? "F" : fmt::format("F{}", kAxisNames[static_cast<std::size_t>(axis)]);
 }
 
 }  // namespace
@@ -42,11 +41,13 @@ std::string force_comparison_text(const ForceComparison& comparison, std::string
   }
   text += table(together);
 
+  const std::string in_unit = fmt::format(" in {}", unit);
+  const bool narrow = axes > 2;  // otherwise wider than a terminal
   Rows apart = {{"", "share in %"}};
-  for (Index axis = 0; axis < axes; ++axis)
-    apart[0].push_back(fmt::format("bias {} in {}", axis_name(axis, axes), unit));
-  for (Index axis = 0; axis < axes; ++axis)
-    apart[0].push_back(fmt::format("RMSE {} in {}", axis_name(axis, axes), unit));
+  for (const char* const quantity : {"bias", "RMSE"}) {
+    for (Index axis = 0; axis < axes; ++axis)
+      apart[0].push_back(fmt::format("{} {}{}", quantity, axis_name(axis, axes), narrow ? "" : in_unit));
+  }
   const auto add = [&](const char* name, const ForceAgreement& part) {
     const double share = 100.0 * static_cast<double>(part.rows) / static_cast<double>(comparison.all.rows);
     std::vector<std::string> row = {name, cell(share, 0)};
@@ -61,9 +62,10 @@ std::string force_comparison_text(const ForceComparison& comparison, std::string
   text += "\n" + table(apart);
   text += paragraph(
       "  ",
-      fmt::format("bias: mean of the first minus the second; at rest: at most {:g} rad/s (m/s for sliding joints); "
+      fmt::format("bias{}: mean of the first minus the second; at rest: at most {:g} rad/s (m/s for sliding joints); "
                   "reversals: within {:g} ms of a reversal of a joint; RMS: of the second about its mean",
-                  comparison.rest_speed, kMilliseconds * comparison.reversal_window));
+                  narrow ? " and RMSE" + in_unit + "; bias" : "", comparison.rest_speed,
+                  kMilliseconds * comparison.reversal_window));
   return text;
 }
 

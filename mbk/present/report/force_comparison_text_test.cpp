@@ -3,7 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+#include <string>
+
 #include "mbk/base/core/nan.h"
+#include "mbk/present/report/picture.h"
+#include "mbk/present/report/text.h"
 
 namespace mbk::report {
 namespace {
@@ -48,6 +53,19 @@ TEST(ForceComparisonText, ShowsADashForWhatIsUndefinedAndNoMinusZero) {
   EXPECT_THAT(text, ContainsRegex("at reversals +20 +0.000 +0.400"));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
   EXPECT_THAT(text, Not(HasSubstr("-0.000")));
+}
+
+TEST(ForceComparisonText, OfThreeAxesFitsInTheTerminal) {
+  ForceComparison one = comparison();
+  const Vector large = Vector::Constant(3, -12.345);
+  for (ForceAgreement* part : {&one.all, &one.rest, &one.reversals, &one.motion}) part->bias = part->rmse = large;
+  for (Vector* of : {&one.measured_rms, &one.vaf, &one.gain, &one.correlation, &one.lag}) *of = large;
+  const std::string text = force_comparison_text(one, "virtual sensor", "force sensor");
+  EXPECT_THAT(text, HasSubstr("\n  Fz "));
+  EXPECT_THAT(text, HasSubstr("RMSE Fz"));
+  EXPECT_THAT(text, HasSubstr("bias and RMSE in N"));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(columns(line), kLineColumns) << line;
 }
 
 }  // namespace

@@ -19,6 +19,14 @@ std::string with_interval(double value, double half_width) {
   return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, half_width, decimals);
 }
 
+std::string direction_text(const Vector& direction) {
+  std::string text;
+  for (const double one : direction) {
+    text += fmt::format("{}{:5.2f}", text.empty() ? "" : " ", std::round(100.0 * one) / 100.0 + 0.0);  // no -0
+  }
+  return text;
+}
+
 std::string paragraph(std::string_view first, std::string_view text) {
   const std::size_t indent = columns(first);
   std::string lines(first);

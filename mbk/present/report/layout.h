@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/units.h"
 #include "mbk/model/trial/prepared_trial.h"
 #include "mbk/model/trial/warning.h"
@@ -12,8 +14,13 @@
 /// Layout of tables and paragraphs in the terminal. For the sources of this module only.
 namespace mbk::report {
 
+inline constexpr std::array<const char*, 3> kAxisNames = {"x", "y", "z"};
+
 /// A value and its half width with their significant digits: 1.2002 ± 0.0011.
 [[nodiscard]] std::string with_interval(double value, double half_width);
+
+/// The components of a unit vector, each as wide: " 0.71 -0.71  0.00".
+[[nodiscard]] std::string direction_text(const Vector& direction);
 
 /// `first`, then the text, in lines of the terminal's width; they stand under each other.
 [[nodiscard]] std::string paragraph(std::string_view first, std::string_view text);

@@ -15,9 +15,9 @@ std::string vaf(const ExplainedForce& one) {
   return with_interval(one.vaf, one.vaf_half_width) + " %";
 }
 
-/// "x", "y", or nothing where there is one axis.
+/// " x", " y", " z", or nothing where there is one axis.
 std::string axis_name(std::size_t axis, int axes) {
-  return axes == 1 ? "" : axis == 0 ? " x" : " y";
+  return axes == 1 ? "" : fmt::format(" {}", kAxisNames[axis]);
 }
 
 std::string p_text(double p) {
@@ -50,6 +50,7 @@ void add_model(const ResponseModel& model, Motion motion, std::vector<std::vecto
 std::string direction_name(const Vector& direction) {
   if (direction.size() == 0) return "both directions";
   if (direction.size() == 1) return direction[0] > 0.0 ? "positive" : "negative";
+  if (direction.size() == 3) return fmt::format("({:.2f}, {:.2f}, {:.2f})", direction[0], direction[1], direction[2]);
   return fmt::format("{:.0f}°", kDegrees * std::atan2(direction[1], direction[0]));
 }
 

@@ -8,12 +8,11 @@
 #include <numbers>
 #include <utility>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/present/report/layout.h"
 
 namespace mbk::report {
 namespace result_charts {
-
-constexpr std::array<const char*, 2> kAxes = {"x", "y"};
 
 std::vector<double> numbers_of(const Vector& values) {
   return {values.begin(), values.end()};
@@ -24,7 +23,7 @@ ChartSeries line(std::string name, const Vector& x, const Vector& y) {
 }
 
 std::string with_axis(const std::string& name, Index axis, Index axes) {
-  return axes == 1 ? name : name + " " + kAxes[static_cast<std::size_t>(axis)];
+  return axes == 1 ? name : name + " " + kAxisNames[static_cast<std::size_t>(axis)];
 }
 
 Chart titled(std::string title, ChartAxis x, ChartAxis y) {
@@ -75,6 +74,59 @@ void add_ellipses(const Measurement& measured, std::vector<NamedChart>& charts) 
   charts.push_back(std::move(figure));
 }
 
+/// Two axes of a plane.
+struct Plane {
+  Index across, up;
+  [[nodiscard]] std::string name() const {
+    return fmt::format("{}{}", kAxisNames[static_cast<std::size_t>(across)], kAxisNames[static_cast<std::size_t>(up)]);
+  }
+};
+
+/// Outline of the projection of {S u : |u| = 1} onto a plane: the ellipse {C^½ v : |v| = 1}, C = P S Sᵀ Pᵀ, with the
+/// two rows of S that the projection P leaves.
+Chart projection_chart(const EllipsoidFinding& finding, const Plane& plane, const char* name, const std::string& unit) {
+  constexpr int kPoints = 181;
+  Chart chart = titled(fmt::format("Ellipsoid of {}, projected onto the {} plane", name, plane.name()),
+                       {fmt::format("along {}", kAxisNames[static_cast<std::size_t>(plane.across)]), unit},
+                       {fmt::format("along {}", kAxisNames[static_cast<std::size_t>(plane.up)]), unit});
+  Matrix left(2, 3);
+  left << finding.symmetric.row(plane.across), finding.symmetric.row(plane.up);
+  const auto [squares, axes] = numeric::symmetric_eigen(left * left.transpose());
+  const Matrix root = axes * squares.cwiseSqrt().asDiagonal() * axes.transpose();
+  ChartSeries curve{name, {}, {}, {}, ChartSeries::Drawn::line};
+  for (int k = 0; k < kPoints; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / (kPoints - 1);
+    const Vector force = root * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    curve.x.push_back(force[0]);
+    curve.y.push_back(force[1]);
+  }
+  chart.series = {std::move(curve)};
+  chart.horizontal = {{0.0, ""}};
+  chart.vertical = {{0.0, ""}};
+  chart.equal_scale = true;
+  chart.notes = {fmt::format("shape in space {:.2f}, 95 % interval {:.2f} to {:.2f}", finding.shape,
+                             finding.shape95.first, finding.shape95.second)};
+  return chart;
+}
+
+/// Of each ellipsoid that is closed its three projections, each alone and side by side.
+void add_ellipsoids(const SpatialFindings& findings, std::vector<NamedChart>& charts) {
+  const Units units = units_of(Motion::translation);
+  const std::array<const char*, 3> unit = {units.inertia, units.damping, units.stiffness};
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const EllipsoidFinding& finding = findings.ellipsoids[k];
+    if (!finding.closed) continue;
+    std::vector<Chart> all;
+    for (const Plane& plane : {Plane{0, 1}, Plane{0, 2}, Plane{1, 2}}) {
+      all.push_back(projection_chart(finding, plane, kMatrixNames[k], unit[k]));
+      charts.push_back({fmt::format("{}-ellipsoid-{}", kMatrixNames[k], plane.name()), all.back()});
+    }
+    NamedChart figure{fmt::format("{}-ellipsoid", kMatrixNames[k]), all.front(), {all.begin() + 1, all.end()}};
+    figure.chart.title = fmt::format("Projections of the ellipsoid of {}", kMatrixNames[k]);
+    charts.push_back(std::move(figure));
+  }
+}
+
 void add_prediction(const ForcePrediction& prediction, const Units& units, std::vector<NamedChart>& charts) {
   const Index axes = prediction.measured.cols();
   for (Index i = 0; i < axes && prediction.time.size() > 0; ++i) {
@@ -83,7 +135,7 @@ void add_prediction(const ForcePrediction& prediction, const Units& units, std::
                     line("predicted by the model", prediction.time, prediction.predicted.col(i))};
     chart.notes = {prediction.held_out ? "held-out (validation) data"
                                        : "the data used for fitting: none were held out"};
-    charts.push_back({axes == 1 ? "force" : fmt::format("force-{}", kAxes[static_cast<std::size_t>(i)]), chart});
+    charts.push_back({axes == 1 ? "force" : fmt::format("force-{}", kAxisNames[static_cast<std::size_t>(i)]), chart});
   }
 }
 
@@ -169,7 +221,9 @@ void add_frequency_response(const FrequencyResponseEstimate& found, std::vector<
 
 /// Entry (i, j) of an n×n matrix as a label: "xy"; nothing where there is one axis.
 std::string entry_name(Index i, Index j, Index axes) {
-  return axes == 1 ? "" : fmt::format(" {}{}", kAxes[static_cast<std::size_t>(i)], kAxes[static_cast<std::size_t>(j)]);
+  return axes == 1
+             ? ""
+             : fmt::format(" {}{}", kAxisNames[static_cast<std::size_t>(i)], kAxisNames[static_cast<std::size_t>(j)]);
 }
 
 /// Column i + j n of `values` is entry (i, j).
@@ -196,6 +250,7 @@ std::vector<NamedChart> measurement_charts(const Measurement& measured, const st
   const Units units = units_of(id.motion);
   std::vector<NamedChart> charts;
   if (id.usable && measured.findings) add_ellipses(measured, charts);
+  if (id.usable && measured.spatial) add_ellipsoids(*measured.spatial, charts);
   if (!diagnostics) return charts;
   add_prediction(diagnostics->prediction, units, charts);
   add_autocorrelation(diagnostics->autocorrelation, charts);

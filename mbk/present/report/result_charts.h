@@ -19,8 +19,8 @@ struct NamedChart {
 };
 
 /// What a measurement can be drawn as: the ellipses, each alone and side by side, where the result is usable and has
-/// findings; from the diagnostics measured and predicted force, the residual's autocorrelation, coherence and power
-/// spectra of the force.
+/// findings; with three axes the projections of each closed ellipsoid onto the planes xy, xz and yz; from the
+/// diagnostics measured and predicted force, the residual's autocorrelation, coherence and power spectra of the force.
 [[nodiscard]] std::vector<NamedChart> measurement_charts(const Measurement& measured,
                                                          const std::optional<Diagnostics>& diagnostics);
 

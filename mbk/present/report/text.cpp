@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mbk/base/core/significant.h"
@@ -38,7 +39,11 @@ std::string per_axis(const Vector& values, std::string_view unit, int decimals) 
     return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "undefined";
   };
   if (values.size() == 1) return fmt::format("{} {}", number(values[0]), unit);
-  return fmt::format("x {}, y {} {}", number(values[0]), number(values[1]), unit);
+  std::string text;
+  for (Index i = 0; i < values.size(); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", kAxisNames[static_cast<std::size_t>(i)], number(values[i]));
+  }
+  return fmt::format("{} {}", text, unit);
 }
 
 std::string inputs_line(const Identification& id) {
@@ -84,6 +89,7 @@ std::string how_made(const Identification& id) {
       fmt::format("{:.3g} {} rms", metres ? 1e3 * e.motion : e.motion, metres ? "mm" : units_of(id.motion).position);
   if (id.axes == 2)
     motion += fmt::format(", {:.0f} % of it perpendicular to the main direction", 100.0 * e.motion_ratio);
+  if (id.axes == 3) motion += fmt::format(", {:.0f} % of it in the direction of least motion", 100.0 * e.motion_ratio);
   rows.push_back({"motion", motion + fmt::format("; condition number {}", significant(e.condition, 2))});
   if (id.handle_mass > 0.0) {
     const bool recorded = id.handle_mass_from == HandleMassSource::recording;
@@ -103,6 +109,7 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
   const Units units = units_of(motion);
   std::vector<std::vector<std::string>> rows;
   if (n == 2) rows.push_back({"", "xx", "xy", "yx", "yy", ""});
+  if (n == 3) rows.push_back({"", "", "x", "y", "z", ""});
   const std::array<std::pair<const char*, Matrix impedance::Model::*>, 3> parts = {
       {{"inertia M", &impedance::Model::M},
        {"damping B", &impedance::Model::B},
@@ -110,18 +117,22 @@ std::string model_table(const impedance::Model& model, const impedance::Model& s
   for (std::size_t k = 0; k < parts.size(); ++k) {
     std::vector<std::string> row = {parts[k].first};
     for (Index j = 0; j < n; ++j) {
+      if (n == 3) row.emplace_back(kAxisNames[static_cast<std::size_t>(j)]);
       for (Index i = 0; i < n; ++i) {
         row.push_back(with_interval((model.*parts[k].second)(j, i), factor * (spread.*parts[k].second)(j, i)));
       }
+      if (n < 3 && j + 1 < n) continue;  // in one row
+      row.push_back(std::array{units.inertia, units.damping, units.stiffness}[k]);
+      rows.push_back(std::exchange(row, {""}));
     }
-    row.push_back(std::array{units.inertia, units.damping, units.stiffness}[k]);
-    rows.push_back(std::move(row));
   }
   std::vector<std::string> equilibrium = {n == 1 ? "equilibrium x0" : "equilibrium"};
+  if (n == 3) equilibrium.emplace_back();
   for (Index j = 0; j < n; ++j) {
-    equilibrium.push_back(n == 1
-                              ? with_interval(model.x0[j], factor * spread.x0[j])
-                              : (j == 0 ? "x " : "y ") + with_interval(1e3 * model.x0[j], 1e3 * factor * spread.x0[j]));
+    const std::string axis =
+        n == 2 ? std::string(kAxisNames[static_cast<std::size_t>(j)]) + " " : "";  // n = 3: heading
+    const double scale = n == 1 ? 1.0 : 1e3;
+    equilibrium.push_back(axis + with_interval(scale * model.x0[j], scale * factor * spread.x0[j]));
   }
   if (n == 2) equilibrium.insert(equilibrium.end(), {"", ""});
   equilibrium.push_back(n == 1 ? units.position : "mm");
@@ -235,6 +246,59 @@ std::string ellipses_text(const Findings& findings) {
          draw_ellipses(panels);
 }
 
+namespace {
+
+/// To two digits of the interval's half width: "412 [398, 426]".
+std::string with_range(double value, const Interval& interval) {
+  if (!std::isfinite(value)) return "undefined";
+  const double half = 0.5 * (interval.second - interval.first);
+  if (!(half > 0.0) || !std::isfinite(half)) return fmt::format("{:.4g}", value);
+  constexpr double kLargest = 1e5;
+  if (std::abs(value) >= kLargest) {
+    return fmt::format("{:.3g} [{:.3g}, {:.3g}]", value, interval.first, interval.second);
+  }
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9);
+  return fmt::format("{:.{}f} {}", value, decimals, range(interval, decimals));
+}
+
+}  // namespace
+
+std::string ellipsoids_text(const SpatialFindings& findings) {
+  const Units units = units_of(Motion::translation);
+  const std::array<const char*, 3> unit = {units.inertia, units.damping, units.stiffness};
+  std::vector<std::vector<std::string>> axes = {{"ellipsoid", "principal value", "direction x, y, z", "within"}};
+  std::vector<std::vector<std::string>> sizes = {{"", "volume", "shape"}};
+  std::vector<std::vector<std::string>> circulations = {{"antisymmetric", "size", "z_mean", "direction x, y, z"}};
+  constexpr double kAnyDegrees = 90.0 * (1.0 - 1e-12);
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const EllipsoidFinding& finding = findings.ellipsoids[k];
+    for (const PrincipalDirection& one : finding.principal) {
+      const double degrees = kDegrees * one.half_angle95;
+      const bool any = degrees >= kAnyDegrees;
+      axes.push_back({&one == &finding.principal.front() ? kMatrixNames[k] : "",
+                      fmt::format("{} {}", with_range(one.value, one.value95), unit[k]),
+                      any ? "any: may equal another" : direction_text(one.direction),
+                      any || std::isnan(degrees) ? "" : fmt::format("{:.1f}°", degrees)});
+    }
+    if (finding.closed) {
+      sizes.push_back(
+          {kMatrixNames[k], with_range(finding.volume, finding.volume95), with_range(finding.shape, finding.shape95)});
+    } else {
+      sizes.push_back({kMatrixNames[k], "not positive beyond its interval", ""});
+    }
+    if (k == 1) continue;
+    const CirculationFinding& a = findings.antisymmetry[k == 0 ? 0 : 1];
+    circulations.push_back({kMatrixNames[k], fmt::format("{} {}", with_range(a.size, a.size95), unit[k]),
+                            std::isfinite(a.percent) ? fmt::format("{:.1f} %", a.percent) : "undefined",
+                            a.significant ? direction_text(a.vector.normalized()) : "not significant (95 %)"});
+  }
+  return table(axes) + "\n" + table(sizes) + "\n" + table(circulations) +
+         paragraph("  ",
+                   "(principal values of the symmetric part; within: half-angle of the cone that contains the true "
+                   "direction; volume: cubed unit of the matrix; shape: largest over smallest; antisymmetric part: "
+                   "(Z − Zᵀ)/2 · u = a × u, here size and direction of a; brackets: 95 % intervals)");
+}
+
 /// Effect of two errors that one recording cannot show: F + e shifts x₀ by K⁻¹ e, and F(t − τ) lowers B by τ K.
 std::string unseen(const Identification& id) {
   const Vector stretched = numeric::singular_values(id.model.K);
@@ -248,7 +312,8 @@ std::string unseen(const Identification& id) {
                         significant(1e-3 * stretched[0], 2), units.damping));
 }
 
-std::string result_text(const Identification& id, const std::optional<Findings>& findings) {
+std::string result_text(const Identification& id, const std::optional<Findings>& findings,
+                        const std::optional<SpatialFindings>& spatial) {
   std::string text = inputs_line(id) + how_made(id) + "\n";
   if (id.usable) {
     text += model_table(id.model, id.standard_error, numeric::kNormal95, id.motion);
@@ -272,6 +337,7 @@ std::string result_text(const Identification& id, const std::optional<Findings>&
                                 100.0 * id.decimation->largest_change)}});
   }
   if (findings && id.usable) text += "\n" + ellipses_text(*findings);
+  if (spatial && id.usable) text += "\n" + ellipsoids_text(*spatial);
   if (!id.warnings.empty()) text += "\n" + warnings_text(id.warnings);
   if (!id.usable) {
     text += "\n  NOT USABLE: no model is shown; see the warnings above. --json contains its numbers.\n";
@@ -354,7 +420,7 @@ std::string bootstrap_text(const BootstrapFindings& bootstrap) {
 
 std::string measurement_text(const Measurement& measured) {
   const Identification& id = measured.identification;
-  std::string text = result_text(id, measured.findings);
+  std::string text = result_text(id, measured.findings, measured.spatial);
   if (measured.alternative && measured.disagreement) {
     text += "\n" + alternative_text(id, *measured.alternative, *measured.disagreement);
   }

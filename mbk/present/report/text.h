@@ -30,9 +30,10 @@ inline constexpr std::size_t kLineColumns = 100;
 [[nodiscard]] std::string wrapped(std::string_view text, std::size_t width);
 
 /// A result for the terminal: what was measured and how, the model with 95 % intervals and units, the fit, the
-/// ellipses with a picture where there are findings, and every warning with what to try. Numbers of a model that is not
-/// usable are not shown.
-[[nodiscard]] std::string result_text(const Identification& identification, const std::optional<Findings>& findings);
+/// ellipses with a picture (or the ellipsoids) where there are findings, and every warning with what to try. Numbers of
+/// a model that is not usable are not shown.
+[[nodiscard]] std::string result_text(const Identification& identification, const std::optional<Findings>& findings,
+                                      const std::optional<SpatialFindings>& spatial = {});
 
 /// Comparison with the other method: the largest difference and, if it is significant, the other model.
 [[nodiscard]] std::string alternative_text(const Identification& identification, const Identification& alternative,
@@ -54,6 +55,10 @@ inline constexpr std::size_t kLineColumns = 100;
 
 /// The ellipse table and picture alone.
 [[nodiscard]] std::string ellipses_text(const Findings& findings);
+
+/// The principal values, directions, volumes and shapes of three axes, and the antisymmetric parts. A matrix that is
+/// not positive beyond its interval has neither volume nor shape.
+[[nodiscard]] std::string ellipsoids_text(const SpatialFindings& findings);
 
 /// Contents and problems of a recording.
 [[nodiscard]] std::string info_text(const Recording& recording, const Inspection& inspection);

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <regex>
 #include <sstream>
@@ -49,6 +51,29 @@ Findings findings() {
     finding.orientation95 = {0.45, 0.55};
   }
   all.antisymmetry[1] = {7.7, {5.0, 10.0}, 11.5, {7.0, 15.0}};
+  return all;
+}
+
+SpatialFindings spatial_findings() {
+  SpatialFindings all;
+  for (EllipsoidFinding& finding : all.ellipsoids) {
+    finding.symmetric = Matrix::Identity(3, 3);
+    finding.principal = {{{412.34, {398.2, 426.4}, Eigen::Vector3d(0.6, -0.8, 0.0), 0.1},
+                          {120.0, {100.0, 140.0}, Eigen::Vector3d(0.8, 0.6, 0.0), 0.5 * std::numbers::pi},
+                          {100.0, {80.0, 120.0}, Eigen::Vector3d::UnitZ(), 0.5 * std::numbers::pi}}};
+    finding.volume = 2.07e7;
+    finding.volume95 = {1.9e7, 2.3e7};
+    finding.shape = 4.1234;
+    finding.shape95 = {3.3, 5.2};
+    finding.closed = true;
+  }
+  for (CirculationFinding& finding : all.antisymmetry) {
+    finding.vector = Eigen::Vector3d(0.0, 0.0, -7.7);
+    finding.size = 7.7;
+    finding.size95 = {5.0, 10.4};
+    finding.significant = true;
+    finding.percent = 4.5;
+  }
   return all;
 }
 
@@ -129,6 +154,39 @@ TEST(ResultText, ColumnsBeginWhereTheirHeadingDoes) {
     return;
   }
   FAIL() << "no heading";
+}
+
+TEST(ResultText, ThreeAxesHaveATableOfThreeRowsForEachMatrix) {
+  Identification id = identification(3);
+  id.model.K(2, 0) = -33.0;
+  id.model.x0[2] = 0.5;
+  const auto lines = lines_of(result_text(id, std::nullopt));
+  const auto first = std::ranges::find_if(lines, [](const std::string& line) { return line.find("inertia M") == 2; });
+  ASSERT_NE(first, lines.end());
+  ASSERT_GE(lines.end() - first, 10);
+  const auto matches = [&](std::ptrdiff_t line, const std::string& pattern) {
+    EXPECT_TRUE(std::regex_match(first[line], std::regex(pattern))) << first[line];
+  };
+  matches(-1, " +x +y +z");
+  matches(0, "  inertia M +x( +1\\.2002 ± 0\\.0011){3} +kg");
+  matches(5, " +z( +-6\\.50 ± 0\\.20){3} +N·s/m");
+  matches(6, "  stiffness K +x( +120 ± 20){3} +N/m");
+  matches(8, " +z +-33 ± 20( +120 ± 20){2} +N/m");
+  matches(9, "  equilibrium( +304\\.0 ± 2\\.0){2} +500\\.0 ± 2\\.0 +mm");
+}
+
+TEST(ResultText, ThreeAxesNameEachFitAndStayWithinTheTerminal) {
+  Identification id = identification(3);
+  id.warnings.push_back({WarningCode::fit_poor, "poor", "again"});
+  const std::string text = result_text(id, std::nullopt, spatial_findings());
+  EXPECT_THAT(text, HasSubstr("VAF x 97.12, y 97.12, z 97.12 %"));
+  EXPECT_THAT(text, HasSubstr("ellipsoid"));
+  for (const std::string& line : lines_of(text)) {
+    EXPECT_LE(columns(line), kLineColumns) << line;
+    EXPECT_FALSE(line.ends_with(' ')) << '"' << line << '"';
+  }
+  id.usable = false;
+  EXPECT_THAT(result_text(id, std::nullopt, spatial_findings()), Not(HasSubstr("ellipsoid")));
 }
 
 /// The mean of three of four trials.
@@ -258,6 +316,36 @@ TEST(EllipsesText, AnIndefiniteMatrixShowsItsEigenvaluesInstead) {
   Findings none = findings();
   none.ellipses[0].ellipse = {2.0, -0.25, kNaN, kNaN, 0.5};
   EXPECT_THAT(line_with(ellipses_text(none), "inertia"), HasSubstr("(λ -0.25, 2)"));
+}
+
+TEST(EllipsoidsText, ShowsPrincipalValuesDirectionsVolumeShapeAndAntisymmetry) {
+  const std::string text = ellipsoids_text(spatial_findings());
+  const std::string largest = line_with(text, "stiffness");
+  EXPECT_THAT(largest, HasSubstr("412 [398, 426] N/m"));
+  EXPECT_THAT(largest, HasSubstr("0.60 -0.80  0.00"));
+  EXPECT_THAT(largest, HasSubstr("5.7°"));  // 0.1 rad
+  const std::size_t sizes = text.find("volume");
+  EXPECT_THAT(line_with(text.substr(sizes), "stiffness"),
+              AllOf(HasSubstr("2.07e+07 [1.9e+07, 2.3e+07]"), HasSubstr("4.12 [3.30, 5.20]")));
+  const std::size_t circulations = text.find("z_mean");
+  EXPECT_THAT(line_with(text.substr(circulations), "stiffness"),
+              AllOf(HasSubstr("7.7 [5.0, 10.4] N/m"), HasSubstr("4.5 %"), HasSubstr("0.00  0.00 -1.00")));
+}
+
+TEST(EllipsoidsText, ADirectionWhoseValueMayEqualAnotherIsAny) {
+  const std::string second = line_with(ellipsoids_text(spatial_findings()), "120 [100, 140] N/m");
+  EXPECT_THAT(second, AllOf(HasSubstr("any"), Not(HasSubstr("0.80")), Not(HasSubstr("90"))));
+}
+
+TEST(EllipsoidsText, AMatrixThatMayBeIndefiniteHasNoVolume) {
+  SpatialFindings open = spatial_findings();
+  open.ellipsoids[2].closed = false;
+  open.antisymmetry[1].significant = false;
+  const std::string text = ellipsoids_text(open);
+  const std::string sizes = line_with(text.substr(text.find("volume")), "stiffness");
+  EXPECT_THAT(sizes, AllOf(HasSubstr("not positive beyond its interval"), Not(HasSubstr("2.07"))));
+  EXPECT_THAT(line_with(text.substr(text.find("z_mean")), "stiffness"),
+              AllOf(HasSubstr("not significant"), Not(HasSubstr("-1.00"))));
 }
 
 TEST(SummaryText, ShowsThe95PercentIntervalAndWhatIsNoPartOfTheMean) {

@@ -27,6 +27,7 @@ std::vector<std::string> heading(const std::string& variable, const Units& units
     return {variable, fmt::format("M [{}]", units.inertia), fmt::format("B [{}]", units.damping),
             fmt::format("K [{}]", units.stiffness)};
   }
+  if (axes == 3) return {variable, fmt::format("K_xx [{}]", units.stiffness), "K_yy", "K_zz"};
   return {variable, fmt::format("K_xx [{}]", units.stiffness), "K_xy", "K_yx", "K_yy"};
 }
 
@@ -37,6 +38,8 @@ std::vector<std::string> line(const TimeCourseEstimate& found, Index k) {
   };
   if (found.axes == 1) {
     for (const MatrixCourse* one : {&found.M, &found.B, &found.K}) add(*one, 0);
+  } else if (found.axes == 3) {
+    for (const Index column : {0, 4, 8}) add(found.K, column);  // nine would not fit
   } else {
     for (const Index column : {0, 2, 1, 3}) add(found.K, column);
   }
@@ -70,7 +73,8 @@ std::string time_course_text(const TimeCourseEstimate& found, Motion motion) {
   std::vector<std::vector<std::string>> lines = {
       heading(found.unit.empty() ? "at" : fmt::format("[{}]", found.unit), units, found.axes)};
   for (Index k = 0; k < kLines; ++k) lines.push_back(line(found, k * (found.at.size() - 1) / (kLines - 1)));
-  return text + table(lines);
+  text += table(lines);
+  return found.axes < 3 ? text : text + paragraph("  ", "(diagonal elements of K; --json contains all elements)");
 }
 
 }  // namespace mbk::report

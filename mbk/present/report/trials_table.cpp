@@ -31,8 +31,6 @@ std::string label_of(const Identification& id) {
   return fmt::format("{}", fmt::join(labels, "; "));
 }
 
-constexpr std::array<const char*, 2> kAxes = {"x", "y"};
-
 /// M, B, K row by row, then x₀, in the order of impedance::stacked.
 std::vector<std::pair<std::string, std::string>> parameters_of(int axes, Motion motion) {
   const Units units = units_of(motion);
@@ -42,11 +40,13 @@ std::vector<std::pair<std::string, std::string>> parameters_of(int axes, Motion 
        {std::pair("m", units.inertia), std::pair("b", units.damping), std::pair("k", units.stiffness)}) {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
-        names.emplace_back(n == 1 ? std::string(letter) : fmt::format("{}_{}{}", letter, kAxes[i], kAxes[j]), unit);
+        names.emplace_back(n == 1 ? std::string(letter) : fmt::format("{}_{}{}", letter, kAxisNames[i], kAxisNames[j]),
+                           unit);
       }
     }
   }
-  for (std::size_t i = 0; i < n; ++i) names.emplace_back(n == 1 ? "x0" : fmt::format("{}0", kAxes[i]), units.position);
+  for (std::size_t i = 0; i < n; ++i)
+    names.emplace_back(n == 1 ? "x0" : fmt::format("{}0", kAxisNames[i]), units.position);
   return names;
 }
 
@@ -65,6 +65,26 @@ void add_ellipses(const Identification& id, const Findings& findings, std::vecto
   }
 }
 
+void add_ellipsoids(const Identification& id, const SpatialFindings& findings, std::vector<Quantity>& quantities) {
+  const Units units = units_of(id.motion);
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    const EllipsoidFinding& finding = findings.ellipsoids[k];
+    const std::string name = kMatrixNames[k], unit = std::array{units.inertia, units.damping, units.stiffness}[k];
+    for (std::size_t i = 0; i < finding.principal.size(); ++i) {
+      const PrincipalDirection& one = finding.principal[i];
+      quantities.push_back({fmt::format("{}_principal_{}", name, i + 1), unit, one.value, one.value95});
+      for (std::size_t j = 0; j < kAxisNames.size(); ++j) {
+        quantities.push_back(
+            {fmt::format("{}_direction_{}_{}", name, i + 1, kAxisNames[j]), "", one.direction[static_cast<Index>(j)]});
+      }
+      quantities.push_back({fmt::format("{}_half_angle_{}", name, i + 1), "°", kDegrees * one.half_angle95});
+    }
+    quantities.push_back(
+        {fmt::format("{}_ellipsoid_volume", name), fmt::format("({})³", unit), finding.volume, finding.volume95});
+    quantities.push_back({fmt::format("{}_ellipsoid_shape", name), "", finding.shape, finding.shape95});
+  }
+}
+
 /// What a row shows of a result; of one that is not usable, the fit alone.
 std::vector<Quantity> quantities_of(const Measurement& measured) {
   const Identification& id = measured.identification;
@@ -79,10 +99,11 @@ std::vector<Quantity> quantities_of(const Measurement& measured) {
     }
   }
   for (Index i = 0; i < id.fit.vaf.size(); ++i) {
-    const char* const name = id.axes == 1 ? "VAF" : (i == 0 ? "VAF_x" : "VAF_y");
+    const std::string name = id.axes == 1 ? "VAF" : fmt::format("VAF_{}", kAxisNames[static_cast<std::size_t>(i)]);
     quantities.push_back({name, "%", id.fit.vaf[i]});
   }
   if (id.usable && measured.findings) add_ellipses(id, *measured.findings, quantities);
+  if (id.usable && measured.spatial) add_ellipsoids(id, *measured.spatial, quantities);
   return quantities;
 }
 
@@ -141,9 +162,14 @@ PaperCell number_cell(double value, double half) {
   return {with_interval(value, half), PaperCell::Kind::number};
 }
 
-void add_cells(PaperRow& row, const impedance::Model& model, const impedance::Model& half, int axes) {
+/// Parameters of a model that stand in one table, in the order of impedance::stacked.
+struct Part {
+  Index first, count;
+};
+
+void add_cells(PaperRow& row, const impedance::Model& model, const impedance::Model& half, const Part& part) {
   const Vector values = impedance::stacked(model), halves = impedance::stacked(half);
-  for (Index k = 0; k < 3 * axes * axes; ++k) row.cells.push_back(number_cell(values[k], halves[k]));
+  for (Index k = part.first; k < part.first + part.count; ++k) row.cells.push_back(number_cell(values[k], halves[k]));
 }
 
 /// m_xy → M_{xy}, as it stands above the unit of its column.
@@ -166,28 +192,29 @@ impedance::Model half_width95(const Identification& id) {
   return half;
 }
 
-PaperRow trial_row(const Measurement& measured, const Shape& shape) {
+PaperRow trial_row(const Measurement& measured, const Shape& shape, const Part& part) {
   const Identification& id = measured.identification;
   PaperRow row{{{short_label(id)}}};
   if (!shape.fits(id) || !id.usable) {
     row.cells.push_back({shape.fits(id) ? "not usable" : "axes or units differ from those of the first trial"});
     return row;
   }
-  add_cells(row, id.model, half_width95(id), id.axes);
+  add_cells(row, id.model, half_width95(id), part);
   for (const double vaf : id.fit.vaf) row.cells.push_back({std::isfinite(vaf) ? fmt::format("{:.1f}", vaf) : "–"});
   return row;
 }
 
-std::vector<PaperRow> header_rows(const Shape& shape) {
+std::vector<PaperRow> header_rows(const Shape& shape, const Part& part) {
   const auto names = parameters_of(shape.axes, shape.motion);
   PaperRow symbols{{{"Trial"}}}, units{{{""}}};
-  for (std::size_t k = 0; k + static_cast<std::size_t>(shape.axes) < names.size(); ++k) {
-    symbols.cells.push_back({symbol(names[k].first), PaperCell::Kind::symbol});
-    units.cells.push_back({fmt::format("[{}]", names[k].second)});
+  for (const auto& [name, unit] :
+       std::span(names).subspan(static_cast<std::size_t>(part.first), static_cast<std::size_t>(part.count))) {
+    symbols.cells.push_back({symbol(name), PaperCell::Kind::symbol});
+    units.cells.push_back({fmt::format("[{}]", unit)});
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(shape.axes); ++i) {
-    symbols.cells.push_back(
-        {shape.axes == 1 ? "\\mathrm{VAF}" : fmt::format("\\mathrm{{VAF}}_{}", kAxes[i]), PaperCell::Kind::symbol});
+    symbols.cells.push_back({shape.axes == 1 ? "\\mathrm{VAF}" : fmt::format("\\mathrm{{VAF}}_{}", kAxisNames[i]),
+                             PaperCell::Kind::symbol});
     units.cells.push_back({"[%]"});
   }
   return {symbols, units};
@@ -234,13 +261,35 @@ std::string trial_latex(const Identification& id) {
   add("\\mathbf{x}_0", "x_0", id.model.x0, half.x0, units.position, "");
   std::vector<std::string> fits;
   for (Index i = 0; i < id.fit.vaf.size(); ++i) {
-    const std::string axis = id.axes == 1 ? "" : fmt::format(" along ${}$", kAxes[static_cast<std::size_t>(i)]);
+    const std::string axis = id.axes == 1 ? "" : fmt::format(" along ${}$", kAxisNames[static_cast<std::size_t>(i)]);
     fits.push_back(fmt::format("{:.1f}\\,\\%{}", id.fit.vaf[i], axis));
   }
   return text + fmt::format(
                     "\\end{{align*}}\n\\noindent {}, $\\pm$ the half width of the 95\\,\\% interval. VAF on {}: {}. "
                     "mbk {}.\n",
                     label, fit_data(id), fmt::join(fits, ", "), version());
+}
+
+PaperTable parameter_table(std::span<const Measurement> measured, const SeveralTrials& together, const Shape& shape,
+                           const Part& part, const char* of) {
+  PaperTable table;
+  table.sideways = shape.axes > 1;
+  table.alignment = "l" + std::string(static_cast<std::size_t>(part.count + shape.axes), 'r');
+  table.caption = fmt::format("{} of each trial, ± the half width of its 95 % interval", of);
+  if (!measured.empty()) table.caption += fmt::format("; VAF on {}", fit_data(measured.front().identification));
+  table.caption += fmt::format(". mbk {}.", version());
+  table.header = header_rows(shape, part);
+  for (const Measurement& one : measured) table.rows.push_back(trial_row(one, shape, part));
+  for (const Error& error : together.failed) {
+    table.rows.push_back({{{error.where.substr(error.where.find_last_of('/') + 1)}, {"could not be measured"}}});
+  }
+  if (together.summary && together.summary->mean.axes() == shape.axes && together.summary->motion == shape.motion) {
+    PaperRow mean{{{fmt::format("Mean of {}", together.summary->trials)}}, true};
+    add_cells(mean, together.summary->mean, together.summary->half_width95, part);
+    for (int i = 0; i < shape.axes; ++i) mean.cells.push_back({""});
+    table.rows.push_back(std::move(mean));
+  }
+  return table;
 }
 
 }  // namespace trials_table
@@ -272,24 +321,14 @@ std::string trials_latex(std::span<const Measurement> measured, const SeveralTri
   if (measured.size() == 1 && together.failed.empty()) return trial_latex(measured.front().identification);
   const Shape shape{measured.empty() ? 2 : measured.front().identification.axes,
                     measured.empty() ? Motion::translation : measured.front().identification.motion};
-  PaperTable table;
-  table.sideways = shape.axes > 1;
-  table.alignment = "l" + std::string(static_cast<std::size_t>(3 * shape.axes * shape.axes + shape.axes), 'r');
-  table.caption = "Impedance of each trial, ± the half width of its 95 % interval";
-  if (!measured.empty()) table.caption += fmt::format("; VAF on {}", fit_data(measured.front().identification));
-  table.caption += fmt::format(". mbk {}.", version());
-  table.header = header_rows(shape);
-  for (const Measurement& one : measured) table.rows.push_back(trial_row(one, shape));
-  for (const Error& error : together.failed) {
-    table.rows.push_back({{{error.where.substr(error.where.find_last_of('/') + 1)}, {"could not be measured"}}});
+  const Index size = Index{shape.axes} * shape.axes;
+  if (shape.axes < 3) return latex_table(parameter_table(measured, together, shape, {0, 3 * size}, "Impedance"));
+  std::string text;  // a table for each matrix, as 27 columns fit on no page
+  for (const auto& [of, first] :
+       {std::pair("Inertia", Index{0}), std::pair("Damping", size), std::pair("Stiffness", 2 * size)}) {
+    text += (text.empty() ? "" : "\n") + latex_table(parameter_table(measured, together, shape, {first, size}, of));
   }
-  if (together.summary && together.summary->mean.axes() == shape.axes && together.summary->motion == shape.motion) {
-    PaperRow mean{{{fmt::format("Mean of {}", together.summary->trials)}}, true};
-    add_cells(mean, together.summary->mean, together.summary->half_width95, shape.axes);
-    for (int i = 0; i < shape.axes; ++i) mean.cells.push_back({""});
-    table.rows.push_back(std::move(mean));
-  }
-  return latex_table(table);
+  return text;
 }
 
 }  // namespace mbk::report

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "mbk/present/report/layout.h"
@@ -26,7 +27,7 @@ std::string times(const WidthRatio& ratio, bool directed) {
 std::string width_text(const WidthFindings& widths) {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> notes;
-  bool directed = false;
+  bool directed = false, spatial = false;
   for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
     const char* const name = kMatrixNames[k];
     if (!widths.of[k]) {
@@ -34,10 +35,14 @@ std::string width_text(const WidthFindings& widths) {
       continue;
     }
     const WidthFinding& one = *widths.of[k];
-    directed = one.ratios.size() > 1;
-    rows.push_back({name, between(one.distance, one.distance95), times(one.ratios.front(), directed)});
-    if (directed) rows.back().push_back(times(one.ratios.back(), directed));
+    directed = one.ratios.size() == 2;
+    spatial = one.ratios.size() == 3;
+    const WidthRatio &least = one.ratios.front(), &most = one.ratios.back();
+    rows.push_back({name, between(one.distance, one.distance95), times(least, directed)});
+    if (directed) rows.back().push_back(times(most, directed));
+    if (spatial) rows.back().push_back(direction_text(least.along));
     rows.back().emplace_back(one.distinguishable ? "" : "not distinct");
+    if (spatial) rows.push_back({"", "", times(most, false), direction_text(most.along), ""});
     if (!one.surely_positive) {
       notes.push_back(
           fmt::format("{}: a smallest eigenvalue is not significantly above zero, so the width has no upper limit: do "
@@ -47,9 +52,10 @@ std::string width_text(const WidthFindings& widths) {
   }
   std::string text;
   if (!rows.empty()) {
-    rows.insert(rows.begin(), directed
-                                  ? std::vector<std::string>{"", "width", "ratio second/first, minimum", "maximum", ""}
-                                  : std::vector<std::string>{"", "width", "ratio second/first", ""});
+    std::vector<std::string> heading = {"", "width", "ratio second/first", ""};
+    if (directed) heading = {"", "width", "ratio second/first, minimum", "maximum", ""};
+    if (spatial) heading = {"", "width", "ratio second/first, minimum, maximum", "direction x, y, z", ""};
+    rows.insert(rows.begin(), std::move(heading));
     text += table(rows);
     text += paragraph("  ",
                       "(width: overall difference, 0 = equal, √(Σ ln² λ) of Z₁⁻¹Z₂, symmetric parts; brackets are 95 % "

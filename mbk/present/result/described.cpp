@@ -128,6 +128,41 @@ void describe(Fields<AntisymmetryFinding>& fields) {
   fields.add("interval95", &AntisymmetryFinding::zmean95, "of zmean_percent [%]");
 }
 
+void describe(Fields<PrincipalDirection>& fields) {
+  using From = const PrincipalDirection&;
+  fields.type("PrincipalDirection", "A principal value of the symmetric part of a matrix, and its axis.");
+  fields.add("value", &PrincipalDirection::value, "eigenvalue, in the unit of the matrix");
+  fields.add("value95", &PrincipalDirection::value95);
+  fields.add("direction", &PrincipalDirection::direction, "unit vector, base frame; its largest component is positive");
+  fields.add(
+      "half_angle95_deg", [](From one) { return kDegrees * one.half_angle95; },
+      "half-angle of the cone that contains the true axis [°]; 90: any direction, because the value may equal another");
+}
+
+void describe(Fields<EllipsoidFinding>& fields) {
+  fields.type("Ellipsoid", "Ellipsoid of the symmetric part of a 3×3 matrix.");
+  fields.add("principal", &EllipsoidFinding::principal, "largest first");
+  fields.add("volume", &EllipsoidFinding::volume, "4/3 π λ₁ λ₂ λ₃; null if the smallest is not positive");
+  fields.add("shape", &EllipsoidFinding::shape, "largest over smallest; null if the smallest is not positive");
+  fields.add("closed", &EllipsoidFinding::closed,
+             "the smallest is positive beyond its interval; otherwise there is no ellipsoid to draw");
+  fields.add("symmetric_part", &EllipsoidFinding::symmetric);
+  fields.group("interval95", [](Fields<EllipsoidFinding>& part) {
+    part.add("volume", &EllipsoidFinding::volume95);
+    part.add("shape", &EllipsoidFinding::shape95);
+  });
+}
+
+void describe(Fields<CirculationFinding>& fields) {
+  fields.type("AntisymmetryVector", "The vector a of the antisymmetric part of a 3×3 matrix: (Z − Zᵀ)/2 · u = a × u.");
+  fields.add("vector", &CirculationFinding::vector, "base frame, in the unit of the matrix");
+  fields.add("vector95", &CirculationFinding::vector95, "of each component");
+  fields.add("size", &CirculationFinding::size, "length of the vector");
+  fields.add("size95", &CirculationFinding::size95, "from 0 if the vector may be zero");
+  fields.add("significant", &CirculationFinding::significant, "the vector is not zero, with 95 % confidence");
+  fields.add("percent", &CirculationFinding::percent, "size over the geometric mean of the principal values [%]");
+}
+
 void describe(Fields<ForceAgreement>& fields) {
   fields.type("ForceAgreement");
   fields.add("rows", &ForceAgreement::rows);

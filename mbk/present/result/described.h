@@ -28,6 +28,8 @@ void describe(document::Fields<Preparation>& fields);
 void describe(document::Fields<Fit>& fields);
 void describe(document::Fields<EllipseFinding>& fields);
 void describe(document::Fields<AntisymmetryFinding>& fields);
+void describe(document::Fields<EllipsoidFinding>& fields);
+void describe(document::Fields<CirculationFinding>& fields);
 void describe(document::Fields<ForceComparison>& fields);
 void describe(document::Fields<Energy>& fields);
 void describe(document::Fields<Passivity>& fields);

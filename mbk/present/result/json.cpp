@@ -88,11 +88,12 @@ Identification estimate_from(const Json& json, Index n) {
   return id;
 }
 
+/// Rows of M; 2 where it is none of 1, 2 and 3.
 Index axes_of(const Json& json) {
   const auto model = json.find("model");
-  const bool one_axis = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array() &&
-                        (*model)["M"].size() == 1;
-  return one_axis ? 1 : 2;
+  const bool listed = model != json.end() && model->is_object() && model->contains("M") && (*model)["M"].is_array();
+  const std::size_t rows = listed ? (*model)["M"].size() : 0;
+  return rows == 1 || rows == 3 ? static_cast<Index>(rows) : 2;
 }
 
 Identification identification_from(const Json& json) {

@@ -28,9 +28,9 @@ namespace mbk::result {
 /// Schema "mbk.results/1": several results and, where there is one, their summary.
 [[nodiscard]] std::string to_json(const std::vector<Measurement>& results, const SeveralTrials& together);
 
-/// Schema "mbk.ellipse/1": the ellipses and antisymmetry of a result; "mbk.ellipses/1" with `results` for several.
-[[nodiscard]] std::string to_json(const std::vector<Identification>& identifications,
-                                  const std::vector<Findings>& findings);
+/// Schema "mbk.ellipse/1": the ellipses and antisymmetry of a result, with three axes its ellipsoids and antisymmetry
+/// vectors; "mbk.ellipses/1" with `results` for several.
+[[nodiscard]] std::string ellipses_json(std::span<const Measurement> measured);
 
 /// What happened in a trial and what the model predicts, in full: `passivity` as in a result, and for each recording
 /// the energy over time and part by part.

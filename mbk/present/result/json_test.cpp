@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <set>
@@ -53,6 +54,19 @@ Measurement measured(int axes) {
   if (axes == 2) {
     result.findings.emplace();
     result.findings->ellipses[0].ellipse.area = 4.0;
+  } else if (axes == 3) {
+    result.spatial.emplace();
+    for (EllipsoidFinding& finding : result.spatial->ellipsoids) {
+      finding.symmetric = Matrix::Identity(3, 3);
+      for (PrincipalDirection& one : finding.principal) {
+        one = {3.5, {3.0, 4.0}, Eigen::Vector3d::UnitX(), 0.5 * std::numbers::pi};
+      }
+      finding.volume = finding.shape = kNaN;
+    }
+    for (CirculationFinding& finding : result.spatial->antisymmetry) {
+      finding.vector = Eigen::Vector3d(0.1, 0.2, -0.3);
+      finding.vector95[2] = {-0.5, -0.1};
+    }
   } else {
     id.motion = Motion::rotation;
   }
@@ -66,7 +80,7 @@ Identification read_back(const std::string& text) {
 }
 
 class BothAxes : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(All, BothAxes, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(All, BothAxes, testing::Values(1, 2, 3));
 
 TEST_P(BothAxes, ModelCovarianceFitWarningsAndInputsComeBackToTheLastBit) {
   const Identification id = measured(GetParam()).identification;
@@ -126,6 +140,50 @@ TEST_P(BothAxes, HasEveryFieldOfTheInterfaceInItsShape) {
   EXPECT_EQ(json.at("usable"), true);
   EXPECT_EQ(json.contains("ellipses"), n == 2);
   EXPECT_EQ(json.contains("antisymmetry"), n == 2);
+  EXPECT_EQ(json.contains("ellipsoids"), n == 3);
+  EXPECT_EQ(json.contains("antisymmetry_vectors"), n == 3);
+  EXPECT_EQ(json.at("axes"), n);
+}
+
+TEST(ToJson, EllipsoidsHaveTheirPrincipalDirections) {
+  const Json json = schemas::parsed(to_json(measured(3)));
+  for (const char* matrix : {"inertia", "damping", "stiffness"}) {
+    const Json& one = json.at("ellipsoids").at(matrix);
+    ASSERT_EQ(one.at("principal").size(), 3u);
+    for (const Json& principal : one.at("principal")) {
+      EXPECT_EQ(principal.at("value"), 3.5);
+      EXPECT_EQ(principal.at("value95"), Json({3.0, 4.0}));
+      EXPECT_EQ(principal.at("direction"), Json({1.0, 0.0, 0.0}));
+      EXPECT_EQ(principal.at("half_angle95_deg"), 90.0);
+    }
+    EXPECT_TRUE(one.at("volume").is_null() && one.at("shape").is_null()) << "undefined without an ellipsoid";
+    EXPECT_EQ(one.at("closed"), false);
+    EXPECT_EQ(one.at("symmetric_part").at(2), Json({0.0, 0.0, 1.0}));
+    for (const char* number : {"volume", "shape"}) EXPECT_EQ(one.at("interval95").at(number).size(), 2u);
+  }
+  for (const char* matrix : {"inertia", "stiffness"}) {
+    const Json& one = json.at("antisymmetry_vectors").at(matrix);
+    EXPECT_EQ(one.at("vector"), Json({0.1, 0.2, -0.3}));
+    EXPECT_EQ(one.at("vector95").at(2), Json({-0.5, -0.1}));
+    EXPECT_EQ(one.at("size95").size(), 2u);
+    EXPECT_EQ(one.at("significant"), false);
+    EXPECT_TRUE(one.contains("size") && one.contains("percent"));
+  }
+}
+
+TEST(ToJson, TheEllipseDocumentHasTheShapesOfEachNumberOfAxes) {
+  const std::vector<Measurement> both = {measured(2), measured(3)};
+  const Json json = schemas::parsed(ellipses_json(both));
+  EXPECT_EQ(json.at("schema"), "mbk.ellipses/1");
+  for (const std::size_t k : {0u, 1u}) {
+    const Json& one = json.at("results").at(k);
+    EXPECT_EQ(one.at("schema"), "mbk.ellipse/1");
+    EXPECT_EQ(one.at("inputs").at(0).at("file"), "a.mat");
+    const Json whole = schemas::parsed(to_json(both[k]));
+    for (const char* part : {"ellipses", "antisymmetry", "ellipsoids", "antisymmetry_vectors"}) {
+      EXPECT_EQ(one.value(part, Json()), whole.value(part, Json())) << part;
+    }
+  }
 }
 
 TEST(ToJson, EllipsesHaveTheirIntervals) {
@@ -212,7 +270,7 @@ TEST(FromJson, WithoutACovarianceTakesTheStandardErrors) {
 }
 
 TEST(FromJson, WhatWasReadCanBeWrittenAgain) {
-  for (const int axes : {1, 2}) {
+  for (const int axes : {1, 2, 3}) {
     const Identification id = read_back(to_json(measured(axes)));
     const Json again = schemas::parsed(to_json(Measurement{id, std::nullopt}));
     EXPECT_FALSE(again.contains("mode"));

@@ -15,6 +15,8 @@ namespace {
 
 using Ellipses = std::array<EllipseFinding, 3>;
 using Antisymmetries = std::array<AntisymmetryFinding, 2>;
+using Ellipsoids = std::array<EllipsoidFinding, 3>;
+using Circulations = std::array<CirculationFinding, 2>;
 
 /// What a force sensor gives, and what the computed force makes of it instead.
 struct ByForceSensor {
@@ -54,6 +56,48 @@ void describe(Fields<Antisymmetries>& fields) {
   fields.add("inertia", [](const Antisymmetries& all) { return all[0]; });
   fields.add("stiffness", [](const Antisymmetries& all) { return all[1]; });
 }
+
+void describe(Fields<Ellipsoids>& fields) {
+  fields.type("Ellipsoids");
+  for (std::size_t k = 0; k < kMatrixNames.size(); ++k) {
+    fields.add(kMatrixNames[k], [k](const Ellipsoids& all) { return all[k]; });
+  }
+}
+
+void describe(Fields<Circulations>& fields) {
+  fields.type("AntisymmetryVectors");
+  fields.add("inertia", [](const Circulations& all) { return all[0]; });
+  fields.add("stiffness", [](const Circulations& all) { return all[1]; });
+}
+
+namespace {
+
+/// Ellipses and antisymmetry with two axes, ellipsoids and antisymmetry vectors with three.
+struct Shapes {
+  const std::optional<Findings>* planar;
+  const std::optional<SpatialFindings>* spatial;
+};
+
+Shapes shapes_of(const Measurement& measured) {
+  return {&measured.findings, &measured.spatial};
+}
+
+void describe(Fields<Shapes>& fields) {
+  using From = const Shapes&;
+  fields.add(
+      "ellipses", [](From shapes) { return *shapes.planar ? &(*shapes.planar)->ellipses : nullptr; }, "two axes only");
+  fields.add(
+      "antisymmetry", [](From shapes) { return *shapes.planar ? &(*shapes.planar)->antisymmetry : nullptr; },
+      "two axes only");
+  fields.add(
+      "ellipsoids", [](From shapes) { return *shapes.spatial ? &(*shapes.spatial)->ellipsoids : nullptr; },
+      "three axes only");
+  fields.add(
+      "antisymmetry_vectors", [](From shapes) { return *shapes.spatial ? &(*shapes.spatial)->antisymmetry : nullptr; },
+      "three axes only");
+}
+
+}  // namespace
 
 void describe(Fields<InstrumentCheck>& fields) {
   fields.type("Instrument", "Validity of instrumental variables.");
@@ -203,7 +247,7 @@ void describe(Fields<Measurement>& fields) {
   fields.add("method", of(&Identification::method));
   fields.add_unless_empty("method_rule", of(&Identification::method_rule),
                           "how the method was chosen if none was requested");
-  fields.add_as("axes", {{"enum", {1, 2}}}, of(&Identification::axes));
+  fields.add_as("axes", {{"enum", {1, 2, 3}}}, of(&Identification::axes));
   fields.add("structure", of(&Identification::structure));
   fields.add(
       "units", [](From measured) { return result::known_units(measured.identification.motion); },
@@ -213,9 +257,7 @@ void describe(Fields<Measurement>& fields) {
   fields.add("standard_error_of_robot", of(&Identification::standard_error_of_robot),
              "the part of it due to the coefficients of the robot");
   fields.add("fit", of(&Identification::fit));
-  fields.add("ellipses", [](From measured) { return measured.findings ? &measured.findings->ellipses : nullptr; });
-  fields.add("antisymmetry",
-             [](From measured) { return measured.findings ? &measured.findings->antisymmetry : nullptr; });
+  fields.with(shapes_of);
   fields.add("joint_domain", &Measurement::joints);
   fields.add("instrument", of(&Identification::instrument));
   fields.add("unmodelled_response", of(&Identification::response));
@@ -293,16 +335,14 @@ namespace {
 
 /// One of the ellipse documents.
 struct EllipseDocument {
-  const Identification* of;
-  const Findings* findings;
+  const Measurement* of;
 };
 
 void describe(Fields<EllipseDocument>& fields) {
   fields.type("EllipseDocument", "Output of `mbk ellipse --json` for one result.");
   fields.header("mbk.ellipse/1");
-  fields.add("inputs", through(&EllipseDocument::of, &Identification::sources));
-  fields.add("ellipses", through(&EllipseDocument::findings, &Findings::ellipses));
-  fields.add("antisymmetry", through(&EllipseDocument::findings, &Findings::antisymmetry));
+  fields.add("inputs", [](const EllipseDocument& one) { return one.of->identification.sources; });
+  fields.with([](const EllipseDocument& one) { return shapes_of(*one.of); });
 }
 
 void describe(Fields<List<EllipseDocument>>& fields) {
@@ -337,9 +377,9 @@ std::string to_json(const std::vector<Measurement>& results, const SeveralTrials
   return document::document(all);
 }
 
-std::string to_json(const std::vector<Identification>& identifications, const std::vector<Findings>& findings) {
+std::string ellipses_json(std::span<const Measurement> measured) {
   std::vector<EllipseDocument> all;
-  for (std::size_t i = 0; i < findings.size(); ++i) all.push_back({&identifications[i], &findings[i]});
+  for (const Measurement& one : measured) all.push_back({&one});
   return document::one_or_list<EllipseDocument>(all);
 }
 

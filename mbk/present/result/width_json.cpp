@@ -11,7 +11,7 @@ namespace {
 
 struct Ratio {
   WidthRatio ratio;
-  bool directed = true;  ///< false with one axis
+  bool directed = true;  ///< by an angle: false with one axis or three
 };
 
 void describe(Fields<Ratio>& fields) {
@@ -22,6 +22,10 @@ void describe(Fields<Ratio>& fields) {
           "direction_deg", [](const Ratio& one) { return kDegrees * one.ratio.direction; },
           "counter-clockwise from x [°]")
       .only_if(&Ratio::directed);
+  fields
+      .add("direction", document::through(&Ratio::ratio, &WidthRatio::along),
+           "three axes: unit vector, base frame; its largest component is positive")
+      .only_if([](const Ratio& one) { return one.ratio.along.size() > 0; });
 }
 
 }  // namespace
@@ -34,7 +38,7 @@ void describe(Fields<WidthFinding>& fields) {
   fields.add("surely_positive", &WidthFinding::surely_positive, "both matrices are significantly positive");
   fields.add("second_to_first", [](const WidthFinding& width) {
     std::vector<Ratio> ratios;
-    for (const WidthRatio& ratio : width.ratios) ratios.push_back({ratio, width.ratios.size() > 1});
+    for (const WidthRatio& ratio : width.ratios) ratios.push_back({ratio, width.ratios.size() == 2});
     return ratios;
   });
 }

@@ -147,10 +147,12 @@ std::vector<SessionMatrix> Page::matrices() const {
       elements.at(k) = found == columns.outcomes.end() ? nullptr : &*found;
     }
     if (std::ranges::find(elements, nullptr) != elements.end()) continue;
+    const auto spatial = std::ranges::find(columns.outcomes, fmt::format("{}_zz", matrix), &store::OutcomeColumn::name);
     std::map<std::tuple<int, std::int64_t, std::int64_t>, SessionMatrix> sums;  // by condition, participant, session
     for (std::size_t k = 0; k < columns.trials.size(); ++k) {
       const store::TrialRow& trial = columns.trials[k];
       if (!holds(trial.participant)) continue;
+      if (spatial != columns.outcomes.end() && std::isfinite(spatial->values[k])) continue;  // no ellipse in a plane
       const auto value = [&](std::size_t element) { return elements.at(element)->values[k]; };
       const double total = value(0) + value(1) + value(2) + value(3);
       if (!std::isfinite(total)) continue;

@@ -76,7 +76,8 @@ Result<WidthSpread> width_spread(const std::vector<std::vector<Matrix>>& matrice
     for (std::size_t a = 0; a < sessions.size(); ++a) {
       if (a > 0) {
         if (sessions[a].rows() != sum.rows() || sessions[a].cols() != sum.cols()) {
-          return bad_data(fmt::format("the matrices of person {} differ in size", person + 1), "give 2×2 everywhere");
+          return bad_data(fmt::format("the matrices of person {} differ in size", person + 1),
+                          "give matrices of one size");
         }
         sum += sessions[a];
       }

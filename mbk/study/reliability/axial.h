@@ -44,7 +44,8 @@ struct WidthSpread {
   Vector between;  ///< each pair of people, between the means of their sessions' matrices
 };
 
-/// @param matrices  [person][session], each 2×2 with a positive definite symmetric part; sessions may differ in number
+/// @param matrices  [person][session], each 2×2 or each 3×3 with a positive definite symmetric part; sessions may
+/// differ in number
 /// @fails  data: shapes differ; a symmetric part is not positive definite.
 [[nodiscard]] Result<WidthSpread> width_spread(const std::vector<std::vector<Matrix>>& matrices);
 

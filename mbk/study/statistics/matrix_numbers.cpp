@@ -4,8 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
 
+#include "mbk/base/numeric/dense.h"
 #include "mbk/base/numeric/statistics.h"
+#include "mbk/model/impedance/ellipse.h"
 #include "mbk/study/reliability/axial.h"
 #include "mbk/study/statistics/outcome_rows.h"
 
@@ -18,31 +23,57 @@ struct NamedMatrix {
 constexpr std::array kMatrices = {NamedMatrix{"M", "inertia"}, NamedMatrix{"B", "damping"},
                                   NamedMatrix{"K", "stiffness"}};
 
-/// The four columns of a matrix, xx xy yx yy; nothing where one is missing.
-using Elements = std::array<const store::OutcomeColumn*, 4>;
+/// The columns of a matrix row by row: xx xy yx yy, or nine if any result has three axes; nothing where one is missing.
+using Elements = std::vector<const store::OutcomeColumn*>;
 
-std::optional<Elements> elements_of(const store::OutcomeColumns& columns, const char* letter) {
-  Elements elements{};
-  std::size_t at = 0;
-  for (const char* place : {"xx", "xy", "yx", "yy"}) {
+Elements elements_of(const store::OutcomeColumns& columns, const char* letter) {
+  const auto column = [&](char row, char col) -> const store::OutcomeColumn* {
     const auto found =
-        std::ranges::find(columns.outcomes, fmt::format("{}_{}", letter, place), &store::OutcomeColumn::name);
-    if (found == columns.outcomes.end()) return std::nullopt;
-    elements.at(at++) = &*found;
+        std::ranges::find(columns.outcomes, fmt::format("{}_{}{}", letter, row, col), &store::OutcomeColumn::name);
+    return found == columns.outcomes.end() ? nullptr : &*found;
+  };
+  const std::string_view axes = column('z', 'z') == nullptr ? "xy" : "xyz";
+  Elements elements;
+  for (const char row : axes) {
+    for (const char col : axes) elements.push_back(column(row, col));
   }
-  return elements;
+  return std::ranges::find(elements, nullptr) == elements.end() ? elements : Elements();
 }
 
-/// NaN where an element is missing.
-Eigen::Matrix2d matrix_at(const Elements& elements, std::size_t trial) {
-  Eigen::Matrix2d Z;
-  Z << elements[0]->values[trial], elements[1]->values[trial], elements[2]->values[trial], elements[3]->values[trial];
+/// NaN where an element is missing: of a study with three axes, a result with two has none.
+Matrix matrix_at(const Elements& elements, std::size_t trial) {
+  const Index n = elements.size() == 4 ? 2 : 3;
+  Matrix Z(n, n);
+  for (Index k = 0; k < n * n; ++k) Z(k / n, k % n) = elements[static_cast<std::size_t>(k)]->values[trial];
   return Z;
 }
 
-bool is_positive_definite(const Eigen::Matrix2d& Z) {
-  const double off = 0.5 * (Z(0, 1) + Z(1, 0));
-  return Z(0, 0) > 0.0 && Z(0, 0) * Z(1, 1) - off * off > 1e-12 * Z(0, 0) * Z(1, 1);
+/// 1e-12 of the largest possible determinant is rounding.
+bool is_positive_definite(const Matrix& Z) {
+  if (Z.rows() == 2) {
+    const double off = 0.5 * (Z(0, 1) + Z(1, 0));
+    return Z(0, 0) > 0.0 && Z(0, 0) * Z(1, 1) - off * off > 1e-12 * Z(0, 0) * Z(1, 1);
+  }
+  const Vector eigenvalues = numeric::symmetric_eigenvalues(impedance::symmetric_part(Z));
+  return eigenvalues.minCoeff() > 1e-12 * eigenvalues.cwiseAbs().maxCoeff();
+}
+
+/// Names of the numbers that follow from a matrix.
+constexpr std::array kPlanarNumbers = {"lambda_max", "lambda_min", "symmetric_xy", "antisymmetric"};
+constexpr std::array kSpatialNumbers = {"lambda_max",      "lambda_mid",      "lambda_min",
+                                        "symmetric_xy",    "symmetric_xz",    "symmetric_yz",
+                                        "antisymmetric_x", "antisymmetric_y", "antisymmetric_z"};
+
+Vector numbers_of(const Matrix& Z) {
+  if (Z.rows() == 2) {
+    const double half = 0.5 * (Z(0, 0) + Z(1, 1)), off = 0.5 * (Z(0, 1) + Z(1, 0));
+    const double radius = std::hypot(0.5 * (Z(0, 0) - Z(1, 1)), off);
+    return Eigen::Vector4d(half + radius, half - radius, off, 0.5 * (Z(0, 1) - Z(1, 0)));
+  }
+  const Matrix S = impedance::symmetric_part(Z);
+  Vector numbers(std::ssize(kSpatialNumbers));
+  numbers << numeric::symmetric_eigenvalues(S).reverse(), S(0, 1), S(0, 2), S(1, 2), impedance::antisymmetric_vector(Z);
+  return numbers;
 }
 
 Quartiles quartiles_of(Vector distances) {
@@ -71,13 +102,12 @@ struct SessionMatrices {
 
 SessionMatrices session_matrices(const store::OutcomeColumns& columns, const Elements& elements, int condition) {
   SessionMatrices result;
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  Matrix sum;
   int count = 0;
   std::int64_t participant = 0, session = 0, person_of_last = 0;
   const auto close = [&] {
     if (count == 0) return;
-    const Eigen::Matrix2d mean = sum / count;
-    sum.setZero();
+    const Matrix mean = sum / count;
     count = 0;
     if (!is_positive_definite(mean)) {
       ++result.left_out;
@@ -91,12 +121,16 @@ SessionMatrices session_matrices(const store::OutcomeColumns& columns, const Ele
   for (std::size_t k = 0; k < columns.trials.size(); ++k) {
     const store::TrialRow& trial = columns.trials[k];
     if (trial.condition != condition) continue;
-    const Eigen::Matrix2d Z = matrix_at(elements, k);
+    const Matrix Z = matrix_at(elements, k);
     if (!Z.allFinite()) continue;
     if (trial.participant != participant || trial.session != session) close();
     participant = trial.participant;
     session = trial.session;
-    sum += Z;
+    if (count == 0) {
+      sum = Z;
+    } else {
+      sum += Z;
+    }
     ++count;
   }
   close();
@@ -133,24 +167,22 @@ MatrixSpread spread_of(const SessionMatrices& matrices) {
 void add_matrix_numbers(store::OutcomeColumns& columns) {
   std::vector<store::OutcomeColumn> added;
   for (const auto& [letter, quantity] : kMatrices) {
-    const auto elements = elements_of(columns, letter);
-    if (!elements) continue;
+    const Elements elements = elements_of(columns, letter);
+    if (elements.empty()) continue;
     const std::size_t first = added.size();
-    for (const char* name : {"lambda_max", "lambda_min", "symmetric_xy", "antisymmetric"}) {
+    const auto names = elements.size() == 4 ? std::span<const char* const>(kPlanarNumbers)
+                                            : std::span<const char* const>(kSpatialNumbers);
+    for (const char* name : names) {
       added.push_back({fmt::format("{}_{}", quantity, name),
-                       (*elements)[0]->unit,
+                       elements[0]->unit,
                        std::vector<double>(columns.trials.size(), kNaN),
                        {}});
     }
     for (std::size_t k = 0; k < columns.trials.size(); ++k) {
-      const Eigen::Matrix2d Z = matrix_at(*elements, k);
+      const Matrix Z = matrix_at(elements, k);
       if (!Z.allFinite()) continue;
-      const double half = 0.5 * (Z(0, 0) + Z(1, 1)), off = 0.5 * (Z(0, 1) + Z(1, 0));
-      const double radius = std::hypot(0.5 * (Z(0, 0) - Z(1, 1)), off);
-      added[first].values[k] = half + radius;
-      added[first + 1].values[k] = half - radius;
-      added[first + 2].values[k] = off;
-      added[first + 3].values[k] = 0.5 * (Z(0, 1) - Z(1, 0));
+      const Vector numbers = numbers_of(Z);
+      for (std::size_t i = 0; i < names.size(); ++i) added[first + i].values[k] = numbers[static_cast<Index>(i)];
     }
   }
   for (store::OutcomeColumn& column : added) columns.outcomes.push_back(std::move(column));
@@ -160,9 +192,9 @@ std::vector<MatrixSpread> matrix_spreads(const store::OutcomeColumns& columns) {
   std::vector<MatrixSpread> spreads;
   for (std::size_t condition = 0; condition < columns.conditions.size(); ++condition) {
     for (const auto& [letter, quantity] : kMatrices) {
-      const auto elements = elements_of(columns, letter);
-      if (!elements) continue;
-      const SessionMatrices matrices = session_matrices(columns, *elements, static_cast<int>(condition));
+      const Elements elements = elements_of(columns, letter);
+      if (elements.empty()) continue;
+      const SessionMatrices matrices = session_matrices(columns, elements, static_cast<int>(condition));
       if (matrices.sessions + matrices.left_out == 0) continue;
       MatrixSpread& spread = spreads.emplace_back(spread_of(matrices));
       spread.condition = columns.conditions[condition];

@@ -220,10 +220,11 @@ struct StudyStatistics {
   std::vector<std::string> notes;  ///< on the study as a whole; sentences
 };
 
-/// Adds to the columns what follows from elements of 2×2 matrices: of stiffness (K), damping (B) and inertia (M) the
-/// eigenvalues of the symmetric part (stiffness_lambda_max, stiffness_lambda_min) and the parts of the off-diagonal
+/// Adds to the columns what follows from elements of 2×2 or 3×3 matrices: of stiffness (K), damping (B) and inertia (M)
+/// the eigenvalues of the symmetric part (stiffness_lambda_max, stiffness_lambda_min) and the parts of the off-diagonal
 /// elements (stiffness_symmetric_xy, stiffness_antisymmetric), beside the area, shape and orientation that a result
-/// has.
+/// has. With three axes also stiffness_lambda_mid, _symmetric_xz and _yz, and the vector _antisymmetric_x, _y and _z;
+/// results with two axes in the same study have none of these numbers.
 void add_matrix_numbers(store::OutcomeColumns& columns);
 
 /// Everything at once. Reliability after mbk/study/reliability: the classical forms from people who have every session

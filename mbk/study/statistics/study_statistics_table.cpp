@@ -62,8 +62,14 @@ PaperCell name_cell(const std::string& outcome) {
   constexpr auto kPart =
       std::to_array<std::pair<std::string_view, const char*>>({{"lambda_max", "{}_{{\\max}}"},
                                                                {"lambda_min", "{}_{{\\min}}"},
+                                                               {"lambda_mid", "{}_{{\\mathrm{{mid}}}}"},
                                                                {"symmetric_xy", "{}_{{\\mathrm{{sym}},xy}}"},
+                                                               {"symmetric_xz", "{}_{{\\mathrm{{sym}},xz}}"},
+                                                               {"symmetric_yz", "{}_{{\\mathrm{{sym}},yz}}"},
                                                                {"antisymmetric", "{}_{{\\mathrm{{anti}}}}"},
+                                                               {"antisymmetric_x", "{}_{{\\mathrm{{anti}},x}}"},
+                                                               {"antisymmetric_y", "{}_{{\\mathrm{{anti}},y}}"},
+                                                               {"antisymmetric_z", "{}_{{\\mathrm{{anti}},z}}"},
                                                                {"zmean", "Z_{{\\mathrm{{mean}}}}({})"}});
   const auto* const matrix =
       std::ranges::find(kMatrix, std::string_view(head), [](const auto& one) { return one.first; });
@@ -71,7 +77,8 @@ PaperCell name_cell(const std::string& outcome) {
   if (matrix != kMatrix.end() && part != kPart.end()) {
     return {fmt::format(fmt::runtime(part->second), matrix->second), symbol};
   }
-  std::string words = matrix != kMatrix.end() ? head + " ellipse, " + rest : outcome;
+  const bool ellipse = matrix != kMatrix.end() && !rest.starts_with("ellipsoid");
+  std::string words = ellipse ? head + " ellipse, " + rest : outcome;
   if (head == "min") words = "minimum_" + rest;
   std::ranges::replace(words, '_', ' ');
   if (words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');

@@ -351,6 +351,52 @@ TEST(MatrixNumbers, AreEigenvaluesAndParts) {
   EXPECT_TRUE(std::isnan(values.at("stiffness_lambda_max")[2]));
 }
 
+std::vector<std::string> nine_elements() {
+  std::vector<std::string> names;
+  for (const char row : {'x', 'y', 'z'}) {
+    for (const char col : {'x', 'y', 'z'}) names.push_back(fmt::format("K_{}{}", row, col));
+  }
+  return names;
+}
+
+TEST(MatrixNumbers, OfThreeAxesAreThreeEigenvaluesAndAVector) {
+  Results results(nine_elements());
+  results.add(1, 1, {5.0, 1.0, 0.0, 1.0, 5.0, 0.0, 0.0, 0.0, 3.0})
+      .add(1, 2, {1.0, -3.0, 2.0, 3.0, 1.0, -1.0, -2.0, 1.0, 1.0})  // I + [a]×, a = [1 2 3]
+      .add(1, 3, {1.0, 0.0, kNaN, 0.0, 1.0, kNaN, kNaN, kNaN, kNaN});
+  OutcomeColumns columns = results.columns();
+  add_matrix_numbers(columns);
+  std::map<std::string, std::vector<double>> values;
+  for (const auto& column : columns.outcomes) values[column.name] = column.values;
+  const double kRounding = 1e-12;
+  EXPECT_NEAR(values.at("stiffness_lambda_max")[0], 6.0, kRounding);
+  EXPECT_NEAR(values.at("stiffness_lambda_mid")[0], 4.0, kRounding);
+  EXPECT_NEAR(values.at("stiffness_lambda_min")[0], 3.0, kRounding);
+  EXPECT_DOUBLE_EQ(values.at("stiffness_symmetric_xy")[0], 1.0);
+  EXPECT_DOUBLE_EQ(values.at("stiffness_antisymmetric_x")[1], 1.0);
+  EXPECT_DOUBLE_EQ(values.at("stiffness_antisymmetric_y")[1], 2.0);
+  EXPECT_DOUBLE_EQ(values.at("stiffness_antisymmetric_z")[1], 3.0);
+  EXPECT_EQ(values.count("stiffness_antisymmetric"), 0U);
+  EXPECT_TRUE(std::isnan(values.at("stiffness_lambda_max")[2])) << "two axes among three";
+}
+
+TEST(MatrixSpread, OfThreeAxesIsThatOfWholeMatrices) {
+  numeric::Random random(6);
+  Results results(nine_elements());
+  for (int i = 1; i <= 8; ++i) {
+    const double own = std::abs(200.0 + 60.0 * random.normal()) + 50.0;
+    for (int j = 1; j <= 2; ++j) {
+      const double zz = i == 1 && j == 1 ? -5.0 : own + random.normal();
+      results.add(i, j, {own + random.normal(), 0, 0, 0, own + random.normal(), 0, 0, 0, zz});
+    }
+  }
+  const MatrixSpread spread = statistics_of(results).matrices.at(0);
+  EXPECT_EQ(spread.left_out, 1) << "not positive definite along z alone";
+  EXPECT_EQ(spread.sessions, 15);
+  EXPECT_EQ(spread.between.count, 8 * 7 / 2);
+  EXPECT_GT(spread.closer, 0.9);
+}
+
 TEST(MatrixSpread, TellsPeopleApartOnlyWhereTheyDiffer) {
   for (const double spread : {0.0, 60.0}) {
     numeric::Random random(6);

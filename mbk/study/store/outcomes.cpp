@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array kAxes = {"x", "y"};
+constexpr std::array kAxes = {"x", "y", "z"};
 
 /// The numbers of a document under their names.
 class OutcomeReader {
@@ -20,16 +20,21 @@ class OutcomeReader {
 
   std::vector<Outcome> read() {
     const Json& axes = member(document_, "axes");
-    one_axis_ = axes.is_number_integer() && axes.get<int>() == 1;
+    if (axes.is_number_integer() && (axes == 1 || axes == 3)) axes_ = axes.get<std::size_t>();
     for (const char* matrix : {"M", "B", "K"}) read_matrix(matrix);
     read_vector("x0", member(member(document_, "model"), "x0"), member(member(document_, "standard_error"), "x0"),
                 unit_of("x0"));
     read_vector("VAF", member(member(document_, "fit"), "VAF"), Json(), "%");
     read_vector("RMSE", member(member(document_, "fit"), "RMSE"), Json(), unit_of("force"));
-    for (const char* quantity : {"inertia", "damping", "stiffness"}) read_ellipse(quantity);
+    for (const char* quantity : {"inertia", "damping", "stiffness"}) {
+      read_ellipse(quantity);
+      read_ellipsoid(quantity);
+    }
     for (const char* quantity : {"inertia", "stiffness"}) {
       add(fmt::format("{}_zmean", quantity),
-          member(member(member(document_, "antisymmetry"), quantity), "zmean_percent"), Json(), "%");
+          axes_ == 3 ? member(member(member(document_, "antisymmetry_vectors"), quantity), "percent")
+                     : member(member(member(document_, "antisymmetry"), quantity), "zmean_percent"),
+          Json(), "%");
     }
     const Json& passivity = member(document_, "passivity");
     add("absorbed_energy", member(member(passivity, "trial"), "absorbed_J"), Json(), "J");
@@ -68,28 +73,38 @@ class OutcomeReader {
   void read_matrix(const char* name) {
     const Json& values = member(member(document_, "model"), name);
     const Json& errors = member(member(document_, "standard_error"), name);
-    for (std::size_t i = 0; i < (one_axis_ ? 1U : kAxes.size()); ++i) {
-      for (std::size_t k = 0; k < (one_axis_ ? 1U : kAxes.size()); ++k) {
-        add(one_axis_ ? name : fmt::format("{}_{}{}", name, kAxes.at(i), kAxes.at(k)), element(element(values, i), k),
+    for (std::size_t i = 0; i < axes_; ++i) {
+      for (std::size_t k = 0; k < axes_; ++k) {
+        add(axes_ == 1 ? name : fmt::format("{}_{}{}", name, kAxes.at(i), kAxes.at(k)), element(element(values, i), k),
             element(element(errors, i), k), unit_of(name));
       }
     }
   }
 
   void read_vector(const char* name, const Json& values, const Json& errors, const std::string& unit) {
-    for (std::size_t i = 0; i < (one_axis_ ? 1U : kAxes.size()); ++i) {
-      add(one_axis_ ? name : fmt::format("{}_{}", name, kAxes.at(i)), element(values, i), element(errors, i), unit);
+    for (std::size_t i = 0; i < axes_; ++i) {
+      add(axes_ == 1 ? name : fmt::format("{}_{}", name, kAxes.at(i)), element(values, i), element(errors, i), unit);
     }
   }
 
   void read_ellipse(const char* quantity) {
     const Json& ellipse = member(member(document_, "ellipses"), quantity);
-    const std::string unit = unit_of(*quantity == 'i' ? "M" : *quantity == 'd' ? "B" : "K");
-    add(fmt::format("{}_area", quantity), member(ellipse, "area"), Json(), squared(unit));
+    add(fmt::format("{}_area", quantity), member(ellipse, "area"), Json(), power(unit_of_matrix(quantity), "²"));
     add(fmt::format("{}_shape", quantity), member(ellipse, "shape"), Json(), "");
     if (has_orientation(member(member(ellipse, "interval95"), "orientation_deg"))) {
       add(fmt::format("{}_orientation", quantity), member(ellipse, "orientation_deg"), Json(), "°");
     }
+  }
+
+  void read_ellipsoid(const char* quantity) {
+    const Json& ellipsoid = member(member(document_, "ellipsoids"), quantity);
+    add(fmt::format("{}_ellipsoid_volume", quantity), member(ellipsoid, "volume"), Json(),
+        power(unit_of_matrix(quantity), "³"));
+    add(fmt::format("{}_ellipsoid_shape", quantity), member(ellipsoid, "shape"), Json(), "");
+  }
+
+  std::string unit_of_matrix(const char* quantity) const {
+    return unit_of(*quantity == 'i' ? "M" : *quantity == 'd' ? "B" : "K");
   }
 
   /// An ellipse that may be round has none: its interval holds every angle, and a mean over trials would take in
@@ -100,13 +115,13 @@ class OutcomeReader {
     return !(low.is_number() && high.is_number() && high.get<double>() - low.get<double>() >= kEvery);
   }
 
-  static std::string squared(const std::string& unit) {
-    if (unit.find_first_of("/") == std::string::npos && unit.find("·") == std::string::npos) return unit + "²";
-    return fmt::format("({})²", unit);
+  static std::string power(const std::string& unit, const char* exponent) {
+    if (unit.find_first_of("/") == std::string::npos && unit.find("·") == std::string::npos) return unit + exponent;
+    return fmt::format("({}){}", unit, exponent);
   }
 
   const Json& document_;
-  bool one_axis_ = false;
+  std::size_t axes_ = 2;
   std::vector<Outcome> outcomes_;
 };
 

@@ -110,6 +110,28 @@ TEST(Outcomes, AreTheNumbersOfAResult) {
   EXPECT_FALSE(outcomes_of("{\"model\":"));
 }
 
+TEST(Outcomes, OfThreeAxesHaveNineElementsAndTheEllipsoid) {
+  const auto outcomes = outcomes_of(
+                            R"({"axes":3,"units":{"K":"N/m","M":"kg","x0":"m"},
+          "model":{"K":[[11,12,13],[21,22,23],[31,32,33]],"x0":[1,2,3]},
+          "standard_error":{"K":[[1,2,3],[4,5,6],[7,8,9]]},"fit":{"VAF":[99,98,97]},
+          "ellipsoids":{"inertia":{"volume":null,"shape":null},"stiffness":{"volume":5,"shape":2}},
+          "antisymmetry_vectors":{"stiffness":{"vector":[0,0,1],"size":1,"percent":4.5}}})")
+                            .value();
+  std::map<std::string, Outcome> by_name;
+  for (const Outcome& one : outcomes) by_name[one.name] = one;
+  EXPECT_EQ(by_name.at("K_xz").value, 13);
+  EXPECT_EQ(by_name.at("K_zz").value, 33);
+  EXPECT_EQ(by_name.at("K_zy").standard_error, 8);
+  EXPECT_EQ(by_name.at("x0_z").value, 3);
+  EXPECT_EQ(by_name.at("VAF_z").value, 97);
+  EXPECT_EQ(by_name.at("stiffness_ellipsoid_volume").value, 5);
+  EXPECT_EQ(by_name.at("stiffness_ellipsoid_volume").unit, "(N/m)³");
+  EXPECT_EQ(by_name.at("stiffness_ellipsoid_shape").value, 2);
+  EXPECT_EQ(by_name.at("stiffness_zmean").value, 4.5);
+  EXPECT_EQ(by_name.count("inertia_ellipsoid_volume") + by_name.count("stiffness_area"), 0U);
+}
+
 TEST(Outcomes, HaveNoOrientationOfAnEllipseThatMayBeRound) {
   const auto has = [](const std::string& interval) {
     const auto outcomes = outcomes_of(
