@@ -101,7 +101,7 @@ TEST(PulseSchedule, ReturnsGentlyAndRestsBeforeTheNextOnset) {
   const PulseSchedule pulses = schedule(7);
   for (const PulseSchedule::Pulse& pulse : pulses.pulses()) {
     const double step = 1e-7;
-    const Jet<Eigen::Vector2d> before = pulses.at(pulse.offset - step), after = pulses.at(pulse.offset + step);
+    const Jet<AxesVector> before = pulses.at(pulse.offset - step), after = pulses.at(pulse.offset + step);
     // No jump at the offset: |ṙ| ≤ 0.06 m/s, |r̈| ≤ 1.2 m/s², |r⃛| ≤ 40 m/s³ over 2·step
     EXPECT_NEAR((after.value - before.value).norm(), 0.0, 0.06 * 2.0 * step);
     EXPECT_NEAR((after.first - before.first).norm(), 0.0, 1.2 * 2.0 * step);

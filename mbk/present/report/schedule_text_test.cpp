@@ -14,7 +14,7 @@ using perturbation::Space;
 std::string text_of(Quantity quantity, Space space) {
   const Multisine first = Multisine::create(1.0, {{2, 0.01, 0.0}}).value();
   const Multisine second = Multisine::create(1.0, {{3, 0.02, 0.0}}).value();
-  return schedule_text(Schedule::multisine(first, second, quantity, space, 20.0, 1.0).value());
+  return schedule_text(Schedule::multisine({first, second}, quantity, space, 20.0, 1.0).value());
 }
 
 TEST(ScheduleText, SpeaksTheUnitThatPeopleThinkIn) {
