@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -74,6 +75,28 @@ TEST(PulseSchedule, HasEachDirectionTwiceWithTimesInRange) {
     EXPECT_EQ(counts.size(), 8u) << "seed " << seed;
     for (const auto& [direction, count] : counts) EXPECT_EQ(count, 2) << direction << ", seed " << seed;
   }
+}
+
+TEST(PulseSchedule, InSpaceHasEachCombinationOfSignsTwice) {
+  PulseSchedule::Options options;
+  options.axes = 3;
+  const PulseSchedule pulses = PulseSchedule::create(options).value();
+  std::map<std::array<int, 3>, int> count;
+  for (const PulseSchedule::Pulse& pulse : pulses.pulses()) {
+    ASSERT_EQ(pulse.direction_B.size(), 3);
+    EXPECT_NEAR(pulse.direction_B.norm(), 1.0, 4 * kEps);
+    const double largest = pulse.direction_B.cwiseAbs().maxCoeff();
+    std::array<int, 3> signs{};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double sign = pulse.direction_B[i] / largest;
+      signs[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(sign));
+      EXPECT_NEAR(sign, std::round(sign), 4 * kEps);
+    }
+    ++count[signs];
+    EXPECT_NEAR((pulses.reference(pulse.onset) - 0.005 * pulse.direction_B).norm(), 0.0, kEps);
+  }
+  EXPECT_EQ(count.size(), 26u);
+  for (const auto& [signs, times] : count) EXPECT_EQ(times, 2);
 }
 
 TEST(PulseSchedule, OrderComesFromTheSeed) {

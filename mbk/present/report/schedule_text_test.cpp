@@ -24,6 +24,14 @@ TEST(ScheduleText, SpeaksTheUnitThatPeopleThinkIn) {
   EXPECT_THAT(text_of(Quantity::force, Space::hand), testing::ContainsRegex("peak [^\n]* 0.01, [^\n]* 0.02\n"));
 }
 
+TEST(ScheduleText, NamesAllAxesOfAHandInSpace) {
+  const Multisine axis = Multisine::create(1.0, {{2, 0.01, 0.0}}).value();
+  const std::string text = schedule_text(
+      Schedule::multisine({axis, axis, axis.scaled(2.0)}, Quantity::position, Space::hand, 20.0, 1.0).value());
+  EXPECT_THAT(text, testing::ContainsRegex("peak [^\n]* mm [^\n]*; first axis 10, second 10, third 20\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("crest factor  first axis [0-9.]+, second [0-9.]+, third [0-9.]+, with"));
+}
+
 TEST(ScheduleText, AForceHasARateAndNoSpeed) {
   const std::string force = text_of(Quantity::force, Space::hand), torque = text_of(Quantity::force, Space::joint);
   EXPECT_THAT(force, testing::ContainsRegex("force rate    peak [0-9.]+ N/s"));

@@ -23,11 +23,12 @@ namespace mbk::participant {
 class SpatialArm {
  public:
   struct Options {
-    double body_mass = 73.0;                         ///< of the person [kg]
-    double upper_arm = 0.2817;                       ///< shoulder to elbow [m]
-    double forearm = 0.337;                          ///< elbow to the middle of the grip [m]
-    Eigen::Vector3d posture = {1.309, 0.785, 1.484};  ///< q with the hand at home [rad]: 75°, 45°, 85°
-    double axial_rotation = 0.785;                   ///< ψ: 45° [rad]
+    double body_mass = 73.0;    ///< of the person [kg]
+    double upper_arm = 0.2817;  ///< shoulder to elbow [m]
+    double forearm = 0.337;     ///< elbow to the middle of the grip [m]
+    /// q with the hand at home [rad]: 75°, 45°, 85°, the hand 0.44 m before the shoulder, 0.13 m towards the middle.
+    Eigen::Vector3d posture = {1.3089969389957472, 0.7853981633974483, 1.4835298641951802};
+    double axial_rotation = 0.7853981633974483;  ///< ψ: 45° [rad]
     Eigen::Matrix3d damping = (Eigen::Matrix3d() << 1.45, 0.3, 0.5, 0.3, 1.45, 0.5, 0.5, 0.5, 0.5).finished();
     Eigen::Matrix3d stiffness = (Eigen::Matrix3d() << 11.0, 2.0, 2.9, 2.0, 11.0, 2.9, 2.9, 2.9, 4.8).finished();
     std::optional<Eigen::Vector3d> equilibrium;  ///< rest position of the hand [m], determines q₀; absent: home
