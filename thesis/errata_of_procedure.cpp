@@ -188,7 +188,7 @@ Recording exact_recording(const impedance::Model& model, Index samples, const At
   recording.time = Vector::LinSpaced(samples, 0.0, static_cast<double>(samples - 1)) / kRate.value;
   Matrix values(samples, 6);
   for (Index i = 0; i < samples; ++i) {
-    const perturbation::Jet<Eigen::Vector2d> jet = at(recording.time[i]);
+    const auto jet = at(recording.time[i]);
     const Eigen::Vector2d force =
         -(model.M * jet.second + model.B * jet.first + model.K * (jet.value - Eigen::Vector2d(model.x0)));
     const Eigen::Vector2d requested = reference(recording.time[i]);

@@ -14,7 +14,7 @@ from command import WRONG_USAGE, Case, main
 from help_tree import every_command
 
 SHELLS = ("bash", "zsh", "fish")
-READY = ["relaxed_odd_multisine", "relaxed_ramp_and_hold", "relaxed_sinusoidal", "relaxed_underdamped", "relaxed_virtual_sensor"]
+READY = ["relaxed_odd_multisine", "relaxed_ramp_and_hold", "relaxed_sinusoidal", "relaxed_space", "relaxed_underdamped", "relaxed_virtual_sensor"]
 TYPED = {  # what has been typed → what is offered
     ("me",): ["measure"],
     ("measure", "--mo"): ["--mode"],

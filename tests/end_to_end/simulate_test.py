@@ -69,7 +69,7 @@ class Recordings(Case):
         names = re.findall(r"(?m)^  (\w+) ", self.fine("simulate", "--list").out)
         for name in ("relaxed_sinusoidal", "relaxed_underdamped", "rigid_underdamped_2N", "rigid_underdamped_8N",
                      "rigid_sinusoidal_6N", "one_axis_random_binary", "rig_table_3_1", "rig_table_5_1",
-                     "rig_springs_table_3_1", "rig_springs_table_5_1", "free_motion"):
+                     "rig_springs_table_3_1", "rig_springs_table_5_1", "free_motion", "relaxed_space"):
             self.assertIn(name, names)
         shown = self.file("copy.toml", self.fine("simulate", "--show", "free_motion").out)
         self.fine("simulate", shown, "--out", self.folder / "a.mat", "--quiet")
@@ -81,6 +81,22 @@ class Recordings(Case):
         facts = self.fine("simulate", "rigid_underdamped_2N", "--facts").out
         self.assertRegex(facts, r"peak +3\.4\d* N\b")  # 2 N times 1 + exp(-pi 0.1/sqrt(0.99))
         self.assertEqual(self.names(), [])
+
+    def test_a_hand_in_space_has_three_axes(self):
+        facts = self.fine("simulate", "relaxed_space", "--facts").out
+        self.assertRegex(facts, r"peak +[\d.]+ mm at .*; first axis 8, second 8, third 8\n")
+        self.fine("simulate", "relaxed_space", "--out", self.folder / "space.csv", "--quiet")
+        lines = (self.folder / "space.csv").read_text().splitlines()
+        header = next(line for line in lines if "hand_x" in line)
+        for name in ("hand", "force", "reference", "acceleration"):
+            for axis in "xyz":
+                self.assertIn(f"{name}_{axis}", header)
+        self.fine("simulate", "relaxed_space", "--out", self.folder / "space.h5", "--quiet")
+        metadata = self.fine("info", "--json", self.folder / "space.h5").json["metadata"]
+        for name in ("truth_M", "truth_B", "truth_K"):
+            self.assertEqual([len(row) for row in json.loads(metadata[name])], [3, 3, 3])
+        self.assertEqual(len(json.loads(metadata["truth_x0"])), 3)
+        self.refused(BAD_DATA, "run", "relaxed_space", "--dry-run", says="in space")
 
     def test_facts_of_a_one_axis_machine_are_in_its_units(self):
         facts = self.fine("simulate", self.file("joint.toml", ONE_AXIS), "--facts").out

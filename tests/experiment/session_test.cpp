@@ -520,7 +520,8 @@ TEST(ExperimentFile, EveryReadyPlanarScenarioIsAnExperiment) {
     if (trials) {
       for (const Trial& trial : *trials) EXPECT_TRUE(make_plan(trial)) << one.name;
     } else {
-      EXPECT_NE(trials.error().line().find("one-axis"), std::string::npos) << trials.error().line();
+      const std::string said = trials.error().line();
+      EXPECT_TRUE(said.find("one-axis") != std::string::npos || said.find("in space") != std::string::npos) << said;
     }
   }
 }

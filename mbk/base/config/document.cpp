@@ -436,19 +436,21 @@ std::optional<Eigen::Vector2d> Section::find_vector2(std::string_view key, Range
   return values ? std::optional(Eigen::Vector2d((*values)[0], (*values)[1])) : std::nullopt;
 }
 
-std::optional<Eigen::Matrix2d> Section::find_matrix2(std::string_view key, Range allowed, Need need) const {
+template <int N>
+std::optional<Eigen::Matrix<double, N, N>> Section::find_matrix(std::string_view key, Range allowed, Need need) const {
   const Node* node = find(key, need);
   if (node == nullptr) return std::nullopt;
   const List* rows = std::get_if<List>(&node->value);
-  if (rows == nullptr || rows->size() != 2) {
-    reject(key, "this is not a matrix with two rows", "write [[a, b], [c, d]]");
+  if (rows == nullptr || rows->size() != N) {
+    reject(key, fmt::format("this is not a matrix with {} rows", N == 2 ? "two" : "three"),
+           N == 2 ? "write [[a, b], [c, d]]" : "write [[a, b, c], [d, e, f], [g, h, i]]");
     return std::nullopt;
   }
-  Eigen::Matrix2d matrix;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto row = checked_list(key, (*rows)[i], allowed, 2, fmt::format("row {}: ", i + 1));
+  Eigen::Matrix<double, N, N> matrix;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto row = checked_list(key, (*rows)[i], allowed, N, fmt::format("row {}: ", i + 1));
     if (!row) return std::nullopt;
-    matrix.row(static_cast<Eigen::Index>(i)) << (*row)[0], (*row)[1];
+    matrix.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::Matrix<double, 1, N>>(row->data());
   }
   return matrix;
 }
@@ -495,11 +497,19 @@ Eigen::Vector2d Section::required_vector2(std::string_view key, Range allowed) c
 }
 
 Eigen::Matrix2d Section::matrix2(std::string_view key, const Eigen::Matrix2d& fallback, Range allowed) const {
-  return find_matrix2(key, allowed, Need::optional).value_or(fallback);
+  return find_matrix<2>(key, allowed, Need::optional).value_or(fallback);
 }
 
 Eigen::Matrix2d Section::required_matrix2(std::string_view key, Range allowed) const {
-  return find_matrix2(key, allowed, Need::required).value_or(Eigen::Matrix2d::Zero());
+  return find_matrix<2>(key, allowed, Need::required).value_or(Eigen::Matrix2d::Zero());
+}
+
+Eigen::Matrix3d Section::matrix3(std::string_view key, const Eigen::Matrix3d& fallback) const {
+  return find_matrix<3>(key, any(), Need::optional).value_or(fallback);
+}
+
+Eigen::Matrix3d Section::required_matrix3(std::string_view key) const {
+  return find_matrix<3>(key, any(), Need::required).value_or(Eigen::Matrix3d::Zero());
 }
 
 // ---- problems ----

@@ -156,6 +156,9 @@ class Section {
   [[nodiscard]] Eigen::Matrix2d matrix2(std::string_view key, const Eigen::Matrix2d& fallback,
                                         Range allowed = any()) const;
   [[nodiscard]] Eigen::Matrix2d required_matrix2(std::string_view key, Range allowed = any()) const;
+  /// The same with three rows of three.
+  [[nodiscard]] Eigen::Matrix3d matrix3(std::string_view key, const Eigen::Matrix3d& fallback) const;
+  [[nodiscard]] Eigen::Matrix3d required_matrix3(std::string_view key) const;
 
   [[nodiscard]] Section section(std::string_view key) const;
   /// The table of this name belongs to another reader: its keys are not checked here.
@@ -204,7 +207,9 @@ class Section {
   [[nodiscard]] std::optional<std::vector<double>> find_numbers(std::string_view key, Range allowed, std::size_t count,
                                                                 Need need) const;
   [[nodiscard]] std::optional<Eigen::Vector2d> find_vector2(std::string_view key, Range allowed, Need need) const;
-  [[nodiscard]] std::optional<Eigen::Matrix2d> find_matrix2(std::string_view key, Range allowed, Need need) const;
+  template <int N>
+  [[nodiscard]] std::optional<Eigen::Matrix<double, N, N>> find_matrix(std::string_view key, Range allowed,
+                                                                       Need need) const;
   [[nodiscard]] std::optional<double> checked(std::string_view key, const Node& node, Range allowed,
                                               std::string_view place) const;
   [[nodiscard]] std::optional<std::vector<double>> checked_list(std::string_view key, const Node& node, Range allowed,

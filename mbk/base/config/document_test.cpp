@@ -93,6 +93,7 @@ kind = "multisine"
 masses_g = [1000, 2000.0, 0.5e3]
 centre_mm = [100, -200.0]
 K_N_per_mm = [[1, 2.0], [3, 4]]
+M_g = [[1, 2, 3], [4, 5, 6], [7, 8, 9]]
 )");
   const Section s = document.root().section("perturbation");
   EXPECT_TRUE(s.given());
@@ -106,6 +107,10 @@ K_N_per_mm = [[1, 2.0], [3, 4]]
             Kind::multisine);
   EXPECT_THAT(s.numbers("masses_g", {}, above(0), 3), ElementsAre(1.0, 2.0, 0.5));
   EXPECT_EQ(s.required_vector2("centre_mm"), Eigen::Vector2d(0.1, -0.2));
+  const Eigen::Matrix3d three = s.required_matrix3("M_g");
+  EXPECT_EQ(three.row(0), Eigen::RowVector3d(1.0 / 1e3, 2.0 / 1e3, 3.0 / 1e3));
+  EXPECT_EQ(three(2, 1), 8.0 / 1e3);
+  EXPECT_EQ(s.matrix3("other_g", three), three);
   EXPECT_EQ(s.required_matrix2("K_N_per_mm"), (Eigen::Matrix2d() << 1e3, 2e3, 3e3, 4e3).finished());
   EXPECT_EQ(problem(document), "");
 }

@@ -62,7 +62,7 @@ Vector2d TrialControl::torque(double t, const Vector2d& measured) noexcept {
     angles_ = servo->joint_reference();
     return torque;
   }
-  const perturbation::Jet<Vector2d> now = schedule_.at(t);
+  const perturbation::Jet<perturbation::AxesVector> now = schedule_.at(t);
   if (auto* follow = std::get_if<JointPositionControl>(&law_)) {
     if (schedule_.space() == Space::joint) {
       angles_ = home_angles_ + now.value;

@@ -84,7 +84,13 @@ Result<std::vector<Trial>> read_experiment(std::string_view text, const std::fil
     trial.protocol = file.stem().string();
     trial.file_sha256 = recording::sha256(std::as_bytes(std::span(text)));
     const Section robot = root.section("robot");
-    if (read_machine(robot) != Machine::planar) {
+    const Machine machine = read_machine(robot);
+    if (machine == Machine::space) {
+      return tl::unexpected(robot.error("kind",
+                                        "a hand in space cannot be run as an experiment: mbk drives planar robots",
+                                        "use 'mbk simulate', or drive your own robot with the recorded motion"));
+    }
+    if (machine != Machine::planar) {
       return tl::unexpected(robot.error("kind", "a one-axis machine cannot be run as an experiment yet",
                                         "use a planar robot; 'mbk simulate' makes recordings of one-axis machines"));
     }

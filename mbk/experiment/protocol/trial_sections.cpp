@@ -233,25 +233,34 @@ control::Mode read_control(const Section& s) {
 
 Plan read_perturbation(const Section& s, Machine machine) {
   enum class Kind { none, multisine, pulses, random_binary, ramp_and_hold, servo_displacement };
-  const bool one_axis = machine == Machine::one_axis;
-  const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, at_hand = {kMillimetres, kNewtons},
-                              of_sines = {kDegrees, kMillimetres, kNewtons};
+  const bool one_axis = machine == Machine::one_axis, space = machine == Machine::space;
+  const std::vector<SizeUnit> of_axis = {kDegrees, kNewtonMetres}, in_space = {kMillimetres},
+                              at_hand = {kMillimetres, kNewtons}, of_sines = {kDegrees, kMillimetres, kNewtons};
+  const auto sizes = [&](const std::vector<SizeUnit>& in_plane) {
+    return one_axis ? of_axis : space ? in_space : in_plane;
+  };
   const auto amplitude = [&](const SizeUnit& unit, double fallback) {
-    return read_size(s, "amplitude", one_axis ? of_axis : at_hand, {unit, fallback});
+    return read_size(s, "amplitude", sizes(at_hand), {unit, fallback});
   };
   Plan plan;
+  plan.axes = space ? 3 : 2;
   SizeUnit unit = kMillimetres;
-  switch (s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
-                                           {"pulses", Kind::pulses},
-                                           {"random_binary", Kind::random_binary},
-                                           {"ramp_and_hold", Kind::ramp_and_hold},
-                                           {"servo_displacement", Kind::servo_displacement},
-                                           {"none", Kind::none}})) {
+  const auto kind = s.required_choice<Kind>("kind", {{"multisine", Kind::multisine},
+                                                     {"pulses", Kind::pulses},
+                                                     {"random_binary", Kind::random_binary},
+                                                     {"ramp_and_hold", Kind::ramp_and_hold},
+                                                     {"servo_displacement", Kind::servo_displacement},
+                                                     {"none", Kind::none}});
+  if (space && kind != Kind::multisine && kind != Kind::pulses) {
+    s.reject("kind", "this perturbation is planar", "use multisine or pulses in space");
+    return plan;
+  }
+  switch (kind) {
     case Kind::none:
       plan.kind = RestPlan{s.number("duration_s", RestPlan{}.duration, above(0))};
       break;
     case Kind::multisine: {
-      const Size size = read_size(s, "peak", one_axis ? of_axis : of_sines, {kDegrees, MultisinePlan{}.peak});
+      const Size size = read_size(s, "peak", sizes(of_sines), {kDegrees, MultisinePlan{}.peak});
       plan.kind = read_multisine(s, size);
       unit = size.unit;
       break;

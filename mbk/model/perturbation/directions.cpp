@@ -16,6 +16,11 @@ Eigen::Vector2d direction_on_circle(int k, int n) {
   return {std::cos(angle), std::sin(angle)};
 }
 
+Eigen::Vector3d direction_in_space(int k) {
+  const int cell = k < kDirectionsInSpace / 2 ? k : k + 1;  // of 27; the one in the middle is zero
+  return Eigen::Vector3d(cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1).normalized();
+}
+
 std::vector<int> shuffled_directions(int directions, int repetitions, numeric::Random& random) {
   std::vector<int> order;
   for (int i = 0; i < directions * repetitions; ++i) order.push_back(i % directions);

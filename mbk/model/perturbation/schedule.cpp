@@ -20,8 +20,12 @@ Result<void> check_duration(double duration) {
   return {};
 }
 
-Jet<Eigen::Vector2d> along(const Jet<double>& r, const Eigen::Vector2d& direction_B) {
+Jet<AxesVector> along(const Jet<double>& r, const Eigen::Vector2d& direction_B) {
   return {r.value * direction_B, r.first * direction_B, r.second * direction_B};
+}
+
+Jet<AxesVector> of_plane(const Jet<Eigen::Vector2d>& r) {
+  return {r.value, r.first, r.second};
 }
 
 /// Unit vector at an angle; rounding errors are set to zero, so that π/2 leaves the x axis at rest.
@@ -61,8 +65,9 @@ std::string_view unit(Quantity quantity, Space space) {
   return space == Space::hand ? "N" : "N·m";
 }
 
-Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity quantity, Space space, double duration,
+Result<Schedule> Schedule::multisine(std::vector<Multisine> axes, Quantity quantity, Space space, double duration,
                                      double moving_in) {
+  if (axes.empty() || axes.size() > 3) return bad_usage(fmt::format("a schedule cannot have {} axes", axes.size()));
   MBK_TRY(check_duration(duration));
   if (!(moving_in > 0.0 && moving_in <= duration)) {
     return bad_usage(fmt::format("moving-in time {} s is not between 0 and the duration {} s", moving_in, duration),
@@ -70,7 +75,7 @@ Result<Schedule> Schedule::multisine(Multisine first, Multisine second, Quantity
   }
   const MinimumJerk growth({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, moving_in);
   return with_countable_cycles(
-      Schedule(Sines{std::move(first), std::move(second), growth, moving_in}, quantity, space, duration));
+      Schedule(Sines{std::move(axes), growth, moving_in}, quantity, space, duration));
 }
 
 Result<Schedule> Schedule::pulses(const PulseSchedule::Options& options, Quantity quantity, double tail, Space space) {
@@ -116,27 +121,38 @@ Result<Schedule> Schedule::rest(double duration) {
   return Schedule(Rest{}, Quantity::position, Space::hand, duration);
 }
 
-Jet<Eigen::Vector2d> Schedule::at(double t) const {
-  const Eigen::Vector2d zero = Eigen::Vector2d::Zero();
+int Schedule::axes() const {
+  if (const auto* sines = std::get_if<Sines>(&shape_)) return static_cast<int>(sines->axes.size());
+  if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return pulses->options().axes;
+  return 2;
+}
+
+Jet<AxesVector> Schedule::at(double t) const {
+  const AxesVector zero = AxesVector::Zero(axes());
   if (t < 0.0) return {zero, zero, zero};
   return std::visit(
-      Overloaded{[&](const Rest&) -> Jet<Eigen::Vector2d> {
+      Overloaded{[&](const Rest&) -> Jet<AxesVector> {
                    return {zero, zero, zero};
                  },
-                 [&](const Sines& sines) -> Jet<Eigen::Vector2d> {
-                   const Jet<double> x = sines.first.at(t), y = sines.second.at(t), g = sines.growth.at(t);
-                   const Eigen::Vector2d value(x.value, y.value), first(x.first, y.first), second(x.second, y.second);
-                   return {g.value * value, g.first * value + g.value * first,
-                           g.second * value + 2.0 * g.first * first + g.value * second};
+                 [&](const Sines& sines) -> Jet<AxesVector> {
+                   const Jet<double> g = sines.growth.at(t);
+                   Jet<AxesVector> r{zero, zero, zero};
+                   for (Eigen::Index i = 0; i < zero.size(); ++i) {
+                     const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
+                     r.value[i] = g.value * s.value;
+                     r.first[i] = g.first * s.value + g.value * s.first;
+                     r.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
+                   }
+                   return r;
                  },
                  [&](const PulseSchedule& pulses) { return pulses.at(t); },
-                 [&](const RampAndHold& ramps) { return ramps.at(t); },
-                 [&](const ReachSchedule& reaches) { return reaches.at(t); },
+                 [&](const RampAndHold& ramps) { return of_plane(ramps.at(t)); },
+                 [&](const ReachSchedule& reaches) { return of_plane(reaches.at(t)); },
                  [&](const Binary& binary) { return along(binary.sequence.at(t), binary.direction_B); }},
       shape_);
 }
 
-Eigen::Vector2d Schedule::reference(double t) const {
+AxesVector Schedule::reference(double t) const {
   if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return pulses->reference(t);
   return at(t).value;
 }
@@ -161,8 +177,7 @@ std::pair<Hertz, Hertz> Schedule::band() const {
   std::pair<Hertz, Hertz> band;
   std::visit(Overloaded{[](const Rest&) {},
                         [&](const Sines& sines) {
-                          widen(band, sines.first);
-                          widen(band, sines.second);
+                          for (const Multisine& axis : sines.axes) widen(band, axis);
                         },
                         [&](const PulseSchedule& pulses) { band.second = pulses.bandwidth(); },
                         [&](const RampAndHold& ramps) { band.second = ramps.bandwidth(); },
@@ -240,7 +255,7 @@ std::vector<double> Schedule::grid() const {
 
 Facts Schedule::facts() const {
   const std::vector<double> times = grid();
-  std::vector<Jet<Eigen::Vector2d>> samples;
+  std::vector<Jet<AxesVector>> samples;
   samples.reserve(times.size());
   for (const double t : times) samples.push_back(at(t));
   const auto largest = [&](const auto& measure) {
@@ -249,7 +264,7 @@ Facts Schedule::facts() const {
     for (const auto& sample : samples) values.push_back(measure(sample));
     return largest_value(times, values, [&](double t) { return measure(at(t)); });
   };
-  using Sample = Jet<Eigen::Vector2d>;
+  using Sample = Jet<AxesVector>;
   const LargestValue peak = largest([](const Sample& r) { return r.value.norm(); });
   const LargestValue speed = largest([](const Sample& r) { return r.first.norm(); });
   const LargestValue acceleration = largest([](const Sample& r) { return r.second.norm(); });
@@ -261,18 +276,21 @@ Facts Schedule::facts() const {
   facts.peak_speed_time = speed.time;
   facts.peak_acceleration = acceleration.value;
   facts.peak_acceleration_time = acceleration.time;
-  for (int axis = 0; axis < 2; ++axis) {
+  const AxesVector zero = AxesVector::Zero(axes());
+  facts.axis_peak = zero;
+  for (int axis = 0; axis < axes(); ++axis) {
     facts.axis_peak[axis] = largest([&](const Sample& r) { return std::abs(r.value[axis]); }).value;
   }
-  Eigen::Vector2d energy = Eigen::Vector2d::Zero();  // ∫ r² dt by Simpson's rule on each piece
+  AxesVector energy = zero;  // ∫ r² dt by Simpson's rule on each piece
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-    const Eigen::Vector2d middle = at(0.5 * (times[i] + times[i + 1])).value;
+    const AxesVector middle = at(0.5 * (times[i] + times[i + 1])).value;
     energy += (times[i + 1] - times[i]) / 6.0 *
               (samples[i].value.cwiseAbs2() + 4.0 * middle.cwiseAbs2() + samples[i + 1].value.cwiseAbs2());
   }
   facts.axis_rms = (energy / duration_).cwiseSqrt();
   facts.rms = std::sqrt(energy.sum() / duration_);
-  for (int axis = 0; axis < 2; ++axis) {
+  facts.crest_factor = zero;
+  for (int axis = 0; axis < axes(); ++axis) {
     if (facts.axis_rms[axis] > 0.0) facts.crest_factor[axis] = facts.axis_peak[axis] / facts.axis_rms[axis];
   }
   std::tie(facts.lowest_frequency, facts.highest_frequency) = band();

@@ -44,16 +44,16 @@ struct ScheduleEvent {
 /// Demands of a schedule over its whole duration, including moving in and pauses. u is the unit of its value. Peaks are
 /// those of the continuous signal, not of its samples.
 struct Facts {
-  double peak = 0.0;                                       ///< largest |r| of both axes together [u]
+  double peak = 0.0;                                       ///< largest |r| of all axes together [u]
   double peak_time = 0.0;                                  ///< where [s]
   double rms = 0.0;                                        ///< √(mean of |r|²) [u]
   double peak_speed = 0.0;                                 ///< largest |ṙ| [u/s]
   double peak_speed_time = 0.0;                            ///< where [s]
   double peak_acceleration = 0.0;                          ///< largest |r̈| [u/s²], also that after a jump
   double peak_acceleration_time = 0.0;                     ///< where [s]
-  Eigen::Vector2d axis_peak = Eigen::Vector2d::Zero();     ///< largest |rᵢ| of each axis [u]
-  Eigen::Vector2d axis_rms = Eigen::Vector2d::Zero();      ///< of each axis [u]
-  Eigen::Vector2d crest_factor = Eigen::Vector2d::Zero();  ///< axis_peak/axis_rms; 0 for an axis at rest
+  AxesVector axis_peak;                                    ///< largest |rᵢ| of each axis [u]
+  AxesVector axis_rms;                                     ///< of each axis [u]
+  AxesVector crest_factor;                                 ///< axis_peak/axis_rms; 0 for an axis at rest
   Hertz lowest_frequency;                                  ///< sines: lowest line; else 0
   Hertz highest_frequency;  ///< sines: highest line. Pulses: −3 dB of G, eq. 3.5. Binary: of sinc·G. Ramps: of the
                             ///< velocity. Rest: 0
@@ -70,18 +70,18 @@ struct Limits {
   std::function<Result<void>(const Eigen::Vector2d& displacement)> reachable;
 };
 
-/// A two-axis signal r(t) with its facts: all commands to a simulated or real robot in one trial. It begins at rest;
+/// A signal r(t) of two axes, or of one or three, with its facts: all commands to a simulated or real robot in one trial. It begins at rest;
 /// after its duration sines continue, a binary sequence keeps its last value, everything else rests.
 class Schedule {
  public:
   static constexpr double kLongest = 3600.0;  ///< [s]; split longer trials into several schedules
   static constexpr double kMaxCycles = 1e5;   ///< of the highest frequency within the duration
 
-  /// One multisine for each axis, r = g(t) [s₁(t), s₂(t)], with g from 0 to 1 by minimum jerk. The periods may differ.
+  /// One multisine for each axis, r = g(t) [s₁(t), s₂(t), …], with g from 0 to 1 by minimum jerk. The periods may differ.
   /// @param moving_in  time in which g grows [s]
-  /// @fails  moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite; more than
+  /// @fails  not one to three axes; moving in ≤ 0 or longer than the duration; duration ≤ 0, above kLongest or not finite; more than
   /// kMaxCycles of the highest line.
-  [[nodiscard]] static Result<Schedule> multisine(Multisine first, Multisine second, Quantity quantity, Space space,
+  [[nodiscard]] static Result<Schedule> multisine(std::vector<Multisine> axes, Quantity quantity, Space space,
                                                   double duration, double moving_in);
 
   /// Underdamped pulses; in Space::joint, direction +x is the first joint's.
@@ -119,15 +119,17 @@ class Schedule {
   [[nodiscard]] Space space() const { return space_; }
   [[nodiscard]] double duration() const { return duration_; }  ///< [s]
 
+  [[nodiscard]] int axes() const;  ///< entries of its value
+
   /// The reaches that it displaces; null if it has no reaches.
   [[nodiscard]] const ReachSchedule* reaches() const { return std::get_if<ReachSchedule>(&shape_); }
 
   /// r, ṙ, r̈ at t [s]: displacement from home [m or rad] or force [N or N·m]; zero before 0. Does not allocate.
-  [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
+  [[nodiscard]] Jet<AxesVector> at(double t) const;
 
   /// The reference that a recording stores at t [s], in the unit of the value: for pulses the steps before G, so that
   /// each pulse has an onset and an offset; otherwise the signal itself. Does not allocate.
-  [[nodiscard]] Eigen::Vector2d reference(double t) const;
+  [[nodiscard]] AxesVector reference(double t) const;
 
   /// Onset and offset of every pulse or ramp, in time order; otherwise empty.
   [[nodiscard]] std::vector<ScheduleEvent> events() const;
@@ -142,8 +144,7 @@ class Schedule {
  private:
   struct Rest {};
   struct Sines {
-    Multisine first;
-    Multisine second;
+    std::vector<Multisine> axes;
     MinimumJerk growth;
     double moving_in;
   };

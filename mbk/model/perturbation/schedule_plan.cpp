@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mbk/model/perturbation/axis_pair.h"
+#include "mbk/model/perturbation/interleaved.h"
 #include "mbk/model/perturbation/odd_grid.h"
 #include "mbk/model/perturbation/optimal_power.h"
 #include "mbk/model/perturbation/phases.h"
@@ -11,7 +11,7 @@
 namespace mbk::perturbation {
 namespace {
 
-/// Streams of the seed for the phases of the two axes.
+/// Streams of the seed for the phases of the axes, one after another.
 constexpr std::uint32_t kPhases = 10;
 
 /// Seed of the lines that an odd grid leaves out: realisations are compared line by line.
@@ -46,62 +46,68 @@ Result<Multisine> with_phases(const MultisinePlan& plan, const Multisine& signal
   return signal;
 }
 
-Result<AxisPair> both_axes(const MultisinePlan& plan, std::uint64_t seed) {
-  auto first = sines(plan, seed, 0);
-  auto second = sines(plan, seed, 1);
-  if (!first) return tl::unexpected(first.error());
-  if (!second) return tl::unexpected(second.error());
-  if (plan.axes == MultisinePlan::Axes::interleaved) return interleaved(*first);
-  return AxisPair{*first, *second};
+Result<std::vector<Multisine>> all_axes(const MultisinePlan& plan, std::uint64_t seed, int count) {
+  std::vector<Multisine> axes;
+  for (int i = 0; i < count; ++i) {
+    auto axis = MBK_TRY(sines(plan, seed, static_cast<std::uint32_t>(i)));
+    axes.push_back(std::move(axis));
+  }
+  if (plan.axes == MultisinePlan::Axes::interleaved) return interleaved(axes.front(), count);
+  return axes;
 }
 
-Result<Schedule> schedule_of(const MultisinePlan& given, std::uint64_t schedule_seed) {
+Result<Schedule> schedule_of(const MultisinePlan& given, std::uint64_t schedule_seed, int count) {
   MultisinePlan plan = given;
   if (plan.odd_grid) {
     plan.harmonics = MBK_TRY(odd_grid(plan.odd_grid->highest, plan.odd_grid->group, kGrid));
   }
   const std::uint64_t seed = plan.phase_seed.value_or(schedule_seed);
-  auto pair = both_axes(plan, seed);
-  if (!pair) return tl::unexpected(pair.error());
-  const auto first = MBK_TRY(with_phases(plan, pair->first, seed));
-  const auto second = MBK_TRY(with_phases(plan, pair->second, seed + 1));
-  pair = AxisPair{first.scaled(plan.peak / first.peak()), second.scaled(plan.peak / second.peak())};
-  if (plan.axes == MultisinePlan::Axes::hadamard_second) pair->second = pair->second.scaled(-1.0);
-  return Schedule::multisine(pair->first, pair->second, plan.quantity, plan.space, plan.duration, plan.moving_in);
+  using Axes = MultisinePlan::Axes;
+  if (count != 2 && (plan.axes == Axes::hadamard_first || plan.axes == Axes::hadamard_second)) {
+    return bad_usage("orthogonal pairs of experiments need two axes", "use independent or interleaved axes");
+  }
+  auto axes = MBK_TRY(all_axes(plan, seed, count));
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto axis = MBK_TRY(with_phases(plan, axes[i], seed + i));
+    axes[i] = axis.scaled(plan.peak / axis.peak());
+  }
+  if (plan.axes == Axes::hadamard_second) axes[1] = axes[1].scaled(-1.0);
+  return Schedule::multisine(std::move(axes), plan.quantity, plan.space, plan.duration, plan.moving_in);
 }
 
-Result<Schedule> schedule_of(const PulsePlan& plan, std::uint64_t seed) {
+Result<Schedule> schedule_of(const PulsePlan& plan, std::uint64_t seed, int axes) {
   PulseSchedule::Options pulses = plan.pulses;
+  pulses.axes = axes;
   pulses.seed = seed;
   return Schedule::pulses(pulses, plan.quantity, plan.tail, plan.space);
 }
 
-Result<Schedule> schedule_of(const RandomBinaryPlan& plan, std::uint64_t seed) {
+Result<Schedule> schedule_of(const RandomBinaryPlan& plan, std::uint64_t seed, int /*axes*/) {
   RandomBinaryOptions sequence = plan.sequence;
   sequence.seed = seed;
   return Schedule::random_binary(sequence, plan.angle, plan.quantity, plan.duration, plan.space);
 }
 
-Result<Schedule> schedule_of(const RampPlan& plan, std::uint64_t seed) {
+Result<Schedule> schedule_of(const RampPlan& plan, std::uint64_t seed, int /*axes*/) {
   RampAndHold::Options ramps = plan.ramps;
   ramps.seed = seed;
   return Schedule::ramps(ramps, plan.tail, plan.space);
 }
 
-Result<Schedule> schedule_of(const ReachPlan& plan, std::uint64_t seed) {
+Result<Schedule> schedule_of(const ReachPlan& plan, std::uint64_t seed, int /*axes*/) {
   ReachSchedule::Options reaches = plan.reaches;
   reaches.seed = seed;
   return Schedule::reaches(reaches, plan.tail);
 }
 
-Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/) {
+Result<Schedule> schedule_of(const RestPlan& plan, std::uint64_t /*seed*/, int /*axes*/) {
   return Schedule::rest(plan.duration);
 }
 
 }  // namespace
 
 Result<Schedule> make_schedule(const Plan& plan, std::uint64_t seed) {
-  auto schedule = std::visit([&](const auto& kind) { return schedule_of(kind, seed); }, plan.kind);
+  auto schedule = std::visit([&](const auto& kind) { return schedule_of(kind, seed, plan.axes); }, plan.kind);
   if (!schedule) return tl::unexpected(schedule.error().in("perturbation"));
   if (auto ok = schedule->check(plan.limits); !ok) return tl::unexpected(ok.error().in("perturbation"));
   return schedule;

@@ -19,8 +19,8 @@ namespace mbk::perturbation {
 /// Sums of sines, one for each axis or joint, with phases and power by a stated rule.
 struct MultisinePlan {
   enum class Phases { random, schroeder, low_crest };
-  /// Separate lines and phases for each axis, lines alternating between the axes, or the first or second of a pair of
-  /// experiments that differ in the sign of the second axis (axis_pair.h).
+  /// Separate phases for each axis, lines dealt out to the axes in turn (interleaved.h), or the first or second of a
+  /// pair of experiments that differ in the sign of the second axis.
   enum class Axes { independent, interleaved, hadamard_first, hadamard_second };
   /// Only odd lines, with one omitted per group (odd_grid.h), the same for all seeds.
   struct OddGrid {
@@ -95,6 +95,7 @@ struct RestPlan {
 struct Plan {
   std::variant<RestPlan, MultisinePlan, PulsePlan, RandomBinaryPlan, RampPlan, ReachPlan> kind = MultisinePlan{};
   Limits limits;  ///< limits of the schedule
+  int axes = 2;   ///< 3: in space; multisines and pulses alone
 };
 
 /// The schedule of a plan with a seed.

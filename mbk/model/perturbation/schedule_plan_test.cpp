@@ -19,9 +19,9 @@ Schedule made(const Plan& plan, std::uint64_t seed = 1) {
   return *schedule;
 }
 
-/// Values of both axes over the second period, when they have moved in.
+/// Values of all axes over the second period, when they have moved in.
 Matrix period(const Schedule& schedule) {
-  Matrix values(10000, 2);
+  Matrix values(10000, schedule.axes());
   for (Index i = 0; i < values.rows(); ++i) {
     values.row(i) = schedule.at(10.0 + 1e-3 * static_cast<double>(i)).value.transpose();
   }
@@ -37,6 +37,49 @@ TEST(MakeSchedule, EachAxisReachesItsPeak) {
     EXPECT_NEAR(largest[0], 0.02, 2e-6);
     EXPECT_NEAR(largest[1], 0.02, 2e-6);
   }
+}
+
+TEST(MakeSchedule, InSpaceEachAxisReachesItsPeakAndInterleavedAxesAreOrthogonal) {
+  MultisinePlan plan;
+  plan.space = Space::hand;
+  plan.peak = 0.02;
+  plan.axes = MultisinePlan::Axes::interleaved;
+  Plan in_space = sines(plan);
+  in_space.axes = 3;
+  const Matrix values = period(made(in_space));
+  ASSERT_EQ(values.cols(), 3);
+  const Matrix products = values.transpose() * values / static_cast<double>(values.rows());
+  for (Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(values.col(i).cwiseAbs().maxCoeff(), 0.02, 2e-6) << i;
+    for (Index k = 0; k < i; ++k) EXPECT_NEAR(products(i, k), 0.0, 1e-12 * products(i, i)) << i << ' ' << k;
+  }
+}
+
+TEST(MakeSchedule, InSpaceIndependentAxesShareTheirLinesAndTheFirstTwoAreThoseOfThePlane) {
+  Plan in_space = sines();
+  in_space.axes = 3;
+  const Matrix values = period(made(in_space));
+  EXPECT_EQ(values.leftCols(2), period(made(sines())));
+  EXPECT_NE(values.col(2), values.col(1));
+}
+
+TEST(MakeSchedule, RefusesOrthogonalPairsInSpace) {
+  MultisinePlan plan;
+  plan.axes = MultisinePlan::Axes::hadamard_first;
+  Plan in_space = sines(plan);
+  in_space.axes = 3;
+  EXPECT_FALSE(make_schedule(in_space, 1));
+}
+
+TEST(MakeSchedule, PulsesInSpaceGoInAllDirectionsOfTheCube) {
+  Plan in_space;
+  in_space.kind = PulsePlan{};
+  in_space.axes = 3;
+  const Schedule schedule = made(in_space);
+  EXPECT_EQ(schedule.axes(), 3);
+  EXPECT_EQ(schedule.events().size(), 2u * 2u * 26u);
+  EXPECT_EQ(schedule.at(0.0).value, Eigen::Vector3d(0.0, 0.0, 0.0));
+  EXPECT_GT(schedule.facts().axis_peak[2], 0.005);
 }
 
 TEST(MakeSchedule, IsTheSameForTheSameSeedAlone) {

@@ -17,7 +17,7 @@ Multisine sine(double amplitude, int harmonic = 1, double phase = 0.0) {
 }
 
 Schedule sines() {
-  return Schedule::multisine(sine(0.003, 1), sine(0.004, 3, 0.5), Quantity::position, Space::hand, 12.0, 2.0).value();
+  return Schedule::multisine({sine(0.003, 1), sine(0.004, 3, 0.5)}, Quantity::position, Space::hand, 12.0, 2.0).value();
 }
 
 Schedule pulses(double amplitude = 0.005, Quantity quantity = Quantity::position) {
@@ -109,7 +109,7 @@ TEST(ScheduleFacts, OfACircleAreItsClosedForm) {
   // Radius 10 mm at 2 Hz, grown in 1 s: from then on |r|, |ṙ|, |r̈| are constant.
   const double omega = 4.0 * kPi;
   const Schedule circle =
-      Schedule::multisine(sine(0.01, 2), sine(0.01, 2, 0.5 * kPi), Quantity::position, Space::hand, 100.0, 1.0).value();
+      Schedule::multisine({sine(0.01, 2), sine(0.01, 2, 0.5 * kPi)}, Quantity::position, Space::hand, 100.0, 1.0).value();
   const Facts facts = circle.facts();
   EXPECT_NEAR(facts.peak, 0.01, 1e-14);
   EXPECT_NEAR(facts.axis_peak.x(), 0.01, 1e-14);
@@ -217,7 +217,7 @@ TEST(ScheduleCheck, AsksAlongThePathWhetherItCanBeReached) {
 
 TEST(Schedule, RefusesBadOptions) {
   const auto multisine = [](double duration, double moving_in) {
-    return Schedule::multisine(sine(1.0), sine(1.0), Quantity::force, Space::joint, duration, moving_in).has_value();
+    return Schedule::multisine({sine(1.0), sine(1.0)}, Quantity::force, Space::joint, duration, moving_in).has_value();
   };
   EXPECT_TRUE(multisine(10.0, 2.0));
   EXPECT_FALSE(multisine(10.0, 0.0));
@@ -226,7 +226,7 @@ TEST(Schedule, RefusesBadOptions) {
   EXPECT_FALSE(multisine(NAN, 1.0));
   EXPECT_FALSE(multisine(3601.0, 1.0));
   EXPECT_FALSE(
-      Schedule::multisine(sine(1.0, 1), sine(1.0, 10'001), Quantity::position, Space::hand, 10.0, 1.0).has_value());
+      Schedule::multisine({sine(1.0, 1), sine(1.0, 10'001)}, Quantity::position, Space::hand, 10.0, 1.0).has_value());
   EXPECT_FALSE(Schedule::pulses({}, Quantity::position, 0.5));
   EXPECT_FALSE(Schedule::pulses({}, Quantity::position, INFINITY));
   EXPECT_FALSE(Schedule::random_binary({}, NAN, Quantity::force, 10.0));

@@ -14,11 +14,13 @@ namespace {
 
 Result<void> check(const PulseSchedule::Options& o) {
   if (!(o.amplitude > 0.0)) return bad_usage(fmt::format("pulse amplitude {} is not positive", o.amplitude));
+  if (o.axes != 2 && o.axes != 3) return bad_usage(fmt::format("pulses have 2 or 3 axes, not {}", o.axes));
   if (o.directions < 1) return bad_usage(fmt::format("{} directions are too few: at least 1 is needed", o.directions));
   if (o.repetitions < 1)
     return bad_usage(fmt::format("{} repetitions are too few: at least 1 is needed", o.repetitions));
-  if (o.repetitions > PulseSchedule::kMaxPulses / o.directions) {
-    return bad_usage(fmt::format("{} directions, {} times each, are more than {} pulses", o.directions, o.repetitions,
+  const int directions = o.axes == 3 ? kDirectionsInSpace : o.directions;
+  if (o.repetitions > PulseSchedule::kMaxPulses / directions) {
+    return bad_usage(fmt::format("{} directions, {} times each, are more than {} pulses", directions, o.repetitions,
                                  PulseSchedule::kMaxPulses));
   }
   if (!(o.shortest_duration > 0.0 && o.shortest_duration <= o.longest_duration && std::isfinite(o.longest_duration))) {
@@ -57,13 +59,20 @@ Result<PulseSchedule> PulseSchedule::create(const Options& options) {
       MBK_TRY(UnderdampedPulse::create(options.amplitude, options.damping_ratio, options.natural_frequency));
 
   PulseSchedule schedule(options, shape);
+  const bool in_space = options.axes == 3;
+  if (in_space) schedule.options_.directions = kDirectionsInSpace;
   numeric::Random random(options.seed);
   double end = options.quiet;
-  for (const int direction : shuffled_directions(options.directions, options.repetitions, random)) {
+  for (const int direction : shuffled_directions(schedule.options_.directions, options.repetitions, random)) {
     const double onset = end + random.uniform(options.shortest_pause, options.longest_pause);
     end = onset + random.uniform(options.shortest_duration, options.longest_duration);
-    schedule.pulses_.push_back({onset, end, direction, 2.0 * std::numbers::pi * direction / options.directions,
-                                direction_on_circle(direction, options.directions)});
+    if (in_space) {
+      const Eigen::Vector3d along = direction_in_space(direction);
+      schedule.pulses_.push_back({onset, end, direction, std::atan2(along.y(), along.x()), along});
+    } else {
+      schedule.pulses_.push_back({onset, end, direction, 2.0 * std::numbers::pi * direction / options.directions,
+                                  direction_on_circle(direction, options.directions)});
+    }
   }
   return schedule;
 }
@@ -73,9 +82,12 @@ const PulseSchedule::Pulse* PulseSchedule::last_onset_before(double t) const {
   return next == pulses_.begin() ? nullptr : &*std::prev(next);
 }
 
-Jet<Eigen::Vector2d> PulseSchedule::at(double t) const {
+Jet<AxesVector> PulseSchedule::at(double t) const {
   const Pulse* pulse = last_onset_before(t);
-  if (!pulse) return {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  if (!pulse) {
+    const AxesVector zero = AxesVector::Zero(options_.axes);
+    return {zero, zero, zero};
+  }
   const auto along = [&]() -> Jet<double> {
     if (t < pulse->offset) return shape_.at(t - pulse->onset);
     const MinimumJerk back(shape_.at(pulse->offset - pulse->onset), {0.0, 0.0, 0.0}, options_.return_duration);
@@ -84,9 +96,9 @@ Jet<Eigen::Vector2d> PulseSchedule::at(double t) const {
   return {along.value * pulse->direction_B, along.first * pulse->direction_B, along.second * pulse->direction_B};
 }
 
-Eigen::Vector2d PulseSchedule::reference(double t) const {
+AxesVector PulseSchedule::reference(double t) const {
   const Pulse* pulse = last_onset_before(t);
-  if (!pulse || t >= pulse->offset) return Eigen::Vector2d::Zero();
+  if (!pulse || t >= pulse->offset) return AxesVector::Zero(options_.axes);
   return options_.amplitude * pulse->direction_B;
 }
 

@@ -36,8 +36,8 @@ class UnderdampedPulse {
   UnderdampedFilter filter_;
 };
 
-/// A train of underdamped pulses in directions spaced evenly around a circle, each repeated, in random order and with
-/// random durations and pauses (Dyck 2013, §3.4 and §4.1). After a pulse the signal returns to zero on a minimum-jerk
+/// A train of underdamped pulses in directions spaced evenly around a circle, or in space along all combinations of −1,
+/// 0 and 1, each repeated, in random order and with random durations and pauses (Dyck 2013, §3.4 and §4.1). After a pulse the signal returns to zero on a minimum-jerk
 /// path that takes over value, velocity and acceleration, and rests there until the next one. It is a displacement of
 /// the hand or a force on it, depending on the unit of the amplitude.
 class PulseSchedule {
@@ -48,6 +48,7 @@ class PulseSchedule {
     double amplitude = kPublishedPulseAmplitude;               ///< A [m or N], steady value; > 0
     double damping_ratio = kPublishedDampingRatio;             ///< ζ
     RadPerSec natural_frequency = kPublishedNaturalFrequency;  ///< ωₙ
+    int axes = 2;                    ///< 2, or 3: in space, with 26 directions whatever `directions` says
     int directions = 8;              ///< evenly around the circle, the first along +x; 2 gives ±x
     int repetitions = 2;             ///< pulses in each direction; at most kMaxPulses in all
     double shortest_duration = 1.5;  ///< of a pulse, onset to offset [s]
@@ -63,8 +64,8 @@ class PulseSchedule {
     double onset = 0.0;                        ///< [s]
     double offset = 0.0;                       ///< [s]; start of the return
     int direction = 0;                         ///< 0 … directions − 1
-    double angle = 0.0;                        ///< of the pulse from +x [rad]
-    Eigen::Vector2d direction_B = {1.0, 0.0};  ///< unit vector of the pulse, base frame
+    double angle = 0.0;      ///< of the pulse from +x, in space of its projection on the xy plane [rad]
+    AxesVector direction_B;  ///< unit vector of the pulse, base frame
   };
 
   /// @fails  a limit stated in Options is violated; a time is not finite or negative.
@@ -72,10 +73,10 @@ class PulseSchedule {
 
   /// Displacement or force and its two derivatives, at t [s]; [m or N], base frame. Exactly zero between the end of a
   /// return and the next onset.
-  [[nodiscard]] Jet<Eigen::Vector2d> at(double t) const;
+  [[nodiscard]] Jet<AxesVector> at(double t) const;
 
   /// The step behind the pulse: A·direction from onset up to offset, else exactly zero [m or N], base frame.
-  [[nodiscard]] Eigen::Vector2d reference(double t) const;
+  [[nodiscard]] AxesVector reference(double t) const;
 
   [[nodiscard]] const std::vector<Pulse>& pulses() const { return pulses_; }
   [[nodiscard]] const Options& options() const { return options_; }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -76,6 +77,28 @@ TEST(PulseSchedule, HasEachDirectionTwiceWithTimesInRange) {
   }
 }
 
+TEST(PulseSchedule, InSpaceHasEachCombinationOfSignsTwice) {
+  PulseSchedule::Options options;
+  options.axes = 3;
+  const PulseSchedule pulses = PulseSchedule::create(options).value();
+  std::map<std::array<int, 3>, int> count;
+  for (const PulseSchedule::Pulse& pulse : pulses.pulses()) {
+    ASSERT_EQ(pulse.direction_B.size(), 3);
+    EXPECT_NEAR(pulse.direction_B.norm(), 1.0, 4 * kEps);
+    const double largest = pulse.direction_B.cwiseAbs().maxCoeff();
+    std::array<int, 3> signs{};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double sign = pulse.direction_B[i] / largest;
+      signs[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(sign));
+      EXPECT_NEAR(sign, std::round(sign), 4 * kEps);
+    }
+    ++count[signs];
+    EXPECT_NEAR((pulses.reference(pulse.onset) - 0.005 * pulse.direction_B).norm(), 0.0, kEps);
+  }
+  EXPECT_EQ(count.size(), 26u);
+  for (const auto& [signs, times] : count) EXPECT_EQ(times, 2);
+}
+
 TEST(PulseSchedule, OrderComesFromTheSeed) {
   const auto order = [](std::uint64_t seed) {
     const PulseSchedule pulses = schedule(seed);
@@ -101,7 +124,7 @@ TEST(PulseSchedule, ReturnsGentlyAndRestsBeforeTheNextOnset) {
   const PulseSchedule pulses = schedule(7);
   for (const PulseSchedule::Pulse& pulse : pulses.pulses()) {
     const double step = 1e-7;
-    const Jet<Eigen::Vector2d> before = pulses.at(pulse.offset - step), after = pulses.at(pulse.offset + step);
+    const Jet<AxesVector> before = pulses.at(pulse.offset - step), after = pulses.at(pulse.offset + step);
     // No jump at the offset: |ṙ| ≤ 0.06 m/s, |r̈| ≤ 1.2 m/s², |r⃛| ≤ 40 m/s³ over 2·step
     EXPECT_NEAR((after.value - before.value).norm(), 0.0, 0.06 * 2.0 * step);
     EXPECT_NEAR((after.first - before.first).norm(), 0.0, 1.2 * 2.0 * step);

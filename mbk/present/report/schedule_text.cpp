@@ -19,17 +19,23 @@ Shown shown(const perturbation::Schedule& schedule) {
   return joint ? Shown{"°", 180.0 / std::numbers::pi} : Shown{"mm", 1000.0};
 }
 
+/// "first axis 2, second 3" and so on, with so many digits.
+std::string by_axis(const perturbation::AxesVector& values, int digits) {
+  constexpr const char* kAxes[] = {"first axis", ", second", ", third"};
+  std::string text;
+  for (Eigen::Index i = 0; i < values.size(); ++i) text += fmt::format("{} {:.{}g}", kAxes[i], values[i], digits);
+  return text;
+}
+
 }  // namespace
 
 std::string schedule_text(const perturbation::Schedule& schedule) {
   const perturbation::Facts facts = schedule.facts();
   const auto [unit, factor] = shown(schedule);
-  const Eigen::Vector2d peak = factor * facts.axis_peak, rms = factor * facts.axis_rms;
   std::string text = fmt::format("  duration      {:.1f} s\n", schedule.duration());
-  text += fmt::format("  peak          {:.4g} {} at {:.2f} s; first axis {:.4g}, second {:.4g}\n", factor * facts.peak,
-                      unit, facts.peak_time, peak[0], peak[1]);
-  text += fmt::format("  rms           {:.4g} {}; first axis {:.4g}, second {:.4g}\n", factor * facts.rms, unit, rms[0],
-                      rms[1]);
+  text += fmt::format("  peak          {:.4g} {} at {:.2f} s; {}\n", factor * facts.peak, unit, facts.peak_time,
+                      by_axis(factor * facts.axis_peak, 4));
+  text += fmt::format("  rms           {:.4g} {}; {}\n", factor * facts.rms, unit, by_axis(factor * facts.axis_rms, 4));
   const bool force = schedule.quantity() == perturbation::Quantity::force;
   text += fmt::format("  {:<12}  peak {:.4g} {}/s at {:.2f} s\n",
                       !force                                           ? "speed"
@@ -40,8 +46,7 @@ std::string schedule_text(const perturbation::Schedule& schedule) {
     text += fmt::format("  acceleration  peak {:.4g} {}/s² at {:.2f} s\n", factor * facts.peak_acceleration, unit,
                         facts.peak_acceleration_time);
   }
-  text += fmt::format("  crest factor  first axis {:.3g}, second {:.3g}, with pauses and fade-in\n",
-                      facts.crest_factor[0], facts.crest_factor[1]);
+  text += fmt::format("  crest factor  {}, with pauses and fade-in\n", by_axis(facts.crest_factor, 3));
   text +=
       fmt::format("  band          {:.3g} to {:.3g} Hz\n", facts.lowest_frequency.value, facts.highest_frequency.value);
   return text;

@@ -30,7 +30,7 @@ OneAxisControl::OneAxisControl(const OneAxisMode& mode, const perturbation::Sche
 }
 
 AxisVector<1> OneAxisControl::torque(double t, const AxisVector<1>& measured) noexcept {
-  const perturbation::Jet<Eigen::Vector2d> now = schedule_.at(t);
+  const perturbation::Jet<perturbation::AxesVector> now = schedule_.at(t);
   const auto* servo = std::get_if<ServoMode>(&mode_);
   if (servo == nullptr) return AxisVector<1>(now.value[0]);
   const double x = measured[0];

@@ -15,12 +15,13 @@ namespace mbk::laboratory {
 namespace {
 
 using numeric::Random;
+using perturbation::AxesVector;
 using perturbation::Jet;
-using perturbation::MinimumJerk;
 using perturbation::Multisine;
 using perturbation::PulseSchedule;
-using robot::HandMatrix;
-using robot::HandVector;
+using perturbation::Quantity;
+using perturbation::Schedule;
+using perturbation::Space;
 
 // Streams of the seed; pulses use stream 0, the sines of axis i stream kSines + i, and so on.
 constexpr std::uint32_t kSines = 10, kWhiteForce = 20, kColouredForce = 30, kAcceleration = 40;
@@ -29,7 +30,7 @@ Result<void> check(const PrescribedMotionOptions& o) {
   if (o.protocol == Protocol::free)
     return bad_usage("protocol free prescribes no motion", "use sinusoidal or underdamped");
   const Index axes = o.limb.axes();
-  if (axes != 1 && axes != 2) return bad_usage(fmt::format("a limb cannot have {} axes; 1 or 2 are supported", axes));
+  if (axes < 1 || axes > 3) return bad_usage(fmt::format("a limb cannot have {} axes; 1 to 3 are supported", axes));
   for (const Matrix* matrix : {&o.limb.M, &o.limb.B, &o.limb.K}) {
     if (matrix->rows() != axes || matrix->cols() != axes || !matrix->allFinite()) {
       return bad_usage(fmt::format("M, B and K must be finite {0}×{0} matrices", axes));
@@ -98,18 +99,21 @@ std::string as_text(const Matrix& matrix) {
 }
 
 std::map<std::string, std::string> metadata(const PrescribedMotionOptions& o) {
-  const auto number = [](double value) { return fmt::format("{:.17g}", value); };
   return {{"protocol", std::string(word_of(o.protocol))},
           {"seed", std::to_string(o.seed)},
           {"truth_M", as_text(o.limb.M)},
           {"truth_B", as_text(o.limb.B)},
           {"truth_K", as_text(o.limb.K)},
-          {"truth_x0", as_text(o.limb.x0)},
-          {"position_quantum_m", number(o.sensors.position_quantum)},
-          {"force_noise_N", number(o.sensors.force_noise)},
-          {"coloured_force_noise_N", number(o.sensors.coloured_force_noise)},
-          {"coloured_force_bandwidth_hz", number(o.sensors.coloured_force_bandwidth.value)},
-          {"acceleration_noise_m_per_s2", number(o.sensors.acceleration_noise)}};
+          {"truth_x0", as_text(o.limb.x0)}};
+}
+
+std::map<std::string, std::string> metadata(const PrescribedMotionSensors& sensors) {
+  const auto number = [](double value) { return fmt::format("{:.17g}", value); };
+  return {{"position_quantum_m", number(sensors.position_quantum)},
+          {"force_noise_N", number(sensors.force_noise)},
+          {"coloured_force_noise_N", number(sensors.coloured_force_noise)},
+          {"coloured_force_bandwidth_hz", number(sensors.coloured_force_bandwidth.value)},
+          {"acceleration_noise_m_per_s2", number(sensors.acceleration_noise)}};
 }
 
 }  // namespace
@@ -131,10 +135,10 @@ impedance::Model relaxed_arm_one_axis() {
 Result<PrescribedMotion> PrescribedMotion::create(const PrescribedMotionOptions& options) {
   MBK_TRY(check(options));
   if (options.protocol == Protocol::sinusoidal) {
-    auto axes = sines_in_circle(options);
-    if (!axes) return tl::unexpected(axes.error());
-    return PrescribedMotion(options.home, options.sinusoidal_duration,
-                            Sines{*std::move(axes), MinimumJerk({0, 0, 0}, {1, 0, 0}, options.moving_in)});
+    auto axes = MBK_TRY(sines_in_circle(options));
+    auto schedule = MBK_TRY(Schedule::multisine(std::move(axes), Quantity::position, Space::hand,
+                                                options.sinusoidal_duration, options.moving_in));
+    return PrescribedMotion(options.home, std::move(schedule));
   }
   PulseSchedule::Options pulses = options.pulses;
   pulses.seed = options.seed;
@@ -142,72 +146,54 @@ Result<PrescribedMotion> PrescribedMotion::create(const PrescribedMotionOptions&
     pulses.repetitions = std::max(1, pulses.directions * pulses.repetitions / 2);
     pulses.directions = 2;
   }
-  auto schedule = PulseSchedule::create(pulses);
-  if (!schedule) return tl::unexpected(schedule.error());
-  const double duration = schedule->pulses().back().offset + options.tail;
-  return PrescribedMotion(options.home, duration, *std::move(schedule));
+  pulses.axes = options.limb.axes() == 3 ? 3 : 2;
+  auto schedule = MBK_TRY(Schedule::pulses(pulses, Quantity::position, options.tail));
+  return PrescribedMotion(options.home, std::move(schedule));
 }
 
-Jet<HandVector> PrescribedMotion::at(double t) const {
-  const Index axes = home_.size();
-  if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) {
-    const Jet<Eigen::Vector2d> d = pulses->at(t);
-    return {home_ + d.value.head(axes), d.first.head(axes), d.second.head(axes)};
-  }
-  const Sines& sines = std::get<Sines>(shape_);
-  const Jet<double> g = sines.growth.at(t);
-  Jet<HandVector> x{home_, HandVector(axes), HandVector(axes)};
-  for (Index i = 0; i < axes; ++i) {
-    const Jet<double> s = sines.axes[static_cast<std::size_t>(i)].at(t);
-    x.value[i] += g.value * s.value;
-    x.first[i] = g.first * s.value + g.value * s.first;
-    x.second[i] = g.second * s.value + 2.0 * g.first * s.first + g.value * s.second;
-  }
-  return x;
+Jet<AxesVector> PrescribedMotion::at(double t) const {
+  const Jet<AxesVector> d = schedule_.at(t);
+  return {home_ + d.value.head(axes()), d.first.head(axes()), d.second.head(axes())};
 }
 
-HandVector PrescribedMotion::reference(double t, const HandVector& position) const {
-  if (const auto* pulses = std::get_if<PulseSchedule>(&shape_)) return home_ + pulses->reference(t).head(home_.size());
-  return position;
+AxesVector PrescribedMotion::reference(double t) const {
+  return home_ + schedule_.reference(t).head(axes());
 }
 
 std::vector<Event> PrescribedMotion::events() const {
   std::vector<Event> events;
-  if (const auto* schedule = std::get_if<PulseSchedule>(&shape_)) {
-    for (const PulseSchedule::Pulse& pulse : schedule->pulses()) {
-      events.push_back({pulse.onset, "onset", pulse.angle});
-      events.push_back({pulse.offset, "offset", pulse.angle});
-    }
+  for (const perturbation::ScheduleEvent& event : schedule_.events()) {
+    events.push_back({event.time, event.name, event.value});
   }
   return events;
 }
 
-Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& options, Hertz rate) {
+Result<Recording> record(const PrescribedMotion& motion, const HandForce& force_of,
+                         const PrescribedMotionSensors& sensors, std::uint64_t seed, Hertz rate) {
   if (!(rate.value > 0.0 && std::isfinite(rate.value))) {
     return bad_usage(fmt::format("sample rate {} Hz is not positive", rate.value));
   }
-  MBK_TRY(check(options.sensors));
-  const auto motion = MBK_TRY(PrescribedMotion::create(options));
+  MBK_TRY(check(sensors));
 
-  const Index axes = options.limb.axes();
+  const Index axes = motion.axes();
   const auto samples = static_cast<Index>(std::llround(motion.duration() * rate.value));
-  const impedance::Model& limb = options.limb;
-  const HandMatrix M = limb.M, B = limb.B, K = limb.K;
-  const HandVector x0 = limb.x0;
   Matrix position(samples, axes), force(samples, axes), reference(samples, axes), acceleration(samples, axes);
   Recording recording;
   recording.time.resize(samples);
   for (Index i = 0; i < samples; ++i) {
     const double t = static_cast<double>(i + 1) / rate.value;
-    const Jet<HandVector> x = motion.at(t);
+    const Jet<AxesVector> x = motion.at(t);
     recording.time[i] = t;
     position.row(i) = x.value.transpose();
     acceleration.row(i) = x.second.transpose();
-    reference.row(i) = motion.reference(t, x.value).transpose();
-    force.row(i) = -(M * x.second + B * x.first + K * (x.value - x0)).transpose();
+    reference.row(i) = motion.reference(t).transpose();
+    force.row(i) = force_of(x).transpose();
+    if (!force.row(i).allFinite()) {
+      return bad_data(fmt::format("the force of the limb is not finite at {:.3f} s", t),
+                      "make the perturbation smaller, so that the arm can follow it");
+    }
   }
 
-  const PrescribedMotionSensors& sensors = options.sensors;
   const auto add = [&](const QuantityChannels& quantity, const Matrix& signals, const auto& sense) {
     for (Index i = 0; i < axes; ++i) {
       Vector signal = signals.col(i);
@@ -220,18 +206,31 @@ Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& option
     for (double& value : s) value = quantised(value, sensors.position_quantum);
   });
   add(kForceChannels, force, [&](Vector& s, std::uint32_t axis) {
-    WhiteNoise white(sensors.force_noise, Random(options.seed, kWhiteForce + axis));
+    WhiteNoise white(sensors.force_noise, Random(seed, kWhiteForce + axis));
     ColouredNoise coloured(sensors.coloured_force_noise, sensors.coloured_force_bandwidth, 1.0 / rate.value,
-                           Random(options.seed, kColouredForce + axis));
+                           Random(seed, kColouredForce + axis));
     for (double& value : s) value = value + white.next() + coloured.next();
   });
   add(kReferenceChannels, reference, [](Vector&, std::uint32_t) {});
   add(kAccelerationChannels, acceleration, [&](Vector& s, std::uint32_t axis) {
-    WhiteNoise white(sensors.acceleration_noise, Random(options.seed, kAcceleration + axis));
+    WhiteNoise white(sensors.acceleration_noise, Random(seed, kAcceleration + axis));
     for (double& value : s) value += white.next();
   });
   recording.events = motion.events();
-  recording.metadata = metadata(options);
+  recording.metadata = metadata(sensors);
+  return recording;
+}
+
+Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& options, Hertz rate) {
+  const auto motion = MBK_TRY(PrescribedMotion::create(options));
+  using AxesMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+  const AxesMatrix M = options.limb.M, B = options.limb.B, K = options.limb.K;
+  const AxesVector x0 = options.limb.x0;
+  const auto force = [&](const Jet<AxesVector>& x) -> AxesVector {
+    return -(M * x.second + B * x.first + K * (x.value - x0));
+  };
+  auto recording = MBK_TRY(record(motion, force, options.sensors, options.seed, rate));
+  recording.metadata.merge(metadata(options));
   return recording;
 }
 

@@ -2,17 +2,15 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <variant>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "mbk/base/core/linear_algebra.h"
 #include "mbk/base/core/result.h"
 #include "mbk/base/core/units.h"
 #include "mbk/model/impedance/model.h"
-#include "mbk/model/perturbation/minimum_jerk.h"
-#include "mbk/model/perturbation/multisine.h"
-#include "mbk/model/perturbation/underdamped_pulse.h"
-#include "mbk/model/robot/mechanism.h"
+#include "mbk/model/perturbation/schedule.h"
 #include "mbk/model/trial/protocol.h"
 #include "mbk/model/trial/recording.h"
 
@@ -34,10 +32,10 @@ struct PrescribedMotionSensors {
 };
 
 struct PrescribedMotionOptions {
-  /// Sinusoidal: ten sines up to 3 Hz within a circle of 2 cm, moving in over the first seconds. Underdamped: 16 steps
-  /// of 5 mm in random directions, at rest in between (Dyck 2013, §3.4).
+  /// Sinusoidal: ten sines up to 3 Hz within a circle (in space a sphere) of 2 cm, moving in over the first seconds.
+  /// Underdamped: 16 steps of 5 mm in random directions (in space 52), at rest in between (Dyck 2013, §3.4).
   Protocol protocol = Protocol::sinusoidal;
-  impedance::Model limb = relaxed_arm();      ///< the true model; one or two axes, as recorded
+  impedance::Model limb = relaxed_arm();      ///< the true model; one to three axes, as recorded
   Vector home = Eigen::Vector2d(0.28, 0.02);  ///< initial hand position, base frame [m]; one entry per axis
   PrescribedMotionSensors sensors;
   std::uint64_t seed = 1;  ///< of phases, pulses and noise
@@ -53,49 +51,56 @@ struct PrescribedMotionOptions {
   double tail = 3.0;                                 ///< recorded after the last pulse [s]
 };
 
-/// The motion of the hand in closed form: position, velocity and acceleration at any time, base frame.
+/// The motion of the hand in closed form: it follows a schedule of displacements from home exactly.
 class PrescribedMotion {
  public:
+  /// @param home  one to three entries, not more than the schedule has [m]
+  /// @param schedule  of positions of the hand
+  PrescribedMotion(Vector home, perturbation::Schedule schedule)
+      : home_(std::move(home)), schedule_(std::move(schedule)) {}
+
   /// With one axis, pulses go along ±x, as many as there would be in all directions.
-  /// @fails  protocol is free (nothing moves the hand); the limb has neither one nor two axes, is not square or not
-  /// finite; home has another size; a length or
-  ///         time is not above zero; as Multisine and PulseSchedule.
+  /// @fails  protocol is free (nothing moves the hand); the limb has not one to three axes, is not square or not
+  /// finite;
+  ///         home has another size; a length or time is not above zero; as perturbation::Schedule.
   [[nodiscard]] static Result<PrescribedMotion> create(const PrescribedMotionOptions& options);
 
   /// x, ẋ, ẍ of the hand [m, m/s, m/s²], one entry per axis.
-  [[nodiscard]] perturbation::Jet<robot::HandVector> at(double t) const;
+  [[nodiscard]] perturbation::Jet<perturbation::AxesVector> at(double t) const;
 
   /// The reference of the robot at t [m]: for sines the hand position; for pulses home, displaced during a pulse.
-  [[nodiscard]] robot::HandVector reference(double t, const robot::HandVector& position) const;
+  [[nodiscard]] perturbation::AxesVector reference(double t) const;
 
-  [[nodiscard]] double duration() const { return duration_; }  ///< [s]
+  [[nodiscard]] Index axes() const { return home_.size(); }
+  [[nodiscard]] double duration() const { return schedule_.duration(); }  ///< [s]
 
   /// For every pulse an "onset" and an "offset" whose value is the direction's angle from +x [rad].
   [[nodiscard]] std::vector<Event> events() const;
 
  private:
-  struct Sines {
-    std::vector<perturbation::Multisine> axes;
-    perturbation::MinimumJerk growth;
-  };
-
-  PrescribedMotion(Vector home, double duration, std::variant<Sines, perturbation::PulseSchedule> shape)
-      : home_(std::move(home)), duration_(duration), shape_(std::move(shape)) {}
-
   Vector home_;
-  double duration_;
-  std::variant<Sines, perturbation::PulseSchedule> shape_;
+  perturbation::Schedule schedule_;
 };
 
-/// A recording in which the hand follows the reference exactly and the limb responds with
-///   F_h = −(M ẍ + B ẋ + K (x − x₀))                                       (Dyck 2013, eq. 3.2)
-/// so that the truth behind it is exact; then the sensors' rounding and noise. There is no loop: nothing that the
-/// limb does moves the robot, and neither bias from feedback nor loss of the motion can occur.
+/// The force that a limb exerts on the robot [N] while the hand moves like this [m, m/s, m/s²].
+using HandForce = std::function<perturbation::AxesVector(const perturbation::Jet<perturbation::AxesVector>& hand)>;
+
+/// A recording of a prescribed motion and the limb's force, with the sensors' rounding and noise. There is no loop:
+/// nothing that the limb does moves the robot, and neither bias from feedback nor loss of the motion can occur.
 /// Sample i is at (i + 1)/rate. Two axes: hand_x, hand_y, force_x, force_y, reference_x, reference_y, acceleration_x,
-/// acceleration_y; one axis: position, reaction, reference, acceleration. Metadata hold protocol, seed, the sensors'
-/// options and truth_M, truth_B, truth_K, truth_x0 as JSON arrays with 17 digits.
+/// acceleration_y; three likewise; one axis: position, reaction, reference, acceleration. Metadata hold the sensors'
+/// options with 17 digits.
+/// @param seed  of the noise
+/// @fails  usage: rate ≤ 0; a sensor option is negative or not finite. data: a force is not finite, with the time.
+[[nodiscard]] Result<Recording> record(const PrescribedMotion& motion, const HandForce& force,
+                                       const PrescribedMotionSensors& sensors, std::uint64_t seed, Hertz rate);
+
+/// The recording of a limb that responds to a prescribed motion with
+///   F_h = −(M ẍ + B ẋ + K (x − x₀))                                       (Dyck 2013, eq. 3.2)
+/// so that the truth behind it is exact. Metadata also hold protocol, seed and truth_M, truth_B, truth_K, truth_x0 as
+/// JSON arrays with 17 digits.
 /// @param rate  sample rate > 0
-/// @fails  rate ≤ 0; a sensor option is negative or not finite; as PrescribedMotion::create.
+/// @fails  as PrescribedMotion::create and record.
 [[nodiscard]] Result<Recording> record_prescribed_motion(const PrescribedMotionOptions& options, Hertz rate);
 
 }  // namespace mbk::laboratory

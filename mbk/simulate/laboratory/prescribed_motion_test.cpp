@@ -23,6 +23,13 @@ PrescribedMotionOptions options(Protocol protocol, std::uint64_t seed = 1, int a
     o.limb = relaxed_arm_one_axis();
     o.home = Vector::Constant(1, 0.02);
   }
+  if (axes == 3) {
+    o.limb.M = (Matrix(3, 3) << 1.3, -0.9, 0.2, -0.9, 1.9, 0.1, 0.2, 0.1, 1.1).finished();
+    o.limb.B = (Matrix(3, 3) << 5.8, -2.1, 1.0, -2.1, 10.6, 0.5, 1.0, 0.5, 7.0).finished();
+    o.limb.K = (Matrix(3, 3) << 42.0, -21.0, 10.0, -36.0, 125.0, 5.0, -10.0, 8.0, 80.0).finished();
+    o.limb.x0 = Eigen::Vector3d(0.284, 0.017, 0.103);
+    o.home = Eigen::Vector3d(0.28, 0.02, 0.1);
+  }
   return o;
 }
 
@@ -53,7 +60,7 @@ class EveryProtocol : public testing::TestWithParam<std::tuple<Protocol, int>> {
 };
 INSTANTIATE_TEST_SUITE_P(All, EveryProtocol,
                          testing::Combine(testing::Values(Protocol::sinusoidal, Protocol::underdamped),
-                                          testing::Values(1, 2)));
+                                          testing::Values(1, 2, 3)));
 
 TEST_P(EveryProtocol, KeepsItsEquationSampleBySample) {
   PrescribedMotionOptions o = chosen();
@@ -94,7 +101,7 @@ TEST_P(EveryProtocol, SameSeedGivesTheSameBytesAndAnotherSeedOthers) {
   ASSERT_EQ(first.channels.size(), again.channels.size());
   for (std::size_t c = 0; c < first.channels.size(); ++c) {
     EXPECT_EQ(first.channels[c].values, again.channels[c].values) << first.channels[c].name;
-    EXPECT_NE(first.channels[c].values.tail(5000), other.channels[c].values.tail(5000)) << first.channels[c].name;
+    EXPECT_NE(first.channels[c].values.tail(20000), other.channels[c].values.tail(20000)) << first.channels[c].name;
   }
   EXPECT_EQ(first.metadata, again.metadata);
 }
@@ -122,6 +129,18 @@ TEST(PrescribedMotion, SinusoidalLogIsInTheCircleAndFillsThePublishedWindow) {
   EXPECT_LT(path.topRows(100).cwiseAbs().maxCoeff(), 1e-6);  // moves in from rest
   const Vector spread = numeric::symmetric_eigenvalues(window.transpose() * window);
   EXPECT_GT(spread[0], 0.2 * spread[1]);  // an area, not a line
+}
+
+TEST(PrescribedMotion, InSpaceFillsASphere) {
+  const PrescribedMotionOptions o = options(Protocol::sinusoidal, 1, 3);
+  const Recording recording = record_prescribed_motion(o, kRate).value();
+  Matrix path = columns(recording, "reference");
+  ASSERT_EQ(path.cols(), 3);
+  path.rowwise() -= o.home.transpose();
+  EXPECT_LE(path.rowwise().norm().maxCoeff(), 0.01 + 1e-15);
+  const Matrix window = path.middleRows(11999, 50001);
+  const Vector spread = numeric::symmetric_eigenvalues(window.transpose() * window);
+  EXPECT_GT(spread[0], 0.2 * spread[2]);  // a volume, not a plane
 }
 
 TEST(PrescribedMotion, UnderdampedLogIsQuietUntilTheFirstOnset) {

@@ -12,11 +12,13 @@
 
 #include "mbk/experiment/protocol/trial_plan.h"
 #include "mbk/model/trial/springs.h"
+#include "mbk/simulate/laboratory/prescribed_motion.h"
 #include "mbk/simulate/laboratory/ready_scenarios.h"
 #include "mbk/simulate/laboratory/simulated_experiment.h"
 #include "mbk/simulate/participant/arm.h"
 #include "mbk/simulate/participant/compliant_grip.h"
 #include "mbk/simulate/participant/one_axis_joint.h"
+#include "mbk/simulate/participant/spatial_arm.h"
 #include "mbk/simulate/participant/tone_robot.h"
 
 namespace mbk::config {
@@ -56,9 +58,16 @@ struct SimulatedTrial {
 using PlanarTrial = SimulatedTrial<2>;
 using OneAxisTrial = SimulatedTrial<1>;
 
+/// A hand in space that follows the schedule exactly: no robot, no servo.
+struct SpaceTrial {
+  Eigen::Vector3d home = {0.3, -0.05, 0.0};                               ///< about which the schedule moves [m]
+  std::variant<impedance::Model, participant::SpatialArm::Options> limb;  ///< a constant impedance, or an arm
+  PrescribedMotionSensors sensors;
+};
+
 /// All inputs of one simulated recording.
 struct Scenario : protocol::TrialPlan {
-  std::variant<PlanarTrial, OneAxisTrial> trial;
+  std::variant<PlanarTrial, OneAxisTrial, SpaceTrial> trial;
 };
 
 /// The trials that a scenario file describes, in its order. Every key has its unit; unknown keys are errors. The

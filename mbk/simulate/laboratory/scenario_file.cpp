@@ -385,6 +385,46 @@ PlanarTrial read_planar(const Section& root, const Section& robot, const perturb
   return trial;
 }
 
+Eigen::Vector3d read_vector3(const Section& s, const char* key, const Eigen::Vector3d& fallback) {
+  return Eigen::Vector3d(s.numbers(key, {fallback.x(), fallback.y(), fallback.z()}, config::any(), 3).data());
+}
+
+participant::SpatialArm::Options read_spatial_arm(const Section& s) {
+  participant::SpatialArm::Options arm;
+  arm.body_mass = s.number("body_mass_kg", arm.body_mass, above(0));
+  arm.upper_arm = s.number("upper_arm_mm", arm.upper_arm, above(0));
+  arm.forearm = s.number("forearm_mm", arm.forearm, above(0));
+  arm.posture = read_vector3(s, "posture_deg", arm.posture);
+  arm.axial_rotation = s.number("axial_rotation_deg", arm.axial_rotation);
+  arm.damping = s.matrix3("damping_Nms_per_rad", arm.damping);
+  arm.stiffness = s.matrix3("stiffness_Nm_per_rad", arm.stiffness);
+  if (s.has("equilibrium_mm")) arm.equilibrium = read_vector3(s, "equilibrium_mm", Eigen::Vector3d::Zero());
+  return arm;
+}
+
+SpaceTrial read_space(const Section& root, const Section& robot) {
+  SpaceTrial trial;
+  trial.home = read_vector3(robot, "home_mm", trial.home);
+  const Section person = root.section("participant");
+  enum class Kind { arm, linear };
+  if (person.required_choice<Kind>("kind", {{"arm", Kind::arm}, {"linear", Kind::linear}}) == Kind::linear) {
+    trial.limb = impedance::Model{person.required_matrix3("mass_kg"), person.required_matrix3("damping_Ns_per_m"),
+                                  person.required_matrix3("stiffness_N_per_m"),
+                                  read_vector3(person, "equilibrium_mm", trial.home)};
+  } else {
+    trial.limb = read_spatial_arm(person);
+  }
+  const Section s = root.section("sensors");
+  PrescribedMotionSensors& sensors = trial.sensors;
+  sensors.position_quantum = s.number("position_resolution_mm", sensors.position_quantum, at_least(0));
+  sensors.force_noise = s.number("force_noise_N", sensors.force_noise, at_least(0));
+  sensors.coloured_force_noise = s.number("coloured_noise_N", sensors.coloured_force_noise, at_least(0));
+  sensors.coloured_force_bandwidth =
+      Hertz(s.number("coloured_bandwidth_hz", sensors.coloured_force_bandwidth.value, above(0)));
+  sensors.acceleration_noise = s.number("acceleration_noise_m_per_s2", sensors.acceleration_noise, at_least(0));
+  return trial;
+}
+
 /// The machine's axis is the first one of the schedule: everything goes to and fro along it.
 void along_one_axis(perturbation::Plan& plan) {
   if (auto* binary = std::get_if<perturbation::RandomBinaryPlan>(&plan.kind)) binary->angle = 0.0;
@@ -408,11 +448,17 @@ Scenario read_scenario(const Section& root) {
   const Section robot = root.section("robot");
   const protocol::Machine machine = protocol::read_machine(robot);
   scenario.perturbation = protocol::read_perturbation(root.section("perturbation"), machine);
-  if (machine == protocol::Machine::planar) {
-    scenario.trial = read_planar(root, robot, scenario.perturbation);
-  } else {
-    scenario.trial = read_one_axis(root, robot);
-    along_one_axis(scenario.perturbation);
+  switch (machine) {
+    case protocol::Machine::planar:
+      scenario.trial = read_planar(root, robot, scenario.perturbation);
+      break;
+    case protocol::Machine::one_axis:
+      scenario.trial = read_one_axis(root, robot);
+      along_one_axis(scenario.perturbation);
+      break;
+    case protocol::Machine::space:
+      scenario.trial = read_space(root, robot);
+      break;
   }
   return scenario;
 }

@@ -463,6 +463,52 @@ TEST(ScenarioFile, EveryReadyScenarioReadsAndSaysItsCondition) {
   }
 }
 
+/// A hand in space with a perturbation.
+std::string in_space(const std::string& perturbation, const std::string& more = "[participant]\nkind = \"arm\"\n") {
+  return "[robot]\nkind = \"space\"\n[perturbation]\n" + perturbation + "\n" + more;
+}
+
+TEST(ScenarioFile, EveryKeyOfAHandInSpaceBecomesItsOption) {
+  const Scenario scenario =
+      read(in_space("kind = \"multisine\"\npeak_mm = 7\n",
+                    "[participant]\nkind = \"arm\"\nbody_mass_kg = 80\nupper_arm_mm = 290\nforearm_mm = 350\n"
+                    "posture_deg = [180, 60, 90]\naxial_rotation_deg = 90\nequilibrium_mm = [310, -40, 20]\n"
+                    "damping_Nms_per_rad = [[1, 2, 3], [4, 5, 6], [7, 8, 9]]\n"
+                    "stiffness_Nm_per_rad = [[9, 8, 7], [6, 5, 4], [3, 2, 1]]\n"
+                    "[sensors]\nposition_resolution_mm = 0.01\nforce_noise_N = 0.3\ncoloured_noise_N = 0.1\n"
+                    "coloured_bandwidth_hz = 2\nacceleration_noise_m_per_s2 = 0.4\n"))
+          .front();
+  EXPECT_EQ(scenario.perturbation.axes, 3);
+  const auto& trial = std::get<SpaceTrial>(scenario.trial);
+  EXPECT_NEAR((trial.home - Eigen::Vector3d(0.3, -0.05, 0.0)).norm(), 0.0, kRounding);
+  const auto& arm = std::get<participant::SpatialArm::Options>(trial.limb);
+  EXPECT_EQ(arm.body_mass, 80.0);
+  EXPECT_NEAR(arm.upper_arm, 0.29, kRounding);
+  EXPECT_NEAR(arm.forearm, 0.35, kRounding);
+  EXPECT_NEAR((arm.posture - kDegree * Eigen::Vector3d(180, 60, 90)).norm(), 0.0, 8 * kRounding);
+  EXPECT_NEAR(arm.axial_rotation, 90 * kDegree, kRounding);
+  EXPECT_EQ(arm.damping(1, 2), 6.0);
+  EXPECT_EQ(arm.stiffness(2, 0), 3.0);
+  EXPECT_NEAR((arm.equilibrium.value() - Eigen::Vector3d(0.31, -0.04, 0.02)).norm(), 0.0, kRounding);
+  EXPECT_NEAR(trial.sensors.position_quantum, 1e-5, kRounding);
+  EXPECT_EQ(trial.sensors.force_noise, 0.3);
+  EXPECT_EQ(trial.sensors.coloured_force_noise, 0.1);
+  EXPECT_EQ(trial.sensors.coloured_force_bandwidth.value, 2.0);
+  EXPECT_EQ(trial.sensors.acceleration_noise, 0.4);
+}
+
+TEST(ScenarioFile, AHandInSpaceHasMillimetresAndNoPlanarPerturbation) {
+  for (const char* key : {"peak_deg", "peak_N"}) {
+    const std::string said = refusal(in_space("kind = \"multisine\"\n" + std::string(key) + " = 2"));
+    EXPECT_NE(said.find(key), std::string::npos) << said;
+    EXPECT_NE(said.find("peak_mm"), std::string::npos) << said;
+  }
+  for (const char* kind : {"random_binary", "ramp_and_hold", "servo_displacement", "none"}) {
+    EXPECT_NE(refusal(in_space("kind = \"" + std::string(kind) + "\"")).find("multisine"), std::string::npos) << kind;
+  }
+  EXPECT_NE(refusal(in_space("kind = \"multisine\"\npeak_mm = 5", "")).find("kind"), std::string::npos);
+}
+
 /// A one-axis machine with a perturbation.
 std::string one_axis(const std::string& perturbation, const std::string& control = "kind = \"position\"") {
   return with("[robot]\nkind = \"one_axis\"\n[participant]\nkind = \"joint\"\n", control, perturbation);

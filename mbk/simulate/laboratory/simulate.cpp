@@ -1,5 +1,7 @@
+#include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "mbk/simulate/laboratory/make_load.h"
 #include "mbk/simulate/laboratory/truth_text.h"
@@ -15,6 +17,48 @@ Result<Performance> run(const SimulatedTrial<Axes>& trial, const Scenario& scena
                               scenario.rate, scenario.seed, options.progress,    /*watch=*/{}};
   if constexpr (Axes == 2) experiment.watch = options.watch;
   return perform(experiment, *load);
+}
+
+/// The limb's force in space, with its impedance about home.
+struct SpaceLimb {
+  impedance::Model truth;
+  HandForce force;
+};
+
+Result<SpaceLimb> make_limb(const SpaceTrial& trial) {
+  using Hand = perturbation::Jet<perturbation::AxesVector>;
+  if (const auto* model = std::get_if<impedance::Model>(&trial.limb)) {
+    const Eigen::Matrix3d M = model->M, B = model->B, K = model->K;
+    const Eigen::Vector3d x0 = model->x0;
+    if (M != M.transpose()) return bad_usage("participant: the inertia of a limb must be symmetric");
+    return SpaceLimb{*model, [=](const Hand& x) -> perturbation::AxesVector {
+                       return -(M * x.second + B * x.first + K * (x.value - x0));
+                     }};
+  }
+  auto arm = participant::SpatialArm::create(std::get<participant::SpatialArm::Options>(trial.limb), trial.home);
+  if (!arm) return tl::unexpected(arm.error().in("participant"));
+  return SpaceLimb{arm->impedance(trial.home),
+                   [arm = *arm](const Hand& x) -> perturbation::AxesVector { return arm.force(x); }};
+}
+
+Result<Performance> run(const SpaceTrial& trial, const Scenario& scenario, const SimulateOptions& options,
+                        perturbation::Schedule schedule) {
+  const auto limb = MBK_TRY(make_limb(trial));
+  const PrescribedMotion motion(trial.home, std::move(schedule));
+  Performance result;
+  const double interval = 1.0 / scenario.rate.value;
+  const auto force = [&](const perturbation::Jet<perturbation::AxesVector>& hand) {
+    const perturbation::AxesVector force = limb.force(hand);
+    const double power = force.dot(hand.first);  // of the hand on the robot [W]
+    result.energy_absorbed -= power * interval;
+    result.energy_exchanged += std::abs(power) * interval;
+    return force;
+  };
+  result.recording = MBK_TRY(record(motion, force, trial.sensors, scenario.seed, scenario.rate));
+  result.truth = limb.truth;
+  result.recording.metadata.merge(truth_metadata(result.truth, scenario.rate, result.energy_absorbed));
+  if (options.progress) options.progress(1.0);
+  return result;
 }
 
 /// The arm at the handle, if there is one.

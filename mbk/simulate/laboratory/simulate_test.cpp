@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mbk/simulate/laboratory/scenario.h"
+#include "mbk/simulate/participant/spatial_arm.h"
 
 namespace mbk::laboratory {
 namespace simulate_test {
@@ -27,7 +28,7 @@ void shorten(Scenario& scenario) {
 }
 
 TEST(Simulate, RunsEveryReadyScenario) {
-  EXPECT_GE(ready_scenarios().size(), 14u);
+  EXPECT_GE(ready_scenarios().size(), 15u);
   for (const ReadyScenario& one : ready_scenarios()) {
     Scenario scenario = read_scenarios(one.text, std::string(one.name) + ".toml").value().front();
     shorten(scenario);
@@ -38,6 +39,79 @@ TEST(Simulate, RunsEveryReadyScenario) {
     }
     EXPECT_EQ(performance->recording.metadata.at("truth_scenario"), one.name);
   }
+}
+
+/// A hand in space with perfect sensors.
+std::string in_space(const std::string& participant, double peak_mm) {
+  return "[robot]\nkind = \"space\"\nhome_mm = [300, 400, -200]\n[perturbation]\nkind = \"multisine\"\npeak_mm = " +
+         std::to_string(peak_mm) + "\naxes = \"interleaved\"\nduration_s = 12\n[participant]\n" + participant +
+         "[sensors]\nposition_resolution_mm = 0\nforce_noise_N = 0\nacceleration_noise_m_per_s2 = 0\n";
+}
+
+Matrix three(const Recording& recording, const std::string& name) {
+  Matrix values(recording.samples(), 3);
+  Index found = 0;
+  for (const char* axis : {"_x", "_y", "_z"}) {
+    for (const Channel& channel : recording.channels) {
+      if (channel.name == name + axis) values.col(found++) = channel.values;
+    }
+  }
+  EXPECT_EQ(found, 3) << name;
+  return values;
+}
+
+/// Largest difference between the recorded force and −(M ẍ + B ẋ + K (x − x₀)), as a share of the largest force.
+double departure(const Performance& performance) {
+  const Matrix x = three(performance.recording, "hand"), force = three(performance.recording, "force");
+  const Matrix acceleration = three(performance.recording, "acceleration");
+  const impedance::Model& truth = performance.truth;
+  double largest = 0.0;
+  for (Index i = 1; i + 1 < x.rows(); ++i) {
+    const Vector velocity = (x.row(i + 1) - x.row(i - 1)).transpose() * 500.0;  // at 1 kHz
+    const Vector expected =
+        -(truth.M * acceleration.row(i).transpose() + truth.B * velocity + truth.K * (x.row(i).transpose() - truth.x0));
+    largest = std::max(largest, (force.row(i).transpose() - expected).cwiseAbs().maxCoeff());
+  }
+  return largest / force.cwiseAbs().maxCoeff();
+}
+
+/// Central differences of 3 Hz at 1 kHz: (ωh)²/6 of the velocity.
+constexpr double kDifferences = 1e-4;
+
+TEST(SimulateInSpace, AConstantImpedanceGivesExactlyItsForce) {
+  const std::string limb =
+      "kind = \"linear\"\nequilibrium_mm = [302, 399, -203]\n"
+      "mass_kg = [[1.3, -0.9, 0.2], [-0.9, 1.9, 0.1], [0.2, 0.1, 1.1]]\n"
+      "damping_Ns_per_m = [[5.8, -2.1, 1], [-2.1, 10.6, 0.5], [1, 0.5, 7]]\n"
+      "stiffness_N_per_m = [[42, -21, 10], [-36, 125, 5], [-10, 8, 80]]\n";
+  const Scenario scenario = read_scenarios(in_space(limb, 8.0), "mine.toml").value().front();
+  const Performance performance = simulate(scenario).value();
+  EXPECT_LT(departure(performance), kDifferences);
+  EXPECT_EQ(performance.recording.metadata.at("truth_K"), "[[42, -21, 10], [-36, 125, 5], [-10, 8, 80]]");
+  EXPECT_EQ(performance.recording.metadata.at("truth_x0"), "[0.302, 0.399, -0.203]");
+  EXPECT_GT(performance.energy_exchanged, std::abs(performance.energy_absorbed));
+}
+
+TEST(SimulateInSpace, AnArmsForceIsThatOfItsTruthWhereTheMotionIsSmall) {
+  const Scenario scenario = read_scenarios(in_space("kind = \"arm\"\n", 0.1), "mine.toml").value().front();
+  const Performance performance = simulate(scenario).value();
+  const double posture = 0.01;  // 0.1 mm turns the joints by about 0.3 mrad
+  EXPECT_LT(departure(performance), posture);
+  EXPECT_GT(performance.energy_absorbed, 0.0);
+}
+
+TEST(SimulateInSpace, RefusesAMotionThatTheArmCannotFollow) {
+  const Scenario scenario = read_scenarios(in_space("kind = \"arm\"\n", 500.0), "mine.toml").value().front();
+  const auto performance = simulate(scenario);
+  ASSERT_FALSE(performance);
+  EXPECT_EQ(performance.error().kind, ErrorKind::data);
+}
+
+TEST(SimulateInSpace, RefusesAnInertiaThatIsNotSymmetric) {
+  const std::string limb =
+      "kind = \"linear\"\nmass_kg = [[1, 0.5, 0], [0, 1, 0], [0, 0, 1]]\n"
+      "damping_Ns_per_m = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nstiffness_N_per_m = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n";
+  EXPECT_FALSE(simulate(read_scenarios(in_space(limb, 8.0), "mine.toml").value().front()));
 }
 
 TEST(Simulate, SameSeedGivesTheSameBitsAndAnotherSeedOthers) {

@@ -31,7 +31,7 @@ Schedule sines(Quantity quantity, Space space, double amplitude, double duration
     return Multisine::with_random_phases(10.0, {1, 7, 13, 20, 29}, std::vector<double>(5, amplitude), 3, stream)
         .value();
   };
-  return Schedule::multisine(axis(0), axis(1), quantity, space, duration, 1.0).value();
+  return Schedule::multisine({axis(0), axis(1)}, quantity, space, duration, 1.0).value();
 }
 
 Schedule pulses(double amplitude) {
