@@ -12,6 +12,7 @@ import { saveable } from "./picture";
 /** "412 [390, 434]" */
 export const valueWithInterval = (value: Value, [low, high]: [Value, Value], name: string): HTMLElement =>
   h("span", { class: "number" }, data(value, significant(value), name),
+    low === null || high === null ? "" : h("wbr"),
     low === null || high === null ? "" : h("span", { class: "half" }, " [", data(low, significant(low), `${name}-low`), ", ", data(high, significant(high), `${name}-high`), "]"));
 
 export const cubed = (unit: string): string => `${/[·/]/.test(unit) ? `(${unit})` : unit}³`;
@@ -75,12 +76,13 @@ export function ellipsoidsSection(trial: Trial, id: string, level: HeadingLevel)
 export function ellipsoidsOfSeveral(trials: Trial[], nameOf: (trial: Trial) => string): HTMLElement[] {
   const drawn = drawnOf(trials);
   if (drawn.length === 0) return [];
-  const rows = drawn.map((trial): (Node | string)[] => [nameOf(trial), ...matrices.flatMap(({ symbol, name }) => {
-    const e = ellipsoidOf(trial, name);
-    const [first] = e?.principal ?? [];
-    return e && first ? [valueWithInterval(first.value, first.value95, `${name}-largest`), directionText(first), volumeOf(e, unitsOf(trial.result)[symbol], `${name}-volume`)] : ["", "", ""];
-  })]);
-  const made = [table("Ellipsoids: largest principal value, its direction (x, y, z) and the volume; brackets are 95 % intervals", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} largest`, `${symbol} direction`, `${symbol} volume`])], rows, "numbers overview spatial")];
+  const rows = drawn.flatMap((trial) => matrices.map(({ symbol, name }): (Node | string)[] => {
+    const e = ellipsoidOf(trial, name) as Ellipsoid;
+    const [first] = e.principal;
+    const unit = unitsOf(trial.result)[symbol];
+    return [nameOf(trial), symbol, h("span", {}, valueWithInterval(first.value, first.value95, `${name}-largest`), ` ${unit}`), directionText(first), volumeOf(e, unit, `${name}-volume`)];
+  }));
+  const made = [table("Ellipsoids: largest principal value, its direction (x, y, z) and the volume; brackets are 95 % intervals", ["recording", "", "largest", "direction", "volume"], rows, "numbers overview")];
   if (drawn.length < 2) return made;
   return [...made, saveable(h("figure", { class: "ellipses side-by-side" },
     ...matrices.map(({ symbol, name, title }) => h("div", { class: "comparison" },
