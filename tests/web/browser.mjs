@@ -79,6 +79,14 @@ export function measure(name, ...args) {
 const holder = /(<script type="application\/json" id="report-data">)([^]*?)(<\/script>)/;
 export const documentOf = (file) => JSON.parse(holder.exec(readFileSync(file, "utf8"))[2]);
 
+/** A report with that document, as mbk would write it. */
+export function reportOf(document, name) {
+  const page = readFileSync(join(process.cwd(), "report", "dist", "index.html"), "utf8");
+  const path = join(folder, `${name}.html`);
+  writeFileSync(path, page.replace(holder, (_, open, _place, close) => open + JSON.stringify(document).replaceAll("<", "\\u003c") + close));
+  return path;
+}
+
 /** The report again with its document changed. */
 export function changed(file, name, change) {
   const html = readFileSync(file, "utf8");

@@ -48,4 +48,5 @@ export function withDiagnostics(document) {
       },
     };
   });
+  return document;
 }

@@ -36,7 +36,7 @@ function ratiosDrawing(report: Report, comparisons: Comparison[]): HTMLElement |
     const width = comparison.width[name];
     const trial = report.trials[k + 1];
     if (!width || !trial) return [];
-    const ends = width.second_to_first.length > 1 ? ["least", "most"] : [""];
+    const ends = [[""], ["least", "most"], ["least", "middle", "most"]][width.second_to_first.length - 1] ?? [];
     return width.second_to_first.map(({ ratio, interval95: [low, high] }, i) => ({
       name: [comparisons.length > 1 ? shortened(nameOf(trial, report.trials)) : "", symbol, ends[i]].filter(Boolean).join(", "),
       value: ratio, low, high, text: `× ${significant(ratio, 3)}${low === null || high === null ? "" : ` [${significant(low, 3)}, ${significant(high, 3)}]`}`,

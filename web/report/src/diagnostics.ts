@@ -11,6 +11,7 @@ interface Section {
   note?: string | undefined;
 }
 
+const styleOfAxis = (axis: number) => [styles.first, styles.second, styles.third][axis] ?? styles.third;
 const columns = (matrix: Columns): Value[][] => matrix.filter((column) => column.length > 0);
 const squared = (unit: string): string => (unit.includes(" or ") ? `(${unit})²/Hz` : `${unit.includes("·") ? `(${unit})` : unit}²/Hz`);
 
@@ -80,7 +81,7 @@ function residualSection(d: Diagnostics, trial: Trial, id: string): Section {
     name: axes === 1 ? "autocorrelation" : `residual along ${axisNames(axes)[axis]}`,
     x: a.lag_s,
     y,
-    style: axis === 0 ? styles.first : styles.second,
+    style: styleOfAxis(axis),
   }));
   const timeConstants = listed(a.time_constant_s.map((t, axis) => `${axisPrefix(axes, axis)}${t === null ? "longer than shown" : `${significant(t, 2)} s`}`));
   const charts: Chart[] = [];
@@ -140,7 +141,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
       name: axes === 1 ? "spectrum" : `along ${axisNames(axes)[axis]}`,
       x,
       y: y.slice(from),
-      style: axis === 0 ? styles.first : styles.second,
+      style: styleOfAxis(axis),
     })),
   });
   const charts: Chart[] = [];
@@ -174,7 +175,7 @@ function spectraSection(d: Diagnostics, trial: Trial, id: string): Section {
           name: axes === 1 ? "force with motion" : `force along ${axisNames(axes)[axis]}`,
           x,
           y: y.slice(from),
-          style: axis === 0 ? styles.first : styles.second,
+          style: styleOfAxis(axis),
         })),
       }],
     });
@@ -255,7 +256,7 @@ function recordingSection(d: Diagnostics, trial: Trial, id: string): Section {
       name: axes === 1 ? "recorded" : `along ${axisNames(axes)[axis]}`,
       x: r.time_s,
       y,
-      style: axis === 0 ? styles.first : styles.second,
+      style: styleOfAxis(axis),
     })),
   });
   // Each position axis has its own scale: the limb moves by millimetres, decimetres from the origin.

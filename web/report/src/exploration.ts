@@ -5,11 +5,13 @@ import type {
 } from "@mbk/shared/documents";
 import { facts, h, heading, svg, table } from "@mbk/shared/dom";
 import { data, fixed, listed, plain, significant } from "@mbk/shared/format";
+import { axisNames } from "@mbk/shared/result";
 import { csvOf } from "@mbk/shared/sheet";
 import { bode, type Curve, ratioUnit } from "./bode";
 import { type Chart, figure, type Panel, type Series, styleOf, styles } from "./charts";
 import { basename } from "./data";
 import { courseSection, margin, onsetSection, plateauSection, reachSection } from "./exploration_protocols";
+import { elementHeads, matrixRows } from "./matrix_rows";
 import { nyquist } from "./nyquist";
 import { saveable } from "./picture";
 import { verdict, warningsSection } from "./summary";
@@ -40,10 +42,10 @@ const ofForce = (result: Exploration): boolean => {
   return output.startsWith("−force") || output === "−reaction";
 };
 
-const axisOf = (axes: number, k: number): string => (axes === 1 ? "" : ` ${"xy"[k]}`);
+const axisOf = (axes: number, k: number): string => (axes === 1 ? "" : ` ${axisNames(axes)[k]}`);
 
-/** "xx", "yx" …: force, then motion. */
-const pairsOf = (axes: number): string[] => (axes === 1 ? [""] : ["xx", "yx", "xy", "yy"]);
+/** "xx", "yx" …: force, then motion; column by column. */
+const pairsOf = (axes: number): string[] => axisNames(axes).flatMap((motion) => axisNames(axes).map((force) => force + motion));
 
 export function explorationHead({ result, note }: ExplorationReport): HTMLElement {
   const title = ofForce(result) ? "Force response to motion" : "Output response to input";
@@ -281,14 +283,10 @@ function lagChart(id: string, title: string, lag: Value[], responses: Value[][],
 
 function modelTable(model: ResponseModel, units: { M: string; B: string; K: string }, caption: string, id: string): HTMLElement | undefined {
   if (!model.identifiable || !model.M || !model.B || !model.K) return undefined;
-  const rows = ([["inertia M", "M", model.M], ["damping B", "B", model.B], ["stiffness K", "K", model.K]] as const).map(([name, symbol, one]) => [
-    name,
-    ...one.value.flatMap((row, i) => row.map((value, j) => margin(value, one.half_width95[i]?.[j] ?? null, `${id}-${symbol}${i}${j}`))),
-    units[symbol],
-    one.identifiable ? "" : "not identifiable",
-  ]);
   const axes = model.M.value.length;
-  return table(caption, ["", ...(axes === 1 ? ["value ± 95 %"] : ["xx", "xy", "yx", "yy"]), "unit", ""], rows, "numbers");
+  const rows = ([["inertia M", "M", model.M], ["damping B", "B", model.B], ["stiffness K", "K", model.K]] as const).flatMap(([name, symbol, one]) => matrixRows(name, axes,
+    (i, j) => margin(one.value[i]?.[j] ?? null, one.half_width95[i]?.[j] ?? null, `${id}-${symbol}${i}${j}`), () => [units[symbol], one.identifiable ? "" : "not identifiable"]));
+  return table(caption, ["", ...elementHeads(axes, "value ± 95 %"), "unit", ""], rows, "numbers");
 }
 
 function impulseSection({ result }: ExplorationReport): HTMLElement | undefined {
@@ -338,6 +336,7 @@ function partsDrawing(parts: { name: string; value: number; low: number; high: n
 const directionName = (direction: Value[] | null): string => {
   if (direction === null) return "both directions equally";
   if (direction.length === 1) return (direction[0] ?? 0) > 0 ? "positive" : "negative";
+  if (direction.length > 2) return `(${direction.map((component) => fixed(component, 2)).join(", ")})`;
   return `${fixed((180 / Math.PI) * Math.atan2(direction[1] ?? 0, direction[0] ?? 0), 0)}°`;
 };
 

@@ -3,7 +3,9 @@ import type { AfterOnsetEstimate, Exploration, PlateauStiffnessEstimate, ReachPr
 import { facts, h, heading, table } from "@mbk/shared/dom";
 import { anyAngle } from "@mbk/shared/ellipses";
 import { data, fixed, significant } from "@mbk/shared/format";
+import { axisNames } from "@mbk/shared/result";
 import { figure, type Panel, styles } from "./charts";
+import { elementHeads, matrixRows } from "./matrix_rows";
 
 export interface ImpedanceUnits {
   M: string;
@@ -18,11 +20,11 @@ export const margin = (value: Value, half: Value, name: string): HTMLElement =>
   data(value, value === null ? "undefined" : half === null ? significant(value, 3) : `${significant(value, 3)} ± ${significant(half, 2)}`, name);
 
 const milliseconds = (seconds: Value): string => `${significant(seconds === null ? null : 1000 * seconds, 3)} ms`;
-const entries = (axes: number): string[] => (axes === 1 ? ["value ± 95 %"] : ["xx", "xy", "yx", "yy"]);
+const entries = (axes: number): string[] => elementHeads(axes, "value ± 95 %");
 const chance = (p: Value): string => (p !== null && p < 1e-12 ? "p < 10⁻¹²" : `p = ${significant(p, 2)}`);
 
 /** The k-th entry of a matrix that stands column by column. */
-const entryName = (axes: number, k: number): string => (axes === 1 ? "" : `_${"xy"[k % 2]}${"xy"[Math.floor(k / 2)]}`);
+const entryName = (axes: number, k: number): string => (axes === 1 ? "" : `_${axisNames(axes)[k % axes]}${axisNames(axes)[Math.floor(k / axes)]}`);
 
 export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
   const panels = matrices.flatMap(([, symbol]): Panel[] => {
@@ -41,7 +43,8 @@ export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, 
       };
     });
   });
-  const rows = matrices.map(([name, symbol]) => [`${name} ${symbol}`, ...found[symbol].constant.flatMap((row, i) => row.map((value, j) => margin(value, found[symbol].constant_half_width95[i]?.[j] ?? null, `constant-${symbol}${i}${j}`))), units[symbol]]);
+  const rows = matrices.flatMap(([name, symbol]) => matrixRows(`${name} ${symbol}`, axes,
+    (i, j) => margin(found[symbol].constant[i]?.[j] ?? null, found[symbol].constant_half_width95[i]?.[j] ?? null, `constant-${symbol}${i}${j}`), () => [units[symbol]]));
   return h("section", { id: "course" }, heading(2, "Change over time"),
     h("p", {}, h("strong", {}, found.verdict === "changes" ? "The limb changes. " : "No change is detected. "), `${found.why.charAt(0).toUpperCase()}${found.why.slice(1)}. `,
       found.instruments ? "Instrumental variables: only the motion that the reference explains was used." : "Least squares, without a reference: biased if the force moves the robot."),
@@ -60,9 +63,10 @@ export function courseSection(found: TimeCourseEstimate, { axes }: Exploration, 
 }
 
 export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, units: ImpedanceUnits): HTMLElement {
-  const rows = matrices.map(([name, symbol]) => {
+  const rows = matrices.flatMap(([name, symbol]) => {
     const one = found[symbol];
-    return [`${name} ${symbol}`, ...one.value.flatMap((row, i) => row.map((value, j) => margin(value, one.half_width95[i]?.[j] ?? null, `onset-${symbol}${i}${j}`))), units[symbol], one.identifiable ? "" : h("strong", {}, "not identifiable")];
+    return matrixRows(`${name} ${symbol}`, axes, (i, j) => margin(one.value[i]?.[j] ?? null, one.half_width95[i]?.[j] ?? null, `onset-${symbol}${i}${j}`),
+      () => [units[symbol], one.identifiable ? "" : h("strong", {}, "not identifiable")]);
   });
   return h("section", { id: "onset" }, heading(2, "First milliseconds after onset"),
     h("p", {}, `The first ${milliseconds(found.window_s)} after ${found.onsets} onsets of the reference, before a voluntary response; ${found.omitted_onsets} more were omitted because the limb did not rest before them or the recording is too short.`),
@@ -71,15 +75,15 @@ export function onsetSection(found: AfterOnsetEstimate, { axes }: Exploration, u
 }
 
 /// Each entry of K with its 95 % interval.
-function stiffnessRow(label: string, name: string, stiffness: StiffnessRegression, unit: string): (string | HTMLElement)[] {
+function stiffnessRows(label: string, name: string, stiffness: StiffnessRegression, unit: string): (Node | string)[][] {
   const entry = (i: number, j: number): HTMLElement => {
     const [low, high] = stiffness.interval95[i]?.[j] ?? [null, null];
     return h("span", {}, data(stiffness.K[i]?.[j] ?? null, significant(stiffness.K[i]?.[j] ?? null, 3), `${name}-K${i}${j}`), ` [${significant(low ?? null, 3)}, ${significant(high ?? null, 3)}]`);
   };
-  return [label, ...stiffness.K.flatMap((row, i) => row.map((_, j) => entry(i, j))), unit];
+  return matrixRows(label, stiffness.K.length, entry, () => [unit]);
 }
 
-const stiffnessHeads = (axes: number): string[] => ["", ...(axes === 1 ? ["value [95 %]"] : ["xx", "xy", "yx", "yy"]), "unit"];
+const stiffnessHeads = (axes: number): string[] => ["", ...elementHeads(axes, "value [95 %]"), "unit"];
 
 function ellipseWords({ ellipse }: StiffnessRegression): string | undefined {
   if (!ellipse) return undefined;
@@ -94,7 +98,7 @@ export function plateauSection(found: PlateauStiffnessEstimate, { axes }: Explor
   return h("section", { id: "plateaus" }, heading(2, "Ramps and holds"),
     h("p", {}, `The force while the hand is held, ${milliseconds(found.plateau_s[0] ?? null)} to ${milliseconds(found.plateau_s[1] ?? null)} after the onset (${found.window_rule}), over ${stiffness.displacements} displacements in ${stiffness.directions} directions.`),
     found.usable
-      ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), [stiffnessRow("stiffness K", "plateau", stiffness, units.K)], "numbers")
+      ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), stiffnessRows("stiffness K", "plateau", stiffness, units.K), "numbers")
       : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable and not shown; see the warnings."),
     facts([
       ["Ellipse", found.usable ? ellipseWords(stiffness) : undefined],
@@ -110,8 +114,8 @@ export function reachSection(found: ReachStiffnessEstimate, { axes }: Exploratio
     h("p", {}, `The force ${milliseconds(found.window_s[0] ?? null)} to ${milliseconds(found.window_s[1] ?? null)} after the event “${found.trigger}”, over ${own.stiffness.displacements} displacements in ${own.stiffness.directions} directions, relative to the undisturbed hand position predicted from ${found.undisturbed} undisturbed reaches and the reach's own past.`),
     found.usable
       ? table("Stiffness; brackets are 95 % intervals", stiffnessHeads(axes), [
-          stiffnessRow("from each reach's own past", "reach", own.stiffness, units.K),
-          stiffnessRow("for comparison: minus the mean reach", "mean-reach", mean.stiffness, units.K)], "numbers")
+          ...stiffnessRows("from each reach's own past", "reach", own.stiffness, units.K),
+          ...stiffnessRows("for comparison: minus the mean reach", "mean-reach", mean.stiffness, units.K)], "numbers")
       : h("p", { "data-name": "no-stiffness" }, "The stiffness is not usable and not shown; see the warnings."),
     facts([
       ["Ellipse", found.usable ? ellipseWords(own.stiffness) : undefined],

@@ -11,6 +11,7 @@ import { followPageAndPrinter } from "./charts";
 import { comparisonSection } from "./comparison";
 import { conditionOf, fileOf, metadataOf, participantOf, readComparison, readReport, type Report } from "./data";
 import { diagnosticElements } from "./diagnostics";
+import { ellipsoidsSection } from "./ellipsoids";
 import { energySection } from "./energy";
 import { explorationHead, explorationSections } from "./exploration";
 import { forceFieldSection } from "./force_field";
@@ -22,7 +23,7 @@ import { ellipsesSection, modelSection, provenanceSection, recordingSection, sim
 import { studyGlossary, studyHead, studySections } from "./study";
 import { summarySection, verdict, warningsSection } from "./summary";
 import { transferFunctionHead, transferFunctionSections } from "./transfer_function";
-import { explorationGlossary, glossary, transferFunctionGlossary } from "./words";
+import { explorationGlossary, glossaryOf, transferFunctionGlossary } from "./words";
 import "./style.css";
 
 function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLElement[] {
@@ -33,6 +34,7 @@ function trialSections(trial: Trial, id: string, level: HeadingLevel): HTMLEleme
     passivitySection(trial, id, level),
     modelSection(trial, id, level),
     ellipsesSection(trial, id, level),
+    ellipsoidsSection(trial, id, level),
     forceFieldSection(trial, id, level),
     methodsSection(trial, id, level),
     passivityDetails(trial, id, level),
@@ -140,7 +142,7 @@ function drawParticipant(report: ParticipantReport): void {
 function drawComparison(document_: ComparisonReport): void {
   const report = readComparison(document_);
   const sections = [comparisonSection(report, document_), overviewSection(report), recordingsSection(report),
-    reproduceSection(report.command, report.software), glossarySection(glossary)];
+    reproduceSection(report.command, report.software), glossarySection(glossaryOf(report.trials))];
   const top = head(report, `${report.trials.length} results compared`);
   show(top, contents(sections, report.trials), sections);
 }
@@ -152,7 +154,7 @@ function draw(report: Report): void {
     : trialSections(report.trials[0] as Trial, "trial-1", 2);
   sections.push(
     reproduceSection(report.command, report.software),
-    glossarySection(glossary),
+    glossarySection(glossaryOf(report.trials)),
   );
   show(head(report), contents(sections, report.trials), sections);
 }

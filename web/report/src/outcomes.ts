@@ -1,6 +1,7 @@
 // Outcomes of a study in words, and their numbers.
 import type { OutcomeCourses, SessionChange, Value } from "@mbk/shared/documents";
 import { fixed, significant } from "@mbk/shared/format";
+import { axisNames } from "@mbk/shared/result";
 
 const quantities: Record<string, string> = { inertia: "inertia", damping: "damping", stiffness: "stiffness" };
 const symbols: Record<string, string> = { M: "inertia", B: "damping", K: "stiffness" };
@@ -16,14 +17,9 @@ const parts: Record<string, (quantity: string) => string> = {
 };
 const others: Record<string, string> = {
   x0: "equilibrium",
-  x0_x: "equilibrium x",
-  x0_y: "equilibrium y",
   VAF: "variance accounted for",
-  VAF_x: "variance accounted for, x",
-  VAF_y: "variance accounted for, y",
   RMSE: "error of the model",
-  RMSE_x: "error of the model, x",
-  RMSE_y: "error of the model, y",
+  ...Object.fromEntries(axisNames(3).flatMap((axis) => [[`x0_${axis}`, `equilibrium ${axis}`], [`VAF_${axis}`, `variance accounted for, ${axis}`], [`RMSE_${axis}`, `error of the model, ${axis}`]])),
   absorbed_energy: "energy absorbed in the trial",
   min_passivity_index: "minimum passivity index",
   excess_of_passivity: "excess of passivity",
@@ -37,7 +33,7 @@ export function outcomeName(name: string): string {
   const of = quantities[first] ? parts[part] : undefined;
   if (of) return of(first);
   if (symbols[first] && rest.length === 0) return symbols[first];
-  if (symbols[first] && /^[xy]{2}$/.test(part)) return `${symbols[first]} ${part}`;
+  if (symbols[first] && /^[xyz]{2}$/.test(part)) return `${symbols[first]} ${part}`;
   return name.replaceAll("_", " ");
 }
 

@@ -5,6 +5,7 @@ import { anyAngle, ellipsesSideBySide } from "@mbk/shared/ellipses";
 import { data, decimalsFor, fixed, normal95, significant, withInterval } from "@mbk/shared/format";
 import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { conditionOf, fileOf, participantOf, type Report } from "./data";
+import { ellipsoidsOfSeveral } from "./ellipsoids";
 import { energySideBySide } from "./energy";
 import { verdictBadge } from "./passivity";
 import { saveable } from "./picture";
@@ -95,7 +96,7 @@ export function overviewSection(report: Report): HTMLElement {
         ...verdicts(result.passivity)),
       ...matrices.map(({ symbol }) => result.usable ? h("div", {}, matrix(result.model[symbol], scaled(result.standard_error[symbol], normal95), symbol), unit(trial, symbol)) : "–"),
       h("div", {}, ...result.fit.VAF.map((vaf, axis) =>
-        h("div", { class: "number" }, result.axes === 1 ? "" : `${"xy"[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
+        h("div", { class: "number" }, result.axes === 1 ? "" : `${axisNames(result.axes)[axis]} `, data(vaf, fixed(vaf, 1), `VAF${axis}`)))),
     ];
   });
   if (summary) {
@@ -115,7 +116,8 @@ export function overviewSection(report: Report): HTMLElement {
       ];
     }),
   ]);
-  const order = axisNames(first.result.axes).length === 2 ? " Each matrix is shown as xx, xy above yx, yy." : "";
+  const names = axisNames(first.result.axes);
+  const order = names.length > 1 ? ` Each matrix is shown as ${names.map((row) => names.map((column) => row + column).join(", ")).join(" above ")}.` : "";
   return h(
     "section",
     { id: "overview" },
@@ -126,6 +128,7 @@ export function overviewSection(report: Report): HTMLElement {
     ...(summary?.omitted ?? []).map(({ file, why }) => h("p", { "data-name": "omitted" }, h("strong", {}, "Not in the mean: "), `${file}: ${why}.`)),
     ...failed.map(({ file, message, try: what }) => h("p", { "data-name": "failed" }, h("strong", {}, first.name ? "Omitted: " : "Not measured: "), `${file}: ${message}; ${what}.`)),
     two ? table("Ellipses: area in the square of the matrix's unit, shape, orientation in degrees with its 95 % interval", ["recording", ...matrices.flatMap(({ symbol }) => [`${symbol} area`, `${symbol} shape`, `${symbol} angle`])], ellipseRows, "numbers overview") : "",
+    ...ellipsoidsOfSeveral(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
     energySideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)),
     saveable(ellipsesSideBySide(rows.map(({ trial }) => trial), (trial) => nameOf(trial, trials)), {
       name: "ellipses-side-by-side", title: "Ellipses side by side", csv: () => ellipsesCsv(rows.map(({ trial }) => ({ name: nameOf(trial, trials), trial }))),

@@ -7,6 +7,7 @@ import { data, fixed, listed, perAxis, plain, significant, withHalfWidth, withIn
 import { axisNames, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { conditionOf, fileOf, isSimulated, metadataOf, participantOf } from "./data";
 import { literatureTable } from "./literature";
+import { elementHeads, matrixRows } from "./matrix_rows";
 import { saveable } from "./picture";
 import { methodNames } from "./words";
 
@@ -49,17 +50,13 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
   const { axes, model, standard_error: error, fit } = result;
   const units = unitsOf(result);
   const names = axisNames(axes);
-  const pairs = names.flatMap((row, j) => names.map((column, i) => ({ name: row + column, i, j })));
-  const head = axes === 1 ? ["", "value ± 95 %", "unit"] : ["", ...pairs.map((pair) => pair.name), "unit"];
-  const rows: (Node | string)[][] = matrices.map(({ symbol, name }) => [
-    `${name} ${symbol}`,
-    ...pairs.map(({ i, j }) => withHalfWidth(model[symbol][j]?.[i] ?? null, error[symbol][j]?.[i] ?? null, `${symbol}${j}${i}`)),
-    units[symbol],
-  ]);
+  const heads = elementHeads(axes, "value ± 95 %");
+  const rows = matrices.flatMap(({ symbol, name }) => matrixRows(`${name} ${symbol}`, axes,
+    (j, i) => withHalfWidth(model[symbol][j]?.[i] ?? null, error[symbol][j]?.[i] ?? null, `${symbol}${j}${i}`), () => [units[symbol]]));
   const millimetres = units.x0 === "m";
   const equilibrium = names.map((name, j) =>
     h("span", {}, name ? `${name} ` : "", withHalfWidth(model.x0[j] ?? null, error.x0[j] ?? null, `x0${j}`, millimetres ? 1000 : 1)));
-  rows.push(["equilibrium x₀", ...equilibrium, ...(axes === 1 ? [] : ["", ""]), millimetres ? "mm" : units.x0]);
+  rows.push(["equilibrium x₀", ...equilibrium, ...heads.slice(axes).map(() => ""), millimetres ? "mm" : units.x0]);
   const fitRows: (Node | string)[][] = [
     [`VAF on ${fit.validated_on === "held-out" ? "held-out (validation) data" : "the fitted data"}`, perAxis(fit.VAF, 2, "%", "VAF")],
     ["VAF in sample", perAxis(fit.VAF_in_sample, 2, "%", "VAF_in_sample")],
@@ -71,11 +68,13 @@ export function modelSection(trial: Trial, id: string, level: HeadingLevel): HTM
     heading(level, "Model"),
     h("p", { class: "equation" }, "M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."),
     result.usable
-      ? table("Inertia, damping, stiffness and equilibrium; ± is half of the 95 % interval", head, rows, "numbers")
+      ? table("Inertia, damping, stiffness and equilibrium; ± is half of the 95 % interval", ["", ...heads, "unit"], rows, "numbers")
       : h("p", { "data-name": "no-model" }, "The model is not usable, so its numbers are not shown. ", h("code", {}, "mbk measure --json"), " writes them."),
     axes === 2 && result.usable
       ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "“xy” is the force along x caused by motion along y.")
-      : "",
+      : axes === 3 && result.usable
+        ? h("p", { class: "reading" }, h("strong", {}, "How to read this. "), "A row gives the force along its axis, a column the motion along its axis that causes it.")
+        : "",
     table("Fit", ["", "value"], fitRows, "numbers narrow"),
     literatureTable(trial),
   );
@@ -172,7 +171,7 @@ export function provenanceSection(trial: Trial, id: string, level: HeadingLevel)
       ["Data used for the parameters", `${plain(e.duration_s, 4)} s, ${e.samples} samples (${e.parameters_from})`],
       ["Noise correlation time", `${plain(e.hac_lag_s, 3)} s, allowed for in the standard errors`],
       ["Handle mass subtracted", e.handle_mass_kg ? `${plain(e.handle_mass_kg)} kg` : "none"],
-      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes === 2 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it perpendicular to the main direction` : ""}`],
+      ["Motion", `${significant(x.motion)} ${units.x0} rms${result.axes > 1 && x.motion_ratio !== null ? `, ${fixed(100 * x.motion_ratio, 0)} % of it ${result.axes === 2 ? "perpendicular to the main direction" : "along the direction that moved least"}` : ""}`],
       ["Condition number", `${significant(x.condition, 2)}, rank ${x.rank}`],
       ["Refitted at a lower sample rate", result.decimate_check ? `at ${plain(result.decimate_check.rate_hz)} Hz the model differs by ${significant(percent(result.decimate_check.largest_relative_change), 2)} %` : undefined],
     ]),

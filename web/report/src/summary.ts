@@ -3,10 +3,12 @@ import { angleBetween, direction } from "@mbk/shared/directions";
 import type { Method, Model, Value, Warning, WarningCode } from "@mbk/shared/documents";
 import { h, heading, type HeadingLevel, svg } from "@mbk/shared/dom";
 import { anyAngle, ellipseOf } from "@mbk/shared/ellipses";
+import { directionText, eigenAxes, ellipsoidDrawings, type Principal, symmetricPart } from "@mbk/shared/ellipsoids";
 import { data, fixed, listed, significant, withHalfWidth } from "@mbk/shared/format";
-import { type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
+import { axisNames, type MatrixName, matrices, type Trial, unitsOf } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
 import { fileOf } from "./data";
+import { valueWithInterval, volumeOf } from "./ellipsoids";
 import { literatureLine } from "./literature";
 import { meanings, methodNames } from "./words";
 
@@ -38,8 +40,8 @@ function fitSentence(trial: Trial): HTMLElement {
   const heldOut = fit.validated_on === "held-out";
   const parts: (Node | string)[] = ["The model explains "];
   fit.VAF.forEach((value, axis) => {
-    if (axis > 0) parts.push(" and ");
-    parts.push(data(value, value === null ? "an undefined share" : `${fixed(value, value > 99 ? 1 : 0)} %`), axes === 1 ? " of the force" : ` of the force along ${"xy"[axis]}`);
+    if (axis > 0) parts.push(axis < axes - 1 ? ", " : " and ");
+    parts.push(data(value, value === null ? "an undefined share" : `${fixed(value, value > 99 ? 1 : 0)} %`), axes === 1 ? " of the force" : ` of the force along ${axisNames(axes)[axis]}`);
   });
   parts.push(heldOut ? ", on held-out (validation) data" : ", on the data used for fitting, which is optimistic");
   const worst = fit.VAF.reduce<number>((least, value) => Math.min(least, value ?? -Infinity), Infinity);
@@ -104,7 +106,30 @@ function axesOf(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" 
   return { small, large, angle: ellipse.orientation_deg ?? 0, intervals: { small: ofSmall, large: ofLarge, angle } };
 }
 
-function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness", title: string): HTMLElement {
+/** Principal values of three axes: from the result, with intervals, or of the other model, without. */
+function principalOf(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | "damping" | "stiffness"): Principal[] {
+  if (shown.method === trial.result.method) return trial.result.ellipsoids?.[name].principal ?? [];
+  const S = symmetricPart(shown.model[symbol]);
+  return S ? eigenAxes(S).map((axis) => ({ ...axis, value95: [null, null], half_angle95_deg: null })) : [];
+}
+
+/** Principal values with their directions, the volume, and the drawings. */
+function spatialCard(trial: Trial, shown: Shown, { symbol, name, title }: (typeof matrices)[number]): HTMLElement {
+  const unit = unitsOf(trial.result)[symbol];
+  const ellipsoid = shown.method === trial.result.method ? trial.result.ellipsoids?.[name] : undefined;
+  const principal = principalOf(trial, shown, symbol, name);
+  return h("div", { class: "card spatial" },
+    h("div", {}, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])),
+      ...principal.map((one, k) => h("p", { class: "principal" },
+        valueWithInterval(one.value, one.value95, `card-${symbol}-${k}`), ` ${unit} `, h("span", { class: "towards" }, directionText(one)))),
+      principal.length === 0 ? h("p", { class: "headline" }, "undefined") : "",
+      ellipsoid?.closed ? h("p", { class: "volume" }, "Volume ", volumeOf(ellipsoid, unit, `card-${symbol}-volume`)) : ""),
+    ellipsoid && ellipsoidDrawings(ellipsoid, symbol, unit));
+}
+
+function card(trial: Trial, shown: Shown, matrix: (typeof matrices)[number]): HTMLElement {
+  if (trial.result.axes === 3) return spatialCard(trial, shown, matrix);
+  const { symbol, name, title } = matrix;
   const unit = unitsOf(trial.result)[symbol];
   const parts: (Node | string | undefined)[] = [];
   const axes = trial.result.axes === 1 ? undefined : axesOf(trial, shown, symbol, name);
@@ -127,20 +152,27 @@ function card(trial: Trial, shown: Shown, symbol: MatrixName, name: "inertia" | 
   } else {
     parts.push(h("p", { class: "headline" }, "undefined"));
   }
-  const drawn = shown.method === trial.result.method ? ellipseOf(trial, matrices.findIndex((one) => one.symbol === symbol)) : undefined;
+  const drawn = shown.method === trial.result.method ? ellipseOf(trial, matrices.indexOf(matrix)) : undefined;
   return h("div", { class: "card" },
     h("div", {}, h("p", { class: "card-title" }, h("strong", {}, `${title} ${symbol}`), h("span", {}, meanings[symbol])), ...parts),
     drawn,
     literatureLine(trial, symbol));
 }
 
-/** "K 224 N/m, B 17.3 N·s/m, M 2.31 kg": along the major axis where there are two axes. */
+/** "K 224 N/m, B 17.3 N·s/m, M 2.31 kg": along the longest axis where there are several. */
 function inOneLine(trial: Trial, shown: Shown): string {
   return [...matrices].reverse().map(({ symbol, name }) => {
-    const value = trial.result.axes === 1 ? shown.model[symbol][0]?.[0] : axesOf(trial, shown, symbol, name)?.large;
+    const value = trial.result.axes === 1 ? shown.model[symbol][0]?.[0]
+      : trial.result.axes === 3 ? principalOf(trial, shown, symbol, name)[0]?.value : axesOf(trial, shown, symbol, name)?.large;
     return `${symbol} ${significant(value, 3)} ${unitsOf(trial.result)[symbol]}`;
   }).join(", ");
 }
+
+/** How to read the directions of a card, by the number of axes. */
+const readingOf: Record<number, string> = {
+  2: "Angles are counter-clockwise from x. Check how x and y of your robot point.",
+  3: "Directions are unit vectors (x, y, z), each with the half-angle of its 95 % cone. Check how x, y and z of your robot point.",
+};
 
 /** Cards of the model that the verdict uses, its method, and the values of the other method. */
 function cards(trial: Trial): (Node | string)[] {
@@ -150,9 +182,9 @@ function cards(trial: Trial): (Node | string)[] {
   const rests = trial.result.passivity?.models?.[0]?.method === first.method;
   const other = first.method !== trial.result.method ? ` The tables and ellipses below are from the ${methodNames[trial.result.method]} model, the method of this result.` : "";
   return [
-    h("div", { class: "cards" }, ...[...matrices].reverse().map(({ symbol, name, title }) => card(trial, first, symbol, name, title))),
+    h("div", { class: "cards" }, ...[...matrices].reverse().map((matrix) => card(trial, first, matrix))),
     h("p", { class: "model-of", "data-method": first.method }, "Values are from the ", h("strong", {}, methodNames[first.method]), rests ? ` model, which the passivity prediction also uses.${other}` : ` model.${other}`, " Brackets are 95 % intervals."),
-    trial.result.axes === 1 ? "" : h("p", { class: "reading" }, "Angles are counter-clockwise from x. Check how x and y of your robot point."),
+    readingOf[trial.result.axes] ? h("p", { class: "reading" }, readingOf[trial.result.axes]) : "",
     ...others.map((one) => h("p", { class: "reading", "data-other": one.method }, `With ${methodNames[one.method]}${trial.result.axes === 1 ? "" : " (maximum)"}: ${inOneLine(trial, one)}.`)),
   ];
 }

@@ -1,4 +1,5 @@
 // Texts of the report: terms, verdicts, and warnings of a transfer function.
+import type { Trial } from "@mbk/shared/result";
 import { type PlainWarnings, plainWarnings } from "@mbk/shared/warnings";
 
 export { methodNames } from "@mbk/shared/result";
@@ -68,7 +69,7 @@ export const meanings = {
   M: "resists acceleration: how heavy it feels",
 } as const;
 
-export const glossary: [string, string][] = [
+const glossary: [string, string][] = [
   ["Impedance", "The relation between motion and force, here described by M, B and K. M ẍ + B ẋ + K (x − x₀) = −F, with F the force that the limb exerts on the machine."],
   ["Inertia M", "Force per acceleration. One number for each pair of directions: xy is the force along x caused by acceleration along y."],
   ["Damping B", "Force per velocity."],
@@ -96,3 +97,21 @@ export const glossary: [string, string][] = [
   ["Bootstrap", "The estimation is repeated many times on randomly drawn blocks of the recording; the spread of the results shows their uncertainty."],
   ["Reference circle", "Equal stiffness, damping or inertia in all directions, with the value written on it."],
 ];
+
+/** Terms that only a plane has. */
+const planar = new Set(["Ellipse", "Shape", "Orientation", "Antisymmetry (z_mean)"]);
+
+const spatial: [string, string][] = [
+  ["Ellipsoid", "Move the hand over a unit sphere: the force of the symmetric part traces the ellipsoid. Its longest axis is the direction of the largest stiffness, damping or inertia. There is none if a principal value may be zero or negative."],
+  ["Principal value, direction", "Eigenvalue of the symmetric part, and the direction in which motion and that force are parallel. Nearly equal values have no direction of their own."],
+  ["95 % cone", "The cone around a direction that contains the true one with 95 % confidence. Its half-angle is measured from its axis; at 90° every direction is possible."],
+  ["Shape of an ellipsoid", "Largest over smallest principal value: 1 is a sphere."],
+  ["Antisymmetric vector z", "The antisymmetric part of a matrix turns a motion u into the force z × u. Springs and masses have none."],
+];
+
+/** The terms of a page on these trials. */
+export function glossaryOf(trials: Trial[]): [string, string][] {
+  const axes = new Set(trials.map(({ result }) => result.axes));
+  if (!axes.has(3)) return glossary;
+  return [...glossary.filter(([term]) => axes.has(2) || !planar.has(term)), ...spatial];
+}

@@ -83,12 +83,12 @@ export function withInterval(value: Value, interval: [Value, Value], name: strin
   );
 }
 
-/** "x 77.3 %, y 88.5 %" */
+/** "x 77.3 %, y 88.5 %"; with one axis "77.3 %" */
 export function perAxis(values: Value[], decimals: number, unit: string, name: string): HTMLElement {
   const parts: (Node | string)[] = [];
   values.forEach((value, axis) => {
     if (axis > 0) parts.push(", ");
-    if (values.length > 1) parts.push(`${"xy"[axis]} `);
+    if (values.length > 1) parts.push(`${"xyz"[axis]} `);
     parts.push(data(value, fixed(value, decimals), `${name}${axis}`), value === null ? "" : ` ${unit}`);
   });
   return h("span", { class: "number" }, ...parts);

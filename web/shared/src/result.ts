@@ -31,7 +31,11 @@ export function unitsOf(result: Result): Record<keyof Units, string> {
   );
 }
 
-export const axisNames = (axes: number): string[] => (axes === 1 ? [""] : ["x", "y"]);
+export const axisNames = (axes: number): string[] => (axes === 1 ? [""] : ["x", "y", "z"].slice(0, axes));
+
+/** Row and column of each element of a matrix, row by row, with its name: "xx", "xy" …; force, then motion. */
+export const elementsOf = (axes: number): { name: string; j: number; i: number }[] =>
+  axisNames(axes).flatMap((row, j) => axisNames(axes).map((column, i) => ({ name: row + column, j, i })));
 
 /** "x: " before what belongs to one axis; nothing where there is only one. */
 export const axisPrefix = (axes: number, axis: number): string => (axes === 1 ? "" : `${axisNames(axes)[axis]}: `);
