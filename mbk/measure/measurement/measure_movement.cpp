@@ -17,7 +17,7 @@ namespace mbk::measurement {
 namespace movement_detail {
 
 Motion motion_of(const Recording& recording, int axes) {
-  if (axes == 2) return Motion::translation;
+  if (axes > 1) return Motion::translation;
   const std::string& unit = recording.find(kPositionChannels.one_axis)->unit;
   return unit == "rad" ? Motion::rotation : unit == "m" ? Motion::translation : Motion::unknown;
 }
