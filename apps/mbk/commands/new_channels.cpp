@@ -131,6 +131,16 @@ Result<std::string> answered_map(const ChannelGuess& guess, const std::string& a
   return map + answer;
 }
 
+/// " --axes 3" for a map with position and force along z, without which two axes are measured.
+/// @fails  as `parse_channel_map`
+Result<std::string> axes_option(const std::string& map) {
+  const auto channels = MBK_TRY(recording::parse_channel_map(map));
+  const auto names = [&](std::string_view name) {
+    return std::ranges::find(channels, name, &recording::ChannelSource::channel) != channels.end();
+  };
+  return std::string(names("hand_z") && names("force_z") ? " --axes 3" : "");
+}
+
 Result<Recording> read_with(const recording::RecordingFile& file, const NewChannelsArguments& arguments,
                             const std::string& map) {
   recording::ReadOptions options;
@@ -169,7 +179,7 @@ int run(const NewChannelsArguments& arguments) {
   if (ask) {
     tell(fmt::format(
         "\nF is the force of the hand on the robot; Fx=-4 reverses it, x=2:mm has a unit.\n"
-        "Two axes: x, y, Fx, Fy and the reference xr, yr. One axis: x, F, xr.\n{}\n",
+        "Two axes: x, y, Fx, Fy and the reference xr, yr; three: also z, Fz, zr. One axis: x, F, xr.\n{}\n",
         guess.missing.empty() ? "Enter accepts; or type what to change, e.g. Fx=4,Fy=5"
                               : fmt::format("Type what is missing or wrong, e.g. {}=3", guess.missing.front())));
   }
@@ -191,7 +201,9 @@ int run(const NewChannelsArguments& arguments) {
     return report_error(named ? answer.error() : answer.error().in(name));
   }
   const std::string rate = arguments.rate_hz ? fmt::format(" --rate {:g}", *arguments.rate_hz) : "";
-  const std::string option = fmt::format("--channels {}{}", shell_word(map), rate);
+  const auto axes = axes_option(map);
+  if (!axes) return report_error(axes.error());
+  const std::string option = fmt::format("--channels {}{}{}", shell_word(map), rate, *axes);
   say("\nmbk measure {} {}\n", shell_word(arguments.file.string()), option);
   if (!arguments.output.file && terminal_at(STDOUT_FILENO).there) return kFine;  // the person sees it in that line
   if (auto ok = arguments.output.write(option + "\n", {arguments.file}); !ok) return report_error(ok.error());

@@ -28,6 +28,9 @@ struct SensorCalibrateArguments {
 
 Result<SensorCalibration> calibrate(const SensorCalibrateArguments& arguments) {
   calibration::SensorCalibrationOptions options = arguments.options;
+  if (arguments.reading.options.axes > 2) {
+    return bad_usage("only sensors with one or two axes can be calibrated", "pass --axes 1, or omit it");
+  }
   options.crosstalk = arguments.reading.options.axes != 1;
   if (arguments.converter.bits > 0) options.converter = arguments.converter;
   ReadRequest reading = arguments.reading;

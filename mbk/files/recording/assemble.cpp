@@ -193,8 +193,8 @@ class Assembler {
     recording_.notes = contents_.notes;
     recording_.metadata = contents_.metadata;
     recording_.events = contents_.events;
-    if (options_.axes < 0 || options_.axes > 2) {
-      return bad_usage(fmt::format("a recording cannot have {} axes", options_.axes), "pass --axes 1 or --axes 2");
+    if (options_.axes < 0 || options_.axes > 3) {
+      return bad_usage(fmt::format("a recording cannot have {} axes", options_.axes), "pass --axes 1, 2 or 3");
     }
     if (contents_.table && !options_.variable.empty()) {
       return bad_usage(
@@ -376,15 +376,22 @@ class Assembler {
     });
   }
 
+  /// Whether a channel belongs to a third axis that was not asked for. Its column may be anything of that name.
+  [[nodiscard]] bool is_spare(const ChannelKind& kind) const {
+    return kind.axes == 3 && options_.axes != 3 && (options_.requested.empty() || !is_requested(kind));
+  }
+
   /// 1 where the file says that the array is the negative of a channel, else 0.
   static std::size_t turned(const Array& array) { return array.means.starts_with('-') ? 1 : 0; }
 
+  /// An array whose name is that of a channel.
+  struct Candidate {
+    const Array* array;
+    ColumnName name;
+  };
+
   Result<void> take_names() {
-    struct Candidate {
-      const Array* array;
-      ColumnName name;
-    };
-    std::vector<Candidate> candidates;
+    std::vector<Candidate> candidates, spare;
     std::vector<std::vector<const ChannelKind*>> meanings;
     for (const Array& array : contents_.arrays) {
       ColumnName name = parse_column_name(!array.means.empty() ? std::string_view(array.means).substr(turned(array))
@@ -409,8 +416,9 @@ class Assembler {
     const int axes = options_.axes != 0 ? options_.axes : axes_of(meanings);
     for (const Candidate& candidate : candidates) {
       const ChannelKind* kind = kind_for_axes(candidate.name.kinds, axes);
-      if (kind == nullptr) {
+      if (kind == nullptr || is_spare(*kind)) {
         aside_.push_back(candidate.array->name);
+        if (kind != nullptr && options_.axes == 0 && options_.requested.empty()) spare.push_back(candidate);
       } else if (is_requested(*kind)) {
         const auto unit = MBK_TRY(unit_said(*kind, *candidate.array, candidate.name.unit));
         const Array& array = *candidate.array;
@@ -419,7 +427,40 @@ class Assembler {
       }
     }
     drop_second_names();
+    take_third_axis(spare);
     return {};
+  }
+
+  /// Takes a third axis that the file has in full: its names are those that mbk writes, and hand_z and force_z fit
+  /// hand_x and force_x. Otherwise these columns remain ignored, whatever they contain.
+  void take_third_axis(std::span<const Candidate> spare) {
+    std::vector<Signal> third;
+    const auto has = [&](const std::vector<Signal>& signals, std::string_view name) {
+      return std::ranges::any_of(signals, [&](const Signal& signal) { return signal.kind->name == name; });
+    };
+    for (const Candidate& candidate : spare) {
+      const ChannelKind& kind = *candidate.name.kinds.front();
+      const Array& array = *candidate.array;
+      std::string of_x(kind.name);
+      of_x.back() = 'x';
+      const auto x = std::ranges::find(signals_, of_x, [](const Signal& signal) { return signal.kind->name; });
+      const Unit* const unit = array.unit.empty() ? candidate.name.unit : find_unit(array.unit);
+      const bool fits = x != signals_.end() && leaf(array.name).starts_with(kind.name) && array.means.empty() &&
+                        !array.obstacle && array.unapplied.empty() && array.clock == x->line.array->clock &&
+                        array.rate_hz == x->line.array->rate_hz && vector_of(array).size() == x->line.size() &&
+                        (unit != nullptr ? kind.accepts(*unit) : array.unit.empty()) &&
+                        std::ranges::count(spare, &kind, [](const Candidate& c) { return c.name.kinds.front(); }) == 1;
+      if (fits) third.push_back({&kind, vector_of(array), unit, false, array.name, array.name});
+    }
+    if (!has(third, "hand_z") || !has(third, "force_z")) return;
+    for (Signal& signal : third) {
+      if (signal.unit == nullptr) {
+        const auto unit = unit_for_all(*signal.kind, *signal.line.array);
+        if (!unit) continue;
+        signal.unit = *unit;
+      }
+      signals_.push_back(std::move(signal));
+    }
   }
 
   /// Notes arrays that neither name nor map assign to a channel.
@@ -432,11 +473,11 @@ class Assembler {
   }
 
   /// A note on "reaction (dyn)": a channel with a unit in brackets that it cannot have; "" of any other.
-  static std::string unknown_unit_of(const Array& array) {
+  [[nodiscard]] std::string unknown_unit_of(const Array& array) const {
     const auto open = array.name.find_last_of("[(");
     if (!array.means.empty() || open == array.name.npos || !ends_in_brackets(array.name)) return {};
     const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(array.name.substr(0, open))).kinds;
-    if (kinds.empty()) return {};
+    if (kinds.empty() || is_spare(*kinds.front())) return {};
     return fmt::format("'{}' was ignored: {} cannot have the unit '{}'; state its unit, as in --channels \"{}={}:{}\"",
                        array.name, kinds.front()->name, in_last_brackets(array.name), kinds.front()->alias, array.name,
                        kinds.front()->measures.empty() ? "UNIT" : si_unit(kinds.front()->measures.front()));
@@ -446,8 +487,9 @@ class Assembler {
   Result<void> refuse_damaged() const {
     for (const auto& [name, why] : contents_.damaged) {
       const std::vector<const ChannelKind*> kinds = parse_column_name(leaf(name)).kinds;
-      const bool matters = std::ranges::any_of(
-          kinds, [&](const ChannelKind* kind) { return !kind->only_if_asked && is_requested(*kind); });
+      const bool matters = std::ranges::any_of(kinds, [&](const ChannelKind* kind) {
+        return !kind->only_if_asked && is_requested(*kind) && !is_spare(*kind);
+      });
       if (!matters) continue;
       return bad_data(
           fmt::format("'{}' is damaged: {}", name, why),

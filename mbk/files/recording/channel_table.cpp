@@ -31,7 +31,7 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"time", "t", kTime, "", 0, 1},
     {"hand_x", "x", kLength, "base", 2, 2},
     {"hand_y", "y", kLength, "base", 2, 3},
-    {"hand_z", "z", kLength, "base", 2, 0},
+    {"hand_z", "z", kLength, "base", 3, 0},
     {"joint_1", "q1", kAngleOrLength, "joint", 2, 6, true},
     {"joint_2", "q2", kAngleOrLength, "joint", 2, 7, true},
     {"joint_3", "q3", kAngleOrLength, "joint", 2, 0, true},
@@ -42,10 +42,10 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"joint_8", "q8", kAngleOrLength, "joint", 2, 0, true},
     {"force_x", "Fx", kForce, "base", 2, 10},
     {"force_y", "Fy", kForce, "base", 2, 11},
-    {"force_z", "Fz", kForce, "base", 2, 0},
+    {"force_z", "Fz", kForce, "base", 3, 0},
     {"reference_x", "xr", kLengthOrForce, "base", 2, 12},
     {"reference_y", "yr", kLengthOrForce, "base", 2, 13},
-    {"reference_z", "zr", kLengthOrForce, "base", 2, 0},
+    {"reference_z", "zr", kLengthOrForce, "base", 3, 0},
     {"reference_joint_1", "qr1", kAngleOrLength, "joint", 2, 0, true},
     {"reference_joint_2", "qr2", kAngleOrLength, "joint", 2, 0, true},
     {"reference_joint_3", "qr3", kAngleOrLength, "joint", 2, 0, true},
@@ -64,7 +64,7 @@ constexpr auto kKinds = std::to_array<ChannelKind>({
     {"torque_8", "tau8", kTorqueOrForce, "joint", 2, 0, true},
     {"acceleration_x", "ax", kAcceleration, "base", 2, 18},
     {"acceleration_y", "ay", kAcceleration, "base", 2, 19},
-    {"acceleration_z", "az", kAcceleration, "base", 2, 0},
+    {"acceleration_z", "az", kAcceleration, "base", 3, 0},
     {"voltage_x", "Vx", kVoltage, "", 2, 0},
     {"voltage_y", "Vy", kVoltage, "", 2, 0},
     {"position", "x", kAnyPosition, "", 1, 0},
@@ -151,7 +151,7 @@ int axes_of(std::span<const std::vector<const ChannelKind*>> meanings) {
 
 const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes) {
   for (const ChannelKind* kind : kinds) {
-    if (kind->axes == 0 || kind->axes == axes) return kind;
+    if (kind->axes == 0 || std::min(kind->axes, 2) == std::min(axes, 2)) return kind;
   }
   return nullptr;
 }

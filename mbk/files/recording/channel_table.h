@@ -17,7 +17,7 @@ struct ChannelKind {
   std::span<const Dimension>
       measures;                    ///< possible quantities; if there are several, the file must state which; none: any
   std::string_view frame;          ///< "base", "joint" or ""
-  int axes;                        ///< 1 or 2: the kind of experiment it belongs to; 0: both
+  int axes;                        ///< 1: of one axis, 2: of several, 3: of the third axis; 0: of any number
   int logs_row;                    ///< 1-based row of the 19-row `logs` matrix; 0: it has none
   bool first_unless_said = false;  ///< of several quantities, the first is the default: joints turn
   bool only_if_asked = false;      ///< not recognised by name alone: input and output are ambiguous names
@@ -46,10 +46,11 @@ inline constexpr int kMaxJoints = 8;
 /// The known name or alias most similar to `name`.
 [[nodiscard]] std::string_view nearest_channel_name(std::string_view name);
 
-/// 1 or 2, from unambiguous names: `F` means one axis, `y` or `Fx` two; two by default.
+/// 1 or 2, from unambiguous names: `F` means one axis, `y` or `Fx` two; two by default. A third axis is never implied:
+/// a column `z` may be anything.
 [[nodiscard]] int axes_of(std::span<const std::vector<const ChannelKind*>> meanings);
 
-/// The one of `kinds` for this number of axes, or nullptr.
+/// The one of `kinds` for this number of axes, or nullptr. With two axes also that of a third one.
 [[nodiscard]] const ChannelKind* kind_for_axes(std::span<const ChannelKind* const> kinds, int axes);
 
 /// Whether a column name denotes a current: "i1 [A]", "motor_mA", "current_1", "Iq". A "current_torque"

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "mbk/files/recording/si_units.h"
 #include "mbk/model/trial/quantity_channels.h"
@@ -20,11 +23,28 @@ TEST(ChannelTable, KnowsTheChannelsOfEveryQuantity) {
       ASSERT_NE(kind, channel_kinds().end()) << name;
       EXPECT_EQ(kind->frame, quantity.frame) << name;
       EXPECT_TRUE(kind->accepts(*find_unit(quantity.unit))) << name;
-      EXPECT_EQ(kind->axes, 2) << name;
+      EXPECT_EQ(kind->axes, std::string_view(name).ends_with("_z") ? 3 : 2) << name;
     }
     if (quantity.one_axis == nullptr) continue;
     ASSERT_NE(known(quantity.one_axis), channel_kinds().end()) << quantity.one_axis;
     EXPECT_EQ(known(quantity.one_axis)->axes, 1) << quantity.one_axis;
+  }
+}
+
+TEST(ChannelTable, AThirdAxisIsNeverImplied) {
+  const auto axes = [](std::initializer_list<std::string_view> names) {
+    std::vector<std::vector<const ChannelKind*>> meanings;
+    for (const std::string_view name : names) meanings.push_back(kinds_called(name));
+    return axes_of(meanings);
+  };
+  EXPECT_EQ(axes({"x", "F", "z"}), 1);
+  EXPECT_EQ(axes({"x", "Fx", "Fz"}), 2);
+  EXPECT_EQ(axes({"hand_x", "hand_y", "hand_z", "force_x", "force_y", "force_z"}), 2);
+  EXPECT_EQ(kind_for_axes(kinds_called("z"), 1), nullptr);
+  for (const int several : {2, 3}) {
+    EXPECT_EQ(kind_for_axes(kinds_called("x"), several)->name, "hand_x") << several;
+    EXPECT_EQ(kind_for_axes(kinds_called("Fz"), several)->name, "force_z") << several;
+    EXPECT_EQ(kind_for_axes(kinds_called("F"), several), nullptr) << several;
   }
 }
 

@@ -20,8 +20,9 @@ enum class Quantity { time, position, force, torque, reference, acceleration, ot
 /// The meaning of a name.
 struct Meaning {
   Quantity quantity = Quantity::other;
-  char axis = ' ';   ///< 'x', 'y', 'z', or ' ' if none is named
-  std::string unit;  ///< as a map writes it; "" if none is named
+  char axis = ' ';                      ///< 'x', 'y', 'z', or ' ' if none is named
+  Quantity in_space = Quantity::other;  ///< of a name that says little, as z alone, where x and y are there too
+  std::string unit;                     ///< as a map writes it; "" if none is named
 };
 
 /// Words in small letters: "PosX_mm" is pos x mm, "Force-Y (N)" is force y n.
@@ -104,10 +105,15 @@ Meaning meaning_of(const std::string& name) {
   }
   if (std::ranges::any_of(words, [](const std::string& word) { return begins_with_one_of(word, {"vel", "speed"}); })) {
     meaning.quantity = Quantity::other;
+  } else if (meaning.quantity == Quantity::other) {
+    const auto is_there = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
+    meaning.in_space = is_there("z") || is_there("pz") ? Quantity::position
+                       : is_there("zr")                ? Quantity::reference
+                                                       : Quantity::other;
   }
   for (const std::string& word : words) {
     const bool short_word =
-        word.size() == 1 || is_one_of(word, {"fx", "fy", "fz", "px", "py", "ax", "ay", "az", "xr", "yr"});
+        word.size() == 1 || is_one_of(word, {"fx", "fy", "fz", "px", "py", "pz", "ax", "ay", "az", "xr", "yr", "zr"});
     if (!short_word) continue;
     for (const char c : word) {
       if (c == 'x' || c == 'y' || c == 'z') meaning.axis = c;
@@ -142,7 +148,11 @@ class Guesser {
   ChannelGuess guess() {
     find_time();
     const bool two = has(Quantity::position, 'y') || count(Quantity::position) == 2;
-    two ? find_two_axes() : find_one_axis();
+    if (is_in_space()) {
+      find_axes(3);
+    } else {
+      two ? find_axes(2) : find_one_axis();
+    }
     return finished();
   }
 
@@ -152,6 +162,20 @@ class Guesser {
   }
   [[nodiscard]] std::ptrdiff_t count(Quantity quantity) const {
     return std::ranges::count(meanings_, quantity, &Meaning::quantity);
+  }
+
+  /// Whether position and force are named along x, y and z. Then z alone is a position.
+  bool is_in_space() {
+    const auto in_plane = [&](Quantity quantity) { return has(quantity, 'x') && has(quantity, 'y'); };
+    const auto is_third = [](const Meaning& m) {
+      return m.axis == 'z' && (m.quantity == Quantity::position || m.in_space == Quantity::position);
+    };
+    if (!in_plane(Quantity::position) || !in_plane(Quantity::force) || !has(Quantity::force, 'z')) return false;
+    if (std::ranges::none_of(meanings_, is_third)) return false;
+    for (Meaning& meaning : meanings_) {
+      if (meaning.quantity == Quantity::other) meaning.quantity = meaning.in_space;
+    }
+    return true;
   }
 
   void add(const std::string& channel, std::size_t k, std::string why) {
@@ -184,17 +208,17 @@ class Guesser {
     return std::nullopt;
   }
 
-  void find_two_axes() {
-    for (const auto& [quantity, names] :
-         {std::pair(Quantity::position, std::array{"x", "y"}), std::pair(Quantity::force, std::array{"Fx", "Fy"}),
-          std::pair(Quantity::reference, std::array{"xr", "yr"}),
-          std::pair(Quantity::acceleration, std::array{"ax", "ay"})}) {
-      for (int axis = 0; axis < 2; ++axis) {
-        const char* const name = names[static_cast<std::size_t>(axis)];
-        if (const auto k = find(quantity, axis == 0 ? 'x' : 'y', axis)) {
-          add(name, *k, kByName);
+  void find_axes(int axes) {
+    for (const auto& [quantity, names] : {std::pair(Quantity::position, std::array{"x", "y", "z"}),
+                                          std::pair(Quantity::force, std::array{"Fx", "Fy", "Fz"}),
+                                          std::pair(Quantity::reference, std::array{"xr", "yr", "zr"}),
+                                          std::pair(Quantity::acceleration, std::array{"ax", "ay", "az"})}) {
+      for (int axis = 0; axis < axes; ++axis) {
+        const auto at = static_cast<std::size_t>(axis);
+        if (const auto k = find(quantity, "xyz"[at], axis)) {
+          add(names[at], *k, kByName);
         } else if (quantity == Quantity::position || quantity == Quantity::force) {
-          missing_.emplace_back(name);
+          missing_.emplace_back(names[at]);
         }
       }
     }
@@ -230,7 +254,7 @@ class Guesser {
       const auto step = even_step(values);
       return step && *step > kSlow ? "ms" : "";
     }
-    if (entry.channel != "x" && entry.channel != "y") return "";
+    if (entry.channel != "x" && entry.channel != "y" && entry.channel != "z") return "";
     return values.size() > 0 && (values.array() - values.mean()).abs().maxCoeff() > kFar ? "mm" : "";
   }
 

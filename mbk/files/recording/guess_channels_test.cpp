@@ -55,6 +55,32 @@ TEST(GuessChannels, GoesByTheWordsInTheNames) {
   EXPECT_TRUE(parse_channel_map(guess.map));
 }
 
+TEST(GuessChannels, ThreeAxesHavePositionAndForceAlongZ) {
+  const std::vector<std::pair<std::string, Vector>> plane = {{"t", rising(0.01)}, {"x", moving(1)},  {"y", moving(1)},
+                                                             {"Fx", moving(2)},   {"Fy", moving(2)}, {"Fz", moving(2)}};
+  auto space = plane;
+  for (const char* const name : {"vel z", "z", "zr", "xr", "az"}) space.emplace_back(name, moving(1));
+  EXPECT_EQ(guessed(space).map, "time=1,x=2,y=3,z=8,Fx=4,Fy=5,Fz=6,xr=10,zr=9,az=11");
+  EXPECT_EQ(guessed(plane).map, "time=1,x=2,y=3,Fx=4,Fy=5");
+  EXPECT_EQ(guessed({{"PosX", moving(9)},
+                     {"PosY", moving(9)},
+                     {"PosZ", moving(9)},
+                     {"Force X", moving(1)},
+                     {"Force Y", moving(1)},
+                     {"Force Z", moving(1)}})
+                .map,
+            "x=1:mm,y=2:mm,z=3:mm,Fx=4,Fy=5,Fz=6");
+  // Without a force along z, z stays out, as the heights of a plane do.
+  EXPECT_EQ(guessed({{"t", rising(0.01)},
+                     {"x", moving(1)},
+                     {"y", moving(1)},
+                     {"z", moving(1)},
+                     {"Fx", moving(2)},
+                     {"Fy", moving(2)}})
+                .map,
+            "time=1,x=2,y=3,Fx=5,Fy=6");
+}
+
 TEST(GuessChannels, OneAxisHasAForceOrATorque) {
   EXPECT_EQ(guessed({{"t", rising(0.01)}, {"Ankle angle (deg)", moving(5)}, {"Torque (N.m)", moving(2)}}).map,
             "time=1,x=2:deg,F=3:N.m");

@@ -44,8 +44,10 @@ struct ReadOptions {
   /// rate must agree with it to 0.1 %.
   std::optional<Hertz> rate;
 
-  /// What the short names x and xr mean: 1 for position and reference of one axis, 2 for hand_x and reference_x of a
-  /// plane. 0: as the channels of the file show.
+  /// What the short names x and xr mean: 1 for position and reference of one axis, 2 or 3 for hand_x and reference_x of
+  /// a plane or of space. 0: as the channels of the file show. A third axis (z, Fz, zr, az) is read with 3, if the map
+  /// or `requested` names it, or if the file has hand_z and force_z under these names; otherwise such columns are
+  /// ignored, whatever they contain.
   int axes = 0;
 
   /// Use a measured channel that is held, or that lacks samples, at its own samples (`at_own_samples`), for
@@ -102,8 +104,8 @@ void rest(const RecordingFile& file);
 ///
 /// @fails  data: the file cannot be read, is damaged or of another format; nothing is recognised (the message lists the
 /// contents); no time and no rate; a named source does not exist; lengths differ.
-///         usage: a rate that contradicts the time by more than 0.1 %; several matrices are candidates; axes is not 0,
-///         1 or 2.
+///         usage: a rate that contradicts the time by more than 0.1 %; several matrices are candidates; axes is not 0
+///         to 3.
 [[nodiscard]] Result<Recording> read(const RecordingFile& file, const ReadOptions& options);
 /// The same for a file that is not used otherwise.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& file, const ReadOptions& options);

@@ -303,8 +303,66 @@ TEST_F(Read, TakesXForOneAxisWhereTheOtherNamesSaySo) {
   ReadOptions options;
   options.axes = 1;
   EXPECT_THAT(names_of(good("t,x\n0,1\n1,1\n", options)), ElementsAre("position"));
-  options.axes = 3;
+  options.axes = 4;
   EXPECT_EQ(bad("t,x\n0,1\n1,1\n", options).kind, ErrorKind::usage);
+}
+
+TEST_F(Read, TakesThreeAxesWhereTheyAreAskedFor) {
+  const std::string csv = "t,x_mm,y_mm,z_mm,Fx,Fy,Fz,zr_mm,az\n0,1,2,3,4,5,6,7,8\n1,1,2,3,4,5,6,7,8\n";
+  ReadOptions options;
+  options.axes = 3;
+  const Recording recording = good(csv, options);
+  EXPECT_THAT(names_of(recording), ElementsAre("hand_x", "hand_y", "hand_z", "force_x", "force_y", "force_z",
+                                               "reference_z", "acceleration_z"));
+  EXPECT_EQ(recording.find("hand_z")->values[0], 0.003);
+  EXPECT_EQ(recording.find("hand_z")->frame, "base");
+  EXPECT_EQ(recording.find("reference_z")->unit, "m");
+
+  ReadOptions mapped = with_channels("x=2,y=3,z=4,Fx=5,Fy=6,Fz=-7,zr=8");
+  const std::string numbered = "0,1,2,3,4,5,6,7\n1,1,2,3,4,5,6,7\n";
+  for (const int axes : {0, 3}) {
+    mapped.axes = axes;
+    mapped.rate = Hertz(1.0);
+    const Recording by_map = good(numbered, mapped);
+    EXPECT_EQ(by_map.find("force_z")->values[0], -6.0) << axes;
+    EXPECT_EQ(by_map.find("reference_z")->values[0], 7.0) << axes;
+  }
+}
+
+TEST_F(Read, IgnoresAThirdAxisThatNobodyAskedFor) {
+  // Columns that are called z, Fz and az only by chance: without units, in other units, twice, or of words.
+  for (const std::string_view csv : {
+           "t,x,y,Fx,Fy,z,Fz,az\n0,1,2,3,4,5,6,7\n1,1,2,3,4,5,6,7\n",
+           "t,x,y,Fx,Fy,z,Fz,az\ns,m,m,N,N,V,deg,V\n0,1,2,3,4,5,6,7\n1,1,2,3,4,5,6,7\n",
+           "t,x,y,Fx,Fy,hand_z (V),force_z,Fz\n0,1,2,3,4,5,6,7\n1,1,2,3,4,5,6,7\n",
+           "t,x,y,Fx,Fy,z,Fz,force_z\n0,1,2,3,4,up,down,7\n1,1,2,3,4,up,up,7\n",
+       }) {
+    for (const int axes : {0, 2}) {
+      ReadOptions options;
+      options.axes = axes;
+      const Recording recording = good(csv, options);
+      EXPECT_THAT(names_of(recording), ElementsAre("hand_x", "hand_y", "force_x", "force_y")) << csv;
+      EXPECT_THAT(recording.notes, Contains(AllOf(HasSubstr("ignored"), HasSubstr("Fz")))) << csv;
+    }
+  }
+  EXPECT_THAT(names_of(good("t,x,F,z\n0,1,2,3\n1,1,2,3\n")), ElementsAre("position", "reaction"));
+  ReadOptions three;
+  three.axes = 3;
+  EXPECT_THAT(bad("t,x,Fx,z\ns,m,N,V\n0,1,2,3\n1,1,2,3\n", three).message,
+              AllOf(HasSubstr("'z'"), HasSubstr("'V'"), HasSubstr("hand_z")));
+}
+
+TEST_F(Read, TakesAThirdAxisThatTheFileHasInFull) {
+  const std::string csv = "time_s,hand_x_m,hand_y_m,hand_z_m,force_x_N,force_y_N,force_z_N,reference_z (V)\n";
+  const std::string rows = "0,1,2,3,4,5,6,7\n1,1,2,3,4,5,6,7\n";
+  EXPECT_THAT(names_of(good(csv + rows)),
+              testing::UnorderedElementsAre("hand_x", "hand_y", "hand_z", "force_x", "force_y", "force_z"));
+  ReadOptions options;
+  options.axes = 2;
+  EXPECT_THAT(names_of(good(csv + rows, options)), ElementsAre("hand_x", "hand_y", "force_x", "force_y"));
+  options = {};
+  options.requested = {"hand_x", "hand_z"};
+  EXPECT_THAT(names_of(good(csv + rows, options)), ElementsAre("hand_x", "hand_z"));
 }
 
 TEST_F(Read, LeavesTheUnitOpenWhereItIsNotSaid) {

@@ -165,6 +165,21 @@ TEST(Write, OneSampleIsARecording) {
   }
 }
 
+TEST(Write, ThreeAxesComeBackWithoutAnOption) {
+  const test::Folder folder;
+  Recording three = example();
+  for (const auto& [name, unit] : {std::pair("hand_z", "m"), {"force_z", "N"}, {"reference_z", "N"}}) {
+    three.channels.push_back({name, unit, "base", Vector::Random(200)});
+  }
+  for (const Kind& kind : kKinds) {
+    SCOPED_TRACE(kind.file);
+    ASSERT_TRUE(write(three, folder / kind.file, kind.format, false));
+    const auto back = read(folder / kind.file, {});
+    ASSERT_TRUE(back) << back.error().line();
+    expect_same(*back, three);
+  }
+}
+
 TEST(Write, EqualRecordingsGiveEqualBytes) {
   const test::Folder folder;
   const Recording recording = example();

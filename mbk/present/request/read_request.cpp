@@ -15,9 +15,8 @@ const OptionTable<ReadRequest>& read_table() {
               "name (or rows of a wide matrix); x=pos[1],Fx=force[1] columns of several matrices; x=data[trial,:,1] a "
               "slice of an array of trials; x=Arm.angle a channel of a stream. x=2:mm converts a unit, Fx=-10 reverses "
               "a "
-              "sign. Channels: time, x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to tau8, qr1 to qr8, ax, ay, Vx, Vy; one "
-              "axis: "
-              "time, x, F, xr, a; for mbk tf: input, output",
+              "sign. Channels: time, x, y, Fx, Fy, xr, yr, q1 to q8, tau1 to tau8, qr1 to qr8, ax, ay, Vx, Vy; three "
+              "axes: also z, Fz, zr, az; one axis: time, x, F, xr, a; for mbk tf: input, output",
               not_empty()},
              &ReadRequest::channels)
         .group("Reading the file")
@@ -43,8 +42,8 @@ const OptionTable<ReadRequest>& read_table() {
             {"--rate", "HZ", "sample rate, in Hz, if the file contains no time", positive()},
             [](auto& request) -> auto& { return request.options.rate; })
         .add(
-            {"--axes", "N", "number of axes: 1 or 2 (default: from the channels)", {[](const std::string& n) {
-               return n == "1" || n == "2" ? "" : fmt::format("{} is neither 1 nor 2", quoted(n));
+            {"--axes", "N", "number of axes: 1, 2 or 3 (default: from the channels)", {[](const std::string& n) {
+               return n == "1" || n == "2" || n == "3" ? "" : fmt::format("{} is not 1, 2 or 3", quoted(n));
              }}},
             [](auto& request) -> auto& { return request.options.axes; })
         .add({"--parts", "", "join the FILEs, which are numbered parts of one recording"}, &ReadRequest::parts);
