@@ -55,7 +55,7 @@ export function inOrder(trials: Trial[]): { trial: Trial; id: string }[] {
 function matrix(values: Value[][], halves: Value[][], name: string): HTMLElement {
   const largest = Math.max(...values.flat().map((value) => Math.abs(value ?? 0)));
   const most = largest > 0 ? Math.max(3 - Math.floor(Math.log10(largest)), 0) : 0;
-  return h("div", { class: "matrix", style: `grid-template-columns: repeat(${values.length}, auto)` },
+  return h("div", { class: values.length > 2 ? "matrix large" : "matrix", style: `grid-template-columns: repeat(${values.length}, auto)` },
     ...values.flatMap((row, j) => row.map((value, i) => {
       const half = halves[j]?.[i] ?? null;
       const decimals = Math.min(decimalsFor(half), most);
