@@ -130,6 +130,18 @@ class Doubtful(Case):
         self.assertAlmostEqual(channels["hand_x"]["maximum"], 0.3 + max(self.angle[:3000]))
         # What libfranka calls external force is what the robot exerts on its environment.
         self.assertAlmostEqual(channels["force_x"]["maximum"], -min(self.torque[:3000]))
+        self.assertNotIn("hand_z", channels)
+        shown = self.fine("info", "--json", "--axes", 3, file).json
+        channels = {channel["name"]: channel for channel in shown["channels"]}
+        self.assertAlmostEqual(channels["hand_z"]["maximum"], 0.5)
+        self.assertAlmostEqual(channels["force_z"]["maximum"], -min(self.torque[:3000]))
+
+    def test_a_column_z_is_ignored_until_it_is_asked_for(self):
+        names, units = "time,x,F,z,Fz,az", "s,rad,N.m,V,deg,V"
+        rows = [f"{0.001 * i},{self.angle[i]!r},{self.torque[i]!r},1,2,{i}" for i in range(3000)]
+        file = self.file("z.csv", "\n".join([names, units, *rows]) + "\n")
+        shown = self.fine("info", "--json", file).json
+        self.assertEqual([channel["name"] for channel in shown["channels"]], ["position", "reaction"])
 
     def damping(self, file):
         result = self.mbk("measure", "--json", file).json

@@ -201,6 +201,25 @@ class YourOwnRobot(Step):
         self.assertIn("13 of 28 coefficients", (self.out / "described.txt").read_text())
 
 
+class ThreeAxes(Step):
+    step = "10_three_axes"
+
+    def test_the_hand_of_the_log_is_found(self):
+        result = self.result("result.json")
+        self.assertTrue(result["usable"])
+        model = result["model"]
+        # M, B, K and X0 of franka_log.py; the noise of the force is 0.05 N.
+        self.assert_near(model["M"], [[1.3, -0.4, 0.1], [-0.4, 1.8, 0.2], [0.1, 0.2, 1.1]], 0.02)
+        self.assert_near(model["B"], [[8, -2, 0.5], [-2, 11, 1], [0.5, 1, 7]], 0.3)
+        self.assert_near(model["K"], [[90, -25, 5], [-25, 140, 10], [5, 10, 70]], 5)
+        for found, true in zip(model["x0"], (0.45, 0.02, 0.40)):
+            self.assertAlmostEqual(found, true, delta=1e-3)
+
+    def test_says_whose_force_it_is(self):
+        self.assertRegex(self.said, r"hand_z +m ")
+        self.assertIn("-O_F_ext_hat_K", self.said)
+
+
 class UseTheLibrary(unittest.TestCase):
     step = "use_the_library"
 

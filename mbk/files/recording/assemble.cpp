@@ -188,7 +188,7 @@ class Assembler {
   Assembler(Contents contents, const ReadOptions& options) : contents_(std::move(contents)), options_(options) {}
 
   Result<Recording> run() {
-    name_robot_log(contents_);
+    name_robot_log(contents_, options_.axes);
     MBK_TRY(maps_time() ? Result<void>() : name_time(contents_));
     recording_.notes = contents_.notes;
     recording_.metadata = contents_.metadata;
