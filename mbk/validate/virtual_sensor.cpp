@@ -61,8 +61,8 @@ double printed_error(const std::string& name, Element element) {
 
 /// A quarter of that, or about what a sensor is allowed in the study of springs.
 double allowed_error(const std::string& name, Element element) {
-  constexpr double kStiffness = 3.0, kMassError = 0.02;  // [N/m], [kg]
-  return std::max(0.25 * std::abs(printed_error(name, element)), element == mass ? kMassError : kStiffness);
+  constexpr double kStiffness = 3.0, kAllowedMass = 0.02;  // [N/m], [kg]
+  return std::max(0.25 * std::abs(printed_error(name, element)), element == mass ? kAllowedMass : kStiffness);
 }
 
 Vector values_of(const Trials& trials, const std::function<bool(const ForceTrial&)>& belongs,

@@ -48,11 +48,11 @@ Result<Performance> run(const SpaceTrial& trial, const Scenario& scenario, const
   Performance result;
   const double interval = 1.0 / scenario.rate.value;
   const auto force = [&](const perturbation::Jet<perturbation::AxesVector>& hand) {
-    const perturbation::AxesVector force = limb.force(hand);
-    const double power = force.dot(hand.first);  // of the hand on the robot [W]
+    const perturbation::AxesVector of_hand = limb.force(hand);
+    const double power = of_hand.dot(hand.first);  // of the hand on the robot [W]
     result.energy_absorbed -= power * interval;
     result.energy_exchanged += std::abs(power) * interval;
-    return force;
+    return of_hand;
   };
   result.recording = MBK_TRY(record(motion, force, trial.sensors, scenario.seed, scenario.rate));
   result.truth = limb.truth;
