@@ -255,6 +255,7 @@ TEST(Mcap, AForceInAnotherFrameThanThePositionIsNoChannel) {
   const auto contents = with_frames("base_link", {"tool0", "tool0"});
   ASSERT_TRUE(contents) << contents.error().line();
   EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "/ft.wrench.force.x");
+  EXPECT_EQ(find(*contents, "/ft.wrench.force.z")->means, "/ft.wrench.force.z");
   EXPECT_EQ(find(*contents, "/pose.pose.position.x")->means, "hand_x");
   EXPECT_THAT(contents->notes, Contains(AllOf(HasSubstr("'/ft'"), HasSubstr("'tool0'"), HasSubstr("'/pose'"),
                                               HasSubstr("'base_link'"))));
@@ -266,6 +267,8 @@ TEST(Mcap, AForceInTheFrameOfThePositionIsAChannel) {
     const auto contents = with_frames("base_link", {same, same});
     ASSERT_TRUE(contents) << contents.error().line();
     EXPECT_EQ(find(*contents, "/ft.wrench.force.x")->means, "force_x") << same;
+    EXPECT_EQ(find(*contents, "/ft.wrench.force.z")->means, "force_z") << same;
+    EXPECT_EQ(find(*contents, "/pose.pose.position.z")->means, "hand_z") << same;
   }
 }
 

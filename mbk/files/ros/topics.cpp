@@ -27,7 +27,7 @@ std::string listed(std::vector<std::string> names) {
   return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-/// The vector of a type of message whose x and y are channels.
+/// The vector of a type of message whose x, y and z are channels; z only if three axes are read.
 struct VectorMeaning {
   std::string_view type, path, channel, unit;
 };
@@ -61,8 +61,9 @@ Meaning meaning_of(std::string_view type, const NumberColumn& column) {
   for (const VectorMeaning& vector : kVectors) {
     if (type != vector.type || !column.path.starts_with(vector.path)) continue;
     const std::string_view rest = std::string_view(column.path).substr(vector.path.size());
-    if (rest == ".x" || rest == ".y") return {fmt::format("{}_{}", vector.channel, rest[1]), std::string(vector.unit)};
-    if (rest == ".z") return {"", std::string(vector.unit)};
+    if (rest == ".x" || rest == ".y" || rest == ".z") {
+      return {fmt::format("{}_{}", vector.channel, rest[1]), std::string(vector.unit)};
+    }
   }
   if (type == kJointState && column.element >= 0) {
     if (column.array == "position") return {fmt::format("joint_{}", column.element + 1), ""};
@@ -391,6 +392,7 @@ void Topics::take(Topic& topic, Stream& stream, std::int64_t begin, bool own, Co
   for (NumberColumn& column : messages.columns) {
     if (!column.kept) continue;
     Meaning meaning = meaning_of(type, column);
+    if (own && meaning.channel.ends_with("_z")) meaning.channel.clear();  // recordings of mbk had two axes
     Array array;
     array.name = fmt::format("{}.{}", stream.name, column.path);
     array.values = SharedMatrix::of_column(without(column.numbers.take(), times.unset));
